@@ -65,7 +65,7 @@ demo: setup
 pictures: setup
 	$(IN_VENV) kinematify generate --text "$$SENTENCE" -o out/cabinet --force --no-validation
 	cp out/cabinet/preview.png docs/demo.png
-	$(IN_VENV) kinematify generate --gallery docs
+	$(IN_VENV) tools.draw_gallery docs
 
 test: setup
 	OMP_NUM_THREADS=1 $(IN_VENV) pytest -n $(JOBS) --dist worksteal $(ARGS)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from kinematify.assembly.part import Part
-    from kinematify.generate.blueprint import Blueprint, BlueprintJoint
+    from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
 
 SETS = {
     "written": "written before there was a parser",

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.part import Assembly, Part
-from kinematify.generate.blueprint import BlueprintJoint
+from kinematify.generate.procedural.blueprint import BlueprintJoint
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_about
 

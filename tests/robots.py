@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.generate.procedural.families.walkers import leg_solids
 from kinematify.generate.procedural.pieces.bearings import at, fork, room, stub
-from kinematify.generate.procedural.pieces.limbs import leg_solids
 from kinematify.generate.procedural.solids import bore, box, cylinder, off, rod, union
 from kinematify.robot.transforms import rotation_about
 from tests.known import KnownJoint, KnownObject, known_object, moved, sliding, turning, varied

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from manifold3d import Manifold
 
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.robot.arrays import FloatArray
 
 

@@ -26,9 +26,9 @@ from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, InputError, KinematifyError
 from kinematify.generate.described import known_families
+from kinematify.generate.procedural.blueprint import ground_truth
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.truth import ground_truth
 from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 from kinematify.robot.read import read_robot
 
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from benchmarks.fit.examples import Example
     from kinematify.assembly.part import Part
     from kinematify.assembly.truth import GroundTruth
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
 
 FAMILY, DESCRIBED, PROGRAMMED, COMPOSED = GENERATED = "family", "described", "programmed", "composed"
 _RESEARCH = ("partnet", "shapenet", "research", "non-commercial")

@@ -26,7 +26,7 @@ from benchmarks.recipes.draft import Draft, Hand
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
 
 _MODULES = (
     furniture,

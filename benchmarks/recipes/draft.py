@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from benchmarks.recipes.shapes import Point, Shape
-    from kinematify.generate.blueprint import Blueprint, BlueprintJoint
+    from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
     from kinematify.robot.arrays import FloatArray
 
 _ROUND = {"cylinder", "capsule", "cone", "tube", "torus", "lathe"}

@@ -38,7 +38,7 @@ from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.request import from_text
+from kinematify.generate.request import from_text
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.pipeline import infer
@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.evaluation.datasets import BenchObject
     from kinematify.evaluation.record import Report
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline import Inference
     from kinematify.validation.finding import CheckResult, Finding

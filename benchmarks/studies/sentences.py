@@ -33,7 +33,7 @@ from benchmarks.expectations import SETS, broken_expectations, load_sentences
 from benchmarks.study import Options, Study, explained
 from kinematify.errors import InputError
 from kinematify.evaluation.record import grouped, table
-from kinematify.generate.procedural.request import from_text
+from kinematify.generate.request import from_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

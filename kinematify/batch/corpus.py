@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
 
 MANIFEST = "manifest.json"
 COMPOSED = "composed"

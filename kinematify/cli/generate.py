@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from kinematify.cli.generation import Generation, Requested
     from kinematify.cli.provided import ProvidedGeneration
-    from kinematify.generate.composer.bodies import Body
-    from kinematify.generate.composer.mechanisms import Mechanism
+    from kinematify.generate.composer.bodies import BodyKind
+    from kinematify.generate.composer.mechanisms import MechanismKind
 
 
 @click.command(
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
         "kinematify generate --blueprint toolbox.yaml -o out/toolbox",
         "kinematify generate --list",
         "kinematify generate --list --category cabinet",
-        "kinematify generate --gallery docs",
         "kinematify generate --corpus 100 --seed 1 -o corpus",
         "kinematify generate --image robot.jpg --source rodin --budget 2 -o out/robot",
         'kinematify generate --text "a cantilever toolbox" --source llm --budget 60000 -o out/box',
@@ -59,12 +58,6 @@ if TYPE_CHECKING:
 )
 @click.option("--seed", type=int, help="Draw what is not asked for; without it the defaults are taken.")
 @click.option("--list", "listing", is_flag=True, help="Show the categories, or the parameters of --category.")
-@click.option(
-    "--gallery",
-    type=click.Path(path_type=Path),
-    metavar="DIR",
-    help="Make a page with pictures of composed objects and of every category with its parameters.",
-)
 @click.option(
     "--image",
     "images",
@@ -115,7 +108,6 @@ def command(
     composed: bool,
     seed: int | None,
     listing: bool,
-    gallery: Path | None,
     images: tuple[Path, ...],
     source: str | None,
     program: str | None,
@@ -159,9 +151,6 @@ def command(
 
     if listing:
         _list(category, json_to)
-        return 0
-    if gallery is not None:
-        _write_gallery(gallery)
         return 0
     if corpus is not None:
         _write_corpus(corpus, seed or 0, _needed(out), text or category, composed=composed)
@@ -217,7 +206,7 @@ def _requested(
     text: str | None, category: str | None, settings: tuple[str, ...], blueprint: Path | None, *, lenient: bool
 ) -> Requested:
     from kinematify.generate.blueprint_file import WrittenBlueprint
-    from kinematify.generate.procedural.request import from_category, from_text
+    from kinematify.generate.request import from_category, from_text
 
     if blueprint is not None:
         return WrittenBlueprint(blueprint)
@@ -275,8 +264,7 @@ def _categories() -> str:
     return (
         f"{table}\n\nWhat no category builds is composed, as in --text 'a cart with four casters and two drawers':\n"
         f"bodies: {_named(BODIES)}\nmechanisms: {_named(MECHANISMS)}\n\n"
-        "Parameters with units and ranges: kinematify generate --list --category NAME\n"
-        "A page with a picture of each: kinematify generate --gallery DIR"
+        "Parameters with units and ranges: kinematify generate --list --category NAME"
     )
 
 
@@ -292,7 +280,7 @@ def _listing(category: str | None) -> dict[str, Any]:
     from kinematify.generate.composer.bodies import BODIES
     from kinematify.generate.composer.mechanisms import MECHANISMS
     from kinematify.generate.described import known_families
-    from kinematify.generate.procedural.request import find_family
+    from kinematify.generate.request import find_family
 
     families = [find_family(category)] if category else list(known_families().values())
     return {
@@ -321,13 +309,13 @@ def _listing(category: str | None) -> dict[str, Any]:
     }
 
 
-def _named(kinds: Sequence[Body] | Sequence[Mechanism]) -> str:
+def _named(kinds: Sequence[BodyKind] | Sequence[MechanismKind]) -> str:
     return ", ".join(kind.words[0] for kind in kinds)
 
 
 def _parameters(category: str) -> str:
-    from kinematify.generate.procedural.listing import PARAMETER_HEADINGS, parameter_rows
-    from kinematify.generate.procedural.request import find_family
+    from kinematify.generate.procedural.parameter import PARAMETER_HEADINGS, parameter_rows
+    from kinematify.generate.request import find_family
 
     family = find_family(category)
     table = format_table(PARAMETER_HEADINGS, parameter_rows(family.all_parameters))
@@ -345,16 +333,3 @@ def _write_corpus(count: int, seed: int, out: Path, only: str | None, *, compose
             out, count, seed=seed, progress=progress, workers=os.cpu_count() or 1, composed=composed
         )
     click.echo(f"{count} objects: {manifest}\nNext: kinematify bench {out} -o results --name corpus")
-
-
-def _write_gallery(folder: Path) -> None:
-    from kinematify.generate.composer.examples import SENTENCES
-    from kinematify.generate.described import known_families
-    from kinematify.generate.procedural.families import FAMILIES
-    from kinematify.pipeline.gallery import write_gallery
-
-    described = {name: family for name, family in known_families().items() if name not in FAMILIES}
-    command = f"kinematify generate --gallery {folder.as_posix()}"
-    with progress_reporter() as progress:
-        page = write_gallery(folder, FAMILIES, SENTENCES, described, command=command, progress=progress)
-    click.echo(f"{len(SENTENCES)} sentences, {len(described)} described objects, {len(FAMILIES)} categories: {page}")

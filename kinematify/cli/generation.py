@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from kinematify.cli.progress import Reporter
     from kinematify.config import Config
     from kinematify.evaluation.metrics import ObjectScore
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline import Inference
     from kinematify.validation.report import ValidationReport

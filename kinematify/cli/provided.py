@@ -20,9 +20,8 @@ from kinematify.generate.blueprint_file import WrittenBlueprint
 from kinematify.generate.providers.command import CommandSource
 from kinematify.generate.providers.job import open_job
 from kinematify.generate.providers.language_model import BLUEPRINT_FILE, LanguageModel, language_model
-from kinematify.generate.providers.prompt import check_prompt
-from kinematify.generate.providers.recorded import RecordingSource, ReplayedSource
-from kinematify.generate.providers.rodin.source import RodinSource
+from kinematify.generate.providers.rodin import RodinSource
+from kinematify.generate.providers.source import RecordingSource, ReplayedSource, check_prompt
 from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
 from kinematify.pipeline import infer
 from kinematify.pipeline.generate import write_blueprint
@@ -34,7 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.cli.progress import Reporter
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.providers.language_model import Written
     from kinematify.generate.providers.source import Generated, PartSource
     from kinematify.pipeline import Inference

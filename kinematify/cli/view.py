@@ -13,7 +13,7 @@ from kinematify.cli.options import complete_joints, examples, package_dirs_optio
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.view.shown import Sight
+    from kinematify.view.record import Sight
 
 _SHOWN_TITLE = 60
 
@@ -110,7 +110,7 @@ def _sights(report: Path) -> list[Sight]:
 
 
 def _sight(finding: dict[str, Any], titles: Mapping[str, str]) -> Sight:
-    from kinematify.view.shown import Sight
+    from kinematify.view.record import Sight
 
     place = finding["joint"] or " - ".join(finding["pair"] or ()) or finding["link"] or ""
     links = [*(finding["pair"] or ()), *([finding["link"]] if finding["link"] else [])]

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.evaluation.tree_metrics import TreeDistance, parent_errors, root_of, tree_edit_distance, without_nodes
-from kinematify.generate.procedural.truth import ground_truth
+from kinematify.generate.procedural.blueprint import ground_truth
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.truth import GroundTruth, TrueJoint
     from kinematify.contact.tree import KinematicTree
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline import Inference
     from kinematify.robot.arrays import FloatArray

@@ -6,6 +6,7 @@ and its cabinet too: a file whose meshes are not convex gets the pieces that `ki
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,8 @@ from kinematify.model.collision import collides_as_it_is, fit_collision
 from kinematify.model.masses import prepared_inertials
 from kinematify.robot.appearance import Material, plain, surfaces
 from kinematify.robot.joint_type import FREE_KINDS
+from kinematify.robot.material_files import write_texture
+from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Link, Shape
 
@@ -27,8 +30,9 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import PrepareSettings, ValidationSettings
     from kinematify.model.masses import PreparedInertial
-    from kinematify.robot.appearance import Surface
+    from kinematify.robot.appearance import Surface, Texture
     from kinematify.robot.robot import Robot
+
 
 GREY = Material().color
 """Of shapes whose colour the file does not state."""
@@ -128,3 +132,46 @@ def shown_surfaces(shape: Shape) -> tuple[Surface, ...]:
     """What is seen of a shape, cut into its materials; one that states none has its colour, or grey."""
     appearance = shape.mesh.appearance or plain(shape.color or GREY, len(shape.mesh.faces))
     return surfaces(shape.mesh.vertices, shape.mesh.faces, appearance)
+
+
+class MeshFiles:
+    """A folder beside the exported file; every mesh is written once, under a name of its own."""
+
+    def __init__(self, out: Path) -> None:
+        """Create the folder ``<stem>_meshes`` beside `out`.
+
+        Raises:
+            OSError: It cannot be created.
+        """
+        self.folder = out.parent / f"{out.stem}_meshes"
+        self.folder.mkdir(exist_ok=True)
+        self._count = 0
+        self._textures: dict[Texture, str] = {}
+
+    def write(self, shape: Shape, link: str) -> str:
+        """Write a mesh in its link's frame, with its materials beside it, and return its file name."""
+        name = self._name(link, "obj")
+        appearance = shape.mesh.appearance
+        says_more = appearance is not None and (len(appearance.materials) > 1 or appearance.is_textured)
+        write_obj(
+            self.folder / name, shape.mesh.vertices, shape.mesh.faces, OBJ_DIGITS, appearance if says_more else None
+        )
+        return name
+
+    def write_surface(self, surface: Surface, link: str) -> str:
+        """Write the faces of one material, with their places in its texture but without the material."""
+        name = self._name(link, "obj")
+        write_obj(self.folder / name, surface.vertices, surface.faces, OBJ_DIGITS, uv=surface.uv)
+        return name
+
+    def write_texture(self, texture: Texture) -> str:
+        """Write a picture once and return its file name."""
+        if texture not in self._textures:
+            self._textures[texture] = self._name("texture", "png")
+            write_texture(self.folder / self._textures[texture], texture)
+        return self._textures[texture]
+
+    def _name(self, link: str, suffix: str) -> str:
+        name = f"{self._count:03d}_{re.sub(r'[^A-Za-z0-9_-]', '_', link)[:60]}.{suffix}"
+        self._count += 1
+        return name

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.formats.content import GREY, body_name, shown_surfaces, told_renaming
-from kinematify.formats.mesh_files import MeshFiles
+from kinematify.formats.content import GREY, MeshFiles, body_name, shown_surfaces, told_renaming
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import quaternion_of
 from kinematify.robot.write import numbers
@@ -44,7 +43,7 @@ def write_mjcf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
     etree.SubElement(document, "compiler", angle="radian", meshdir=meshes.folder.name, autolimits="true")
     assets = etree.SubElement(document, "asset")
     world = etree.SubElement(document, "worldbody")
-    writer = _Writer(content, meshes, assets)
+    writer = _MjcfWriter(content, meshes, assets)
     writer.add_tree(world, free=free)
     _add_contact(document, content)
     _add_followers(document, content)
@@ -57,7 +56,7 @@ def write_mjcf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
     return tuple(lost)
 
 
-class _Writer:
+class _MjcfWriter:
     """The tree of bodies and the meshes that it needs."""
 
     def __init__(self, content: Content, meshes: MeshFiles, assets: _Element) -> None:

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.formats.content import GREY, WORLD, body_name, told_renaming
-from kinematify.formats.mesh_files import MeshFiles
+from kinematify.formats.content import GREY, WORLD, MeshFiles, body_name, told_renaming
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rpy_of
 from kinematify.robot.write import numbers

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kinematify.formats.mesh_files import MeshFiles
+from kinematify.formats.content import MeshFiles
 from kinematify.model.simulable import prepared_joint
 from kinematify.robot.robot import Shape
 from kinematify.robot.write import write_robot

@@ -34,7 +34,7 @@ def write_usd(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
     """
     if out.suffix.lower() not in SUFFIXES:
         raise OutputError(f"USD cannot be written to {out}: its name has to end with {', '.join(SUFFIXES)}.")
-    writer = _Writer(content, out)
+    writer = _UsdWriter(content, out)
     writer.add_all(free=free)
     if not writer.stage.GetRootLayer().Export(str(out)):
         raise OSError(f"USD could not write {out}")
@@ -49,7 +49,7 @@ def write_usd(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
     return tuple(lost)
 
 
-class _Writer:
+class _UsdWriter:
     """One stage in memory."""
 
     def __init__(self, content: Content, out: Path) -> None:

@@ -38,7 +38,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from kinematify.assembly.part import Part
 from kinematify.errors import InputError
-from kinematify.generate.blueprint import Blueprint, BlueprintJoint, BlueprintLoop
+from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint, BlueprintLoop
 from kinematify.generate.procedural.materials import COLORS, MATERIALS, of_one_material, surface_of
 from kinematify.generate.procedural.solids import SEGMENTS, ball, hull, union
 from kinematify.robot.joint_type import JointType

@@ -21,14 +21,13 @@ from kinematify.generate.blueprint_file import (
 )
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted
-from kinematify.generate.shipped import read_table
+from kinematify.generate.procedural.parameter import counted, read_table
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.generate.blueprint import BlueprintJoint
+    from kinematify.generate.procedural.blueprint import BlueprintJoint
     from kinematify.generate.procedural.family import Values
     from kinematify.generate.procedural.workshop import Workshop
     from kinematify.robot.arrays import FloatArray

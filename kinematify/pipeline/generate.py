@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kinematify.contact.tree import KinematicTree
-from kinematify.generate.procedural.truth import ground_truth
+from kinematify.generate.procedural.blueprint import ground_truth
 from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
 from kinematify.model.output import SOURCE_FILE
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config import Config
-    from kinematify.generate.blueprint import Blueprint, BlueprintLoop
+    from kinematify.generate.procedural.blueprint import Blueprint, BlueprintLoop
     from kinematify.model.kinematic_model import KinematicModel
 
 PARTS_FOLDER = "parts"

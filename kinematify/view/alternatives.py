@@ -1,4 +1,4 @@
-"""Joints that the inference also thought of, in words and as they can be tried on the model."""
+"""Candidates of a joint as the viewer offers them."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.arrays import FloatArray
 
+
 _SAME_DIRECTION = np.cos(np.radians(5.0))
 _SAME_LINE = 0.1
 """Of the part's diagonal: turns about lines so near to each other look the same."""
@@ -28,7 +29,7 @@ _LEAST = 0.01
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Alternative:
+class JointAlternative:
     """One candidate of a joint; world frame at zero."""
 
     kind: JointType
@@ -46,14 +47,14 @@ class Alternative:
     """Lower and upper limit along `axis` [rad or m] where they were set."""
 
 
-def distinct(alternatives: Sequence[Alternative], size: float) -> tuple[Alternative, ...]:
+def distinct(alternatives: Sequence[JointAlternative], size: float) -> tuple[JointAlternative, ...]:
     """Return what differs to the eye, the likeliest first; what looks the same becomes one, with all its probability.
 
     Args:
         alternatives: Candidates of one joint.
         size: Diagonal of the part that moves [m].
     """
-    kept: list[Alternative] = []
+    kept: list[JointAlternative] = []
     for item in alternatives:
         twin = next((k for k, other in enumerate(kept) if _look_alike(item, other, size)), None)
         if twin is None:
@@ -68,7 +69,7 @@ def distinct(alternatives: Sequence[Alternative], size: float) -> tuple[Alternat
     return (*shown[:_MOST], *(item for item in kept if item.kind is JointType.FIXED))
 
 
-def _look_alike(one: Alternative, other: Alternative, size: float) -> bool:
+def _look_alike(one: JointAlternative, other: JointAlternative, size: float) -> bool:
     if one.kind is JointType.FIXED or other.kind is JointType.FIXED:
         return one.kind is other.kind
     if one.kind.turns != other.kind.turns or abs(float(one.axis @ other.axis)) < _SAME_DIRECTION:
@@ -76,12 +77,12 @@ def _look_alike(one: Alternative, other: Alternative, size: float) -> bool:
     return not one.kind.turns or _distance(one, other.pivot) < _SAME_LINE * size
 
 
-def _distance(item: Alternative, point: FloatArray) -> float:
+def _distance(item: JointAlternative, point: FloatArray) -> float:
     """From a point to the axis [m]."""
     return float(np.linalg.norm(np.cross(point - item.pivot, item.axis)))
 
 
-def described(item: Alternative, bounds: FloatArray) -> str:
+def described(item: JointAlternative, bounds: FloatArray) -> str:
     """Say what a candidate does, as people say it: "turns about its left edge, 22 %".
 
     Args:
@@ -93,7 +94,7 @@ def described(item: Alternative, bounds: FloatArray) -> str:
     return f"{_motion(item, bounds)}{said}"
 
 
-def _motion(item: Alternative, bounds: FloatArray) -> str:
+def _motion(item: JointAlternative, bounds: FloatArray) -> str:
     if item.kind is JointType.FIXED:
         return "fixed"
     along = int(np.argmax(np.abs(item.axis)))

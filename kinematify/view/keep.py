@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from kinematify.pipeline import Inference
     from kinematify.robot.arrays import FloatArray
-    from kinematify.view.alternatives import Alternative
+    from kinematify.view.alternatives import JointAlternative
 
 _ALONG = np.cos(np.radians(1.0))
 
@@ -46,7 +46,7 @@ class ModelFolder:
         self._steps: list[Inference] = []
         """Models of the folder, the present one last."""
 
-    def keep(self, part: str, chosen: Alternative) -> Kept:
+    def keep(self, part: str, chosen: JointAlternative) -> Kept:
         """Let a part move as a candidate says, and write the model.
 
         Raises:
@@ -90,7 +90,7 @@ class ModelFolder:
         return shlex.join(["kinematify", "infer", source, "-o", out, "--force", *hints])
 
 
-def hint_of(part: str, chosen: Alternative, before: JointType) -> Hint:
+def hint_of(part: str, chosen: JointAlternative, before: JointType) -> Hint:
     """Return the hint that says what a candidate is.
 
     Args:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from kinematify.robot.robot import Joint
     from kinematify.view.keep import Kept
+    from kinematify.view.record import Shown, Sight
     from kinematify.view.scene import Touch, ViewScene
-    from kinematify.view.shown import Shown, Sight
 
 _AS_WRITTEN = "as in the file"
 _TYPES = {

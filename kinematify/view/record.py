@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,14 +11,78 @@ import numpy as np
 from kinematify.errors import InputError
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics
-from kinematify.view.alternatives import Alternative
-from kinematify.view.shown import ClosedChain, Shown
+from kinematify.view.alternatives import JointAlternative
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
+    from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
     from kinematify.view.scene import ViewScene
+
+
+_DASHES = 9
+_REACH = 0.15
+"""Of the model's size: how far the line of a pin is drawn to either side."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DrawnChain:
+    """Two links that share a pin, which no joint of the tree joins."""
+
+    links: tuple[str, str]
+    points: tuple[FloatArray, FloatArray]
+    """The pin in the frame of either link [m], each of shape (3,)."""
+    axis: FloatArray
+    """Of the pin, unit, frame of the first link, shape (3,); zero where it is a point."""
+    told: str
+    """Which joint was cut, and why."""
+
+    def dashes(self, poses: Mapping[str, FloatArray], size: float) -> FloatArray:
+        """Return line segments along the pin and between its two ends, frame of the root link [m], shape (n, 2, 3).
+
+        Args:
+            poses: Of the links, frame of the root link, shape (4, 4) each.
+            size: Of the model [m].
+        """
+        first, second = (
+            (poses[link] @ np.append(point, 1.0))[:3] for link, point in zip(self.links, self.points, strict=True)
+        )
+        reach = _REACH * size * (poses[self.links[0]][:3, :3] @ self.axis)
+        return np.concatenate([_dashed(first - reach, first + reach), _dashed(first, second)])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sight:
+    """A finding as the viewer shows it."""
+
+    title: str
+    message: str
+    q: Mapping[str, float] = field(default_factory=dict)
+    links: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Shown:
+    """A model to look at."""
+
+    scene: ViewScene
+    alternatives: Mapping[tuple[str, str], tuple[JointAlternative, ...]] = field(default_factory=dict)
+    """Candidates of joints by (parent, child) link."""
+    doubtful: tuple[str, ...] = ()
+    """Links whose joints are to be looked at, the least sure first."""
+    doubtful_below: float = 0.0
+    """Confidence below which they are."""
+    chains: tuple[DrawnChain, ...] = ()
+    """Where chains of joints close."""
+
+
+def _dashed(start: FloatArray, end: FloatArray) -> FloatArray:
+    """Dashes as long as the gaps between them, shape (n, 2, 3)."""
+    shares = np.linspace(0.0, 1.0, 2 * _DASHES)[:, None]
+    points: FloatArray = (start + shares * (end - start)).reshape(_DASHES, 2, 3)
+    return points
 
 
 def shown_with(scene: ViewScene, path: Path) -> Shown:
@@ -43,7 +108,7 @@ def shown_with(scene: ViewScene, path: Path) -> Shown:
         raise _no_record(path, error) from error
 
 
-def load_alternatives(path: Path) -> dict[tuple[str, str], tuple[Alternative, ...]]:
+def load_alternatives(path: Path) -> dict[tuple[str, str], tuple[JointAlternative, ...]]:
     """Return the candidates of every joint, best first, keyed by (parent, child) part names; the last one is fixed.
 
     Args:
@@ -65,13 +130,13 @@ def _no_record(path: Path, error: Exception) -> InputError:
     )
 
 
-def _alternatives_of(record: dict[str, Any]) -> dict[tuple[str, str], tuple[Alternative, ...]]:
+def _alternatives_of(record: dict[str, Any]) -> dict[tuple[str, str], tuple[JointAlternative, ...]]:
     return {(joint["parent"], joint["child"]): tuple(_alternatives(joint)) for joint in record["joints"]}
 
 
-def _alternatives(joint: dict[str, Any]) -> list[Alternative]:
+def _alternatives(joint: dict[str, Any]) -> list[JointAlternative]:
     found = [
-        Alternative(
+        JointAlternative(
             kind=JointType(candidate["type"]),
             axis=np.asarray(candidate["axis"], dtype=np.float64),
             pivot=np.asarray(candidate["pivot"], dtype=np.float64),
@@ -80,7 +145,7 @@ def _alternatives(joint: dict[str, Any]) -> list[Alternative]:
         )
         for candidate in joint["candidates"]
     ]
-    fixed = Alternative(
+    fixed = JointAlternative(
         kind=JointType.FIXED,
         axis=np.array([0.0, 0.0, 1.0]),
         pivot=np.zeros(3),
@@ -89,13 +154,13 @@ def _alternatives(joint: dict[str, Any]) -> list[Alternative]:
     return [*found, fixed]
 
 
-def _chain(item: dict[str, Any], robot: Robot) -> ClosedChain:
+def _chain(item: dict[str, Any], robot: Robot) -> DrawnChain:
     """A closed chain whose pin is given in the world frame at zero."""
     first, second = item["parts"]
     zero = forward_kinematics(robot, {})
     T_first_world, T_second_world = np.linalg.inv(zero[first]), np.linalg.inv(zero[second])
     pin = np.append(np.asarray(item["pivot"], dtype=np.float64), 1.0)
-    return ClosedChain(
+    return DrawnChain(
         links=(first, second),
         points=((T_first_world @ pin)[:3], (T_second_world @ pin)[:3]),
         axis=np.asarray(T_first_world[:3, :3] @ item["axis"], dtype=np.float64),
@@ -103,10 +168,10 @@ def _chain(item: dict[str, Any], robot: Robot) -> ClosedChain:
     )
 
 
-def declared_chains(robot: Robot) -> tuple[ClosedChain, ...]:
+def declared_chains(robot: Robot) -> tuple[DrawnChain, ...]:
     """Return the chains that a URDF closes itself, by a `loop_joint`."""
     return tuple(
-        ClosedChain(
+        DrawnChain(
             links=loop.links,
             points=loop.points,
             axis=np.zeros(3),

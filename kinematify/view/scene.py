@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from kinematify.robot.appearance import Appearance, Rgba, Surface
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.robot import Joint, RigidGroup, Robot
-    from kinematify.view.alternatives import Alternative
+    from kinematify.view.alternatives import JointAlternative
 
 _ARC_STEPS = 24
 
@@ -60,7 +60,7 @@ class ViewScene:
         """
         self.robot = robot
         self._read_solid = read_solid or (lambda: robot)
-        self._tried: dict[str, Alternative] = {}
+        self._tried: dict[str, JointAlternative] = {}
 
     @cached_property
     def groups(self) -> tuple[RigidGroup, ...]:
@@ -187,7 +187,7 @@ class ViewScene:
         tried = self._tried.get(joint.name)
         return joint.kind if tried is None else tried.kind
 
-    def tried(self, joint: str) -> Alternative | None:
+    def tried(self, joint: str) -> JointAlternative | None:
         """What a joint is tried as; None: as the file says."""
         return self._tried.get(joint)
 
@@ -199,7 +199,7 @@ class ViewScene:
         T = self._zero[joint.child]
         return T[:3, :3] @ joint.axis, T[:3, 3]
 
-    def try_joint(self, joint: str, alternative: Alternative | None) -> None:
+    def try_joint(self, joint: str, alternative: JointAlternative | None) -> None:
         """Move a joint as an alternative says; None: as the file says."""
         if alternative is None:
             self._tried.pop(joint, None)

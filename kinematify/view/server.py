@@ -15,7 +15,7 @@ from PIL import Image
 from kinematify.errors import KinematifyError
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_from_quaternion
-from kinematify.view.alternatives import Alternative, described, distinct
+from kinematify.view.alternatives import JointAlternative, described, distinct
 from kinematify.view.drawn import DrawnModel
 from kinematify.view.panel import Panel, said_of, said_of_failure, said_of_kept, said_of_touches
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.robot import Joint
     from kinematify.view.keep import Kept, ModelFolder
-    from kinematify.view.shown import Shown, Sight
+    from kinematify.view.record import Shown, Sight
 
 _CHOSEN, _MARKED, _WRONG = (66, 133, 244), (245, 166, 35), (219, 40, 40)
 """Of the part whose joint is chosen, of what a finding is about, and of what collides."""
@@ -172,7 +172,7 @@ class ModelViewer:
             self._try(joint, candidates[number - 1] if number else None)
             self._glow()
 
-    def _try(self, joint: str, alternative: Alternative | None) -> None:
+    def _try(self, joint: str, alternative: JointAlternative | None) -> None:
         self._scene.try_joint(joint, alternative)
         self._sweeping = None
         item = self._scene.robot.joint_by_name[joint]
@@ -224,7 +224,7 @@ class ModelViewer:
             kind = self._panel.hand_kind
             lower, upper = self._panel.hand_limits
             limited = kind in (JointType.REVOLUTE, JointType.PRISMATIC)
-            alternative = Alternative(
+            alternative = JointAlternative(
                 kind=kind,
                 axis=rotation_from_quaternion(np.asarray(self._gizmo.wxyz))[:, 0],
                 pivot=np.array(self._gizmo.position, dtype=np.float64),
@@ -274,7 +274,7 @@ class ModelViewer:
         for client in self._server.get_clients().values():
             client.add_notification(title, body, color="red")
 
-    def _candidates(self, joint: Joint) -> tuple[Alternative, ...]:
+    def _candidates(self, joint: Joint) -> tuple[JointAlternative, ...]:
         bounds = self._scene.bounds.get(self._scene.group_of(joint.child))
         size = self._scene.size if bounds is None else float(np.linalg.norm(bounds[1] - bounds[0]))
         return distinct(self._alternatives.get((joint.parent, joint.child), ()), size)

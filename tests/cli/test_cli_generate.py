@@ -15,7 +15,7 @@ from kinematify.cli.app import run
 from kinematify.cli.generation import Generation
 from kinematify.cli.verdict import describe_briefly
 from kinematify.evaluation.datasets import find_objects
-from kinematify.generate.procedural.request import from_text
+from kinematify.generate.request import from_text
 from kinematify.robot.read import read_robot
 from kinematify.validation.finding import Severity
 from tests.reports import add_checks, finding, report, result

@@ -14,7 +14,7 @@ from kinematify.envs import DRAWER_PULL, OPEN_PART, TASK_IDS
 from kinematify.envs.expert import HandExpert
 from kinematify.envs.tasks import TASKS, TEST, TRAIN
 from kinematify.errors import InputError
-from kinematify.generate.procedural.request import from_category
+from kinematify.generate.request import from_category
 
 SLOWEST_RESET = 0.05
 """Processor time [s]."""

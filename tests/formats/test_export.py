@@ -16,7 +16,7 @@ from kinematify import export
 from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.errors import InputError, OutputError
-from kinematify.generate.procedural.request import from_category
+from kinematify.generate.request import from_category
 from kinematify.geometry.convex import signed_volume
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model as write_files

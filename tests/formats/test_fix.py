@@ -12,7 +12,7 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.errors import OutputError
 from kinematify.formats.fix import fix_urdf
-from kinematify.generate.procedural.request import from_category
+from kinematify.generate.request import from_category
 from kinematify.model.urdf import write_urdf
 from kinematify.pipeline.generate import true_model
 

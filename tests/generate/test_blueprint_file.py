@@ -15,8 +15,8 @@ from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.generate import blueprint_file
 from kinematify.generate.blueprint_file import described_blueprint, read_blueprint
+from kinematify.generate.procedural.blueprint import ground_truth
 from kinematify.generate.procedural.materials import MATERIALS
-from kinematify.generate.procedural.truth import ground_truth
 from kinematify.pipeline.generate import true_model
 from kinematify.robot.joint_type import JointType
 

@@ -16,7 +16,7 @@ from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.composer.mechanisms import MECHANISMS
 from kinematify.generate.composer.sentence import NoBodyError, read_composition, told
 from kinematify.generate.procedural.materials import COLORS
-from kinematify.generate.procedural.request import from_text
+from kinematify.generate.request import from_text
 from kinematify.robot.joint_type import JointType
 
 CART = "a cart with four casters, a push handle and two drawers"

@@ -14,7 +14,7 @@ from kinematify.generate.described import ObjectDescription, known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.materials import COLORS
-from kinematify.generate.procedural.request import from_text
+from kinematify.generate.request import from_text
 from kinematify.robot.joint_type import JointType
 
 DESCRIBED = sorted(set(known_families()) - set(FAMILIES))

@@ -11,9 +11,8 @@ import pytest
 from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.formats.export import export
-from kinematify.generate.procedural.grain import grain_coordinates, wood_grain
-from kinematify.generate.procedural.materials import COLORS, MATERIALS
-from kinematify.generate.procedural.request import from_text
+from kinematify.generate.procedural.materials import COLORS, MATERIALS, grain_coordinates, wood_grain
+from kinematify.generate.request import from_text
 from kinematify.pipeline.generate import write_blueprint
 
 

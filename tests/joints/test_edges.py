@@ -24,10 +24,10 @@ from benchmarks.fit.edges import (
 )
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault
+from kinematify.generate.procedural.blueprint import ground_truth
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import bore, box, cylinder
-from kinematify.generate.procedural.truth import ground_truth
 from kinematify.geometry.part_stats import assembly_stats
 from kinematify.joints.choice import edges
 from kinematify.joints.choice.edges import (

@@ -11,7 +11,7 @@ import pybullet
 import pytest
 
 from kinematify.config import load_config
-from kinematify.generate.procedural.request import from_category
+from kinematify.generate.request import from_category
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.pipeline.generate import true_model

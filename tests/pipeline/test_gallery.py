@@ -11,11 +11,10 @@ import pytest
 from PIL import Image
 
 from kinematify.errors import OutputError
-from kinematify.generate.composer.examples import SENTENCES
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
-from kinematify.pipeline.gallery import OPENING, PICTURES, write_gallery
 from tests.places import ROOT
+from tools.draw_gallery import OPENING, PICTURES, SENTENCES, write_gallery
 
 DOCS = ROOT / "docs"
 LARGEST, LARGEST_IN_ALL = 60_000, 4_000_000  # bytes
@@ -84,7 +83,7 @@ def test_a_folder_that_cannot_be_written_is_refused(tmp_path):
 def test_the_committed_page_shows_every_family():
     page = (DOCS / "gallery.md").read_text("utf-8")
     pictures = pictures_of(page)
-    assert list(pictures) == list(FAMILIES), "run: kinematify generate --gallery docs"
+    assert list(pictures) == list(FAMILIES), "run: python -m tools.draw_gallery docs"
     told = told_of(page)
     assert tuple(told)[: len(SENTENCES)] == SENTENCES
     described = [name for name in known_families() if name not in FAMILIES]

@@ -13,7 +13,7 @@ from kinematify.pipeline import infer, write_inference
 from kinematify.refinement.folder import read_record
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
-from kinematify.view.alternatives import Alternative
+from kinematify.view.alternatives import JointAlternative
 from kinematify.view.keep import ModelFolder
 from kinematify.view.record import load_alternatives
 from tests.objects import BUILDERS
@@ -74,7 +74,7 @@ def test_a_model_that_was_changed_by_hand_is_left_as_it_is(folder: Path) -> None
 def test_what_was_set_by_hand_is_written_with_its_limits(folder: Path) -> None:
     (joint,) = read_robot(folder / "model.urdf").joints
     axis, pivot = np.array([0.0, 0.6, -0.8]), np.array([0.01, 0.02, 0.03])
-    by_hand = Alternative(kind=JointType.REVOLUTE, axis=axis, pivot=pivot, by_hand=True, limits=(-0.25, 1.25))
+    by_hand = JointAlternative(kind=JointType.REVOLUTE, axis=axis, pivot=pivot, by_hand=True, limits=(-0.25, 1.25))
     told = ModelFolder(folder).keep(joint.child, by_hand)
     assert f"{joint.child}:limits=-0.25,1.25" in told.hints
     (found,) = read_robot(folder / "model.urdf").joints

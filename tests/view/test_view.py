@@ -18,8 +18,8 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_file import read_meshes
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
-from kinematify.view.alternatives import Alternative, described, distinct
-from kinematify.view.part_glb import glb_of
+from kinematify.view.alternatives import JointAlternative, described, distinct
+from kinematify.view.drawn import glb_of
 from kinematify.view.record import load_alternatives
 from kinematify.view.scene import ViewScene
 from tests.colored_objects import make_object, unlike
@@ -64,13 +64,15 @@ def test_collisions_are_told_apart_from_contact(scene: ViewScene) -> None:
 
 
 def test_an_alternative_replaces_axis_place_and_type(scene: ViewScene) -> None:
-    slide = Alternative(kind=JointType.PRISMATIC, axis=np.array([0.0, -1.0, 0.0]), pivot=np.array([3.0, 0.0, 0.0]))
+    slide = JointAlternative(kind=JointType.PRISMATIC, axis=np.array([0.0, -1.0, 0.0]), pivot=np.array([3.0, 0.0, 0.0]))
     at_zero = scene.poses({"hinge": 0.0})["door"]
     scene.try_joint("hinge", slide)
     assert np.allclose(scene.poses({"hinge": 0.0})["door"], at_zero)
     moved = scene.poses({"hinge": 0.7})["door"]
     assert np.allclose(moved[:3, 3] - at_zero[:3, 3], [0.0, -0.7, 0.0])
-    other_edge = Alternative(kind=JointType.REVOLUTE, axis=np.array([0.0, 0.0, 1.0]), pivot=np.array([0.4, -0.1, 0.0]))
+    other_edge = JointAlternative(
+        kind=JointType.REVOLUTE, axis=np.array([0.0, 0.0, 1.0]), pivot=np.array([0.4, -0.1, 0.0])
+    )
     scene.try_joint("hinge", other_edge)
     still = np.array([0.4, -0.1, 0.5, 1.0])
     in_door = np.linalg.solve(at_zero, still)
@@ -116,17 +118,19 @@ _BOUNDS = np.array([[0.0, -0.02, 0.0], [0.6, 0.02, 1.0]])
 def test_candidates_are_said_in_words(
     kind: JointType, axis: tuple[float, ...], pivot: tuple[float, ...], words: str
 ) -> None:
-    item = Alternative(kind=kind, axis=np.array(axis), pivot=np.array(pivot), probability=0.224)
+    item = JointAlternative(kind=kind, axis=np.array(axis), pivot=np.array(pivot), probability=0.224)
     assert described(item, _BOUNDS) == f"{words}, 22 %"
 
 
 def test_candidates_that_look_the_same_are_one() -> None:
-    def turn(x: float, probability: float) -> Alternative:
+    def turn(x: float, probability: float) -> JointAlternative:
         place = np.array([x, 0.0, 0.0])
         axis = np.array([0.0, 0.0, 1.0])
-        return Alternative(kind=JointType.REVOLUTE, axis=axis, pivot=place, probability=probability, score=probability)
+        return JointAlternative(
+            kind=JointType.REVOLUTE, axis=axis, pivot=place, probability=probability, score=probability
+        )
 
-    fixed = Alternative(kind=JointType.FIXED, axis=np.array([0.0, 0.0, 1.0]), pivot=np.zeros(3), probability=0.05)
+    fixed = JointAlternative(kind=JointType.FIXED, axis=np.array([0.0, 0.0, 1.0]), pivot=np.zeros(3), probability=0.05)
     left, again, right = turn(0.0, 0.3), turn(0.02, 0.25), turn(0.6, 0.4)
     found = distinct([right, left, again, fixed], size=1.2)
     assert [item.probability for item in found] == pytest.approx([0.55, 0.4, 0.05])

@@ -7,17 +7,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinematify.generate.composer.side import side_of
-from kinematify.generate.procedural.parameter import phrases
-from kinematify.generate.procedural.pieces.fronts import Opening
+from kinematify.generate.procedural.parameter import phrases, read_table
+from kinematify.generate.procedural.pieces.fronts import Bay
 from kinematify.generate.procedural.solids import ball, box, cylinder, hull, ring, rounded_box
-from kinematify.generate.shipped import read_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
     from manifold3d import Manifold
 
-    from kinematify.generate.composer.side import Side
+    from kinematify.generate.composer.side import BodySide
     from kinematify.generate.procedural.workshop import Workshop
 
 BODY = "body"
@@ -27,16 +26,16 @@ Size = tuple[float, float, float]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Body:
+class BodyKind:
     """A kind of body."""
 
     words: tuple[str, ...]
     """How people call it, singular; the first one names the category."""
     size: Size
     """If none is asked for."""
-    build: Callable[[Workshop, Size, float], dict[str, Side]]
+    build: Callable[[Workshop, Size, float], dict[str, BodySide]]
     """Adds the base link of a size with walls of a thickness [m] and returns its sides by name."""
-    roomy: Callable[[Workshop, Size, float], dict[str, Side]] | None = None
+    roomy: Callable[[Workshop, Size, float], dict[str, BodySide]] | None = None
     """The same of one that has room for more kinds of mechanisms, where the usual one has none."""
     material: str = "steel"
     always: Mapping[str, int] = field(default_factory=dict)
@@ -51,18 +50,18 @@ class Body:
     """Room that mechanisms need here, as a share of what they need elsewhere."""
 
 
-def _area(width: float, bottom: float, top: float, depth: float, wall: float) -> Opening:
+def _area(width: float, bottom: float, top: float, depth: float, wall: float) -> Bay:
     """The middle of a rectangle, without a rim as wide as the wall is thick."""
     half = 0.5 * width - wall
-    return Opening(left=-half, right=half, bottom=bottom + wall, top=top - wall, depth=depth, wall=wall)
+    return Bay(left=-half, right=half, bottom=bottom + wall, top=top - wall, depth=depth, wall=wall)
 
 
-def _block(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _block(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A closed body; rooms are cut where something closes them."""
     width, depth, height = size
     foot = min(0.3 * height, 0.04)  # solid, for what is screwed in from below
     workshop.body(BODY, rounded_box((-0.5 * width, 0, 0), (0.5 * width, depth, height), 0.8 * wall))
-    low = Opening(left=-0.4 * depth, right=0.4 * depth, bottom=0.0, top=foot, depth=foot, wall=wall)
+    low = Bay(left=-0.4 * depth, right=0.4 * depth, bottom=0.0, top=foot, depth=foot, wall=wall)
     upright, flat = _area(width, foot, height, depth, wall), _area(width, 0.0, depth, height, wall)
     beside = _area(depth, foot, height, min(0.4 * width, wall), wall)
     return {
@@ -75,7 +74,7 @@ def _block(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     }
 
 
-def _tub(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _tub(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A box that is open at the top."""
     width, depth, height = size
     sides = _block(workshop, size, wall)
@@ -88,7 +87,7 @@ def _tub(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     return sides
 
 
-def _coffer(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _coffer(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A box that is open at the top, above a closed lower half that may hold drawers."""
     width, depth, height = size
     sides = _block(workshop, size, wall)
@@ -100,7 +99,7 @@ def _coffer(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     return sides
 
 
-def _wagon(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _wagon(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A bed with walls, open at the back, and a drawbar."""
     width, depth, height = size
     sides = _block(workshop, size, wall)
@@ -108,12 +107,12 @@ def _wagon(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     workshop.cut(BODY, box((wall - 0.5 * width, wall, floor), (0.5 * width - wall, depth + wall, height + wall)))
     bar = 0.03 * depth
     workshop.add(BODY, box((-bar, -0.35 * depth, 0.1 * height), (bar, 1e-3, 0.1 * height + 1.5 * bar)))
-    gate = Opening(left=-0.5 * width, right=0.5 * width, bottom=floor, top=height, depth=wall, wall=wall)
+    gate = Bay(left=-0.5 * width, right=0.5 * width, bottom=floor, top=height, depth=wall, wall=wall)
     sides["back"] = side_of("back", (0, depth, 0), gate, is_open=True)
     return {name: sides[name] for name in ("left", "right", "back")}
 
 
-def _slab(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _slab(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """Something flat that lies there, with its controls on top."""
     width, depth, height = size
     workshop.body(BODY, rounded_box((-0.5 * width, 0, 0), (0.5 * width, depth, height), 0.1 * min(width, depth)))
@@ -121,10 +120,10 @@ def _slab(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     return {"top": side_of("top", (0, 0, height), _area(width, 0.0, depth, 0.8 * height, rim), hollow=False)}
 
 
-def _van(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _van(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A van that looks along -y: doors for those in front, and a hold with doors behind."""
     sides, (width, depth, height) = _bus(workshop, size, wall), size
-    doorway = Opening(
+    doorway = Bay(
         left=-0.09 * depth, right=0.09 * depth, bottom=0.2 * height, top=0.9 * height, depth=0.4 * width, wall=wall
     )
     low = _low(size)
@@ -133,14 +132,14 @@ def _van(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     return {**sides, **flanks, "back": side_of("back", (0, depth, 0), behind)}
 
 
-def _bus(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _bus(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A bus that looks along -y: windows all around, and doors on its right."""
     width, depth, height = size
     half, sill = 0.5 * width, 0.15 * height
     workshop.body(BODY, box((-half, 0, sill), (half, depth, height)))
     panes = [box((-0.85 * half, -2e-3, 0.55 * height), (0.85 * half, 1e-3, 0.9 * height))]
     workshop.add(BODY, *workshop.painted(*panes, material="plastic", color="dark grey"))
-    doorway = Opening(
+    doorway = Bay(
         left=-0.1 * depth, right=0.1 * depth, bottom=0.2 * height, top=0.92 * height, depth=0.3 * width, wall=wall
     )
     flank = side_of("left", (-half, 0.5 * depth, 0), _area(depth, 0.5 * height, height, 0.1, wall), axles=_low(size))
@@ -149,14 +148,14 @@ def _bus(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     return {"left": replace(flank, hollow=False), "right": right, "top": roof}
 
 
-def _low(size: Size) -> Opening:
+def _low(size: Size) -> Bay:
     """Where the wheels of a bus or a van stand, from the middle of its side."""
     width, depth, height = size
     along = 0.38 * depth
-    return Opening(left=-along, right=along, bottom=0.1 * height, top=0.18 * height, depth=0.2 * width, wall=0.05)
+    return Bay(left=-along, right=along, bottom=0.1 * height, top=0.18 * height, depth=0.2 * width, wall=0.05)
 
 
-def _stool(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _stool(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A post on a round foot, with a ring for the feet."""
     width, _, height = size
     radius, post, middle = 0.5 * width, 0.07 * width, 0.5 * width
@@ -174,7 +173,7 @@ def _stool(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     return {"top": side_of("top", (0, middle, height), area, hollow=False, end="post")}
 
 
-def _trestle(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _trestle(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """Two hollow legs on feet, for a top that goes up and down in them."""
     width, depth, height = size
     leg = 0.035
@@ -194,7 +193,7 @@ def _upright(x: float, depth: float, bottom: float, top: float, half: float) -> 
     return box((x - half, 0.5 * depth - half, bottom), (x + half, 0.5 * depth + half, top))
 
 
-def _pot(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _pot(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A round vessel with two ears, open at the top."""
     width, _, height = size
     sides = _vessel(workshop, size)
@@ -204,7 +203,7 @@ def _pot(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     return sides
 
 
-def _kettle(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _kettle(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A round vessel with a spout on the left and a handle on the right."""
     width, _, height = size
     radius, middle = 0.5 * width, 0.5 * width
@@ -221,16 +220,16 @@ def _kettle(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     return sides
 
 
-def _vessel(workshop: Workshop, size: Size) -> dict[str, Side]:
+def _vessel(workshop: Workshop, size: Size) -> dict[str, BodySide]:
     width, _, height = size
     radius, middle, thick = 0.5 * width, 0.5 * width, 0.04 * width
     workshop.body(BODY, cylinder(radius, (0, middle, 0), (0, middle, height)))
     workshop.cut(BODY, cylinder(radius - thick, (0, middle, thick), (0, middle, 2.0 * height)))
-    mouth = Opening(left=-radius, right=radius, bottom=-radius, top=radius, depth=thick, wall=thick)
+    mouth = Bay(left=-radius, right=radius, bottom=-radius, top=radius, depth=thick, wall=thick)
     return {"top": side_of("top", (0, middle, height), mouth, is_open=True, end="round mouth")}
 
 
-def _turbine(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _turbine(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A tall mast with a nacelle; what turns before it is larger than it is."""
     width, depth, height = size
     long, half = 2.0 * width, 0.5 * width
@@ -241,11 +240,11 @@ def _turbine(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
         box((-half, 0, height - half), (half, depth + long, height + half)),
     )
     reach = 0.4 * height
-    area = Opening(left=-reach, right=reach, bottom=height - reach, top=height + reach, depth=depth, wall=half)
+    area = Bay(left=-reach, right=reach, bottom=height - reach, top=height + reach, depth=depth, wall=half)
     return {"front": side_of("front", (0, 0, 0), area, hollow=False)}
 
 
-def _table(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _table(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A board on four legs with an apron that may hold drawers."""
     width, depth, height = size
     leg, apron = max(0.05, wall), 0.28 * height
@@ -265,7 +264,7 @@ def _table(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     }
 
 
-def _top(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _top(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A board at its height, which stands on what is folded out below it."""
     width, depth, height = size
     thick = max(wall, 0.025)
@@ -276,13 +275,13 @@ def _top(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     }
 
 
-def _beside(name: str, size: Size, apron: float, wall: float) -> Side:
+def _beside(name: str, size: Size, apron: float, wall: float) -> BodySide:
     width, depth, height = size
     area = _area(depth, height - apron, height, wall, wall)
     return side_of(name, ((-0.5 if name == "left" else 0.5) * width, 0.5 * depth, 0), area, hollow=False)
 
 
-def _truck(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _truck(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A pickup: bonnet, cab and an open bed; it looks along -y."""
     width, depth, height = size
     half, sill, rail = 0.5 * width, 0.14 * height, 0.66 * height
@@ -317,7 +316,7 @@ def _truck(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
             material="ceramic",
         ),
     )
-    doorway = Opening(
+    doorway = Bay(
         left=-0.45 * (bed - cab),
         right=0.45 * (bed - cab),
         bottom=0.45 * height,
@@ -325,8 +324,8 @@ def _truck(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
         depth=0.42 * width,
         wall=wall,
     )
-    low = Opening(left=-0.33 * depth, right=0.33 * depth, bottom=0.17 * height, top=0.27 * height, depth=0.3, wall=wall)
-    gate = Opening(left=-half, right=half, bottom=0.42 * height, top=rail, depth=wall, wall=wall)
+    low = Bay(left=-0.33 * depth, right=0.33 * depth, bottom=0.17 * height, top=0.27 * height, depth=0.3, wall=wall)
+    gate = Bay(left=-half, right=half, bottom=0.42 * height, top=rail, depth=wall, wall=wall)
     return {
         "left": _flank("left", size, doorway, low, 0.5 * (cab + bed)),
         "right": _flank("right", size, doorway, low, 0.5 * (cab + bed)),
@@ -337,15 +336,15 @@ def _truck(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     }
 
 
-def _car(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _car(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A car with bonnet, cabin and boot; it looks along -y."""
     width, depth, height = size
     half, sill, rail = 0.5 * width, 0.25 * height, 0.62 * height
     front, back = 0.3 * depth, 0.78 * depth
     cabin = box((-0.9 * half, front, rail - 0.01), (0.9 * half, back, height))
     workshop.body(BODY, box((-half, 0, sill), (half, depth, rail)), cabin)
-    low = Opening(left=-0.32 * depth, right=0.32 * depth, bottom=sill, top=rail, depth=0.3 * width, wall=wall)
-    doorway = Opening(left=-0.18 * depth, right=0.18 * depth, bottom=sill, top=rail, depth=0.4 * width, wall=wall)
+    low = Bay(left=-0.32 * depth, right=0.32 * depth, bottom=sill, top=rail, depth=0.3 * width, wall=wall)
+    doorway = Bay(left=-0.18 * depth, right=0.18 * depth, bottom=sill, top=rail, depth=0.4 * width, wall=wall)
     flanks = {side: _flank(side, size, doorway, low, 0.5 * depth) for side in ("left", "right")}
     inside = 0.5 * (rail - sill)
     return {
@@ -355,12 +354,12 @@ def _car(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     }
 
 
-def _flank(name: str, size: Size, doorway: Opening, axles: Opening, middle: float) -> Side:
+def _flank(name: str, size: Size, doorway: Bay, axles: Bay, middle: float) -> BodySide:
     """A side of a truck or a car, its x counted from the middle of its door."""
     width, depth, _ = size
     sign = -1.0 if name == "left" else 1.0
     shift = sign * (0.5 * depth - middle)
-    along = Opening(
+    along = Bay(
         left=axles.left + shift,
         right=axles.right + shift,
         bottom=axles.bottom,
@@ -371,7 +370,7 @@ def _flank(name: str, size: Size, doorway: Opening, axles: Opening, middle: floa
     return replace(side_of(name, (sign * 0.5 * width, middle, 0), doorway, axles=along), ahead=-sign)
 
 
-def _drum(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _drum(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """An upright cylinder with a flat boss in front."""
     width, _, height = size
     radius = 0.5 * width
@@ -390,7 +389,7 @@ def _drum(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     }
 
 
-def _column(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _column(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A square post on a foot."""
     width, depth, height = size
     post = 0.35 * width
@@ -414,7 +413,7 @@ def _column(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     }
 
 
-def _panel(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _panel(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """An upright plate on two feet."""
     width, depth, height = size
     thick = max(wall, 0.024)
@@ -427,14 +426,14 @@ def _panel(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     }
 
 
-def _frame(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+def _frame(workshop: Workshop, size: Size, wall: float) -> dict[str, BodySide]:
     """A portal: two posts, a lintel and a threshold around an opening."""
     width, depth, height = size
     bar = max(0.06, 2.0 * wall)
     outer = box((-0.5 * width, 0, 0), (0.5 * width, depth, height))
     workshop.body(BODY, outer - box((bar - 0.5 * width, -1, bar), (0.5 * width - bar, depth + 1, height - bar)))
     covered = 0.7 * bar
-    area = Opening(
+    area = Bay(
         left=covered - 0.5 * width,
         right=0.5 * width - covered,
         bottom=covered,
@@ -454,12 +453,12 @@ _SHAPES = {
 }  # fmt: skip
 
 
-def _kinds(group: Mapping[str, Any]) -> Iterator[Body]:
+def _kinds(group: Mapping[str, Any]) -> Iterator[BodyKind]:
     """Bodies that are built alike; what one kind says of itself goes before what its group says."""
     fields = {name: value for name, value in group.items() if name not in ("shape", "roomy", "kinds")}
     for kind in group["kinds"]:
         said = {**fields, **kind}
-        yield Body(
+        yield BodyKind(
             **{**said, "words": phrases(said["words"]), "size": tuple(said["size"])},
             build=_SHAPES[group["shape"]],
             roomy=_SHAPES[group["roomy"]] if "roomy" in group else None,

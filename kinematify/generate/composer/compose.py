@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.generate.composer.bodies import BODIES, Body, Size
-from kinematify.generate.composer.mechanisms import MECHANISMS, Mechanism
-from kinematify.generate.composer.place import Place
+from kinematify.generate.composer.bodies import BODIES, BodyKind, Size
+from kinematify.generate.composer.mechanisms import MECHANISMS, MechanismKind
+from kinematify.generate.composer.place import Placement
 from kinematify.generate.composer.side import columns, rows
 from kinematify.generate.procedural.pieces.fronts import Fitting
 from kinematify.generate.procedural.workshop import Workshop
@@ -20,10 +20,10 @@ from kinematify.generate.procedural.workshop import Workshop
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.generate.blueprint import Blueprint
-    from kinematify.generate.composer.side import Side
+    from kinematify.generate.composer.side import BodySide
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.language.parts import PartRequirement
-    from kinematify.generate.procedural.pieces.fronts import Opening
+    from kinematify.generate.procedural.pieces.fronts import Bay
 
 BANDS = ("grid", "row", "stack", "foot")
 """How mechanisms are arranged that divide a side, from its top."""
@@ -53,7 +53,7 @@ _ANOTHER = 1_000_003  # the next seed where nothing that was drawn fits
 class Wanted:
     """One kind of mechanism on an object."""
 
-    mechanism: Mechanism
+    mechanism: MechanismKind
     said: str = ""
     """Word for it, where it is not the usual one."""
     count: int = 1
@@ -83,7 +83,7 @@ class Wanted:
 class Composition:
     """An object: a body and what is placed on it."""
 
-    body: Body
+    body: BodyKind
     wanted: tuple[Wanted, ...]
     said: str = ""
     """Word for the body, where it is not the usual one."""
@@ -138,7 +138,7 @@ def compose(
     for name_of_side, item, area in layout.placed:
         side, word = layout.sides[name_of_side], item.stem
         numbers[word] += 1
-        place = Place(
+        place = Placement(
             workshop=layout.workshop.from_frame(side.T_world_side, material=item.material, color=item.color),
             name=f"{word}_{numbers[word]}",
             area=area,
@@ -175,8 +175,8 @@ class _Layout:
     workshop: Workshop
     """With the body alone."""
     size: Size
-    sides: dict[str, Side]
-    placed: list[tuple[str, Wanted, Opening]]
+    sides: dict[str, BodySide]
+    placed: list[tuple[str, Wanted, Bay]]
     """Name of the side, what goes there, and the rectangle that it takes."""
 
 
@@ -221,7 +221,7 @@ def _workshop(composition: Composition) -> Workshop:
     )
 
 
-def _has_place(wanted: Wanted, sides: dict[str, Side]) -> bool:
+def _has_place(wanted: Wanted, sides: dict[str, BodySide]) -> bool:
     return any(side in sides and _fits(wanted.mechanism, sides[side]) for side in wanted.mechanism.sides)
 
 
@@ -258,13 +258,13 @@ def _known() -> str:
     return ", ".join(mechanism.words[0] for mechanism in MECHANISMS)
 
 
-def _on_lid(place: Place, lid: str) -> Place:
+def _on_lid(place: Placement, lid: str) -> Placement:
     """The same place on the lid that covers the side."""
     level = place.clearance + place.area.wall
     return replace(place, workshop=place.workshop.turned(np.eye(3), (0, -level, 0)), parent=lid, hollow=True)
 
 
-def _by_side(composition: Composition, sides: dict[str, Side]) -> dict[str, list[Wanted]]:
+def _by_side(composition: Composition, sides: dict[str, BodySide]) -> dict[str, list[Wanted]]:
     """What goes on which side; wheels and other pairs are divided between left and right."""
     found: dict[str, list[Wanted]] = {side: [] for side in sides}
     body = composition.title
@@ -288,7 +288,7 @@ def _by_side(composition: Composition, sides: dict[str, Side]) -> dict[str, list
     return {side: items for side, items in found.items() if items}
 
 
-def _usual_sides(wanted: Wanted, sides: dict[str, Side], body: str) -> list[str]:
+def _usual_sides(wanted: Wanted, sides: dict[str, BodySide], body: str) -> list[str]:
     """Sides of a body where a mechanism may go, the usual one first."""
     kind, what = wanted.mechanism, wanted.title
     if wanted.count < 1:
@@ -324,7 +324,7 @@ def _refuse_crowded(side: str, items: Sequence[Wanted]) -> None:
         )
 
 
-def _fits(kind: Mechanism, side: Side) -> bool:
+def _fits(kind: MechanismKind, side: BodySide) -> bool:
     if kind.needs in ("round mouth", "legs", "post") or side.end in _ENDS:
         return kind.needs == side.end
     if kind.arranged == "axles":
@@ -338,7 +338,7 @@ def _fits(kind: Mechanism, side: Side) -> bool:
     return not side.is_open or kind.arranged == "over"
 
 
-def _freest(usual: Sequence[str], found: dict[str, list[Wanted]], kind: Mechanism) -> str:
+def _freest(usual: Sequence[str], found: dict[str, list[Wanted]], kind: MechanismKind) -> str:
     """The usual side, or for what takes little room the first one that nothing covers."""
     if kind.arranged == "grid":
         for side in usual:
@@ -347,7 +347,7 @@ def _freest(usual: Sequence[str], found: dict[str, list[Wanted]], kind: Mechanis
     return usual[0]
 
 
-def _arranged(name: str, side: Side, wanted: Sequence[Wanted], fine: float) -> list[tuple[Wanted, Opening]]:
+def _arranged(name: str, side: BodySide, wanted: Sequence[Wanted], fine: float) -> list[tuple[Wanted, Bay]]:
     """Every single mechanism of a side with the rectangle that it takes; what fills the side comes first."""
     placed = []
     least = {item.mechanism.words: tuple(fine * length for length in item.mechanism.least) for item in wanted}
@@ -381,7 +381,7 @@ def _arranged(name: str, side: Side, wanted: Sequence[Wanted], fine: float) -> l
     return placed
 
 
-def _told(mechanism: Mechanism, wanted: Sequence[Wanted], side: str) -> str:
+def _told(mechanism: MechanismKind, wanted: Sequence[Wanted], side: str) -> str:
     count = sum(item.count for item in wanted if item.mechanism is mechanism)
     return f"{count} {mechanism.words[0]}{'s' if count > 1 else ''} on the {side}"
 
@@ -406,7 +406,7 @@ def _bands(wanted: Sequence[Wanted]) -> list[tuple[float, list[Wanted]]]:
     return found
 
 
-def _divided(wanted: Sequence[Wanted], strip: Opening) -> list[tuple[Wanted, Opening]]:
+def _divided(wanted: Sequence[Wanted], strip: Bay) -> list[tuple[Wanted, Bay]]:
     """One cell each: in one row where that leaves them nearly square, else in several rows."""
     each = [item for item in wanted for _ in range(item.count)]
     if wanted[0].mechanism.arranged != "grid":
@@ -417,7 +417,7 @@ def _divided(wanted: Sequence[Wanted], strip: Opening) -> list[tuple[Wanted, Ope
     return list(zip(each, cells, strict=False))
 
 
-def _axles(side: Side, line: Opening, count: int) -> list[Opening]:
+def _axles(side: BodySide, line: Bay, count: int) -> list[Bay]:
     """Squares in which wheels stand, along the lower edge of a side; on a vehicle they leave room for its doors."""
     pitch = line.width / max(count - 1, 1)
     radius = min(0.42 * pitch, 0.2 * line.width, max(2.0 * line.height, 0.04)) if count > 1 else 0.2 * line.width
@@ -438,7 +438,7 @@ def _axles(side: Side, line: Opening, count: int) -> list[Opening]:
     ]
 
 
-def _beside_wheels(strip: Opening, wheels: Sequence[Opening]) -> Opening:
+def _beside_wheels(strip: Bay, wheels: Sequence[Bay]) -> Bay:
     """What wheels leave free of a strip: the middle between two, what is above them where there are others."""
     if not wheels or strip.bottom >= wheels[0].top:
         return strip
@@ -447,7 +447,7 @@ def _beside_wheels(strip: Opening, wheels: Sequence[Opening]) -> Opening:
     return replace(strip, bottom=wheels[0].top)
 
 
-def _corners(area: Opening, count: int) -> list[Opening]:
+def _corners(area: Bay, count: int) -> list[Bay]:
     """Squares near the corners of an area, then along its longer edges; what stands in them may turn about itself."""
     across = -(-count // 2)
     half = min(0.05, area.height / _TURNING, 2.0 * area.width / (_TURNING * max(across, 2)))

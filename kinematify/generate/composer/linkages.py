@@ -22,7 +22,7 @@ from kinematify.robot.robot import Mimic
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.generate.composer.place import Place
+    from kinematify.generate.composer.place import Placement
     from kinematify.generate.procedural.workshop import Workshop
 
 _HEAD = 1.2  # radius of a stick's head in radii of its pin's knuckle
@@ -75,7 +75,7 @@ def stick(
     return level + long
 
 
-def add_pedal(place: Place) -> None:
+def add_pedal(place: Placement) -> None:
     """A plate on a stick that is trodden down."""
     width = min(0.05, 0.5 * place.area.height, 0.4 * place.area.width)
     tread = box((-width, -0.1 * width, -1.2 * width), (width, 0.15 * width, 0.6 * width))
@@ -83,7 +83,7 @@ def add_pedal(place: Place) -> None:
     stick(BODY, frame, place.name, width, place.clearance, long=3.0 * width, limits=(0.0, 0.3), head=tread)
 
 
-def add_hook(place: Place) -> None:
+def add_hook(place: Placement) -> None:
     """A stick that ends in a hook and folds down."""
     width = min(0.04, 0.5 * place.area.height, 0.8 * place.radius)
     wire, bend = 0.132 * width, 0.45 * width
@@ -94,7 +94,7 @@ def add_hook(place: Place) -> None:
     stick(BODY, frame, place.name, width, place.clearance, long=width, limits=(0.0, 1.2), head=curl + tip)
 
 
-def add_leg(place: Place) -> None:
+def add_leg(place: Placement) -> None:
     """A leg that folds inwards under the body; those on the left lie beside those on the right."""
     x, _, z = place.middle
     inwards = 1.0 if x < 0.0 else -1.0
@@ -111,14 +111,14 @@ def add_leg(place: Place) -> None:
     across.turns(place.name, BODY, (inwards, 0, 0), (0, 0, -level), (0.0, 0.5 * math.pi))
 
 
-def add_gripper(place: Place) -> None:
+def add_gripper(place: Placement) -> None:
     """Two parallel jaws on a rail."""
     frame, half = place.workshop.turned(OUTWARD, place.middle), min(0.06, 0.8 * place.radius)
     frame.add(BODY, union(*jaw_rail(half)).translate((0, 0, -1e-3)))
     add_jaws(frame, f"{place.name}_finger", BODY, half, 0.07, clearance=place.clearance, rest=place.fitting.rest)
 
 
-def add_cantilever_tray(place: Place) -> None:
+def add_cantilever_tray(place: Placement) -> None:
     """A tray that two parallel arms lift out over an edge: the first to the front, the second to the back.
 
     The four bars are a parallelogram, so that the tray stays level: it turns back as far as its arms turn.
@@ -165,7 +165,7 @@ def _bar(x: float, start: tuple[float, float], end: tuple[float, float]) -> Mani
     return hull(*(cylinder(2.2 * _PIN, (x, *point), (x + _PLATE, *point)) for point in (start, end)))
 
 
-def add_scissor_lift(place: Place) -> None:
+def add_scissor_lift(place: Placement) -> None:
     """A platform on two pairs of crossed arms: the one pair turns on the body and the other one on it, twice as far."""
     area, gap, name = place.area, place.clearance, place.name
     frame = place.workshop.turned(OUTWARD, place.middle)

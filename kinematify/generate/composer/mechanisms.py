@@ -23,14 +23,12 @@ from kinematify.generate.composer.linkages import (
     add_scissor_lift,
     stick,
 )
-from kinematify.generate.composer.place import HANGING, OUTWARD, UPSIDE_DOWN, Place
-from kinematify.generate.procedural.parameter import phrases
-from kinematify.generate.procedural.pieces.castors import STEM, castor
+from kinematify.generate.composer.place import HANGING, OUTWARD, UPSIDE_DOWN, Placement
+from kinematify.generate.procedural.parameter import phrases, read_table
+from kinematify.generate.procedural.pieces.bearings import STEM, BackEdge, add_barrels, castor
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob
 from kinematify.generate.procedural.pieces.fronts import add_door, add_drawer, add_flap, room
-from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, ring, rod, union
-from kinematify.generate.shipped import read_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -40,7 +38,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 
-def _door(place: Place) -> None:
+def _door(place: Placement) -> None:
     place.hollowed()
     # Doors of a front open from the middle of each pair; those beside are hinged at their front edge, as cars have it.
     side = {"left": "right", "right": "left"}.get(place.side, "left" if place.index % 2 == 0 else "right")
@@ -48,19 +46,19 @@ def _door(place: Place) -> None:
     add_door(place.workshop, place.name, BODY, place.area, place.fitting, side=side, outermost=False, hinge="edge")
 
 
-def _drawer(place: Place) -> None:
+def _drawer(place: Placement) -> None:
     place.hollowed()
     add_drawer(place.workshop, place.name, BODY, place.area, place.fitting)
 
 
-def _flap(place: Place) -> None:
+def _flap(place: Placement) -> None:
     place.hollowed()
     # When it is down, it lies before what is below.
     lifted = replace(place.area, bottom=place.area.bottom + min(0.2 * place.area.height, 1.5 * place.area.wall))
     add_flap(place.workshop, place.name, BODY, lifted, place.fitting, hinge="edge")
 
 
-def _lid(place: Place) -> None:
+def _lid(place: Placement) -> None:
     place.hollowed()
     area = place.area
     about = replace(area, left=-area.right, right=-area.left, bottom=-area.top, top=-area.bottom)
@@ -68,7 +66,7 @@ def _lid(place: Place) -> None:
     add_flap(turned, place.name, BODY, about, place.fitting, hinge="edge")
 
 
-def _shutter(place: Place) -> None:
+def _shutter(place: Placement) -> None:
     """A panel between two rails covers the left half of its area, or the right one if so said, and slides aside.
 
     Several cover one area each, on two tracks one behind the other, and slide before or behind their neighbours.
@@ -106,7 +104,7 @@ def _shutter(place: Place) -> None:
     workshop.slides(place.name, BODY, (way, 0, 0), place.middle, (0.0, 0.95 * (high - low)), rest=place.fitting.rest)
 
 
-def _sash(place: Place) -> None:
+def _sash(place: Placement) -> None:
     """A shutter that is pushed up; in a frame, what is above it stays closed."""
     area = place.area
     upwards = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
@@ -117,12 +115,12 @@ def _sash(place: Place) -> None:
     _shutter(replace(place, workshop=place.workshop.turned(upwards, (0, 0, 0)), area=about, half=""))
 
 
-def _trunk(place: Place) -> None:
+def _trunk(place: Placement) -> None:
     place.hollowed()
     add_flap(place.workshop, place.name, BODY, place.area, place.fitting, hinge="edge")
 
 
-def _ladder(place: Place) -> None:
+def _ladder(place: Placement) -> None:
     """Two rails with rungs that lie on a roof and are raised about their rear end."""
     area, gap = place.area, place.clearance
     half = min(0.3 * area.width, 0.3)
@@ -144,7 +142,7 @@ def _ladder(place: Place) -> None:
     frame.turns(place.name, BODY, (-1, 0, 0), (0, 0, level), (0.0, 1.2), rest=place.fitting.rest)
 
 
-def _vise(place: Place) -> None:
+def _vise(place: Placement) -> None:
     """A fixed jaw, and one on a bar through it that is drawn away."""
     x, _, z = place.middle
     size, gap = min(place.radius, 0.12), place.clearance
@@ -158,7 +156,7 @@ def _vise(place: Place) -> None:
     workshop.slides(place.name, BODY, (1, 0, 0), (x, level, z), (0.0, 0.4 * size), rest=place.fitting.rest)
 
 
-def _rail(place: Place) -> None:
+def _rail(place: Placement) -> None:
     """A bar on two posts; it belongs to the body."""
     x, _, z = place.middle
     half, out = min(0.42 * place.area.width, 0.4), 0.05
@@ -167,7 +165,7 @@ def _rail(place: Place) -> None:
     place.workshop.add(BODY, *place.workshop.as_handle(rod(0.01, (x - half, -out, z), (x + half, -out, z))))
 
 
-def _plate(place: Place, material: str, color: str | None = None) -> None:
+def _plate(place: Placement, material: str, color: str | None = None) -> None:
     """Something flat on the surface; it belongs to the body."""
     x, _, z = place.middle
     wide, high = (min(0.4 * length, 0.3) for length in (place.area.width, place.area.height))
@@ -175,14 +173,14 @@ def _plate(place: Place, material: str, color: str | None = None) -> None:
     place.workshop.add(BODY, *place.workshop.painted(plate, material=material, color=color))
 
 
-def _mirror(place: Place) -> None:
+def _mirror(place: Placement) -> None:
     """A plate that stands at the rear edge; it belongs to the body."""
     area, half = place.area, 0.35 * place.area.width
     plate = box((-half, -2.0 * half, area.top - 0.02), (half, 1e-3, area.top))
     place.workshop.add(BODY, *place.workshop.painted(plate, material="mirror"))
 
 
-def _shelf(place: Place) -> None:
+def _shelf(place: Placement) -> None:
     """A board in a slot, with a lip to pull it by."""
     area, gap = place.area, place.clearance
     thick = min(0.4 * area.height, 0.018)
@@ -197,7 +195,7 @@ def _shelf(place: Place) -> None:
     place.workshop.slides(place.name, BODY, (0, -1, 0), place.middle, (0.0, 0.7 * deep), rest=place.fitting.rest)
 
 
-def _mount(place: Place) -> Mount:
+def _mount(place: Placement) -> Mount:
     return Mount(
         parent=BODY,
         place=place.middle,
@@ -207,22 +205,22 @@ def _mount(place: Place) -> Mount:
     )
 
 
-def _knob(place: Place) -> None:
+def _knob(place: Placement) -> None:
     add_knob(place.workshop, place.name, _mount(place), min(0.6 * place.radius, 0.03), rest=place.fitting.rest)
 
 
-def _button(place: Place) -> None:
+def _button(place: Placement) -> None:
     size, mount = min(1.1 * place.radius, 0.03), _mount(place)
     add_button(place.workshop, place.name, mount, (size, size), travel=min(0.004, 0.25 * mount.depth))
 
 
-def _lever(place: Place) -> None:
+def _lever(place: Placement) -> None:
     """A stick on a pin between two cheeks, which swings up and down."""
     width = min(0.05, 0.8 * place.radius, 0.2 * place.area.height)
     stick(BODY, place.workshop.turned(OUTWARD, place.middle), place.name, width, place.clearance, long=3.0 * width)
 
 
-def _arm(place: Place) -> None:
+def _arm(place: Placement) -> None:
     """Two links, one on the other, that swing about level pins."""
     width = min(0.08, 0.9 * place.radius)
     frame = place.workshop.turned(OUTWARD, place.middle)
@@ -233,7 +231,7 @@ def _arm(place: Place) -> None:
     stick(lower, above, upper, 0.8 * width, place.clearance, long=5.0 * width)
 
 
-def _crank(place: Place) -> None:
+def _crank(place: Placement) -> None:
     """An arm with a grip, on a shaft."""
     x, _, z = place.middle
     reach, gap = min(0.75 * place.radius, 0.15), place.clearance
@@ -246,7 +244,7 @@ def _crank(place: Place) -> None:
     place.on_shaft(arm, grip, hub, shaft=0.8 * shaft)
 
 
-def _hand_wheel(place: Place) -> None:
+def _hand_wheel(place: Placement) -> None:
     """A rim on spokes, on a shaft."""
     radius, gap = min(0.85 * place.radius, 0.2), place.clearance
     wire = 0.1 * radius
@@ -257,7 +255,7 @@ def _hand_wheel(place: Place) -> None:
     place.on_shaft(wheel, cylinder(1.5 * wire, (x, -gap, z), (x, -out, z)), shaft=wire)
 
 
-def _rotor(place: Place) -> None:
+def _rotor(place: Placement) -> None:
     """Blades on a hub."""
     radius, gap = min(0.95 * place.radius, 0.4), place.clearance
     hub, wide = 0.16 * radius, (0.12 if place.members < 5 else 0.09) * radius
@@ -272,7 +270,7 @@ def _rotor(place: Place) -> None:
     place.on_shaft(body, union(*blades).transform(_at(place, gap + 1.6 * hub)), shaft=0.5 * hub)
 
 
-def _needle(place: Place) -> None:
+def _needle(place: Placement) -> None:
     """A pointer over a dial that belongs to the body."""
     x, _, z = place.middle
     radius, gap = min(0.85 * place.radius, 0.08), place.clearance
@@ -287,7 +285,7 @@ def _needle(place: Place) -> None:
     raised.on_shaft(pointer, hub, stem, shaft=half, limits=(0.0, 4.5))
 
 
-def _turntable(place: Place) -> None:
+def _turntable(place: Placement) -> None:
     """A disc on a shaft."""
     x, _, z = place.middle
     radius, gap = min(0.95 * place.radius, 0.3), place.clearance
@@ -298,7 +296,7 @@ def _turntable(place: Place) -> None:
     place.on_shaft(plate, mark, shaft=min(0.3 * radius, 0.02))
 
 
-def _wheel(place: Place) -> None:
+def _wheel(place: Placement) -> None:
     """A tyre on a shaft beside the body."""
     x, _, z = place.middle
     radius, gap = place.radius, place.clearance
@@ -308,7 +306,7 @@ def _wheel(place: Place) -> None:
     place.on_shaft(tyre, hub, shaft=shaft, material="rubber")
 
 
-def _caster(place: Place) -> None:
+def _caster(place: Placement) -> None:
     """A fork on a stem, and a wheel in the fork; both turn without end."""
     wheel = min(place.radius, 0.05)
     frame = place.workshop.turned(HANGING, place.middle)
@@ -324,7 +322,7 @@ def _caster(place: Place) -> None:
     frame.turns(f"{place.name}_wheel", place.name, (1, 0, 0), np.add(axle, down))
 
 
-def _telescope(place: Place) -> None:
+def _telescope(place: Placement) -> None:
     """A tube on the body, and a rod in it that is pulled out."""
     x, _, z = place.middle
     radius, gap = min(0.5 * place.radius, 0.03), place.clearance
@@ -338,7 +336,7 @@ def _telescope(place: Place) -> None:
     place.workshop.slides(place.name, BODY, (0, -1, 0), place.middle, (0.0, 0.7 * long), rest=place.fitting.rest)
 
 
-def _bail(place: Place) -> None:
+def _bail(place: Placement) -> None:
     """A bow on two pins, which lies down to either side; where there is no floor, its ears stand on the rim."""
     x, _, z = place.middle
     gap, ear, pin, rise = place.clearance, 0.008, 0.005, 0.022
@@ -360,7 +358,7 @@ def _bail(place: Place) -> None:
     place.workshop.turns(place.name, place.parent, (1, 0, 0), (x, -rise, z), (-1.3, 1.3), rest=place.fitting.rest)
 
 
-def _push_handle(place: Place) -> None:
+def _push_handle(place: Placement) -> None:
     """A bar on two posts; it belongs to the body."""
     out, top = -0.07, place.area.top + 0.3
     low = max(place.area.bottom + 0.02, place.area.top - 0.08)
@@ -371,7 +369,7 @@ def _push_handle(place: Place) -> None:
     place.workshop.add(BODY, *place.workshop.as_handle(rod(0.014, *ends)))
 
 
-def _round_lid(place: Place) -> None:
+def _round_lid(place: Placement) -> None:
     """A disc with a knob, on a barrel hinge behind a round mouth."""
     frame, gap, radius = place.workshop.turned(OUTWARD, place.middle), place.clearance, place.radius
     thick, pin, tab = 0.05 * radius, 0.0035, 0.25 * radius
@@ -397,7 +395,7 @@ def _inside(radius: float) -> Manifold:
     return cylinder(0.93 * radius, (0, 0, -radius), (0, 0, radius))
 
 
-def _seat(place: Place) -> None:
+def _seat(place: Placement) -> None:
     """A round seat on a shaft."""
     x, _, z = place.middle
     gap, radius = place.clearance, 0.18
@@ -406,7 +404,7 @@ def _seat(place: Place) -> None:
     place.on_shaft(seat, back, shaft=0.5 * place.radius)
 
 
-def _desktop(place: Place) -> None:
+def _desktop(place: Placement) -> None:
     """A board on two rods that slide in the legs below it."""
     area, gap, workshop = place.area, place.clearance, place.workshop
     middle, rod_half, deep = place.middle, 0.022, 0.85 * area.depth
@@ -423,14 +421,14 @@ def _desktop(place: Place) -> None:
     workshop.slides(place.name, BODY, (0, -1, 0), middle, (0.0, 0.8 * deep), rest=place.fitting.rest)
 
 
-def _screen(place: Place) -> None:
+def _screen(place: Placement) -> None:
     """A flat screen on a fork, which tilts."""
     width, frame = min(0.06, 1.6 * place.radius), place.workshop.turned(OUTWARD, place.middle)
     panel = box((-0.3, -0.03, -0.02), (0.3, -0.01, 0.34)) + box((-0.02, -0.02, -0.02), (0.02, 0.01, 0.1))
     stick(BODY, frame, place.name, width, place.clearance, long=2.0 * width, limits=(-0.3, 0.3), head=panel)
 
 
-def _flag(place: Place) -> None:
+def _flag(place: Placement) -> None:
     """A small plate on a stick that is turned up."""
     width = min(0.03, 0.8 * place.radius)
     frame = place.workshop.turned(OUTWARD @ np.diag([-1.0, -1.0, 1.0]), place.middle)  # the other way than a lever
@@ -438,7 +436,7 @@ def _flag(place: Place) -> None:
     stick(BODY, frame, place.name, width, place.clearance, long=5.0 * width, limits=(0.0, 1.3), head=plate)
 
 
-def _latch(place: Place) -> None:
+def _latch(place: Placement) -> None:
     """A bar that is turned aside."""
     x, _, z = place.middle
     reach, gap = min(0.85 * place.radius, 0.04), place.clearance
@@ -446,7 +444,7 @@ def _latch(place: Place) -> None:
     place.on_shaft(bar, shaft=0.15 * reach, limits=(0.0, 0.5 * math.pi))
 
 
-def _slider(place: Place) -> None:
+def _slider(place: Placement) -> None:
     """A cap on a stem that is pushed along a slot."""
     x, _, z = place.middle
     gap, half = place.clearance, min(0.42 * place.area.height, 0.05)
@@ -460,7 +458,7 @@ def _slider(place: Place) -> None:
     place.workshop.slides(place.name, BODY, (0, 0, 1), place.middle, (0.0, high - low), rest=place.fitting.rest)
 
 
-def _compartment(place: Place) -> None:
+def _compartment(place: Placement) -> None:
     """An open room, whose floor is a shelf."""
     place.hollowed()
 
@@ -469,21 +467,21 @@ def _angles(count: int) -> list[float]:
     return [2.0 * math.pi * k / count for k in range(count)]
 
 
-def _at(place: Place, out: float) -> FloatArray:
+def _at(place: Placement, out: float) -> FloatArray:
     """From where something lies in z = 0 to where it lies before the middle of a place, (3, 4)."""
     x, _, z = place.middle
     return np.column_stack([OUTWARD, (x, -out, z)])
 
 
 @dataclass(frozen=True, kw_only=True)
-class Mechanism:
+class MechanismKind:
     """A kind of mechanism."""
 
     words: tuple[str, ...]
     """How people call it, singular; the first one names it."""
     sides: tuple[str, ...]
     """Where it may go, the usual one first."""
-    build: Callable[[Place], None]
+    build: Callable[[Placement], None]
     arranged: str = "grid"
     """``row`` beside each other over the full height, ``stack`` one below the other, ``grid``, ``foot`` beside each
     other below all that, ``corners`` below the body, ``axles`` along its lower edges, ``over`` a side or its lid,
@@ -506,7 +504,7 @@ class Mechanism:
     """On the left or the right is said of the half of a side that it covers."""
 
 
-_BUILDERS: Mapping[str, Callable[[Place], None]] = {
+_BUILDERS: Mapping[str, Callable[[Placement], None]] = {
     **{
         build.__name__.removeprefix("_").removeprefix("add_"): build
         for build in (
@@ -522,10 +520,10 @@ _BUILDERS: Mapping[str, Callable[[Place], None]] = {
 }  # fmt: skip
 
 
-def _kind(said: Mapping[str, Any]) -> Mechanism:
+def _kind(said: Mapping[str, Any]) -> MechanismKind:
     listed = {name: phrases(said[name]) for name in ("words", "members") if name in said}
     pairs = {name: tuple(said[name]) for name in ("sides", "least") if name in said}
-    return Mechanism(**{**said, **listed, **pairs, "build": _BUILDERS[said["build"]]})
+    return MechanismKind(**{**said, **listed, **pairs, "build": _BUILDERS[said["build"]]})
 
 
 MECHANISMS = tuple(_kind(said) for said in read_table(Path(__file__).with_name("mechanisms.yaml")))

@@ -14,7 +14,7 @@ from kinematify.generate.procedural.solids import bore, cylinder
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.generate.procedural.pieces.fronts import Fitting, Opening
+    from kinematify.generate.procedural.pieces.fronts import Bay, Fitting
     from kinematify.generate.procedural.workshop import Workshop
 
 OUTWARD = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
@@ -26,7 +26,7 @@ UPSIDE_DOWN = np.diag([-1.0, 1.0, -1.0])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Place:
+class Placement:
     """Where one mechanism goes."""
 
     workshop: Workshop
@@ -35,7 +35,7 @@ class Place:
     """Of the body that moves; further ones add to it."""
     parent: str = BODY
     """Body that carries it."""
-    area: Opening
+    area: Bay
     hollow: bool
     """A room may be cut behind it."""
     fitting: Fitting

@@ -8,15 +8,15 @@ from functools import cache
 from typing import TYPE_CHECKING, TypeVar
 
 from kinematify.errors import InputError
-from kinematify.generate.composer.bodies import BODIES, Body
+from kinematify.generate.composer.bodies import BODIES, BodyKind
 from kinematify.generate.composer.compose import BANDS, Composition, Wanted, compose
-from kinematify.generate.composer.mechanisms import MECHANISMS, Mechanism
+from kinematify.generate.composer.mechanisms import MECHANISMS, MechanismKind
 from kinematify.generate.composer.side import FACING
 from kinematify.generate.procedural.family import Family
 from kinematify.generate.procedural.language.counts import MOST_COPIES
 from kinematify.generate.procedural.language.openness import OUT, VERBS, share_at
 from kinematify.generate.procedural.language.parts import MOTIONS, PartReader, PartRequirement
-from kinematify.generate.procedural.language.reading import Reading
+from kinematify.generate.procedural.language.reading import ParseState
 from kinematify.generate.procedural.language.sizes import DIMENSIONS, SIZE_WORDS, angle_at, length_at
 from kinematify.generate.procedural.language.words import (
     ARTICLES,
@@ -153,7 +153,7 @@ def _with_what_parts_say(composition: Composition, tokens: tuple[Token, ...], re
         part_words={item.stem: item.mechanism.words for item in composition.wanted},
     )
     used = set(range(len(tokens))) - set(reader.unread)
-    parts = PartReader(reading=Reading(tokens=tokens, family=family, used=used, named=reader.named), made=made)
+    parts = PartReader(reading=ParseState(tokens=tokens, family=family, used=used, named=reader.named), made=made)
     parts.read()
     if left := _phrases_of(tokens, [k for k in reader.unread if k not in parts.reading.used]):
         raise _not_understood(left)
@@ -235,11 +235,11 @@ class _Reader:
         self._tokens = tokens
         self._words = Words(tuple(tokens))
         self._look = _Look()
-        self.body: Body | None = None
+        self.body: BodyKind | None = None
         self.said = ""
         self.of_body = _Look()
         self.wanted: list[Wanted] = []
-        self.excluded: list[Mechanism] = []
+        self.excluded: list[MechanismKind] = []
         self.handles: _Look | None = None
         self.size: list[float | None] = [None, None, None]
         self.bare: float | None = None
@@ -357,7 +357,7 @@ class _Reader:
         )
         return len(words) + taken
 
-    def _known(self) -> Mapping[tuple[str, ...], Mechanism]:
+    def _known(self) -> Mapping[tuple[str, ...], MechanismKind]:
         """Mechanisms by their words, as they are called on this body."""
         says = self.body.says if self.body is not None else {}
         own = {tuple(word.split()): _mechanisms()[tuple(kind.split())] for word, kind in says.items()}
@@ -538,7 +538,7 @@ class _Reader:
         return at + 1 - k + (self._words.text(at + 1) in _SIDE_NOUNS)
 
 
-def _several(mechanism: Mechanism) -> int:
+def _several(mechanism: MechanismKind) -> int:
     """How many are meant that are not counted: what stands on wheels has four."""
     return 4 if mechanism.arranged in ("axles", "corners") else 2
 
@@ -558,12 +558,12 @@ def _words_of(name: str) -> tuple[str, ...]:
 
 
 @cache
-def _bodies() -> dict[tuple[str, ...], Body]:
+def _bodies() -> dict[tuple[str, ...], BodyKind]:
     return _by_words((word, body) for body in BODIES for word in body.words)
 
 
 @cache
-def _mechanisms() -> dict[tuple[str, ...], Mechanism]:
+def _mechanisms() -> dict[tuple[str, ...], MechanismKind]:
     return _by_words((word, mechanism) for mechanism in MECHANISMS for word in mechanism.words)
 
 

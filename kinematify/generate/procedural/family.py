@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 import math
 from dataclasses import dataclass, field
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,16 +12,14 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
-from kinematify.generate.procedural.parameter import angle, choice, length, phrases, read_parameter, share
-from kinematify.generate.procedural.styles import STYLES
-from kinematify.generate.procedural.workshop import Workshop
-from kinematify.generate.shipped import read_table
+from kinematify.generate.procedural.parameter import angle, choice, length, phrases, read_parameter, read_table, share
+from kinematify.generate.procedural.workshop import STYLES, Workshop
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.parameter import Parameter, Value
 
 
@@ -105,31 +102,25 @@ COMMON = (
 """Parameters of every family."""
 
 
-def family(name: str, build: Callable[[Values, Workshop], None]) -> Family:
-    """Return the family that `families.yaml` describes under a name, built by a function."""
-    said = _described()[name]
-    return Family(
-        name=name,
-        title=said["title"],
-        words=phrases(said["words"]),
-        parameters=tuple(read_parameter(asked, facts) for asked, facts in said["parameters"].items()),
-        build=build,
-        material=said.get("material", "wood"),
-        kinds={kind: usual for kinds, usual in said.get("kinds", {}).items() for kind in phrases(kinds)},
-        part_words={part: phrases(words) for part, words in said.get("part_words", {}).items()},
-    )
-
-
-@cache
-def _described() -> Mapping[str, Any]:
-    """Families by name."""
+def described_families(builders: Mapping[str, Callable[[Values, Workshop], None]]) -> dict[str, Family]:
+    """Return the families that `families.yaml` describes, in its order, each built by the function of its name."""
     described: Mapping[str, Any] = read_table(Path(__file__).with_name("families.yaml"))
-    return described
+    return {
+        name: Family(
+            name=name,
+            title=said["title"],
+            words=phrases(said["words"]),
+            parameters=tuple(read_parameter(asked, facts) for asked, facts in said["parameters"].items()),
+            build=builders[name],
+            material=said.get("material", "wood"),
+            kinds={kind: usual for kinds, usual in said.get("kinds", {}).items() for kind in phrases(kinds)},
+            part_words={part: phrases(words) for part, words in said.get("part_words", {}).items()},
+        )
+        for name, said in described.items()
+    }
 
 
 _NOT_DRAWN = ("material", "color")
-
-
 _FAR = {JointType.REVOLUTE: "open_angle", JointType.PRISMATIC: "open_distance"}
 
 

@@ -13,15 +13,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.generate.providers.found_parts import found_parts
-from kinematify.generate.providers.source import Generated, Provenance
+from kinematify.generate.providers.source import Generated, Provenance, found_parts
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.generate.providers.job import Job
-    from kinematify.generate.providers.prompt import Prompt
-    from kinematify.generate.providers.source import Progress
+    from kinematify.generate.providers.job import PaidJob
+    from kinematify.generate.providers.source import Progress, Prompt
 
 LOG_FILE = "command.log"
 OUTPUT_FOLDER = "made"
@@ -46,7 +44,7 @@ class CommandSource:
         """The command line."""
         return {"command": self.template}
 
-    def generate(self, prompt: Prompt, job: Job, progress: Progress) -> Generated:
+    def generate(self, prompt: Prompt, job: PaidJob, progress: Progress) -> Generated:
         """Run the program unless an earlier call has; see `PartSource`."""
         arguments = filled(self.template, prompt, job.folder / OUTPUT_FOLDER)
         if job.state(_STEP) != "done":
@@ -68,7 +66,7 @@ class CommandSource:
             ),
         )
 
-    def _run(self, arguments: list[str], job: Job, progress: Progress) -> None:
+    def _run(self, arguments: list[str], job: PaidJob, progress: Progress) -> None:
         log, out = job.folder / LOG_FILE, job.folder / OUTPUT_FOLDER
         out.mkdir(exist_ok=True)
         start = time.monotonic()

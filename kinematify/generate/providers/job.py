@@ -25,7 +25,7 @@ SENDING, ACCEPTED, DONE, FAILED = "sending", "accepted", "done", "failed"
 
 
 @dataclass
-class Job:
+class PaidJob:
     """One request; every change is on disk before the next line runs."""
 
     folder: Path
@@ -100,7 +100,7 @@ class Job:
 
 
 @contextmanager
-def open_job(folder: Path, source: str, digest: str) -> Iterator[Job]:
+def open_job(folder: Path, source: str, digest: str) -> Iterator[PaidJob]:
     """Open the job of a request, new or begun, for this process alone.
 
     Args:
@@ -122,7 +122,7 @@ def open_job(folder: Path, source: str, digest: str) -> Iterator[Job]:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
             raise OutputError(f"Another process works on {folder}. Wait for it, or give another -o.") from error
-        yield Job(folder=folder, source=source, digest=digest, steps=_begun(folder, source, digest))
+        yield PaidJob(folder=folder, source=source, digest=digest, steps=_begun(folder, source, digest))
 
 
 def _begun(folder: Path, source: str, digest: str) -> dict[str, dict[str, Any]]:

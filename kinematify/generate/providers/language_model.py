@@ -25,10 +25,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config.services import LanguageModelConfig
-    from kinematify.generate.blueprint import Blueprint
-    from kinematify.generate.providers.job import Job
-    from kinematify.generate.providers.prompt import Prompt
-    from kinematify.generate.providers.source import Progress
+    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.providers.job import PaidJob
+    from kinematify.generate.providers.source import Progress, Prompt
 
 ADDRESS, KEY, MODEL = "KINEMATIFY_LLM_URL", "KINEMATIFY_LLM_KEY", "KINEMATIFY_LLM_MODEL"
 BLUEPRINT_FILE = "blueprint.json"
@@ -77,7 +76,7 @@ class LanguageModel:
         return {"model": self.model}
 
     def write(
-        self, prompt: Prompt, job: Job, judge: Callable[[Blueprint], Sequence[str]], progress: Progress
+        self, prompt: Prompt, job: PaidJob, judge: Callable[[Blueprint], Sequence[str]], progress: Progress
     ) -> Written:
         """Let the model write a blueprint, and mend it.
 
@@ -139,7 +138,7 @@ class LanguageModel:
             {"role": "user", "content": content if prompt.images else content[0]["text"]},
         ]
 
-    def _exchange(self, service: Service, job: Job, messages: Sequence[dict[str, Any]]) -> Any:
+    def _exchange(self, service: Service, job: PaidJob, messages: Sequence[dict[str, Any]]) -> Any:
         request = {
             "model": self.model,
             "temperature": 0,

@@ -8,11 +8,11 @@ import trimesh
 from trimesh.collision import CollisionManager
 
 from kinematify.errors import InputError
-from kinematify.generate.blueprint import Blueprint
+from kinematify.generate.procedural.blueprint import Blueprint
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.request import from_text
-from kinematify.generate.procedural.styles import STYLES
+from kinematify.generate.procedural.workshop import STYLES
+from kinematify.generate.request import from_text
 from kinematify.robot.joint_type import JointType
 
 SEEDS = (None, 0)

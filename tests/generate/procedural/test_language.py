@@ -15,7 +15,7 @@ from kinematify.generate.procedural.language.understand import _bare, _family, _
 from kinematify.generate.procedural.language.words import tokens_of
 from kinematify.generate.procedural.layout import parse_layout
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
-from kinematify.generate.procedural.request import from_text
+from kinematify.generate.request import from_text
 from kinematify.robot.joint_type import JointType
 
 EXACT_SHARE = 0.9

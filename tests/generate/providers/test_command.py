@@ -17,7 +17,7 @@ from kinematify.cli.app import run
 from kinematify.errors import EnvironmentFault, InputError
 from kinematify.generate.providers.command import LOG_FILE, CommandSource, filled
 from kinematify.generate.providers.job import open_job
-from kinematify.generate.providers.prompt import MOST_WORDS, check_prompt
+from kinematify.generate.providers.source import MOST_WORDS, check_prompt
 
 if TYPE_CHECKING:
     from pathlib import Path

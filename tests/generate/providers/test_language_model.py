@@ -15,7 +15,7 @@ from kinematify.errors import EnvironmentFault, InputError
 from kinematify.generate.blueprint_file import read_blueprint
 from kinematify.generate.providers.job import open_job
 from kinematify.generate.providers.language_model import ADDRESS, KEY, MODEL, LanguageModel, language_model
-from kinematify.generate.providers.prompt import check_prompt
+from kinematify.generate.providers.source import check_prompt
 from kinematify.robot.read import read_robot
 from tests.generate.providers import chat_server
 from tests.generate.providers.chat_server import ChatServer

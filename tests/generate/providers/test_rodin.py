@@ -19,8 +19,8 @@ from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, InputError, OutputError
 from kinematify.generate.providers.job import open_job
-from kinematify.generate.providers.prompt import check_prompt
-from kinematify.generate.providers.rodin.source import ADDRESS, KEY, RodinSource
+from kinematify.generate.providers.rodin import ADDRESS, KEY, RodinSource
+from kinematify.generate.providers.source import check_prompt
 from tests.generate.providers.rodin_server import KEY as SECRET
 from tests.generate.providers.rodin_server import RodinServer
 

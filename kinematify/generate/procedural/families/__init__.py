@@ -1,110 +1,33 @@
-"""One module per family; `FAMILIES` lists them."""
+"""Families by what they are; the function ``build_NAME`` of one of these modules builds the family NAME."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from kinematify.generate.procedural.families import (
-    bottle,
-    box,
-    bucket,
-    button_panel,
-    cabinet,
-    clock,
-    coffee_machine,
-    crane,
-    desk_lamp,
-    dishwasher,
-    door,
-    excavator,
-    eyeglasses,
-    fan,
-    faucet,
-    folding_chair,
-    fridge,
-    gantry,
-    globe,
-    gripper,
-    hand,
-    hexapod,
-    humanoid,
-    laptop,
-    microwave,
-    office_chair,
-    oven,
-    pen,
-    pliers,
-    quadruped,
-    safe,
-    scara,
-    scissors,
-    serial_arm,
-    snake,
-    stapler,
-    suitcase,
-    switch_panel,
-    table,
-    toaster,
-    toilet,
-    tracked_tree,
-    trash_can,
-    umbrella,
-    washing_machine,
-    window,
+    appliances,
+    arms,
+    bathroom,
+    belongings,
+    building,
+    containers,
+    furniture,
+    hand_tools,
+    machines,
+    small_appliances,
+    walkers,
 )
+from kinematify.generate.procedural.family import described_families
 
-if TYPE_CHECKING:
-    from kinematify.generate.procedural.family import Family
+_MODULES = (
+    appliances, arms, bathroom, belongings, building, containers, furniture, hand_tools, machines, small_appliances,
+    walkers,
+)  # fmt: skip
 
-FAMILIES: dict[str, Family] = {
-    module.FAMILY.name: module.FAMILY
-    for module in (
-        cabinet,
-        serial_arm,
-        scara,
-        gantry,
-        gripper,
-        hand,
-        quadruped,
-        snake,
-        oven,
-        fridge,
-        table,
-        microwave,
-        dishwasher,
-        washing_machine,
-        safe,
-        laptop,
-        box,
-        window,
-        door,
-        switch_panel,
-        button_panel,
-        desk_lamp,
-        fan,
-        toaster,
-        coffee_machine,
-        trash_can,
-        toilet,
-        faucet,
-        office_chair,
-        folding_chair,
-        scissors,
-        pliers,
-        hexapod,
-        humanoid,
-        stapler,
-        bottle,
-        bucket,
-        pen,
-        clock,
-        excavator,
-        crane,
-        tracked_tree,
-        globe,
-        umbrella,
-        suitcase,
-        eyeglasses,
-    )
-}
+FAMILIES = described_families(
+    {
+        name.removeprefix("build_"): build
+        for module in _MODULES
+        for name, build in vars(module).items()
+        if name.startswith("build_")
+    }
+)
 """Keyed by name."""

@@ -13,7 +13,7 @@ from kinematify.generate.procedural.language.words import ARTICLES, KINDS, UNITS
 from kinematify.generate.procedural.layout import CELLS
 
 if TYPE_CHECKING:
-    from kinematify.generate.procedural.language.reading import Reading
+    from kinematify.generate.procedural.language.reading import ParseState
     from kinematify.generate.procedural.parameter import Parameter
 
 _LINES = ("row", "column")
@@ -53,7 +53,7 @@ class _Count:
 # ---- grids ---------------------------------------------------------------------------------------------------------
 
 
-def read_grids(reading: Reading) -> None:
+def read_grids(reading: ParseState) -> None:
     """`six drawers in 3 rows and 2 columns`, `two columns of four drawers`; of what the family's name has, too."""
     for k in range(len(reading.tokens)):
         grid = _grid(reading, k)
@@ -76,7 +76,7 @@ def read_grids(reading: Reading) -> None:
         )
 
 
-def _grid(reading: Reading, k: int) -> tuple[int, int, int] | None:
+def _grid(reading: ParseState, k: int) -> tuple[int, int, int] | None:
     """Columns, rows, and the word behind, of `3 rows and 2 columns` or `two columns of four` at word k."""
     line, joint = reading.text(k + 1), reading.text(k + 2)
     numbers = [token.number for token in reading.tokens[k : k + 4]]
@@ -91,7 +91,7 @@ def _grid(reading: Reading, k: int) -> tuple[int, int, int] | None:
     return columns, rows, k + (5 if crossed else 4)
 
 
-def _gridded(reading: Reading, k: int, end: int) -> tuple[Parameter, int] | None:
+def _gridded(reading: ParseState, k: int, end: int) -> tuple[Parameter, int] | None:
     """What stands in the grid, and the word that says so: one of the next, or the nearest one before."""
     for at in (*range(end, end + _ADJECTIVES + 1), *range(k - 1, -1, -1)):
         for parameter in reading.family.parameters:
@@ -104,7 +104,7 @@ def _gridded(reading: Reading, k: int, end: int) -> tuple[Parameter, int] | None
 # ---- counts --------------------------------------------------------------------------------------------------------
 
 
-def read_counts(reading: Reading) -> None:
+def read_counts(reading: ParseState) -> None:
     """`two doors`, `3 small drawers`, `no handle`, `a grid of 3 by 2 drawers`, `half a dozen knobs`."""
     for parameter in reading.family.parameters:
         if isinstance(parameter.default, int):
@@ -112,12 +112,12 @@ def read_counts(reading: Reading) -> None:
             _take_counts(reading, parameter, counts)
 
 
-def _place_before(reading: Reading, k: int) -> str | None:
+def _place_before(reading: ParseState, k: int) -> str | None:
     """The place that is said right before a noun: `the left door`, `an upper drawer`."""
     return _PLACES.get(reading.text(k - 1))
 
 
-def _is_one(reading: Reading, where: range) -> bool:
+def _is_one(reading: ParseState, where: range) -> bool:
     """`left door`, in the singular and at a place, is one, and so is `whose door`."""
     last = reading.tokens[where.stop - 1]
     if reading.text(where.start - 1) == "whose":
@@ -127,7 +127,7 @@ def _is_one(reading: Reading, where: range) -> bool:
     return _place_before(reading, where.start) is not None and last.given == last.text
 
 
-def _counts_of(reading: Reading, parameter: Parameter) -> list[_Count]:
+def _counts_of(reading: ParseState, parameter: Parameter) -> list[_Count]:
     """Every place where a sentence names what a parameter counts, in its order."""
     found: list[_Count] = []
     for noun in sorted(nouns_of(parameter), key=len, reverse=True):
@@ -149,7 +149,7 @@ def _counts_of(reading: Reading, parameter: Parameter) -> list[_Count]:
     return _with_those_left_out(reading, found)
 
 
-def _with_those_left_out(reading: Reading, counts: list[_Count]) -> list[_Count]:
+def _with_those_left_out(reading: ParseState, counts: list[_Count]) -> list[_Count]:
     """`two drawers on the left and one on the right`: the second count leaves its noun out."""
     more = []
     for count in (c for c in counts if c.number is not None and _place(reading, c.where.stop)):
@@ -164,7 +164,7 @@ def _with_those_left_out(reading: Reading, counts: list[_Count]) -> list[_Count]
     return sorted([*counts, *more], key=lambda count: count.where.start)
 
 
-def _names_something_else(reading: Reading, k: int, counts: list[_Count], count: _Count) -> bool:
+def _names_something_else(reading: ParseState, k: int, counts: list[_Count], count: _Count) -> bool:
     """Whether word k belongs to another thing that is counted, which a bare number behind it would mean."""
     if any(other.first <= k < other.where.stop for other in counts if other is not count):
         return True
@@ -172,7 +172,7 @@ def _names_something_else(reading: Reading, k: int, counts: list[_Count], count:
     return singular(reading.text(k), frozenset(nouns)) in nouns
 
 
-def _take_counts(reading: Reading, parameter: Parameter, counts: list[_Count]) -> None:
+def _take_counts(reading: ParseState, parameter: Parameter, counts: list[_Count]) -> None:
     """Counts at several places add up; elsewhere two of one thing must agree."""
     numbered = [count for count in counts if count.number is not None]
     places = [_place(reading, c.where.stop) or _place_before(reading, c.where.start) for c in numbered]
@@ -194,7 +194,7 @@ def _take_counts(reading: Reading, parameter: Parameter, counts: list[_Count]) -
         reading.mentions += _mentions(reading, parameter, count, stated.get(count))
 
 
-def _mentions(reading: Reading, parameter: Parameter, count: _Count, total: int | None) -> list[Mention]:
+def _mentions(reading: ParseState, parameter: Parameter, count: _Count, total: int | None) -> list[Mention]:
     """The mention of a count; one for each side if it stands on either."""
     kind, last = _kind(parameter), count.where.stop - 1
     if total is None:
@@ -207,7 +207,7 @@ def _mentions(reading: Reading, parameter: Parameter, count: _Count, total: int 
     return [Mention(kind=kind, count=half, first=count.first, last=last + 3, across=side) for side in (-1, 1)]
 
 
-def _total(reading: Reading, count: _Count) -> int:
+def _total(reading: ParseState, count: _Count) -> int:
     """How many a count means: one door on either side is two doors, and so is two doors on both sides."""
     number = count.number or 0
     if _on_both_sides(reading, count.where.stop) and (number % 2 or reading.text(count.where.stop + 1) == "each"):
@@ -215,12 +215,12 @@ def _total(reading: Reading, count: _Count) -> int:
     return number
 
 
-def _on_both_sides(reading: Reading, k: int) -> bool:
+def _on_both_sides(reading: ParseState, k: int) -> bool:
     which, side = _SIDES
     return reading.text(k) in ("on", "at") and reading.text(k + 1) in which and reading.text(k + 2) in side
 
 
-def _place(reading: Reading, k: int) -> str | None:
+def _place(reading: ParseState, k: int) -> str | None:
     """The place that is said right behind a noun: `on the left`, `below`, `at the top`."""
     for at in range(k, k + 4):
         if reading.text(at) in _PLACES:
@@ -230,7 +230,7 @@ def _place(reading: Reading, k: int) -> str | None:
     return None
 
 
-def read_counted_name(reading: Reading) -> None:
+def read_counted_name(reading: ParseState) -> None:
     """`a double door` has two of what a door is made of, where the family counts them by its own name."""
     where = range(min(reading.named), max(reading.named) + 1)
     names = (" ".join(reading.text(i) for i in where), *(reading.text(i) for i in where))
@@ -244,7 +244,7 @@ def read_counted_name(reading: Reading) -> None:
         reading.take(parameter.name, whole, f"{whole} {parameter.name}", *counting)
 
 
-def read_copies(reading: Reading) -> None:
+def read_copies(reading: ParseState) -> None:
     """`two nightstands`, `three identical nightstands next to each other`."""
     number, counting = _number_before(reading, min(reading.named))
     if number is None or {reading.text(counting[-1]), reading.text(counting[-1] + 1)} & {*ARTICLES, *UNITS, *KINDS}:
@@ -266,7 +266,7 @@ def read_copies(reading: Reading) -> None:
                 reading.used.update(where)
 
 
-def _whole(reading: Reading, number: float, k: int) -> int:
+def _whole(reading: ParseState, number: float, k: int) -> int:
     """The number that counts the noun at word k, which cannot be broken."""
     if number != int(number):
         raise InputError(
@@ -280,7 +280,7 @@ def _kind(parameter: Parameter) -> str:
     return next((noun for noun in nouns_of(parameter) if noun in CELLS), nouns_of(parameter)[0])
 
 
-def _number_before(reading: Reading, k: int) -> tuple[float | None, tuple[int, ...]]:
+def _number_before(reading: ParseState, k: int) -> tuple[float | None, tuple[int, ...]]:
     """The number that counts the noun at word k, and its words; what describes the noun between them is left."""
     at = k - 1
     while at >= 0 and k - at <= 3:

@@ -12,7 +12,7 @@ from kinematify.generate.procedural.language.words import OPENNESS
 
 if TYPE_CHECKING:
     from kinematify.generate.procedural.language.parts import PartReader
-    from kinematify.generate.procedural.language.reading import Reading
+    from kinematify.generate.procedural.language.reading import ParseState
     from kinematify.generate.procedural.language.words import Words
     from kinematify.generate.procedural.parameter import Value
 
@@ -51,7 +51,7 @@ _HOW = {"open": "share", "open_angle": "angle", "open_distance": "distance"}
 _Amount = tuple[str, "Value", str, tuple[int, ...]]
 
 
-def read_openness(reading: Reading, parts: PartReader) -> None:
+def read_openness(reading: ParseState, parts: PartReader) -> None:
     """Take up `half open`, `ajar`, `opened by 30 degrees`, `the top drawer pulled out 20 cm`, `open 30 %`."""
     for k, token in enumerate(reading.tokens):
         out = (token.text, reading.text(k + 1)) in OUT
@@ -70,7 +70,7 @@ def read_openness(reading: Reading, parts: PartReader) -> None:
             reading.take(name, value, said, *words)
 
 
-def _dropped(reading: Reading, parts: PartReader, k: int) -> None:
+def _dropped(reading: ParseState, parts: PartReader, k: int) -> None:
     """`its tailgate down`, at the end of a statement: it stands open there."""
     way = reading.text(k)
     if way in ("up", "down") and reading.text(k + 1) in ("", *_CLAUSE_ENDS):
@@ -81,7 +81,7 @@ def _dropped(reading: Reading, parts: PartReader, k: int) -> None:
 
 
 def _open_parts(
-    reading: Reading, parts: PartReader, clause: list[int], opened: tuple[str, float], words: tuple[int, ...]
+    reading: ParseState, parts: PartReader, clause: list[int], opened: tuple[str, float], words: tuple[int, ...]
 ) -> bool:
     """Take up that parts which are named stand open; False where none are, or all that open at all."""
     named = [(first, end, stems) for first, end, stems in parts.nouns() if first in clause]
@@ -99,7 +99,7 @@ def _open_parts(
     return parts.require(wanted, *words, *range(first, end), *({first - 1} if place else ()))
 
 
-def _clause(reading: Reading, k: int) -> list[int]:
+def _clause(reading: ParseState, k: int) -> list[int]:
     """Words around word k that belong to the same statement."""
     places = []
     for step in (-1, 1):
@@ -110,7 +110,7 @@ def _clause(reading: Reading, k: int) -> list[int]:
     return sorted(places)
 
 
-def _amount(reading: Reading, clause: list[int]) -> _Amount | None:
+def _amount(reading: ParseState, clause: list[int]) -> _Amount | None:
     """Parameter, value, words for the user and places of what a clause measures."""
     for k in clause:
         angle, length = angle_at(reading, k), length_at(reading, k)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.generate.blueprint import BlueprintJoint
+from kinematify.generate.procedural.blueprint import BlueprintJoint
 from kinematify.generate.procedural.language.reading import nouns_of
 from kinematify.generate.procedural.language.words import PURPOSES, STOP_WORDS, UNITS, singular
 from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS, of_one_material, surface_of
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from kinematify.assembly.part import Part
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.family import Family
-    from kinematify.generate.procedural.language.reading import Reading
+    from kinematify.generate.procedural.language.reading import ParseState
     from kinematify.robot.arrays import FloatArray
 
 _VERBS = {
@@ -148,7 +148,7 @@ class PartRequirement:
 class PartReader:
     """Reads what is left of a sentence against the object as it would be built."""
 
-    reading: Reading
+    reading: ParseState
     made: Blueprint
     requirements: list[PartRequirement] = field(default_factory=list)
 

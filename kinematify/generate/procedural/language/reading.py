@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(kw_only=True)
-class Reading(Words):
+class ParseState(Words):
     """A sentence being read; words that were taken up are marked."""
 
     tokens: tuple[Token, ...]

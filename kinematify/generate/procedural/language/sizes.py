@@ -14,7 +14,7 @@ from kinematify.generate.procedural.language.words import OPENNESS, UNITS, singu
 
 if TYPE_CHECKING:
     from kinematify.generate.procedural.family import Family
-    from kinematify.generate.procedural.language.reading import Reading
+    from kinematify.generate.procedural.language.reading import ParseState
     from kinematify.generate.procedural.language.words import Words
     from kinematify.generate.procedural.parameter import Parameter
 
@@ -50,7 +50,7 @@ _DEGREES = {"degree": math.pi / 180.0, "degrees": math.pi / 180.0, "deg": math.p
             "radian": 1.0, "radians": 1.0, "rad": 1.0}  # fmt: skip
 
 
-def read_sizes(reading: Reading) -> None:
+def read_sizes(reading: ParseState) -> None:
     """Take up all sizes of a sentence but how far something stands open."""
     _angles(reading)
     _lengths(reading)
@@ -58,7 +58,7 @@ def read_sizes(reading: Reading) -> None:
     _refuse_sizes_without_unit(reading)
 
 
-def read_size_words(reading: Reading) -> None:
+def read_size_words(reading: ParseState) -> None:
     """`a small box`, `a tall, narrow cupboard`: an end of what is usual, for what was not said in numbers."""
     first = min(reading.named)
     for k, token in enumerate(reading.tokens[:first]):
@@ -79,7 +79,7 @@ def read_size_words(reading: Reading) -> None:
             reading.used.add(k)
 
 
-def read_overall(reading: Reading) -> None:
+def read_overall(reading: ParseState) -> None:
     """`1.7 m tall`, of what has no such parameter: the whole is made so large."""
     if any(p.unit == "m" and p.name in reading.said for p in reading.family.parameters):
         return  # which scaling would change
@@ -114,7 +114,7 @@ def angle_at(reading: Words, k: int) -> tuple[float, int] | None:
     return number * _DEGREES[unit], k + 2
 
 
-def _angles(reading: Reading) -> None:
+def _angles(reading: ParseState) -> None:
     """`tilted by 23 degrees`, in families that have such an angle."""
     for parameter in reading.family.parameters:
         names = (parameter.name, f"{parameter.name}ed", *parameter.words)
@@ -129,7 +129,7 @@ def _angles(reading: Reading) -> None:
                     break
 
 
-def _lengths(reading: Reading) -> None:
+def _lengths(reading: ParseState) -> None:
     """`80 cm wide`, `a height of 2 m`, `0.3 m in diameter`."""
     k = 0
     while k < len(reading.tokens):
@@ -146,13 +146,13 @@ def _lengths(reading: Reading) -> None:
         k = end
 
 
-def _is_of_a_part(reading: Reading, k: int) -> bool:
+def _is_of_a_part(reading: ParseState, k: int) -> bool:
     """Whether what stands before word k is said of a part: `60 cm wide drawers`."""
     parts = {noun for p in reading.family.parameters if isinstance(p.default, int) for noun in nouns_of(p)}
     return k not in reading.named and singular(reading.text(k), frozenset(parts)) in parts
 
 
-def read_bare_length(reading: Reading) -> None:
+def read_bare_length(reading: ParseState) -> None:
     """`6 inch pliers`, `a fridge, 180 cm`: of what has one length or diameter, or one side that is clearly longest."""
     name = next((name for name in ("length", "diameter") if reading.parameter(name) is not None), None)
     for k in range(len(reading.tokens)):
@@ -172,7 +172,7 @@ def read_bare_length(reading: Reading) -> None:
             reading.take(name, metres, f"{name} {metres:g} m", *range(k, end))
 
 
-def _is_of_whole(reading: Reading, k: int, end: int) -> bool:
+def _is_of_whole(reading: ParseState, k: int, end: int) -> bool:
     """Whether a length at words k to `end` stands before the object's name or by itself, and says not how far it opens.
 
     Screens are measured across their diagonal, which is no side.
@@ -192,7 +192,7 @@ def _longest_side(family: Family) -> str:
     return first if not others or sides[first] > _CLEARLY * sides[others[0]] else ""
 
 
-def _dimension(reading: Reading, word: str, metres: float) -> str | None:
+def _dimension(reading: ParseState, word: str, metres: float) -> str | None:
     """The parameter that a word for a size means in this family; of several, the first that can be so large."""
     lengths = {p.name: p for p in reading.family.all_parameters if p.unit == "m"}
     meant = [p.name for p in lengths.values() if word and word in (*p.words, p.name)]
@@ -206,7 +206,7 @@ def _holds(parameter: Parameter, metres: float) -> bool:
     return low <= metres <= high
 
 
-def _products(reading: Reading) -> None:
+def _products(reading: ParseState) -> None:
     """`20 x 15 x 10 cm` is width, depth and height; two numbers leave out the height, or the depth if there is none."""
     for k in range(len(reading.tokens)):
         numbers, places, at = [], [], k
@@ -229,7 +229,7 @@ def _products(reading: Reading) -> None:
             reading.take(name, size, f"{name} {size:g} m", *range(k, end))
 
 
-def _refuse_sizes_without_unit(reading: Reading) -> None:
+def _refuse_sizes_without_unit(reading: ParseState) -> None:
     """`80 wide` may be centimetres or millimetres."""
     for k, token in enumerate(reading.tokens):
         behind = _dimension(reading, reading.text(k + 1), 0.0)

@@ -15,7 +15,7 @@ from kinematify.generate.procedural.language.arrangement import layout_of
 from kinematify.generate.procedural.language.counts import read_copies, read_counted_name, read_counts, read_grids
 from kinematify.generate.procedural.language.openness import FRACTIONS, read_openness
 from kinematify.generate.procedural.language.parts import MOTIONS, PartReader
-from kinematify.generate.procedural.language.reading import Reading, nouns_of
+from kinematify.generate.procedural.language.reading import ParseState, nouns_of
 from kinematify.generate.procedural.language.sizes import (
     DIMENSIONS,
     SIZE_WORDS,
@@ -40,7 +40,7 @@ from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.language.parts import PartRequirement
     from kinematify.generate.procedural.parameter import Parameter, Value
@@ -103,7 +103,7 @@ def understand(sentence: str, families: Mapping[str, Family], *, lenient: bool =
     tokens = tokens_of(sentence, vocabulary, mend=lenient)
     names = [(_bare(word, vocabulary), family) for family in families.values() for word in family.words]
     family, where = _family(sentence, tokens, names, vocabulary)
-    reading = Reading(tokens=tokens, family=family, used=set(where), named=frozenset(where))
+    reading = ParseState(tokens=tokens, family=family, used=set(where), named=frozenset(where))
     reading.understood.append(family.title)
     for step in (
         read_sizes,
@@ -138,7 +138,7 @@ def understand(sentence: str, families: Mapping[str, Family], *, lenient: bool =
     )
 
 
-def _usual_of_its_kind(reading: Reading) -> None:
+def _usual_of_its_kind(reading: ParseState) -> None:
     """A nightstand is a small cabinet with drawers alone; who counts anything counts all."""
     name = " ".join(reading.text(k) for k in sorted(reading.named))
     for key, value in reading.family.kinds.get(name, {}).items():
@@ -146,7 +146,7 @@ def _usual_of_its_kind(reading: Reading) -> None:
             reading.values.setdefault(key, value)
 
 
-def _built(reading: Reading) -> Blueprint:
+def _built(reading: ParseState) -> Blueprint:
     """The object as far as it is understood.
 
     Raises:
@@ -170,7 +170,7 @@ def _built(reading: Reading) -> Blueprint:
     return made
 
 
-def _built_so_that_it_matters(reading: Reading, parameter: Parameter) -> Blueprint:
+def _built_so_that_it_matters(reading: ParseState, parameter: Parameter) -> Blueprint:
     """The object with the kind that has what was asked for: two handles are of a tap with a handle on either side.
 
     Raises:
@@ -189,7 +189,7 @@ def _built_so_that_it_matters(reading: Reading, parameter: Parameter) -> Bluepri
     )
 
 
-def _matters(reading: Reading, parameter: Parameter, values: Mapping[str, Value], made: Blueprint) -> bool:
+def _matters(reading: ParseState, parameter: Parameter, values: Mapping[str, Value], made: Blueprint) -> bool:
     """Whether another value of a parameter would make another object."""
     value = values[parameter.name]
     if isinstance(value, str):
@@ -211,7 +211,7 @@ def _shape(made: Blueprint) -> tuple[object, ...]:
     return (*((part.name, part.mesh_hash) for part in made.parts), *joints)
 
 
-def _left(reading: Reading) -> tuple[str, ...]:
+def _left(reading: ParseState) -> tuple[str, ...]:
     """Words that were not understood, those that stand together in one."""
     left: list[str] = []
     together = False
@@ -228,7 +228,7 @@ def _left(reading: Reading) -> tuple[str, ...]:
     return tuple(left)
 
 
-def _not_understood(reading: Reading, left: tuple[str, ...], vocabulary: set[str]) -> str:
+def _not_understood(reading: ParseState, left: tuple[str, ...], vocabulary: set[str]) -> str:
     known = frozenset(vocabulary)
     words = dict.fromkeys(word for phrase in left for word in phrase.split())
     near = {word: nearest_word(word, known) for word in words}
@@ -343,7 +343,7 @@ def _named(tokens: tuple[Token, ...], names: Sequence[_Name]) -> list[tuple[Fami
 # ---- everything else -----------------------------------------------------------------------------------------------
 
 
-def _choices(reading: Reading) -> None:
+def _choices(reading: ParseState) -> None:
     """`with knobs`, `sliding`, `barrel hinges`."""
     known = frozenset(word for token in reading.tokens for word in [token.text])
     for parameter in reading.family.parameters:
@@ -356,13 +356,13 @@ def _choices(reading: Reading) -> None:
                     _choose(reading, parameter, choice, range(k, k + len(words)))
 
 
-def _is_free(reading: Reading, where: range) -> bool:
+def _is_free(reading: ParseState, where: range) -> bool:
     """Whether words may say a choice: not taken up, but for the object's name and for a noun that was counted."""
     taken = (reading.used - reading.named) & set(where)
     return not taken or (taken < set(where) and taken <= reading.counted)
 
 
-def _choose(reading: Reading, parameter: Parameter, choice: str, where: range) -> None:
+def _choose(reading: ParseState, parameter: Parameter, choice: str, where: range) -> None:
     """Take a choice, with the noun behind it that it describes."""
     nouns = {word for noun in nouns_of(parameter) for word in (noun, f"{noun}s")}
     places = list(where)
@@ -375,7 +375,7 @@ def _choose(reading: Reading, parameter: Parameter, choice: str, where: range) -
         reading.take(parameter.name, choice, f"{parameter.name}: {choice}", *places)
 
 
-def _parts_it_has(reading: Reading) -> None:
+def _parts_it_has(reading: ParseState) -> None:
     """`with a lid`: what every object of the family has, and only its kind could be chosen; `no handle`."""
     chosen = {name: p for p in reading.family.parameters if p.choices for name in (p.name, *p.words)}
     for k, token in enumerate(reading.tokens):
@@ -388,7 +388,7 @@ def _parts_it_has(reading: Reading) -> None:
             reading.take(parameter.name, "none", f"no {token.text}", k - 1, k)
 
 
-def _arrangement(reading: Reading) -> None:
+def _arrangement(reading: ParseState) -> None:
     """Doors above drawers, columns, what is on the left: for families that have a layout."""
     if reading.parameter("layout") is None or "layout" in reading.values:
         return

@@ -1,18 +1,23 @@
-"""Pairs of solids that let one part turn on another: barrel hinges, forks and flanged stubs."""
+"""Pairs of solids that let one part turn on another: barrel hinges, forks, flanged stubs and castors."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.solids import bore, box, cylinder, hull, union
+from kinematify.generate.procedural.solids import bore, box, cylinder, hull, off, union
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from manifold3d import Manifold
 
     from kinematify.generate.procedural.solids import Point
+    from kinematify.generate.procedural.workshop import Workshop
     from kinematify.robot.arrays import FloatArray
+
 
 Rectangle = tuple[float, float, float, float]
 """Lower x, upper x, lower y, upper y in a cross-section."""
@@ -102,3 +107,71 @@ def stub(
     flange = cylinder(radius, start + clearance * along, start + (length + clearance) * along)
     shaft = cylinder(0.55 * radius, start - 0.7 * length * along, start + 0.5 * length * along)
     return boss, hole, flange + shaft
+
+
+@dataclass(frozen=True, kw_only=True)
+class BackEdge:
+    """Where two bodies with flush back faces lie on each other; the edge runs along x."""
+
+    y: float
+    """Of both back faces [m]."""
+    level: float
+    """Underside of the upper body, which is where the pin will be [m]."""
+    below: float
+    """Height of the lower body's back face under it [m]."""
+    above: float
+    """Height of the upper body's back face [m]."""
+    clearance: float
+    """Between the bodies, and between them and the knuckles [m]."""
+
+
+def add_barrels(
+    workshop: Workshop,
+    bodies: tuple[str, str],
+    edge: BackEdge,
+    places: Sequence[float],
+    *,
+    length: float,
+    radius: float,
+    knuckles: int = 3,
+) -> tuple[float, float, float]:
+    """Add barrel hinges to a lower and an upper body, which are there; returns a point on the pins.
+
+    The upper body then turns about -x until its back face meets the knuckles, beyond 90 degrees.
+    """
+    pivot = (0.0, edge.y + radius + edge.clearance, edge.level)
+    face = -radius - edge.clearance  # a knuckle that reached deeper than this would meet the other body
+    below, above = min(3.0 * radius, edge.below), min(3.0 * radius, edge.above)
+    on_lower = (face - 2e-4, face + 1e-4, -edge.clearance - below, -edge.clearance - 0.2 * below)
+    on_upper = (face - 2e-4, face + 1e-4, 0.2 * above, above)
+    halves = barrel(length, radius, edge.clearance, (on_lower, on_upper), knuckles=knuckles)
+    for x in places:
+        place = at((x, pivot[1], pivot[2]), ALONG_X[:, :3])
+        for name, half in zip(bodies, halves, strict=True):
+            workshop.add(name, half.transform(place))
+    return pivot
+
+
+STEM = 0.006
+"""Radius of a castor's stem [m]; it reaches 22 mm above the fork."""
+_TREAD = 0.011  # half the width of a wheel [m]
+
+
+def castor(axle: FloatArray, top: float, wheel: float, clearance: float) -> tuple[Manifold, Manifold]:
+    """Return a fork whose stem stands on the z axis and whose pin carries a wheel, and that wheel.
+
+    Args:
+        axle: Middle of the pin [m], shape (3,); its y is how far the wheel trails.
+        top: Upper face of the fork, where the stem begins [m]; above the wheel.
+        wheel: Radius of the wheel [m].
+        clearance: Between both [m].
+    """
+    tight = min(clearance, 0.0015)
+    y, inner, outer = axle[1], _TREAD + tight, _TREAD + 0.006
+    crown = box((-outer, y - 0.012, 2.0 * wheel + 0.004), (outer, 0.012, top))
+    cheeks = [box((x, y - 0.01, wheel - 0.01), (x + outer - inner, y + 0.01, top)) for x in (-outer, inner)]
+    ends = off(axle, 1e-3 - outer, 0, 0), off(axle, outer - 1e-3, 0, 0)
+    stem = cylinder(STEM, (0, 0, top - 0.005), (0, 0, top + 0.022))
+    tyre = cylinder(wheel, off(axle, -_TREAD, 0, 0), off(axle, _TREAD, 0, 0))
+    roller = tyre - bore(0.004, tight, off(axle, -0.1, 0, 0), off(axle, 0.1, 0, 0))
+    return union(crown, stem, cylinder(0.004, *ends), *cheeks), roller

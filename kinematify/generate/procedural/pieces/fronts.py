@@ -8,22 +8,60 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.pieces.bearings import ALONG_X, at, barrel
-from kinematify.generate.procedural.pieces.handles import handle
-from kinematify.generate.procedural.solids import box, off, tray, union
+from kinematify.generate.procedural.solids import ball, box, cylinder, off, rod, tray, union
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from manifold3d import Manifold
 
+    from kinematify.generate.procedural.solids import Point
     from kinematify.generate.procedural.workshop import Workshop
+
+
+_SUNK = 1e-3  # how deep a handle reaches into its front, so that both are one solid
+
+
+def handle(kind: str, at: Point, *, along: str, length: float) -> list[Manifold]:
+    """Return the solids of a handle.
+
+    Args:
+        kind: ``bar``, ``knob``, ``cup``, ``edge`` or ``none``.
+        at: Where its middle meets the front [m]; the front's outer face lies in y = at[1].
+        along: ``x`` or ``z``, the direction of a long one.
+        length: Of a long one [m].
+    """
+    x, y, z = at
+    half = 0.5 * length
+    if kind == "knob":
+        return [cylinder(0.006, (x, y + _SUNK, z), (x, y - 0.02, z)), ball(0.014, (x, y - 0.026, z))]
+    if kind == "bar":
+        ends = [(x - half, y - 0.03, z), (x + half, y - 0.03, z)]
+        feet = [(x - 0.8 * half, z), (x + 0.8 * half, z)]
+        if along == "z":
+            ends = [(x, y - 0.03, z - half), (x, y - 0.03, z + half)]
+            feet = [(x, z - 0.8 * half), (x, z + 0.8 * half)]
+        posts = [cylinder(0.005, (fx, y + _SUNK, fz), (fx, y - 0.03, fz), segments=24) for fx, fz in feet]
+        return [rod(0.006, *ends), *posts]
+    if kind == "cup":
+        half = min(half, 0.04)  # it always lies, and must not reach beyond a door's free edge
+        outer = cylinder(0.03, (x - half, y, z), (x + half, y, z)) - cylinder(0.025, (x - half, y, z), (x + half, y, z))
+        caps = [cylinder(0.03, (x + s * half, y, z), (x + s * (half - 0.003), y, z)) for s in (-1, 1)]
+        below = box((x - length, y - 0.1, z - 0.1), (x + length, y + 0.1, z))
+        behind = box((x - length, y + _SUNK, z - 0.1), (x + length, y + 0.1, z + 0.1))
+        return [union(outer, *caps) - below - behind]
+    if kind == "edge":
+        size = (half, 0.004) if along == "x" else (0.004, half)
+        return [box((x - size[0], y - 0.02, z - size[1]), (x + size[0], y + _SUNK, z + size[1]))]
+    return []
+
 
 _REVEAL = 0.002  # of a front towards its neighbours, besides the clearance
 _BARREL = (0.004, 0.06)  # radius and length of a barrel hinge [m]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Opening:
+class Bay:
     """One field of a front, its outer border in the plane y = 0 of the carcass's front."""
 
     left: float
@@ -58,13 +96,13 @@ class Fitting:
     """Share of the way that they stand open, in [0, 1]."""
 
 
-def carcass(width: float, height: float, depth: float, openings: Sequence[Opening]) -> Manifold:
+def carcass(width: float, height: float, depth: float, openings: Sequence[Bay]) -> Manifold:
     """Return a body, its front in y = 0 and its floor in z = 0, with a room behind every opening."""
     body = box((-0.5 * width, 0.0, 0.0), (0.5 * width, depth, height))
     return body - union(*(room(opening) for opening in openings))
 
 
-def room(opening: Opening) -> Manifold:
+def room(opening: Bay) -> Manifold:
     """Return what to take away from a solid body to make the room behind an opening."""
     inset = 0.5 * opening.wall
     return box(
@@ -73,7 +111,7 @@ def room(opening: Opening) -> Manifold:
     )
 
 
-def panel(opening: Opening, clearance: float) -> Manifold:
+def panel(opening: Bay, clearance: float) -> Manifold:
     """Return the board that covers an opening from outside."""
     gap = 0.5 * (clearance + _REVEAL)
     return box(
@@ -82,7 +120,7 @@ def panel(opening: Opening, clearance: float) -> Manifold:
     )
 
 
-def add_drawer(workshop: Workshop, name: str, parent: str, opening: Opening, fitting: Fitting) -> None:
+def add_drawer(workshop: Workshop, name: str, parent: str, opening: Bay, fitting: Fitting) -> None:
     """Add a drawer that runs in the room behind an opening and comes out along -y."""
     clearance = fitting.clearance
     edge, wall = 0.5 * opening.wall + clearance, min(0.012, 0.1 * opening.width)
@@ -101,7 +139,7 @@ def add_drawer(workshop: Workshop, name: str, parent: str, opening: Opening, fit
     workshop.slides(name, parent, (0, -1, 0), middle, (0.0, travel), rest=fitting.rest)
 
 
-def _kickers(opening: Opening, bottom: float, reach: float) -> list[Manifold]:
+def _kickers(opening: Bay, bottom: float, reach: float) -> list[Manifold]:
     """Strips along both sides of a room, above the rim of the drawer, so that it neither lifts nor tips when it is out.
 
     Args:
@@ -122,7 +160,7 @@ def add_door(
     workshop: Workshop,
     name: str,
     parent: str,
-    opening: Opening,
+    opening: Bay,
     fitting: Fitting,
     *,
     side: str,
@@ -167,7 +205,7 @@ def add_door(
 
 
 def _barrels(
-    opening: Opening, pivot: tuple[float, float, float], at_hinge: float, sign: float, clearance: float
+    opening: Bay, pivot: tuple[float, float, float], at_hinge: float, sign: float, clearance: float
 ) -> tuple[Manifold, Manifold]:
     """Both halves of a barrel hinge about the vertical line through `pivot`, its middle there."""
     radius, length = _BARREL
@@ -180,7 +218,7 @@ def _barrels(
     return of_body.translate(pivot), of_door.translate(pivot)
 
 
-def add_flap(workshop: Workshop, name: str, parent: str, opening: Opening, fitting: Fitting, *, hinge: str) -> None:
+def add_flap(workshop: Workshop, name: str, parent: str, opening: Bay, fitting: Fitting, *, hinge: str) -> None:
     """Add a door that falls open about a horizontal line at its lower edge; `hinge` as for `add_door`."""
     clearance = fitting.clearance
     front, back = -clearance - opening.wall, -clearance

@@ -164,7 +164,7 @@ def _barrels(hinge: Hinge, length: float) -> tuple[Manifold, Manifold]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Tracks:
+class Grooves:
     """Grooves above and below an opening, one behind the other, the first one in front."""
 
     opening: Field
@@ -214,7 +214,7 @@ def add_sliding(
     workshop: Workshop,
     stem: str,
     parent: str,
-    tracks: Tracks,
+    tracks: Grooves,
     *,
     count: int,
     finish: Callable[[Manifold, Field, float], Manifold],

@@ -1,0 +1,256 @@
+"""An object with exact joints: parts in the configuration in which it is shown, and how each of them moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinematify.assembly.part import Assembly, Part
+from kinematify.assembly.truth import GroundTruth, TrueJoint
+from kinematify.robot.appearance import joined as joined_appearances
+from kinematify.robot.arrays import read_only
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.transforms import joint_motion
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import Mimic
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BlueprintJoint:
+    """The exact joint between two parts; world frame, zero is the configuration of the parts."""
+
+    parent: str
+    child: str
+    kind: JointType
+    axis: FloatArray
+    """Unit direction, shape (3,); positive motion opens, by the right hand rule or along it. Read-only."""
+    pivot: FloatArray
+    """A point on the axis [m], shape (3,). Read-only."""
+    lower: float
+    """[rad or m]; -inf for continuous."""
+    upper: float
+    """[rad or m]; +inf for continuous."""
+    value: float = 0.0
+    """How far it has moved from the pose in which it was designed [rad or m]; limits are counted from here."""
+    mimic: Mimic | None = None
+    """Its leader, named by the child part of that joint; offset 0, since all stand at zero."""
+
+    def __post_init__(self) -> None:
+        axis = np.asarray(self.axis, dtype=np.float64)
+        object.__setattr__(self, "axis", read_only(axis / np.linalg.norm(axis), np.float64))
+        object.__setattr__(self, "pivot", read_only(np.asarray(self.pivot), np.float64))
+
+    def motion(self, value: float) -> FloatArray:
+        """Return the world transform, shape (4, 4), of what the child carries when the joint moves by `value`."""
+        return joint_motion(self.kind, self.axis, self.pivot, value)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BlueprintLoop:
+    """A pin that two parts share besides the joints of the tree: it closes a chain of joints."""
+
+    one: str
+    other: str
+    pivot: FloatArray
+    """A point on the pin, world frame [m], shape (3,). Read-only."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "pivot", read_only(np.asarray(self.pivot), np.float64))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Blueprint:
+    """An articulated object; the first part is the base link."""
+
+    name: str
+    family: str
+    parts: tuple[Part, ...]
+    """With colour and density."""
+    joints: tuple[BlueprintJoint, ...]
+    """One per part but the first, parents before children."""
+    loops: tuple[BlueprintLoop, ...] = ()
+    """What closes the chains that the tree leaves open; followers among the joints keep them closed."""
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    """What it was built with, defaults and drawn values included."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "parameters", MappingProxyType(dict(self.parameters)))
+
+    @cached_property
+    def joint_above(self) -> dict[str, BlueprintJoint]:
+        """Joint that carries a part, keyed by the part's name."""
+        return {joint.child: joint for joint in self.joints}
+
+    @property
+    def root(self) -> str:
+        """Name of the base link."""
+        return self.parts[0].name
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        """What an inference is given: the parts alone."""
+        return Assembly(parts=self.parts, source=self.name)
+
+    def moved(self, values: Mapping[str, float]) -> Blueprint:
+        """Move the joints; the new configuration is the zero of the result.
+
+        Args:
+            values: Child part -> joint value [rad or m]; the others stay, and those that follow another one follow.
+        """
+        T_new_old = {self.root: np.eye(4)}
+        joints = []
+        for joint in self.joints:
+            above, value = T_new_old[joint.parent], values.get(joint.child, 0.0)
+            if joint.mimic is not None:
+                value = joint.mimic.multiplier * values.get(joint.mimic.joint, 0.0)
+            T_new_old[joint.child] = above @ joint.motion(value)
+            joints.append(
+                replace(
+                    joint,
+                    axis=above[:3, :3] @ joint.axis,
+                    pivot=above[:3, :3] @ joint.pivot + above[:3, 3],
+                    lower=joint.lower - value,
+                    upper=joint.upper - value,
+                    value=joint.value + value,
+                )
+            )
+        parts = tuple(_placed(part, T_new_old[part.name]) for part in self.parts)
+        loops = tuple(
+            replace(loop, pivot=(T_new_old[loop.one] @ np.append(loop.pivot, 1.0))[:3]) for loop in self.loops
+        )
+        return replace(self, parts=parts, joints=tuple(joints), loops=loops)
+
+    def scaled(self, factor: float) -> Blueprint:
+        """Return the object larger or smaller in all directions, about the origin of the world frame."""
+
+        def joint(given: BlueprintJoint) -> BlueprintJoint:
+            way = factor if given.kind is JointType.PRISMATIC else 1.0
+            return replace(
+                given,
+                pivot=factor * given.pivot,
+                lower=way * given.lower,
+                upper=way * given.upper,
+                value=way * given.value,
+            )
+
+        parts = tuple(replace(part, vertices=factor * part.vertices) for part in self.parts)
+        loops = tuple(replace(loop, pivot=factor * loop.pivot) for loop in self.loops)
+        return replace(self, parts=parts, joints=tuple(joint(item) for item in self.joints), loops=loops)
+
+    def carrying(self, other: Blueprint, carrier: str, T_self_other: FloatArray) -> Blueprint:
+        """Return the object with another one fixed to one of its parts.
+
+        Args:
+            other: Its base link takes the name of its family, which goes before the names of its other parts.
+            carrier: The part that carries it.
+            T_self_other: Where it is, shape (4, 4).
+        """
+        kind, turn = other.family, T_self_other[:3, :3]
+
+        def name(given: str) -> str:
+            return kind if given == other.root else f"{kind}_{given}"
+
+        parts = [replace(_placed(part, T_self_other), name=name(part.name)) for part in other.parts]
+        joints = [
+            replace(
+                joint, parent=name(joint.parent), child=name(joint.child), axis=turn @ joint.axis,
+                pivot=turn @ joint.pivot + T_self_other[:3, 3],
+                mimic=joint.mimic and replace(joint.mimic, joint=name(joint.mimic.joint)),
+            )
+            for joint in other.joints
+        ]  # fmt: skip
+        loops = [
+            replace(
+                loop, one=name(loop.one), other=name(loop.other), pivot=turn @ loop.pivot + T_self_other[:3, 3]
+            )
+            for loop in other.loops
+        ]  # fmt: skip
+        held = BlueprintJoint(
+            parent=carrier, child=kind, kind=JointType.FIXED, axis=np.array([0.0, 0.0, 1.0]),
+            pivot=parts[0].bounds.mean(axis=0), lower=0.0, upper=0.0,
+        )  # fmt: skip
+        return replace(
+            self,
+            parts=(*self.parts, *parts),
+            joints=(*self.joints, held, *joints),
+            loops=(*self.loops, *loops),
+        )
+
+    def repeated(self, count: int, pitch: float) -> Blueprint:
+        """Return several of it along x, their base links one part.
+
+        Args:
+            count: How many.
+            pitch: From one to the next [m].
+        """
+        base, *others = self.parts
+        steps = [(k, np.array([k * pitch, 0.0, 0.0])) for k in range(count)]
+        whole = replace(
+            base,
+            vertices=np.concatenate([base.vertices + step for _, step in steps]),
+            faces=np.concatenate([base.faces + k * len(base.vertices) for k, _ in steps]),
+            appearance=joined_appearances([base.appearance] * count, [len(base.faces)] * count),
+        )
+
+        def name(given: str, k: int) -> str:
+            return given if k == 0 or given == base.name else f"{given}_{k + 1}"
+
+        parts = [
+            replace(part, name=name(part.name, k), vertices=part.vertices + s) for k, s in steps for part in others
+        ]
+        joints = [
+            replace(
+                joint, parent=name(joint.parent, k), child=name(joint.child, k), pivot=joint.pivot + step,
+                mimic=joint.mimic and replace(joint.mimic, joint=name(joint.mimic.joint, k)),
+            )
+            for k, step in steps for joint in self.joints
+        ]  # fmt: skip
+        loops = [
+            replace(loop, one=name(loop.one, k), other=name(loop.other, k), pivot=loop.pivot + step)
+            for k, step in steps for loop in self.loops
+        ]  # fmt: skip
+        return replace(self, parts=(whole, *parts), joints=tuple(joints), loops=tuple(loops))
+
+
+def _placed(part: Part, transform: FloatArray) -> Part:
+    return replace(part, vertices=part.vertices @ transform[:3, :3].T + transform[:3, 3])
+
+
+def ground_truth(blueprint: Blueprint) -> GroundTruth:
+    """Return the truth about the parts of a blueprint, in their order and under their names."""
+    index = {part.name: k for k, part in enumerate(blueprint.parts)}
+    seed = blueprint.parameters.get("seed")
+    return GroundTruth(
+        name=blueprint.name,
+        part_names=tuple(index),
+        part_links=tuple((name,) for name in index),
+        joints=tuple(
+            TrueJoint(
+                name=f"{joint.child}_joint",
+                source=f"{joint.child}_joint",
+                kind=joint.kind,
+                parent=index[joint.parent],
+                child=index[joint.child],
+                axis=joint.axis,
+                pivot=joint.pivot,
+                lower=joint.lower,
+                upper=joint.upper,
+                value=joint.value,
+                mimic=joint.mimic and replace(joint.mimic, joint=f"{joint.mimic.joint}_joint"),
+            )
+            for joint in blueprint.joints
+        ),
+        dropped=(),
+        configuration={},
+        pose="rest",
+        seed=seed if isinstance(seed, int) else 0,
+        yaw_deg=0.0,
+    )

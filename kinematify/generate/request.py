@@ -1,0 +1,372 @@
+"""What to build, from a sentence or from a category with settings."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.errors import InputError
+from kinematify.generate.composer.compose import compose
+from kinematify.generate.composer.sentence import NoBodyError, names_a_body, nouns_of_mechanisms, read_composition
+from kinematify.generate.described import known_families
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.language.parts import PartRequirement
+from kinematify.generate.procedural.language.sizes import OVERALL
+from kinematify.generate.procedural.language.understand import NoFamilyError, NotUnderstoodError, understand
+from kinematify.generate.procedural.language.words import PLAIN_WORDS, without_purposes, without_rough_sizes
+from kinematify.robot.transforms import rotation_about
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from kinematify.assembly.part import Part
+    from kinematify.generate.composer.compose import Composition
+    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.procedural.family import Family
+    from kinematify.generate.procedural.parameter import Value
+    from kinematify.robot.arrays import FloatArray
+
+_SCALES = 3.0  # to so many times the usual size and as much smaller, walls and gaps stay those of such an object
+_DRAWS, _NEXT_DRAW = 20, 1_000_003
+_GAP = 0.05  # between several [m]
+_HOLDS = re.compile(r"[,\s]+(?:that is |which is )?(holding)\s+", re.IGNORECASE)
+_ON_TOP = re.compile(
+    r"^(?P<other>.*\S),?\s+(?:with|and|carrying)\s+(?P<one>an?\s.*\S)\s+on\s+(?:top|it|top of it|its top)\W*$",
+    re.IGNORECASE,
+)
+_ON = re.compile(
+    r"^(?P<one>.*?\S)\s+(?:(?:that is |which is )?(?:mounted|standing|sitting|placed|stands|sits)\s+)?on\s+"
+    r"(?:top of )?(?P<other>(?:an?|the|its)\s.*)$",
+    re.IGNORECASE,
+)
+_AND = re.compile(
+    r"^(?P<one>(?:(?!\b(?:with|having|has|whose|that)\b).)*?\S),?\s+(?:and|next to|beside)\s+"
+    r"(?P<other>(?:an?|one|two|three|four|five|six)\s.*)$",
+    re.IGNORECASE,
+)
+_TOY = re.compile(r"\b(?:toy|model|miniature|dolls?(?:'s)?)\s+", re.IGNORECASE)
+_TOY_LENGTH, _TOY_SCALE = 0.4, 0.2  # longest side [m], and at most so much smaller than usual
+_SEVERAL = 400  # characters at most that may name several objects
+_BESIDE = 0.3  # between what stands side by side [m]
+_LEVEL = 2e-3  # of a surface that something stands on [m]
+_GRID = 15  # places along either side at which it is looked for
+_STANDS = 0.4  # share of an object's length and depth that it needs to stand on
+_HANDS = ("right_hand", "left_hand", "palm")
+_GRASP = 5e-4  # between a hand and what it holds [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """A family with what was asked for."""
+
+    family: str
+    values: Mapping[str, Value]
+    understood: tuple[str, ...] = ()
+    """Short phrases, for a sentence."""
+    ignored: tuple[str, ...] = ()
+    """Words of a sentence that were not understood."""
+    unused: tuple[str, ...] = ()
+    """Words of a sentence that ask for no shape and no motion."""
+    requirements: tuple[PartRequirement, ...] = ()
+    """What is asked of its parts, besides the values."""
+    composition: Composition | None = None
+    """Of mechanisms on a body, where no family builds it."""
+    overall: tuple[str, float] | None = None
+    """A size of the whole [m] that it is scaled to."""
+    copies: int = 1
+    """How many, side by side."""
+    other: Request | None = None
+    """What it holds, stands on or stands beside."""
+    is_toy: bool = False
+    """It is small: all of it is scaled."""
+    how: str = ""
+    """``holding``, ``on``, ``carrying`` or ``beside`` the other one."""
+
+    def build(self, *, seed: int | None = None) -> Blueprint:
+        """Build the object; a seed draws what was not asked for.
+
+        Raises:
+            InputError: A value is out of its bounds, or the parts are not as they are asked for.
+        """
+        blueprint = self._single(seed)
+        if self.copies > 1:
+            width = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[0])
+            blueprint = blueprint.repeated(self.copies, width + _GAP)
+        if self.is_toy:
+            longest = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0).max())
+            blueprint = blueprint.scaled(min(max(_TOY_LENGTH / longest, _TOY_SCALE), 1.0))
+        return blueprint if self.other is None else _JOINED[self.how](blueprint, self.other.build(seed=seed))
+
+    def _single(self, seed: int | None) -> Blueprint:
+        if self.composition is None:
+            return self._as_required(seed)
+        return compose(self.composition, seed=seed, may_stand_still=bool(self.how))
+
+    def _as_required(self, seed: int | None) -> Blueprint:
+        """The object as its parts are asked for; where what a seed draws has no such parts, the next draw is taken."""
+        for attempt in range(1 if seed is None else _DRAWS):
+            blueprint = build(
+                known_families()[self.family], self.values, seed=None if seed is None else seed + attempt * _NEXT_DRAW
+            )
+            if self.overall is not None:
+                blueprint = _scaled_to(blueprint, *self.overall)
+            try:
+                for requirement in self.requirements:
+                    blueprint = requirement.applied(blueprint)
+            except InputError as error:
+                reason = error
+            else:
+                return blueprint
+        raise reason
+
+
+def from_text(sentence: str, *, lenient: bool = False) -> Request:
+    """Read a sentence: an object of a family, or else mechanisms on a body.
+
+    Args:
+        sentence: English.
+        lenient: Leave out what is not understood, instead of refusing the sentence.
+
+    Raises:
+        InputError: It cannot be understood; see `understand`.
+    """
+    sentence, purposes = without_purposes(sentence, nouns_of_mechanisms())
+    sentence, rough = without_rough_sizes(sentence, nouns_of_mechanisms())
+    plain = tuple(dict.fromkeys(re.findall(rf"\b(?:{'|'.join(sorted(PLAIN_WORDS))})\b", sentence.lower())))
+    request = _read(sentence, lenient=lenient)
+    return replace(request, unused=(*plain, *purposes, *rough, *request.unused))
+
+
+def _read(sentence: str, *, lenient: bool) -> Request:
+    holder, _, held = _HOLDS.split(sentence, maxsplit=1) if _HOLDS.search(sentence) else (sentence, "", "")
+    if held.strip():
+        holding, thing = _read(holder, lenient=lenient), _read(held, lenient=lenient)
+        # What a seed draws may have hands that are one with the arms.
+        wanted = PartRequirement(nouns=(_hand(holding.build()).name,), words="a hand")
+        return replace(_joined(holding, "holding", thing), requirements=(*holding.requirements, wanted))
+    try:
+        return _read_one(sentence, lenient=False)
+    except InputError as reason:
+        if len(sentence) <= _SEVERAL and (several := _read_several(sentence)) is not None:
+            return several
+        if _TOY.search(sentence) and not lenient:
+            try:
+                small = _read(_TOY.sub(" ", sentence), lenient=False)
+            except InputError:
+                raise reason from None
+            return replace(small, is_toy=True, understood=(*small.understood, "small as a toy"))
+        if lenient:
+            return _read_one(sentence, lenient=True)
+        raise reason from None
+
+
+def _joined(one: Request, how: str, other: Request) -> Request:
+    return replace(
+        one,
+        how=how,
+        other=other,
+        understood=(*one.understood, f"{how} {', '.join(other.understood)}"),
+        ignored=(*one.ignored, *other.ignored),
+    )
+
+
+def _read_several(sentence: str) -> Request | None:
+    """Read `a printer on a cart with four casters`, `a table and two chairs`: two objects, each of which is known.
+
+    Raises:
+        InputError: Both are, and one has no place on the other.
+    """
+    for pattern, how in ((_ON_TOP, "carrying"), (_ON, "on"), (_AND, "beside")):
+        found = pattern.search(sentence)
+        if found is None:
+            continue
+        try:
+            one, other = (_read_one(found[name], lenient=False, alone=False) for name in ("one", "other"))
+        except InputError:
+            continue
+        request = _joined(one, how, other) if how != "carrying" else _joined(other, how, one)
+        if request.build().joints:
+            return request
+    return None
+
+
+def _read_one(sentence: str, *, lenient: bool, alone: bool = True) -> Request:
+    """Read one object; what is not alone need not move."""
+    body = names_a_body(sentence)
+    if body and not any(body in family.words for family in known_families().values()) and not lenient:
+        return _composed(sentence, alone)  # a luggage trolley is no luggage
+    try:
+        meant = understand(sentence, known_families())
+    except NotUnderstoodError as error:
+        try:
+            return _composed(sentence, alone)
+        except InputError as reason:
+            if not lenient:
+                if isinstance(reason, NoBodyError):
+                    raise error from None
+                if isinstance(error, NoFamilyError):
+                    raise reason from None
+                raise InputError(f"{error} Nor can it be composed of mechanisms: {reason}") from error
+        meant = understand(sentence, known_families(), lenient=True)
+    return Request(
+        family=meant.family,
+        values=meant.values,
+        understood=meant.understood,
+        ignored=meant.ignored,
+        requirements=meant.requirements,
+        overall=meant.overall,
+        copies=meant.copies,
+    )
+
+
+def _composed(sentence: str, alone: bool) -> Request:
+    """Read a sentence as mechanisms on a body, and see that they can be built."""
+    composition = read_composition(sentence)
+    compose(composition, may_stand_still=not alone)
+    told = [
+        f"{item.count} {item.title}{'s' if item.count > 1 else ''}{f' on the {item.side}' if item.side else ''}"
+        for item in composition.wanted
+    ]
+    return Request(
+        family=composition.title.replace(" ", "_"),
+        values={},
+        understood=(composition.title, *told, *(item.words for item in composition.requirements)),
+        composition=composition,
+        copies=composition.copies,
+    )
+
+
+def _scaled_to(blueprint: Blueprint, size: str, metres: float) -> Blueprint:
+    """Return an object that is so wide, deep or high when it is closed.
+
+    Raises:
+        InputError: Its joints and walls would be too small or too large for what they are.
+    """
+    there = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[OVERALL.index(size)])
+    factor = metres / there
+    if not 1.0 / _SCALES <= factor <= _SCALES:
+        raise InputError(
+            f"The {size} of a {known_families()[blueprint.family].title} cannot be {metres:g} m; it can be from "
+            f"{there / _SCALES:.2g} m to {there * _SCALES:.2g} m."
+        )
+    return blueprint.scaled(factor)
+
+
+def _holding(blueprint: Blueprint, held: Blueprint) -> Blueprint:
+    """Return an object with another one at the outer side of its hand, its thinnest side towards the hand."""
+    hand = _hand(blueprint)
+    bounds = held.assembly.bounds
+    thinnest = int(np.argmin(np.ptp(bounds, axis=0)))
+    # A turn about x stands what lies; one about z turns what is narrow, its front then looks along x.
+    turn = rotation_about(np.eye(3)[0 if thinnest == 2 else 2], 0.0 if thinnest == 1 else 0.5 * np.pi)
+    outward = -1.0 if hand.bounds.mean(axis=0)[1] < 0.0 else 1.0
+    place = np.eye(4)
+    place[:3, :3] = turn
+    corners = bounds @ turn.T
+    middle, half = corners.mean(axis=0), 0.5 * np.abs(np.ptp(corners, axis=0))
+    place[:3, 3] = hand.bounds.mean(axis=0) - middle
+    reach = 0.5 * float(np.ptp(hand.bounds, axis=0)[1]) + half[1] + _GRASP
+    place[1, 3] += outward * reach
+    return blueprint.carrying(held, hand.name, place)
+
+
+def _standing_on(blueprint: Blueprint, carrier: Blueprint) -> Blueprint:
+    """Return an object on the middle of another one.
+
+    Raises:
+        InputError: There is no level place of its size.
+    """
+    bounds, below = blueprint.assembly.bounds, carrier.parts[0].bounds[:, :2]
+
+    def heights_at(places: FloatArray) -> FloatArray:
+        return np.array([max(_height(part, place) for part in carrier.parts) for place in places])
+
+    # Where it is level may be less than its bounds: a cart has a push handle behind it.
+    over = below[0] + np.ptp(below, axis=0) * (np.indices((_GRID, _GRID)).reshape(2, -1).T + 0.5) / _GRID
+    level = _height(carrier.parts[0], below.mean(axis=0))
+    flat = over[np.abs(heights_at(over) - level) < _LEVEL] if np.isfinite(level) else over[:0]
+    footprint, room = np.ptp(bounds, axis=0)[:2], np.ptp(flat, axis=0) if len(flat) else np.zeros(2)
+    middle = (flat.min(axis=0) + flat.max(axis=0)) / 2.0 if len(flat) else below.mean(axis=0)
+    half = 0.4 * np.minimum(footprint, room)
+    heights = heights_at(middle + half * np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]))
+    if (room < _STANDS * footprint).any() or not (np.isfinite(heights).all() and np.ptp([*heights, level]) < _LEVEL):
+        raise InputError(
+            f"There is no level place for a {blueprint.family.replace('_', ' ')} on a "
+            f"{carrier.family.replace('_', ' ')}. Ask for them apart."
+        )
+    place = np.eye(4)
+    place[:3, 3] = [*(middle - bounds.mean(axis=0)[:2]), level - bounds[0, 2] + _GRASP]
+    on = carrier.carrying(blueprint, carrier.root, place)
+    return replace(on, name=blueprint.name, family=blueprint.family)
+
+
+def _height(part: Part, place: FloatArray) -> float:
+    """Highest point of a part above a place x, y; minus infinity where there is none."""
+    corners = part.vertices[part.faces]
+    a, b, c = (corners[:, k, :2] - place for k in range(3))
+    shares = np.stack([p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0] for p, q in ((b, c), (c, a), (a, b))], axis=1)
+    total = shares.sum(axis=1)
+    inside = (np.abs(total) > 1e-12) & ((shares * np.sign(total)[:, None]) >= 0.0).all(axis=1)
+    z = (shares[inside] * corners[inside, :, 2]).sum(axis=1) / total[inside]
+    return float(z.max(initial=-np.inf))
+
+
+def _beside(blueprint: Blueprint, other: Blueprint) -> Blueprint:
+    """Return an object with another one on its right, on the same floor."""
+    here, there = blueprint.assembly.bounds, other.assembly.bounds
+    place = np.eye(4)
+    place[:3, 3] = [here[1, 0] + _BESIDE - there[0, 0], (here - there).mean(axis=0)[1], here[0, 2] - there[0, 2]]
+    return blueprint.carrying(other, blueprint.root, place)
+
+
+def _hand(blueprint: Blueprint) -> Part:
+    """Its hand.
+
+    Raises:
+        InputError: It has none.
+    """
+    found = next((part for name in _HANDS for part in blueprint.parts if part.name == name), None)
+    if found is None:
+        raise InputError(f"A {blueprint.family.replace('_', ' ')} has no hand to hold anything with. Leave that out.")
+    return found
+
+
+def _closed(blueprint: Blueprint) -> Blueprint:
+    return blueprint.moved({joint.child: -joint.value for joint in blueprint.joints})
+
+
+_JOINED: Mapping[str, Callable[[Blueprint, Blueprint], Blueprint]] = {
+    "holding": _holding,
+    "on": _standing_on,
+    "carrying": lambda carrier, other: replace(_standing_on(other, carrier), name=carrier.name, family=carrier.family),
+    "beside": _beside,
+}
+
+
+def from_category(name: str, settings: Mapping[str, str]) -> Request:
+    """Take a category with settings as they are typed.
+
+    Raises:
+        InputError: There is no such category; the message names the nearest.
+    """
+    return Request(family=find_family(name).name, values=dict(settings))
+
+
+def find_family(name: str) -> Family:
+    """Return the family of a name, in any letter case, with spaces or underscores.
+
+    Raises:
+        InputError: There is none; the message names the nearest.
+    """
+    wanted = name.strip().lower().replace(" ", "_").replace("-", "_")
+    families = known_families()
+    words = {word.replace(" ", "_"): name for name, family in families.items() for word in (name, *family.words)}
+    if wanted in words:
+        return families[words[wanted]]
+    near = [words[match] for match in difflib.get_close_matches(wanted, words, n=3, cutoff=0.6)]
+    hint = f"Did you mean {' or '.join(dict.fromkeys(near))}?" if near else f"There are {', '.join(families)}."
+    raise InputError(f"There is no category {name!r}. {hint}")
