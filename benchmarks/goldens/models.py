@@ -1,0 +1,223 @@
+"""Goldens of models: inference, what is measured of their edges, and findings."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from benchmarks.faults.base import write_base
+from benchmarks.faults.plan import FAULTS, write_mutants
+from benchmarks.fit.edges import tree_example
+from benchmarks.fit.examples import examples_of
+from benchmarks.goldens.values import array_hash, file_hashes, made, plain
+from kinematify.config import load_config
+from kinematify.config.validation import load_settings
+from kinematify.errors import InputError
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject, bench_folder, find_objects
+from kinematify.evaluation.job import erased_item, shown_parts
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.pipeline import infer, write_inference
+from kinematify.pipeline.generate import write_blueprint
+from kinematify.simulation.engines import DEFAULT_ENGINES
+from kinematify.validation.run import validate
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from benchmarks.goldens.values import Values
+
+_REST = CONDITIONS[0]
+_SETS = ("robots", "everyday", "everyday2")
+_SAMPLE = {
+    "robots": ("allegro",),
+    "everyday": ("door_9128", "microwave_7236", "drawer_cabinet_27189"),
+    "everyday2": ("toaster_103498", "window_102801"),
+}
+_GENERATED = 20
+_FEATURES = {"everyday": (), "robots": ("allegro", "go2", "panda", "ur10e", "fetch", "h1")}
+"""Sets whose edges are measured; together more than 200 of them."""
+_FEATURES_SAMPLE = ("cabinet_41083", "safe_101623", "toaster_103486")
+_PUBLISHED = ("published", "published2")
+_PUBLISHED_SAMPLE = ("so100", "dobot", "wsg_50")
+_BASES = (
+    "cabinet_45780", "door_9128", "drawer_cabinet_22692", "laptop_10040", "microwave_7236", "safe_102380",
+    "trash_can_102181", "window_103135",
+)  # fmt: skip
+"""Small objects that faults are planted in."""
+_MUTANTS = 4
+"""Of each fault; the first one runs in engines, too."""
+_FAULTS_SAMPLE = ("type swapped", "wrong parent", "bad inertia", "offset collision geometry")
+_CLEAN = ("cabinet", "door", "microwave", "crane", "laptop", "fan")
+_SPREAD = ("pybullet", "drake")
+"""Engines whose numbers depend on what their process did before."""
+_BUDGET = 3000.0
+"""Processor time of a stage of a validation [s]: none ends early, however busy the machine is."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Generated:
+    """An object of the generator."""
+
+    family: str
+    seed: int
+
+
+def _of_sets(chosen: dict[str, tuple[str, ...]]) -> tuple[dict[str, BenchObject], dict[str, str]]:
+    """Objects of data sets by set and name, all where none is named, and why a set is absent."""
+    found, absent = {}, {}
+    for data, names in chosen.items():
+        try:
+            objects = find_objects(data)
+        except InputError as error:
+            absent[data] = str(error)
+            continue
+        found |= {f"{data}/{item.name}": item for item in objects if not names or item.name in names}
+    return found, absent
+
+
+# ---- inference -----------------------------------------------------------------------------------------------------
+
+
+def inference_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
+    """Objects of the benchmark at rest, and objects of the generator."""
+    found, absent = _of_sets(_SAMPLE if sample else dict.fromkeys(_SETS, ()))
+    families = list(FAMILIES)[:: len(FAMILIES) // _GENERATED][:_GENERATED]
+    drawn = [Generated(family=family, seed=number) for number, family in enumerate(families)]
+    generated = {f"generated/{item.family} {item.seed}": item for item in (drawn[3:5] if sample else drawn)}
+    return {**found, **generated}, absent
+
+
+def inference_values(item: BenchObject | Generated) -> dict[str, Values]:
+    """Files of the inference; of `inference.json` all but times, versions and the configuration that was given."""
+    if isinstance(item, Generated):
+        parts = build(FAMILIES[item.family], {}, seed=item.seed).assembly
+    else:
+        parts = shown_parts(erased_item(item, _REST))
+    with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
+        out = Path(folder, "out")
+        write_inference(infer(parts), out, preview=False)
+        record = json.loads((out / "inference.json").read_text("utf-8"))
+        files = file_hashes(out)
+    del files["inference.json"]
+    for name in ("kinematify", "versions", "seconds", "peak_mb", "configuration"):
+        del record[name]
+    return made(exact={"files": files, "inference.json": record})
+
+
+# ---- what is measured of edges -------------------------------------------------------------------------------------
+
+
+def feature_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
+    """Objects whose true edges are measured."""
+    return _of_sets({"everyday": _FEATURES_SAMPLE} if sample else dict(_FEATURES))
+
+
+def feature_values(item: BenchObject) -> dict[str, Values]:
+    """Hypotheses of every true edge with all that is measured of them, and the measurements of all contacts."""
+    erased, config = erased_item(item, _REST), load_config()
+    parts, facts = shown_parts(erased), {"category": item.category, "origin": "golden", "source": "", "fits": False}
+    found: Values = {}
+    for number, example in enumerate(examples_of(parts, erased.truth, config, **facts)):  # type: ignore[arg-type]
+        hypotheses = example.hypotheses
+        found[f"edge {number}"] = {
+            "hypotheses": {
+                "sources": list(hypotheses.sources),
+                **{name: array_hash(getattr(hypotheses, name)) for name in ("kinds", "axes", "pivots")},
+            },
+            "measured": {name: array_hash(value) for name, value in example.measured.items()},
+            "sides": {name: array_hash(value) for name, value in example.sides.items()},
+            "cloud": plain(example.cloud),
+            "size": example.size,
+            "by cues": int(example.by_cues),
+            "alike": int(example.alike),
+        }
+    tree = tree_example(parts, erased.truth, config, **facts)  # type: ignore[arg-type]
+    found["contacts"] = {"pairs": tree.pairs.tolist(), "measured": array_hash(tree.measured)}
+    return made(exact=found)
+
+
+# ---- findings ------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mutants:
+    """Objects with one kind of fault."""
+
+    fault: str
+    bases: tuple[BenchObject, ...]
+    count: int
+
+
+def finding_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
+    """Published models, generated ones, and objects of the benchmark as they are and with planted faults."""
+    found: dict[str, Any] = {}
+    absent: dict[str, str] = {}
+    for data in _PUBLISHED:
+        files = sorted(_published_folder(data).glob("*/model.urdf"))
+        found |= {
+            f"{data}/{file.parent.name}": file for file in files if not sample or file.parent.name in _PUBLISHED_SAMPLE
+        }
+        if not files:
+            absent[data] = f"There is no NAME/model.urdf in {_published_folder(data)}."
+    clean = [Generated(family=family, seed=0) for family in (_CLEAN[:1] if sample else _CLEAN)]
+    found |= {f"clean/{item.family} {item.seed}": item for item in clean}
+    bases, missing = _of_sets({"everyday": _BASES[:2] if sample else _BASES})
+    if missing:
+        return found, {**absent, "mutants": missing["everyday"]}
+    for fault in FAULTS:
+        if not sample or fault.name in _FAULTS_SAMPLE:
+            asked = Mutants(fault=fault.name, bases=tuple(bases.values()), count=1 if sample else _MUTANTS)
+            found[f"mutants/{fault.name}"] = asked
+    if not sample:
+        found["mutants/untouched"] = Mutants(fault="", bases=tuple(bases.values()), count=0)
+    return found, absent
+
+
+def _published_folder(data: str) -> Path:
+    try:
+        return bench_folder().parent / data
+    except InputError:
+        return Path(data)
+
+
+def finding_values(item: Path | Generated | Mutants) -> dict[str, Values]:
+    """What a validation says of each model."""
+    if isinstance(item, Path):
+        return made(exact={"report": _report(item, item.parent, DEFAULT_ENGINES)})
+    with tempfile.TemporaryDirectory(prefix="kinematify-") as name:
+        folder = Path(name)
+        if isinstance(item, Generated):
+            write_blueprint(build(FAMILIES[item.family], {}, seed=item.seed), folder, load_config())
+            return made(exact={"report": _report(folder / "model.urdf", folder, DEFAULT_ENGINES)})
+        return made(exact=dict(_mutant_reports(item, folder)))
+
+
+def _mutant_reports(item: Mutants, folder: Path) -> Iterator[tuple[str, Any]]:
+    bases = [write_base(base, folder) for base in item.bases]
+    if not item.fault:
+        for base in bases:
+            yield base.name, _report(base.urdf, folder, ())
+    faults = [fault for fault in FAULTS if fault.name == item.fault]
+    for number, mutant in enumerate(write_mutants(bases, item.count, 0, faults) if faults else ()):
+        engines = () if number else DEFAULT_ENGINES
+        yield mutant.name, _report(Path(mutant.urdf), folder, engines)
+
+
+def _report(urdf: Path, folder: Path, engines: tuple[str, ...]) -> Any:
+    settings = load_settings()
+    settings = settings.model_copy(update={"budget": settings.budget.model_copy(update={"seconds": _BUDGET})})
+    report = validate(urdf, settings=settings, engines=engines, workers=1).as_json()
+    for check in report["checks"]:
+        del check["seconds"]
+        if check["engine"] in _SPREAD:
+            del check["measured"]
+    for finding in report["findings"]:
+        if finding["engine"] in _SPREAD:
+            for name in ("q", "value", "limit", "message", "remedy", "reproduction"):
+                del finding[name]
+    kept = {name: report[name] for name in ("schema", "verdict", "as_loaded", "checks", "findings", "joints")}
+    return json.loads(json.dumps(kept).replace(str(folder), ""))
