@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import platform
 from dataclasses import dataclass
 from pathlib import Path
@@ -144,8 +143,8 @@ def read_goldens(path: Path) -> Goldens:
         ) from error
     except ValidationError as error:
         raise InputError(
-            f"{path} holds no goldens of format {FORMAT}: {error.errors()[0]['msg']}. It was written by another version "
-            "of `python -m benchmarks.goldens`; make goldens again with the code before the change and this folder."
+            f"{path} holds no goldens of format {FORMAT}: {error.errors()[0]['msg']}. It was written by another "
+            "version of `python -m benchmarks.goldens`; make goldens again with the code before the change and this folder."
         ) from error
 
 
@@ -159,7 +158,7 @@ def write_goldens(goldens: Goldens, path: Path) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         aside.write_text(goldens.model_dump_json(indent=1) + "\n", encoding="utf-8")
-        os.replace(aside, path)
+        aside.replace(path)
     except OSError as error:
         raise OutputError(f"The goldens cannot be written to {path}: {error.strerror}. Give another --to.") from error
 

@@ -22,6 +22,7 @@ _SEEDS = (None, 0, 1, 2)
 """None: the defaults."""
 _COMPOSITIONS = 300
 _ACTIONS = 50
+_PARSED = ("family", "values", "understood", "ignored", "unused", "requirements", "overall", "copies", "is_toy", "how")
 
 
 def _names(item: tuple[str, int | None]) -> str:
@@ -120,7 +121,7 @@ def episode_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
     """Named tasks of the environments."""
     from kinematify.envs import TASK_IDS  # noqa: PLC0415 - Gymnasium, which nothing else here needs
 
-    return {name: env_id for name, env_id in list(TASK_IDS.items())[:: 7 if sample else 1]}, {}
+    return dict(list(TASK_IDS.items())[:: 7 if sample else 1]), {}
 
 
 def episode_values(env_id: str) -> dict[str, Values]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -32,20 +33,21 @@ if TYPE_CHECKING:
     from benchmarks.goldens.values import Values
 
 _WIDTH = 100
-_CONFIGURATIONS = ("default", "fast", "paper", "paper-base", "paper-open", "paper-plus")
-_SETTINGS = ("validation", "evidence")
+_CONFIGURATIONS = ("default", "fast", "evidence", "paper", "paper-base", "paper-open", "paper-plus")
 _COMMANDS = (
-    "--version", "no-such-command", "generate --list", "generate --describe cabinet", "generate --category no -o out",
+    "--version", "no-such-command", "generate --list", "generate --category no -o out",
     "generate --text a_purple_idea -o out", "generate --category cabinet --set width=99 -o out",
-    "infer missing -o out", "infer model -o model", "refine missing -o out", "erase missing.urdf -o out",
+    "infer missing -o out", "infer model -o model", "refine missing", "erase missing.urdf -o out",
     "validate missing.urdf", "validate model/model.urdf --engines none", "validate zero_axis.urdf --engines none",
     "validate model/model.urdf --engines unreal", "validate model/model.urdf --checks KV999",
-    "validate model/model.urdf --skip KV*", "explain KV301", "explain KV999", "explain --list", "fix missing.urdf",
-    "fix zero_axis.urdf -o fixed.urdf", "export missing.urdf -o out.xml", "export model/model.urdf -o model.xml",
-    "export model/model.urdf -o model.docx", "view missing.urdf", "batch missing", "bench no-such-study",
+    "validate model/model.urdf --skip KV*", "explain KV301", "explain KV999", "explain --list", "fix missing.urdf -o out",
+    "fix zero_axis.urdf -o fixed.urdf", "export missing.urdf --to mjcf -o out.xml", "export model/model.urdf --to mjcf -o model.xml",
+    "export model/model.urdf --to docx -o model.docx", "view missing.urdf", "batch missing -o out", "bench no-such-study",
     "bench detection --seed no", "fit --no-such-option", "nightly --no-such-option",
 )  # fmt: skip
 """Words of commands that are run beside a good model and one whose axis is zero; `_` stands for a space."""
+_TIMES = re.compile(r"^\[ *\d+\.\d s,.*\n|; \d+\.\d s$", re.MULTILINE)
+"""What is printed of progress, and how long a command took."""
 _ANNOTATIONS = ("title", "description")
 """What a schema says that no file depends on."""
 
@@ -96,7 +98,10 @@ def _ran(words: list[str], folder: Path) -> Any:
         timeout=600,
         check=False,
     )
-    return {"status": run.returncode, **{to: getattr(run, to).replace(str(folder), "") for to in ("stdout", "stderr")}}
+    return {
+        "status": run.returncode,
+        **{to: _TIMES.sub("", getattr(run, to).replace(str(folder), "")) for to in ("stdout", "stderr")},
+    }
 
 
 def _schemas() -> Iterator[tuple[str, Any]]:
@@ -135,7 +140,8 @@ def _public() -> Iterator[tuple[str, Any]]:
         if inspect.isclass(thing):
             fields = getattr(thing, "__dataclass_fields__", {})
             members = {word for word in (*dir(thing), *fields) if not word.startswith("_")}
-            yield name, {"signature": _signature(thing), "members": sorted(members)}
+            is_error = issubclass(thing, Exception)
+            yield name, {"signature": "" if is_error else _signature(thing), "members": sorted(members)}
         else:
             yield name, _signature(thing) if callable(thing) else str(thing)
     yield "environments", sorted((*envs.IDS, *envs.TASK_IDS.values()))
@@ -159,8 +165,7 @@ def _checks() -> Iterator[tuple[str, Any]]:
 def _configurations() -> Iterator[tuple[str, Any]]:
     for name in _CONFIGURATIONS:
         yield name, load_config(name).model_dump(mode="json")
-    for name in _SETTINGS:
-        yield name, load_settings(name).model_dump(mode="json")
+    yield "validation", load_settings().model_dump(mode="json")
 
 
 _MAKERS = {
