@@ -7,75 +7,79 @@ import os
 import re
 import sys
 import tempfile
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from benchmarks.goldens import __doc__ as _about
+from benchmarks.goldens import __doc__ as about
 from benchmarks.goldens.file import (
-    KINDS,
     Goldens,
     Subject,
     differences,
+    other_platform,
     read_goldens,
-    same_checkout,
+    refuse_other_checkout,
     this_platform,
     write_goldens,
 )
 from benchmarks.goldens.subjects import SUBJECTS
-from benchmarks.goldens.values import PORTABLE, digest, first_difference
+from benchmarks.goldens.values import EXACT, PORTABLE, digest, first_difference
 from benchmarks.study import Work
 from kinematify.batch.pool import Pool
 from kinematify.errors import ExitStatus, InputError, KinematifyError
 from kinematify.evaluation.sources import git_commit
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
-    from benchmarks.goldens.file import Difference, Hashes
+    from benchmarks.goldens.file import Hashes
 
 SAMPLE_FILE = Path(__file__).with_name("sample.json")
 _FILE = Path("out", "goldens.json")
-_SHOWN = 40
+_TIMEOUT = 3600.0
+"""Wall time for one item [s]."""
+_NAMED = 40
 """Differences of a subject that are named."""
 
 
-@dataclass(kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class _Made:
-    """What a subject gave now."""
+    """What a subject gives."""
 
-    values: dict[str, dict[str, dict[str, Any]]] = field(default_factory=dict)
-    absent: dict[str, str] = field(default_factory=dict)
-    failures: dict[str, str] = field(default_factory=dict)
-
-    @property
-    def hashes(self) -> dict[str, Hashes]:
-        return {
-            item: {kind: {name: digest(value) for name, value in found[kind].items()} for kind in KINDS}
-            for item, found in self.values.items()
-        }
+    values: dict[str, dict[str, dict[str, Any]]]
+    """By item, kind and name."""
+    hashes: dict[str, Hashes]
+    absent: dict[str, str]
+    """Data set -> why nothing of it was made."""
+    failures: dict[str, str]
+    """Item -> why it was not made."""
 
 
-def make_subject(name: str, *, sample: bool, jobs: int) -> _Made:
-    """Make all values of a subject, each item in a process of its own."""
+def _make(name: str, *, sample: bool, jobs: int) -> _Made:
+    """Make all values of a subject, each item in a process, so that a crash is a failure of one item."""
     subject = SUBJECTS[name]
     items, absent = subject.items(sample)
-    with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
-        pool = Pool(folder=Path(folder), workers=jobs, progress=partial(_progress, name))
-        work = Work(study="goldens", pool=pool, code="")
-        values = work.each(subject.values, items, timeout=subject.timeout, reuse=subject.reuse)
-    failures = {item: failure.message for item, failure in work.failures.items()}
-    return _Made(values=values, absent=absent, failures=failures)
+
+    def progress(what: str, share: float) -> None:
+        click.echo(f"{name} {share:4.0%} {what}", err=True)
+
+    with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:  # nothing is taken up from an earlier run
+        work = Work(study="goldens", pool=Pool(folder=Path(folder), workers=jobs, progress=progress), code="")
+        values = work.each(subject.values, items, timeout=_TIMEOUT, reuse=subject.reuse)
+    return _Made(
+        values=values,
+        hashes={
+            item: {kind: {word: digest(value) for word, value in of.items()} for kind, of in found.items()}
+            for item, found in values.items()
+        },
+        absent=absent,
+        failures={f"{name}: {item}": failure.message for item, failure in work.failures.items()},
+    )
 
 
-def _progress(subject: str, what: str, share: float) -> None:
-    click.echo(f"{subject} {share:4.0%} {what}", err=True)
-
-
-def _options(command: click.Command) -> click.Command:
+def _options(command: Callable[..., int]) -> Callable[..., int]:
     for option in (
         click.option("--jobs", type=click.IntRange(min=1), default=os.cpu_count() or 1, help="Processes at a time."),
         click.option("--only", type=click.Choice(list(SUBJECTS)), multiple=True, help="Only this subject; repeatable."),
@@ -85,121 +89,111 @@ def _options(command: click.Command) -> click.Command:
     return command
 
 
-@click.group(help=_about, context_settings={"max_content_width": 100})
+@click.group(help=about, context_settings={"max_content_width": 100})
 def cli() -> None:
     """See the package."""
 
 
 @cli.command("make")
 @_options
-@click.option("--to", type=click.Path(path_type=Path), help=f"File to write; {_FILE} if not given.")
+@click.option("--to", "path", type=click.Path(path_type=Path), help=f"File to write; {_FILE} if not given.")
 @click.option("--keep", type=click.Path(path_type=Path), help="Folder for the values themselves, to look at.")
-def make(*, sample: bool, only: tuple[str, ...], jobs: int, to: Path | None, keep: Path | None) -> int:
+def make(*, sample: bool, only: tuple[str, ...], jobs: int, path: Path | None, keep: Path | None) -> int:
     """Write goldens; with --only, those of other subjects stay in the file."""
-    path, platform = to or (SAMPLE_FILE if sample else _FILE), this_platform()
-    goldens = Goldens(sample=sample, platform=platform)
+    path = path or (SAMPLE_FILE if sample else _FILE)
+    goldens = Goldens(sample=sample, platform=this_platform())
     if only and path.exists():
-        goldens = read_goldens(path)
-        if goldens.sample != sample or goldens.platform != platform:
-            raise InputError(
-                f"{path} holds goldens of another platform or extent, to which nothing can be added. Make all again."
-            )
+        before = read_goldens(path)
+        if (before.sample, before.platform) != (goldens.sample, goldens.platform):
+            raise InputError(f"{path} is of another platform or extent; nothing can be added to it. Make all again.")
+        goldens = before
     commit, dirty = git_commit()
     failures: dict[str, str] = {}
     for name in only or SUBJECTS:
-        found = make_subject(name, sample=sample, jobs=jobs)
-        _say_absent(name, found.absent)
-        failures |= {f"{name}: {item}": why for item, why in found.failures.items()}
-        goldens.subjects[name] = Subject(commit=commit + "+" * dirty, items=found.hashes)
-        write_goldens(goldens, path)
-        for item, values in found.values.items() if keep else ():
-            _kept(keep, name, item).parent.mkdir(parents=True, exist_ok=True)  # type: ignore[arg-type]
-            _kept(keep, name, item).write_text(json.dumps(values, indent=1) + "\n", "utf-8")  # type: ignore[arg-type]
-    counts = {
-        name: sum(len(kind) for item in made.items.values() for kind in item.values())
-        for name, made in goldens.subjects.items()
-    }
-    click.echo(f"{path}: {', '.join(f'{name} {count}' for name, count in counts.items())}.")
-    return _say_failures(failures)
+        made = _make(name, sample=sample, jobs=jobs)
+        goldens.subjects[name] = Subject(commit=commit + "+" * dirty, items=made.hashes)
+        write_goldens(goldens, path)  # what is made is kept, whatever comes
+        _say_absent(name, made, ())
+        failures |= made.failures
+        if keep is not None:
+            for item, values in made.values.items():
+                file = _kept(keep, name, item)
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
+    return _end(failures, ExitStatus.FINE)
 
 
 @cli.command("check")
 @_options
-@click.option("--from", "source", type=click.Path(path_type=Path), help=f"File to compare with; {_FILE} if not given.")
-@click.option(
-    "--show", type=click.Path(path_type=Path), help="Folder that `make --keep` wrote: say where values differ."
-)
-@click.option("--portable", is_flag=True, help="On another platform compare what is the same on all, and no numbers.")
+@click.option("--from", "path", type=click.Path(path_type=Path), help=f"File to compare with; {_FILE} if not given.")
+@click.option("--show", type=click.Path(path_type=Path), help="Folder that `make --keep` wrote, to say what differs.")
+@click.option("--portable", is_flag=True, help="Compare only what is the same on all platforms, and no numbers.")
 def check(
-    *, sample: bool, only: tuple[str, ...], jobs: int, source: Path | None, show: Path | None, portable: bool
+    *, sample: bool, only: tuple[str, ...], jobs: int, path: Path | None, show: Path | None, portable: bool
 ) -> int:
-    """Compare what the code makes now. Ends with 0 if all is the same, 1 if not, 2 if it cannot be compared, 3 if
-    something could not be made.
+    """Compare what the code makes now with goldens.
+
+    Ends with 0 if all is the same, 1 if something differs, 2 if it cannot be compared, 3 if something was not made.
     """
-    path = source or (SAMPLE_FILE if sample else _FILE)
+    path = path or (SAMPLE_FILE if sample else _FILE)
     goldens = read_goldens(path)
-    kinds = (PORTABLE,) if portable else KINDS
-    if (others := goldens.platform.differences(this_platform())) and not portable:
+    if (other := other_platform(goldens.platform, this_platform())) and not portable:
         raise InputError(
-            f"The goldens in {path} are of another platform ({'; '.join(others)}), where numbers have other last bits. "
-            "Make them here with the code before the change, or compare with --portable what is the same everywhere."
+            f"The goldens in {path} are of another platform, where numbers have other last bits: {other}. Make them "
+            "here with the code before the change, or compare with --portable what is the same everywhere."
         )
     if goldens.sample and not sample:
         raise InputError(f"{path} holds a sample. Compare with --sample, or make all goldens.")
-    missing = [name for name in only or SUBJECTS if name not in goldens.subjects]
-    if missing:
-        raise InputError(f"{path} holds no goldens of {', '.join(missing)}. Make them with the code before the change.")
-    counts = {"same": 0, "different": 0}
+    if unknown := [name for name in only or SUBJECTS if name not in goldens.subjects]:
+        raise InputError(f"{path} holds no goldens of {', '.join(unknown)}. Make them with the code before the change.")
+    kinds = (PORTABLE,) if portable else (EXACT, PORTABLE)
     failures: dict[str, str] = {}
+    compared = different = 0
     for name in only or SUBJECTS:
-        found = make_subject(name, sample=sample, jobs=jobs)
-        before = goldens.subjects[name].items
-        now = found.hashes
-        if goldens.sample != sample:  # of all goldens a sample
-            before = {item: hashes for item, hashes in before.items() if item in now or item in found.failures}
-        left = [item for item in before if any(item.startswith(f"{place}/") for place in found.absent)]
+        made, before = _make(name, sample=sample, jobs=jobs), goldens.subjects[name].items
+        absent = [item for item in before if item.split("/")[0] in made.absent]
+        # Items of the file that were not made are missing, but for those beyond the sample and those that failed.
+        beyond = {item for item in before if item not in made.hashes and sample and not goldens.sample}
+        left = {*absent, *beyond, *(failure.split(": ", 1)[1] for failure in made.failures)}
         before = {item: hashes for item, hashes in before.items() if item not in left}
-        _say_absent(name, found.absent, left)
-        failures |= {f"{name}: {item}": why for item, why in found.failures.items()}
-        differ = [item for item in differences(before, now, kinds) if item.item not in found.failures]
-        counts["different"] += len(differ)
-        counts["same"] += sum(len(now[item][kind]) for item in now for kind in kinds) - sum(
-            item.how != "missing" for item in differ
-        )
-        _say_differences(name, differ, found, show)
+        differ = list(differences(before, made.hashes, kinds))
+        compared += sum(len(hashes.get(kind, {})) for hashes in before.values() for kind in kinds)
+        different += len(differ)
+        failures |= made.failures
+        _say_absent(name, made, absent)
+        _say_differences(name, differ, made, show)
     if portable:
-        click.echo("Not compared: numbers, which have other last bits on other platforms (--portable was given).")
-    click.echo(f"{counts['same']} goldens are the same, {counts['different']} differ.")
-    if not sum(counts.values()) and not failures:
-        raise InputError("Nothing could be compared: see above what is absent.")
-    return _say_failures(failures) or (ExitStatus.FAILURES if counts["different"] else ExitStatus.FINE)
+        click.echo("Not compared: numbers, which have other last bits on other platforms (--portable).")
+    if not compared and not failures:
+        raise InputError("Nothing was compared; what is said above is absent. Set KINEMATIFY_BENCH to the models.")
+    click.echo(f"{compared} goldens compared, {different} differences.")
+    return _end(failures, ExitStatus.FAILURES if different else ExitStatus.FINE)
 
 
-def _say_absent(name: str, absent: dict[str, str], items: Sequence[str] = ()) -> None:
-    for place, why in absent.items():
-        of = [item for item in items if item.startswith(f"{place}/")]
-        click.echo(f"{name}: not compared: {place}{f' ({len(of)} items)' if of else ''}: {why}")
+def _say_absent(name: str, made: _Made, items: Sequence[str]) -> None:
+    for place, why in made.absent.items():
+        listed = ", ".join(item for item in items if item.startswith(f"{place}/"))
+        click.echo(f"{name}: not compared: {listed or place}. {why}")
 
 
-def _say_differences(name: str, differ: Sequence[Difference], found: _Made, show: Path | None) -> None:
-    for item in differ[:_SHOWN]:
-        click.echo(f"{name}: {item.how}: {item.item}: {item.name}{' (portable)' if item.kind == PORTABLE else ''}")
-        if show is not None and item.how == "changed":
+def _say_differences(name: str, differ: Sequence[tuple[str, str, str, str]], made: _Made, show: Path | None) -> None:
+    for item, kind, word, how in differ[:_NAMED]:
+        click.echo(f"{name}: {how}: {item}: {word}")
+        if show is not None and how == "changed":
             try:
-                before = json.loads(_kept(show, name, item.item).read_text("utf-8"))[item.kind][item.name]
+                before = json.loads(_kept(show, name, item).read_text("utf-8"))[kind][word]
             except (OSError, KeyError) as error:
-                click.echo(f"    its earlier value is not in {show}: {error}")
+                click.echo(f"    {show} does not hold its earlier value: {error}")
             else:
-                now = json.loads(json.dumps(found.values[item.item][item.kind][item.name]))
-                click.echo(f"    {first_difference(before, now) or 'the kept value is not the golden one'}")
-    if len(differ) > _SHOWN:
-        click.echo(f"{name}: and {len(differ) - _SHOWN} more")
+                click.echo(f"    {first_difference(before, made.values[item][kind][word])}")
+    if len(differ) > _NAMED:
+        click.echo(f"{name}: and {len(differ) - _NAMED} more")
 
 
-def _say_failures(failures: dict[str, str]) -> int:
+def _end(failures: dict[str, str], status: int) -> int:
     for item, why in failures.items():
         click.echo(f"Not made: {item}: {why}", err=True)
-    return ExitStatus.FAULT if failures else ExitStatus.FINE
+    return ExitStatus.FAULT if failures else status
 
 
 def _kept(folder: Path, subject: str, item: str) -> Path:
@@ -209,7 +203,7 @@ def _kept(folder: Path, subject: str, item: str) -> Path:
 def run(arguments: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status."""
     try:
-        same_checkout()
+        refuse_other_checkout()
         status = cli.main(arguments, prog_name="python -m benchmarks.goldens", standalone_mode=False)
     except click.ClickException as error:
         error.show()

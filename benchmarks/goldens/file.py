@@ -4,54 +4,29 @@ from __future__ import annotations
 
 import hashlib
 import platform
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+import torch
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 import kinematify
-from benchmarks.goldens.values import EXACT, PORTABLE, array_hash
+from benchmarks.goldens.values import array_hash
 from kinematify.errors import InputError, OutputError
 from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
 FORMAT = 1
-"""Raised where goldens of an earlier version can no longer be compared, whatever the code does."""
+"""Raised where goldens of an earlier version of this command cannot be compared, whatever the package does."""
 _PACKAGES = (
-    "click", "coacd", "cmeel", "drake", "embreex", "gymnasium", "libigl", "libpinocchio", "lxml", "manifold3d",
-    "mujoco", "numpy", "pybullet", "pydantic", "python-fcl", "scipy", "torch", "trimesh",
+    "click", "coacd", "drake", "embreex", "gymnasium", "libigl", "libpinocchio", "lxml", "manifold3d", "mujoco",
+    "numpy", "pybullet", "pydantic", "python-fcl", "scipy", "torch", "trimesh",
 )  # fmt: skip
 Hashes = dict[str, dict[str, str]]
-"""SHA-256 by name, by `EXACT` and `PORTABLE`."""
-
-
-class Platform(BaseModel):
-    """What the last bits of a number depend on."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    machine: str
-    python: str
-    packages: dict[str, str]
-    computes: str
-    """Hash of what the libraries compute on this processor."""
-
-    def differences(self, other: Platform) -> list[str]:
-        """What is another on the other platform, in words."""
-        names = {**self.packages, **other.packages}
-        found = [
-            f"{name} {self.packages.get(name)} -> {other.packages.get(name)}"
-            for name in names
-            if self.packages.get(name) != other.packages.get(name)
-        ]
-        for name in ("machine", "python"):
-            if getattr(self, name) != getattr(other, name):
-                found.append(f"{name} {getattr(self, name)} -> {getattr(other, name)}")
-        return found + (["the processor computes other last bits"] if self.computes != other.computes else [])
+"""SHA-256 by name, by `values.EXACT` and `values.PORTABLE`."""
 
 
 class Subject(BaseModel):
@@ -72,49 +47,45 @@ class Goldens(BaseModel):
     format: Literal[1] = FORMAT
     sample: bool
     """A part of every subject."""
-    platform: Platform
+    platform: dict[str, str]
+    """Of `this_platform`."""
     subjects: dict[str, Subject] = {}
 
 
-@dataclass(frozen=True, kw_only=True)
-class Difference:
-    """A golden that is not the same."""
-
-    item: str
-    name: str
-    kind: str
-    """`EXACT` or `PORTABLE`."""
-    how: Literal["changed", "missing", "added"]
-
-
-def this_platform() -> Platform:
-    """The platform that this process runs on."""
-    system = f"{platform.system()} {platform.machine()}"
-    return Platform(
-        machine=system,
-        python=platform.python_version(),
-        packages=package_versions(_PACKAGES),
-        computes=_computed(),
-    )
+def this_platform() -> dict[str, str]:
+    """What the last bits of a number depend on: system, versions, and a hash of what this processor computes."""
+    return {
+        "system": f"{platform.system()} {platform.machine()}",
+        "python": platform.python_version(),
+        **package_versions(_PACKAGES),
+        "last bits": _last_bits(),
+    }
 
 
-def _computed() -> str:
-    """Hash of results that take other instructions on other processors: BLAS, LAPACK, elementary functions, torch."""
-    import torch  # noqa: PLC0415 - seconds; only a comparison needs it
-
+def _last_bits() -> str:
+    """Hash of what takes other instructions on other processors: BLAS, LAPACK, elementary functions, torch."""
     rng = np.random.default_rng(0)
     square, line = rng.normal(size=(96, 96)), rng.normal(size=4096)
     weights = torch.from_numpy(square.astype(np.float32))
-    found = [
+    found = (
         square @ square, np.linalg.eigh(square + square.T)[1], np.linalg.svd(square)[1], np.linalg.inv(square),
-        np.sin(line), np.exp(line), np.arctan2(line, line[::-1]), np.log(np.abs(line)), np.linalg.norm(square, axis=1),
-        np.power(np.abs(line), 0.3), np.add.reduce(line), (weights @ weights).numpy(), torch.tanh(weights).numpy(),
-        torch.softmax(weights, dim=1).numpy(),
-    ]  # fmt: skip
+        np.sin(line), np.exp(line), np.arctan2(line, line[::-1]), np.power(np.abs(line), 0.3), np.add.reduce(line),
+        (weights @ weights).numpy(), torch.tanh(weights).numpy(), torch.softmax(weights, dim=1).numpy(),
+    )  # fmt: skip
     return hashlib.sha256("".join(map(array_hash, found)).encode()).hexdigest()
 
 
-def same_checkout() -> None:
+def other_platform(before: dict[str, str], now: dict[str, str]) -> str:
+    """What is another on another platform, in words; empty on the same one."""
+    names = (*before, *(name for name in now if name not in before))
+    differ = [name for name in names if before.get(name) != now.get(name)]
+    return "; ".join(
+        f"{name} {before.get(name)} -> {now.get(name)}" if name != "last bits" else "the processor rounds otherwise"
+        for name in differ
+    )
+
+
+def refuse_other_checkout() -> None:
     """Refuse to compare a package that is not the one beside this folder.
 
     Raises:
@@ -123,8 +94,8 @@ def same_checkout() -> None:
     here, there = Path(__file__).resolve().parents[2], Path(kinematify.__file__).resolve().parents[1]
     if here != there:
         raise InputError(
-            f"The goldens belong to the checkout {here}, but `import kinematify` finds the package in {there}. Run the "
-            "command in the checkout that is to be compared, with PYTHONPATH naming it."
+            f"This command belongs to the checkout {here}, but `import kinematify` finds the package in {there}. Run "
+            "it in the checkout that is to be compared, with PYTHONPATH naming that checkout."
         )
 
 
@@ -143,8 +114,8 @@ def read_goldens(path: Path) -> Goldens:
         ) from error
     except ValidationError as error:
         raise InputError(
-            f"{path} holds no goldens of format {FORMAT}: {error.errors()[0]['msg']}. It was written by another "
-            "version of `python -m benchmarks.goldens`; make goldens again with the code before the change and this folder."
+            f"{path} holds no goldens of format {FORMAT} ({error.errors()[0]['msg']}): another version of "
+            "`python -m benchmarks.goldens` wrote it. Make goldens again: the code before the change, this command."
         ) from error
 
 
@@ -163,21 +134,19 @@ def write_goldens(goldens: Goldens, path: Path) -> None:
         raise OutputError(f"The goldens cannot be written to {path}: {error.strerror}. Give another --to.") from error
 
 
-def differences(before: dict[str, Hashes], now: dict[str, Hashes], kinds: tuple[str, ...]) -> Iterator[Difference]:
-    """Yield what differs in the items that either side has.
+def differences(
+    before: dict[str, Hashes], now: dict[str, Hashes], kinds: Sequence[str]
+) -> Iterator[tuple[str, str, str, str]]:
+    """Yield item, kind, name and ``changed``, ``missing`` or ``added`` of what is not the same.
 
     Args:
         before: Goldens by item.
         now: What was made.
-        kinds: `EXACT`, `PORTABLE` or both.
+        kinds: `values.EXACT`, `values.PORTABLE` or both.
     """
-    for item in sorted(before.keys() | now.keys()):
+    for item in (*before, *(item for item in now if item not in before)):
         for kind in kinds:
             one, other = before.get(item, {}).get(kind, {}), now.get(item, {}).get(kind, {})
             for name in (*one, *(name for name in other if name not in one)):
                 if one.get(name) != other.get(name):
-                    how = "added" if name not in one else "missing" if name not in other else "changed"
-                    yield Difference(item=item, name=name, kind=kind, how=how)
-
-
-KINDS = (EXACT, PORTABLE)
+                    yield item, kind, name, "added" if name not in one else "changed" if name in other else "missing"

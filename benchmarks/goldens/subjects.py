@@ -18,8 +18,6 @@ class GoldenSubject:
     """All, or a sample: arguments of `values` by name, and why a data set is absent."""
     values: Callable[[Any], dict[str, Values]]
     """Makes the values of one item, in a process."""
-    timeout: float = 3600.0
-    """Wall time for one item [s]."""
     reuse: int = 1
     """Items that a process takes one after the other."""
 

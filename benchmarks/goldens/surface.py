@@ -38,12 +38,14 @@ _COMMANDS = (
     "--version", "no-such-command", "generate --list", "generate --category no -o out",
     "generate --text a_purple_idea -o out", "generate --category cabinet --set width=99 -o out",
     "infer missing -o out", "infer model -o model", "refine missing", "erase missing.urdf -o out",
-    "validate missing.urdf", "validate model/model.urdf --engines none", "validate zero_axis.urdf --engines none",
+    "validate missing.urdf",
+    "validate model/model.urdf --engines none", "validate zero_axis.urdf --engines none",
     "validate model/model.urdf --engines unreal", "validate model/model.urdf --checks KV999",
-    "validate model/model.urdf --skip KV*", "explain KV301", "explain KV999", "explain --list", "fix missing.urdf -o out",
-    "fix zero_axis.urdf -o fixed.urdf", "export missing.urdf --to mjcf -o out.xml", "export model/model.urdf --to mjcf -o model.xml",
-    "export model/model.urdf --to docx -o model.docx", "view missing.urdf", "batch missing -o out", "bench no-such-study",
-    "bench detection --seed no", "fit --no-such-option", "nightly --no-such-option",
+    "validate model/model.urdf --skip KV*", "explain KV301", "explain KV999", "explain --list",
+    "fix missing.urdf -o out", "fix zero_axis.urdf -o fixed.urdf", "export missing.urdf --to mjcf -o out.xml",
+    "export model/model.urdf --to mjcf -o model.xml", "export model/model.urdf --to docx -o model.docx",
+    "view missing.urdf", "batch missing -o out", "bench no-such-study", "bench detection --seed no", "fit --no-such-option",
+    "nightly --no-such-option",
 )  # fmt: skip
 """Words of commands that are run beside a good model and one whose axis is zero; `_` stands for a space."""
 _TIMES = re.compile(r"^\[ *\d+\.\d s,.*\n|; \d+\.\d s$", re.MULTILINE)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from enum import Enum
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +20,8 @@ Values = dict[str, Any]
 """By name, each a JSON value."""
 EXACT, PORTABLE = "exact", "portable"
 """Hold on one platform alone, and on all."""
+_FEW = 3
+"""Numbers of an array that are shown instead of their hash."""
 
 
 def made(*, exact: Values | None = None, portable: Values | None = None) -> dict[str, Values]:
@@ -46,26 +47,18 @@ def file_hashes(folder: Path) -> Values:
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON; arrays as hashes, dataclasses as the list of their fields, numbers without end as words."""
+    """A value as JSON; arrays as hashes, dataclasses as the values of their fields."""
     if isinstance(value, Enum):
         return value.value
-    if value is None or isinstance(value, (str, bool, int)):
-        return value
-    if isinstance(value, (float, np.floating)):
-        return float(value) if math.isfinite(value) else str(float(value))
-    if isinstance(value, np.generic):
-        return value.item()
-    if isinstance(value, np.ndarray):
-        return [plain(item) for item in value.tolist()] if value.size <= 3 else array_hash(value)
+    if isinstance(value, (np.ndarray, np.generic)):
+        return array_hash(value) if value.size > _FEW else plain(value.tolist())
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, (set, frozenset)):
-        return sorted(str(item) for item in value)
-    if isinstance(value, Sequence):
+    if isinstance(value, (list, tuple)):
         return [plain(item) for item in value]
     if dataclasses.is_dataclass(value):
-        return [plain(getattr(value, item.name)) for item in dataclasses.fields(value)]
-    raise TypeError(f"A golden cannot hold a {type(value).__name__}.")
+        return plain([getattr(value, item.name) for item in dataclasses.fields(value)])
+    return value  # what JSON cannot hold is refused when it is hashed
 
 
 def shape_of(value: Any) -> Any:
