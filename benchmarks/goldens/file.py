@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import torch
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 import kinematify
@@ -26,7 +25,7 @@ _PACKAGES = (
     "numpy", "pybullet", "pydantic", "python-fcl", "scipy", "torch", "trimesh",
 )  # fmt: skip
 Hashes = dict[str, dict[str, str]]
-"""SHA-256 by name, by `values.EXACT` and `values.PORTABLE`."""
+"""SHA-256 by name, by `values.KINDS`."""
 
 
 class Subject(BaseModel):
@@ -64,6 +63,8 @@ def this_platform() -> dict[str, str]:
 
 def _last_bits() -> str:
     """Hash of what takes other instructions on other processors: BLAS, LAPACK, elementary functions, torch."""
+    import torch  # noqa: PLC0415 - seconds, in every process otherwise
+
     rng = np.random.default_rng(0)
     square, line = rng.normal(size=(96, 96)), rng.normal(size=4096)
     weights = torch.from_numpy(square.astype(np.float32))
@@ -142,7 +143,7 @@ def differences(
     Args:
         before: Goldens by item.
         now: What was made.
-        kinds: `values.EXACT`, `values.PORTABLE` or both.
+        kinds: Of `values.KINDS`.
     """
     for item in (*before, *(item for item in now if item not in before)):
         for kind in kinds:

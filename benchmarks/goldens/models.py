@@ -57,10 +57,11 @@ _MUTANTS = 4
 """Of each fault; the first one runs in engines, too."""
 _FAULTS_SAMPLE = ("type swapped", "wrong parent", "bad inertia", "offset collision geometry")
 _CLEAN = ("cabinet", "door", "microwave", "crane", "laptop", "fan")
-_SPREAD = ("pybullet", "drake")
-"""Engines whose numbers depend on what their process did before."""
+_ENGINES_WITH_SPREAD = ("pybullet", "drake")
+"""Engines that keep something from step to step; and what compares engines rests on them."""
+_COMPARISON = "KV6"
 _NUMBERS = ("measured", "q", "value", "limit", "message", "remedy", "reproduction")
-"""What says them."""
+"""What says in numbers what was found, and in which configuration."""
 _BUDGET = 3000.0
 """Processor time of a stage of a validation [s]: none ends early, however busy the machine is."""
 
@@ -195,34 +196,37 @@ def _published_folder(data: str) -> Path:
 def finding_values(item: Path | Generated | Mutants) -> dict[str, Values]:
     """What a validation says of each model."""
     if isinstance(item, Path):
-        return made(exact={"report": _report(item, item.parent, DEFAULT_ENGINES)})
+        return _reports({"report": (item, DEFAULT_ENGINES)}, item.parent)
     with tempfile.TemporaryDirectory(prefix="kinematify-") as name:
         folder = Path(name)
-        if isinstance(item, Generated):
-            write_blueprint(build(FAMILIES[item.family], {}, seed=item.seed), folder, load_config())
-            return made(exact={"report": _report(folder / "model.urdf", folder, DEFAULT_ENGINES)})
-        return made(exact=dict(_mutant_reports(item, folder)))
+        if isinstance(item, Mutants):
+            return _reports(dict(_written(item, folder)), folder)
+        write_blueprint(build(FAMILIES[item.family], {}, seed=item.seed), folder, load_config())
+        return _reports({"report": (folder / "model.urdf", DEFAULT_ENGINES)}, folder)
 
 
-def _mutant_reports(item: Mutants, folder: Path) -> Iterator[tuple[str, Any]]:
+def _written(item: Mutants, folder: Path) -> Iterator[tuple[str, tuple[Path, tuple[str, ...]]]]:
+    """Name, file and engines of every mutant, or of the untouched objects."""
     bases = [write_base(base, folder) for base in item.bases]
-    if not item.fault:
-        for base in bases:
-            yield base.name, _report(base.urdf, folder, ())
     faults = [fault for fault in FAULTS if fault.name == item.fault]
-    for number, mutant in enumerate(write_mutants(bases, item.count, 0, faults) if faults else ()):
-        engines = () if number else DEFAULT_ENGINES
-        yield mutant.name, _report(Path(mutant.urdf), folder, engines)
+    if not faults:
+        yield from ((base.name, (base.urdf, ())) for base in bases)
+        return
+    for number, mutant in enumerate(write_mutants(bases, item.count, 0, faults)):
+        yield mutant.name, (Path(mutant.urdf), () if number else DEFAULT_ENGINES)
 
 
-def _report(urdf: Path, folder: Path, engines: tuple[str, ...]) -> Any:
+def _reports(models: dict[str, tuple[Path, tuple[str, ...]]], folder: Path) -> dict[str, Values]:
     settings = load_settings()
     settings = settings.model_copy(update={"budget": settings.budget.model_copy(update={"seconds": _BUDGET})})
-    report = validate(urdf, settings=settings, engines=engines, workers=1).as_json()
-    for item in (*report["checks"], *report["findings"]):
-        item.pop("seconds", None)
-        if item["engine"] in _SPREAD:
-            for name in _NUMBERS:
-                item.pop(name, None)
-    del report["environment"], report["model"]
-    return json.loads(json.dumps(report).replace(str(folder), ""))
+    exact, spread = {}, {}
+    for name, (urdf, engines) in models.items():
+        report = validate(urdf, settings=settings, engines=engines, workers=1).as_json()
+        numbers = []
+        for item in (*report["checks"], *report["findings"]):
+            item.pop("seconds", None)
+            if item["engine"] in _ENGINES_WITH_SPREAD or item["check"].startswith(_COMPARISON):
+                numbers.append([item.pop(key, None) for key in _NUMBERS])
+        del report["environment"], report["model"]
+        exact[name], spread[name] = json.loads(json.dumps([report, numbers]).replace(str(folder), ""))
+    return made(exact=exact, spread=spread)

@@ -18,15 +18,17 @@ if TYPE_CHECKING:
 
 Values = dict[str, Any]
 """By name, each a JSON value."""
-EXACT, PORTABLE = "exact", "portable"
-"""Hold on one platform alone, and on all."""
+EXACT, SPREAD, PORTABLE = KINDS = ("exact", "spread", "portable")
+"""Same on one platform, there within the spread of repeated runs, and on all platforms."""
 _FEW = 3
 """Numbers of an array that are shown instead of their hash."""
 
 
-def made(*, exact: Values | None = None, portable: Values | None = None) -> dict[str, Values]:
+def made(
+    *, exact: Values | None = None, spread: Values | None = None, portable: Values | None = None
+) -> dict[str, Values]:
     """Return what one item of a subject gives."""
-    return {EXACT: exact or {}, PORTABLE: portable or {}}
+    return {EXACT: exact or {}, SPREAD: spread or {}, PORTABLE: portable or {}}
 
 
 def digest(value: Any) -> str:
