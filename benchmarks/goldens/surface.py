@@ -32,6 +32,9 @@ if TYPE_CHECKING:
 
     from benchmarks.goldens.values import Values
 
+    _Golden = tuple[str, Any, Any]
+    """Name, how it is worded and what is meant; None where there is no such golden."""
+
 _WIDTH = 100
 _CONFIGURATIONS = ("default", "fast", "evidence", "paper", "paper-base", "paper-open", "paper-plus")
 _COMMANDS = (
@@ -60,24 +63,29 @@ def surface_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
 
 
 def surface_values(name: str) -> dict[str, Values]:
-    """One kind of it."""
-    return made(portable=dict(_MAKERS[name]()))
+    """One kind of it; how click and pydantic word it is exact, since their versions are part of the platform."""
+    goldens = list(_MAKERS[name]())
+    return made(
+        exact={thing: worded for thing, worded, _ in goldens if worded is not None},
+        portable={thing: meant for thing, _, meant in goldens if meant is not None},
+    )
 
 
-def _help() -> Iterator[tuple[str, Any]]:
+def _help() -> Iterator[_Golden]:
     yield from _help_of(cli, "kinematify", None)
 
 
-def _help_of(command: click.Command, name: str, parent: click.Context | None) -> Iterator[tuple[str, Any]]:
+def _help_of(command: click.Command, name: str, parent: click.Context | None) -> Iterator[_Golden]:
     with click.Context(command, parent=parent, info_name=name.rsplit(maxsplit=1)[-1], terminal_width=_WIDTH) as context:
-        yield name, command.get_help(context)
+        options = [[*item.opts, *item.secondary_opts, str(getattr(item, "help", ""))] for item in command.params]
+        yield name, command.get_help(context), {"help": command.help, "options": options}
         if isinstance(command, click.Group):
             for word in command.list_commands(context):
                 if (inner := command.get_command(context, word)) is not None:
                     yield from _help_of(inner, f"{name} {word}", context)
 
 
-def _statuses() -> Iterator[tuple[str, Any]]:
+def _statuses() -> Iterator[_Golden]:
     with tempfile.TemporaryDirectory(prefix="kinematify-") as name:
         folder = Path(name)
         write_blueprint(build(FAMILIES["cabinet"], {}), folder / "model", load_config())
@@ -87,10 +95,10 @@ def _statuses() -> Iterator[tuple[str, Any]]:
             text.replace(axis, '<axis xyz="0 0 0"/>').replace('filename="', 'filename="model/'), "utf-8"
         )
         for words in _COMMANDS:
-            yield words, _ran([word.replace("_", " ") if "idea" in word else word for word in words.split()], folder)
+            yield words, *_ran([word.replace("_", " ") if "idea" in word else word for word in words.split()], folder)
 
 
-def _ran(words: list[str], folder: Path) -> Any:
+def _ran(words: list[str], folder: Path) -> tuple[Any, Any]:
     run = subprocess.run(
         [sys.executable, "-m", "kinematify", *words],
         cwd=folder,
@@ -100,19 +108,16 @@ def _ran(words: list[str], folder: Path) -> Any:
         timeout=600,
         check=False,
     )
-    return {
-        "status": run.returncode,
-        **{to: _TIMES.sub("", getattr(run, to).replace(str(folder), "")) for to in ("stdout", "stderr")},
-    }
+    return [_TIMES.sub("", text.replace(str(folder), "")) for text in (run.stdout, run.stderr)], run.returncode
 
 
-def _schemas() -> Iterator[tuple[str, Any]]:
+def _schemas() -> Iterator[_Golden]:
     for name, model in (
         ("configuration", type(load_config())),
         ("settings of a validation", type(load_settings())),
         ("described object", ObjectDescription),
     ):
-        yield name, _without_annotations(model.model_json_schema())
+        yield name, _without_annotations(model.model_json_schema()), None
     with tempfile.TemporaryDirectory(prefix="kinematify-") as name:
         folder = Path(name)
         blueprint = build(FAMILIES["cabinet"], {})
@@ -120,9 +125,9 @@ def _schemas() -> Iterator[tuple[str, Any]]:
         write_inference(infer(blueprint.assembly), folder / "out", preview=False)
         report = validate(folder / "model.urdf", engines=(), workers=1).as_json()
         report["checks"] = [{**check, "measured": {}} for check in report["checks"]]
-        yield "report of a validation", shape_of(report)
+        yield "report of a validation", None, shape_of(report)
         for file in ("truth.json", "source.json", "out/inference.json"):
-            yield file, shape_of(json.loads((folder / file).read_text("utf-8")))
+            yield file, None, shape_of(json.loads((folder / file).read_text("utf-8")))
 
 
 def _without_annotations(schema: Any) -> Any:
@@ -134,7 +139,7 @@ def _without_annotations(schema: Any) -> Any:
     return {key: _without_annotations(value) for key, value in schema.items() if key not in texts}
 
 
-def _public() -> Iterator[tuple[str, Any]]:
+def _public() -> Iterator[_Golden]:
     from kinematify import envs  # noqa: PLC0415 - Gymnasium, which nothing else here needs
 
     for name in kinematify.__all__:
@@ -143,10 +148,10 @@ def _public() -> Iterator[tuple[str, Any]]:
             fields = getattr(thing, "__dataclass_fields__", {})
             members = {word for word in (*dir(thing), *fields) if not word.startswith("_")}
             is_error = issubclass(thing, Exception)
-            yield name, {"signature": "" if is_error else _signature(thing), "members": sorted(members)}
+            yield name, None, {"signature": "" if is_error else _signature(thing), "members": sorted(members)}
         else:
-            yield name, _signature(thing) if callable(thing) else str(thing)
-    yield "environments", sorted((*envs.IDS, *envs.TASK_IDS.values()))
+            yield name, None, _signature(thing) if callable(thing) else str(thing)
+    yield "environments", None, sorted((*envs.IDS, *envs.TASK_IDS.values()))
 
 
 def _signature(thing: Any) -> str:
@@ -158,16 +163,15 @@ def _signature(thing: Any) -> str:
     )
 
 
-def _checks() -> Iterator[tuple[str, Any]]:
+def _checks() -> Iterator[_Golden]:
     for name, check in CHECKS.items():
-        words = {word: getattr(check, word) for word in ("title", "fails", "engines")}
-        yield name, plain(words)
+        yield name, None, plain([check.title, check.fails, check.engines])
 
 
-def _configurations() -> Iterator[tuple[str, Any]]:
+def _configurations() -> Iterator[_Golden]:
     for name in _CONFIGURATIONS:
-        yield name, load_config(name).model_dump(mode="json")
-    yield "validation", load_settings().model_dump(mode="json")
+        yield name, None, load_config(name).model_dump(mode="json")
+    yield "validation", None, load_settings().model_dump(mode="json")
 
 
 _MAKERS = {
