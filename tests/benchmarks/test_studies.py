@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from benchmarks.studies.published import ExpertVerdict, ExpertVerdicts, load_judged
-from benchmarks.studies.same_joints import differences
 from benchmarks.study import file_stem, load_study, load_study_report, study_names
 from benchmarks.tables import benchmark_blocks
 from kinematify.cli.app import run
@@ -18,13 +17,8 @@ from kinematify.evaluation.record import document, load_report, write_report
 from kinematify.evaluation.run import RESULTS
 from kinematify.validation.checks import CHECKS
 from tests.places import ROOT
-from tests.secret_cabinets import write_object
 
 REPORTS = ROOT / "results"
-JOINT = {
-    "parent": "body", "child": "door", "kind": "revolute", "axis": [0.0, 0.0, 1.0], "pivot": [0.5, 0.0, 0.0],
-    "lower": 0.0, "upper": 1.5, "confidence": 0.9,
-}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", study_names())
@@ -62,39 +56,24 @@ def test_every_study_has_help(name: str, capsys: pytest.CaptureFixture[str]) -> 
         assert f"--{field.replace('_', '-')}" in shown
 
 
-def test_a_joint_that_changed_is_named_with_what_changed() -> None:
-    turned = {**JOINT, "axis": [0.0, 1e-3, 1.0], "upper": None}
-    assert list(differences([JOINT], [JOINT], 1e-9)) == []
-    assert list(differences([JOINT], [turned], 1e-9)) == [
-        "door: axis [0.0, 0.0, 1.0] -> [0.0, 0.001, 1.0]; upper 1.5 -> None"
-    ]
-    assert list(differences([JOINT], [turned], 1e-2)) == ["door: upper 1.5 -> None"]
-    assert list(differences([JOINT], [], 1e-9)) == ["door has no joint any more"]
-    assert list(differences([], [JOINT], 1e-9)) == ["door has a joint now"]
-
-
 def test_a_study_runs_goes_on_and_ends_with_1_on_faults(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    write_object(tmp_path / "data" / "hinged", with_knob=False)
     monkeypatch.chdir(tmp_path)
-    words = ["bench", "same-joints", "--data", "data", "-o", "out"]
-    assert run([*words, "--name", "before"]) == 0
-    before = json.loads((tmp_path / "out" / "before.json").read_text())
-    assert [record["object"] for record in before["records"]] == ["hinged"]
-    assert before["configuration"]["data"] == ["data"]
-    against = [*words, "--against", "out/before.json"]
+    words = ["bench", "as-loaded", "--data", "", "--families", "laptop", "--engines", "mujoco", "-o", "out"]
+    assert run(words) == 0
+    found = json.loads((tmp_path / "out" / "as_loaded.json").read_text())
+    assert [record["object"] for record in found["records"]] == ["laptop 0"]
+    assert found["configuration"]["families"] == ["laptop"]
     capsys.readouterr()
-    assert run(against) == 0
+    assert run(words) == 0
     assert "taken up from an earlier run" in capsys.readouterr().err
-    assert "No joint differs." in (tmp_path / "out" / "same_joints.md").read_text()
-    before["records"][0]["joints"][0]["kind"] = "prismatic"
-    (tmp_path / "out" / "before.json").write_text(json.dumps(before))
-    assert run(against) == 1
-    assert "kind prismatic -> revolute" in capsys.readouterr().err
-    (tmp_path / "out" / "same_joints.md").unlink()
+    assert "Nothing." in (tmp_path / "out" / "as_loaded.md").read_text()
+    found["records"][0]["worlds"]["mujoco"] |= {"findings": [["KV802", None, "it is stuck"]], "shown": [False]}
+    (tmp_path / "out" / "as_loaded.json").write_text(json.dumps(found))
     assert run([*words, "--tables"]) == 1
-    assert "kind prismatic -> revolute" in (tmp_path / "out" / "same_joints.md").read_text()
+    assert "laptop 0, mujoco, KV802: its code does not show that it is stuck" in capsys.readouterr().err
+    assert "KV802: it is stuck" in (tmp_path / "out" / "as_loaded.md").read_text()
 
 
 @pytest.mark.parametrize(
@@ -104,7 +83,6 @@ def test_a_study_runs_goes_on_and_ends_with_1_on_faults(
         (["detection", "--only", "both"], "--only 'both' does not fit"),
         (["detection", "--count", "0"], "--count '0' does not fit"),
         (["published", "--folder", "no/such/folder"], "no/such/folder"),
-        (["same-joints", "--against", "no.json"], "no.json"),
         (["refine", "--tables", "-o", "no/such/folder"], "is not a benchmark report"),
     ],
 )

@@ -1,0 +1,144 @@
+"""Goldens of what is generated: families, described objects, compositions, parses of sentences, and episodes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from benchmarks.expectations import SETS, load_sentences
+from benchmarks.goldens.values import array_hash, blueprint_values, made, plain
+from kinematify.errors import InputError
+from kinematify.generate.composer.compose import compose, draw_composition
+from kinematify.generate.composer.sentence import told
+from kinematify.generate.described import known_families
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.generate.request import from_text
+
+if TYPE_CHECKING:
+    from benchmarks.goldens.values import Values
+    from kinematify.generate.procedural.blueprint import Blueprint
+
+_SEEDS = (None, 0, 1, 2)
+"""None: the defaults."""
+_COMPOSITIONS = 300
+_ACTIONS = 50
+_PARSED = ("family", "values", "understood", "ignored", "unused", "requirements", "overall", "copies", "is_toy", "how")
+
+
+def _names(item: tuple[str, int | None]) -> str:
+    return f"{item[0]} {'defaults' if item[1] is None else item[1]}"
+
+
+def _values(blueprints: dict[str, Blueprint]) -> dict[str, Values]:
+    both = {name: blueprint_values(blueprint) for name, blueprint in blueprints.items()}
+    return made(
+        exact={name: exact for name, (exact, _) in both.items()},
+        portable={name: structure for name, (_, structure) in both.items()},
+    )
+
+
+def family_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
+    """Families that programs build, each with its seeds."""
+    return {name: (name, _SEEDS[1:2] if sample else _SEEDS) for name in list(FAMILIES)[:: 5 if sample else 1]}, {}
+
+
+def object_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
+    """Objects that files describe: one that a seed draws of each, and all as they usually are."""
+    described = [name for name in known_families() if name not in FAMILIES]
+    return {name: (name, (0,) if sample else (None, 0)) for name in described[:: 8 if sample else 1]}, {}
+
+
+def family_values(item: tuple[str, tuple[int | None, ...]]) -> dict[str, Values]:
+    """Objects of one family."""
+    name, seeds = item
+    family = known_families()[name]
+    return _values({_names((name, seed)): build(family, {}, seed=seed) for seed in seeds})
+
+
+def composition_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
+    """Seeds of compositions, ten in each item."""
+    count = 20 if sample else _COMPOSITIONS
+    return {f"{first} to {first + 9}": range(first, first + 10) for first in range(0, count, 10)}, {}
+
+
+def composition_values(seeds: range) -> dict[str, Values]:
+    """Compositions that are drawn, with the sentences that ask for them."""
+    built, sentences = {}, {}
+    for seed in seeds:
+        composition = draw_composition(seed)
+        sentences[f"sentence {seed}"] = told(composition)
+        built[str(seed)] = compose(composition, seed=seed)
+    found = _values(built)
+    return made(exact=found["exact"], portable={**found["portable"], **sentences})
+
+
+# ---- sentences -----------------------------------------------------------------------------------------------------
+
+
+def sentence_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
+    """Lists of sentences."""
+    return {name: name for name in (list(SETS)[:3] if sample else SETS)}, {}
+
+
+def sentence_values(name: str) -> dict[str, Values]:
+    """What every sentence of a list is understood as, or why it is refused, and what it becomes."""
+    exact: Values = {}
+    portable: Values = {}
+    for item in load_sentences(name):
+        text = item["text"]
+        try:
+            request = from_text(text)
+            exact[text], structure = blueprint_values(request.build())
+            portable[text] = {"parse": _parse(request), "built": structure}
+        except InputError as error:
+            portable[text] = {"refused": str(error)}
+    return made(exact=exact, portable=portable)
+
+
+def _parse(request: Any) -> Any:
+    names = (
+        "family",
+        "values",
+        "understood",
+        "ignored",
+        "unused",
+        "requirements",
+        "overall",
+        "copies",
+        "is_toy",
+        "how",
+    )
+    parse = {name: plain(getattr(request, name)) for name in names}
+    parse["composition"] = None if request.composition is None else told(request.composition)
+    parse["other"] = None if request.other is None else _parse(request.other)
+    return parse
+
+
+# ---- episodes ------------------------------------------------------------------------------------------------------
+
+
+def episode_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
+    """Named tasks of the environments."""
+    from kinematify.envs import TASK_IDS  # noqa: PLC0415 - Gymnasium, which nothing else here needs
+
+    return dict(list(TASK_IDS.items())[:: 7 if sample else 1]), {}
+
+
+def episode_values(env_id: str) -> dict[str, Values]:
+    """An episode of random actions: every observation, reward and end."""
+    import gymnasium  # noqa: PLC0415 - see `episode_items`
+
+    import kinematify.envs  # noqa: F401, PLC0415 - registers the ids
+
+    env = gymnasium.make(env_id, object_seed=1)
+    env.action_space.seed(0)
+    observation, info = env.reset(seed=0)
+    steps = [[array_hash(observation), plain(info)]]
+    for _ in range(_ACTIONS):
+        observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
+        steps.append([array_hash(observation), float(reward), terminated, truncated, plain(info)])
+        if terminated or truncated:
+            break
+    env.close()
+    spaces = [str(env.observation_space.shape), str(env.action_space)]
+    return made(exact={"steps": steps}, portable={"spaces": spaces})
