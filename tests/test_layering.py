@@ -11,12 +11,7 @@ from tools.imports import ORDER, import_graph, imported_names, modules
 
 NEVER = {("validation", "topology"), ("validation", "pipeline")}  # validation knows models, never the search
 FROM_THE_TOP = {"__version__"}
-FOLDER_CIRCLES = {
-    "generate": {"", "composer", "procedural", "procedural.families", "procedural.language", "procedural.pieces"},
-    "joints": {"choice", "hypotheses", "measure"},
-    "validation": {"", "asset", "checks", "evidence", "geometry", "precheck", "stages", "task"},
-    "evaluation": {"nightly", "nightly.pages"},
-}
+FOLDER_CIRCLES = {"validation": {"", "asset", "checks", "evidence", "geometry", "precheck", "stages", "task"}}
 """Folders of a package that still import each other, "" for the package itself; entries only leave this list."""
 
 
