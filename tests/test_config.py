@@ -16,7 +16,6 @@ from tests.places import ROOT
 MODULES = [
     *sorted((ROOT / "kinematify" / "config").glob("*.py")),
     ROOT / "envs" / "settings.py",
-    ROOT / "kinematify" / "evaluation" / "nightly" / "settings.py",
 ]
 
 

@@ -118,9 +118,19 @@ def test_the_first_screen_has_the_sentence_of_the_demo_and_its_picture() -> None
     assert "make test" in first
 
 
-def test_result_markers_stand_once_and_in_order() -> None:
-    text = (ROOT / "docs" / "results.md").read_text("utf-8")
-    assert re.findall(r"<!-- results:(\w+) -->", text) == ["begin", "end"]
+@pytest.mark.parametrize(("page", "mark"), [("README.md", "figures"), ("docs/results.md", "tables")])
+def test_marks_of_generated_tables_come_once_and_in_order(page: str, mark: str) -> None:
+    text = (ROOT / page).read_text("utf-8")
+    assert re.findall(rf"<!-- {mark}:(\w+) -->", text) == ["begin", "end"]
+
+
+def test_contributing_names_at_least_twenty_changes_and_few_files_for_each() -> None:
+    rows = re.findall(r"^\| ([a-z].*?) \| (.*) \|$", (ROOT / "CONTRIBUTING.md").read_text("utf-8"), flags=re.MULTILINE)
+    changes = [
+        (what, set(re.findall(r"`([\w/]+[./][\w./]*)`", where))) for what, where in rows if what != "you want to"
+    ]
+    assert len(changes) >= 20
+    assert [what for what, files in changes if len(files) > 3] == []
 
 
 def test_the_checks_can_fail() -> None:
