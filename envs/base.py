@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 
     from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.goal import ObjectState, Progress
+    from kinematify.envs.low_res_picture import LowResRenderer
     from kinematify.envs.mujoco_object import MujocoWorld
     from kinematify.envs.pybullet_worlds import PybulletWorld
     from kinematify.envs.settings import PictureSettings
-    from kinematify.envs.tiny_picture import TinyPainter
     from kinematify.robot.arrays import FloatArray
 
 _HELD, _OTHERS, _BODY = (0.16, 0.62, 0.56), (0.62, 0.72, 0.80), (0.86, 0.80, 0.71)
@@ -82,7 +82,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         self._draw = no_draw(*self._counts)
         self._painter: Painter | None = None
         self._window: ViewerWindow | None = None
-        self._tiny: TinyPainter | None = None
+        self._tiny: LowResRenderer | None = None
         self._progress: Progress | None = None
         self._aim(self._choose(joint))
 
@@ -300,7 +300,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         """Return what a camera sees, shape (*size, 3), the same on every machine; `size` is height and width."""
         return self.camera().draw(self._world.link_poses(), self._tint, size)
 
-    def camera(self) -> TinyPainter:
+    def camera(self) -> LowResRenderer:
         """Return what `pixels` are taken with; it is made when it is first asked for, in some tenths of a second."""
         self._tiny = self._tiny or _tiny_painter(self._pieces(), self._view(), self.settings.picture)
         return self._tiny
@@ -377,10 +377,10 @@ def _pose_at_rest(articulated_object: ArticulatedObject, target: Target) -> Floa
     return forward_kinematics(articulated_object.declared, values)[target.link]
 
 
-def _tiny_painter(pieces: Sequence[Piece], view: View, settings: PictureSettings) -> TinyPainter:
-    from kinematify.envs.tiny_picture import TinyPainter  # noqa: PLC0415  # loads PyBullet
+def _tiny_painter(pieces: Sequence[Piece], view: View, settings: PictureSettings) -> LowResRenderer:
+    from kinematify.envs.low_res_picture import LowResRenderer  # noqa: PLC0415  # loads PyBullet
 
-    return TinyPainter(pieces, view, settings)
+    return LowResRenderer(pieces, view, settings)
 
 
 STATE, PIXELS, BOTH = "state", "pixels", "pixels+state"

@@ -70,7 +70,7 @@ def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> lis
     ]
 
 
-def shown_as_loaded(checks: Sequence[CheckResult]) -> list[CheckResult]:
+def confirm_on_raw_model(checks: Sequence[CheckResult]) -> list[CheckResult]:
     """Make contacts that only a prepared copy shows notes, where an engine moved the joints of the untouched file.
 
     The copy lets parent and child touch and gives links without collision geometry their visual one, which no engine

@@ -13,7 +13,7 @@ from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.engines import ENGINES, load_file
-from kinematify.simulation.loaded_file import MovesFreely, Unloadable, hand
+from kinematify.simulation.raw_model import MovesFreely, Unloadable, velocity_probe
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from kinematify.geometry.sweep import Sweeper
     from kinematify.robot.mechanism import Travel
     from kinematify.robot.robot import Joint, Robot
-    from kinematify.simulation.loaded_file import LoadedFile, Overlap, Push, Pushed, ReleaseRun, RestRun, RunningFile
+    from kinematify.simulation.raw_model import Overlap, Push, Pushed, RawEngineModel, ReleaseRun, RestRun, RunningFile
     from kinematify.validation.stage import StageRequest
 
 _LEAST_SIZE = 0.01
@@ -36,7 +36,7 @@ _FAR_BEYOND = 5.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class HandRun:
+class VelocityProbe:
     """A joint pushed by a hand, the others held."""
 
     travel: Travel
@@ -80,7 +80,7 @@ class AsLoadedContext:
         return LeaderMechanism(robot=self.robot)
 
     @cached_property
-    def loading(self) -> LoadedFile | Unloadable:
+    def loading(self) -> RawEngineModel | Unloadable:
         """The file in the engine, or what the engine says against it."""
         try:
             loaded = load_file(
@@ -101,7 +101,7 @@ class AsLoadedContext:
         return int(np.flatnonzero(self.mechanism.body_of_link == 0)[0])
 
     @property
-    def loaded(self) -> LoadedFile:
+    def loaded(self) -> RawEngineModel:
         """The file in the engine, once it is there."""
         assert not isinstance(self.loading, Unloadable)
         return self.loading
@@ -201,7 +201,7 @@ class AsLoadedContext:
         return next((item for item in overlaps if moved[body[item.links[0]]] != moved[body[item.links[1]]]), None)
 
     @cached_property
-    def hands(self) -> tuple[HandRun, ...]:
+    def hands(self) -> tuple[VelocityProbe, ...]:
         """Every joint pushed to both ends of what is free, of its range where nothing is, the others held."""
         return tuple(
             self._by_hand(travel, end)
@@ -216,9 +216,9 @@ class AsLoadedContext:
         return dict(zip(self.loaded.joints, self.running.inertias(self.values).tolist(), strict=True))
 
     @cached_property
-    def bearable(self) -> dict[str, float]:
+    def max_safe_force(self) -> dict[str, float]:
         """Largest force at each joint at rest that the engine answers rightly [N or N m]."""
-        return dict(zip(self.loaded.joints, self.running.bearable(self.values).tolist(), strict=True))
+        return dict(zip(self.loaded.joints, self.running.max_safe_force(self.values).tolist(), strict=True))
 
     def ratios(self, travel: Travel) -> dict[str, float]:
         """Return the motion of a joint, 1, and of those that mimic it."""
@@ -242,12 +242,12 @@ class AsLoadedContext:
         seen = self._surfaces.free_end(leader, np.sign(end - travel.rest))
         return min(seen, end, key=lambda value: abs(value - travel.rest))
 
-    def _by_hand(self, travel: Travel, end: float) -> HandRun:
+    def _by_hand(self, travel: Travel, end: float) -> VelocityProbe:
         joint = self.robot.joint_by_name[travel.joint]
         resistance = {"resistance": joint.friction or 0.0, "damping": joint.damping or 0.0}
         push = self._push(travel, (travel.rest, end), self.strength(travel), **resistance)
         pushed = self.running.push(push, self.values, contacts=True)
-        run = HandRun(
+        run = VelocityProbe(
             travel=travel, values=self.values, push=push, pushed=pushed, end=end, free=self.free(travel) is not None
         )
         if self.arrives(run, pushed.farthest):
@@ -259,27 +259,27 @@ class AsLoadedContext:
         return replace(run, without_contacts=self.running.push(push, self.values, contacts=False).farthest)
 
     def strength(self, travel: Travel) -> float:
-        """Force of a hand [N or N m]."""
+        """Force of the hand [N or N m]."""
         return self.settings.torque if travel.turns else self.settings.force
 
     def speed(self, travel: Travel) -> float:
-        """Of a hand [rad/s or m/s]."""
+        """Of the hand [rad/s or m/s]."""
         return self.settings.turning_speed if travel.turns else self.settings.sliding_speed
 
     def _push(self, travel: Travel, way: tuple[float, float], force: float, **more: float) -> Push:
-        return hand(
+        return velocity_probe(
             self.ratios(travel),
             way,
             inertias=self.inertias,
             force=force,
             speed=self.speed(travel),
             time_step=self.running.time_step,
-            bearable=self.bearable[travel.joint],
+            max_safe_force=self.max_safe_force[travel.joint],
             **more,
         )
 
     @cached_property
-    def presses(self) -> tuple[HandRun, ...]:
+    def presses(self) -> tuple[VelocityProbe, ...]:
         """Every joint with limits pressed against both, from there on, where nothing touches."""
         return tuple(
             self._press(travel, end, outwards)
@@ -288,18 +288,18 @@ class AsLoadedContext:
             for end, outwards in ((travel.lower, -1.0), (travel.upper, 1.0))
         )
 
-    def _press(self, travel: Travel, end: float, outwards: float) -> HandRun:
+    def _press(self, travel: Travel, end: float, outwards: float) -> VelocityProbe:
         effort = self.robot.joint_by_name[travel.joint].effort or np.inf
         inertia = sum(ratio**2 * self.inertias[name] for name, ratio in self.ratios(travel).items())
         force = min(self.strength(travel), effort, inertia * self.speed(travel) / self.settings.press)
         push = self._push(travel, (end, end + outwards * _FAR_BEYOND * self.still(travel)), force, patience=_YIELDING)
         values = self._values({travel.joint: end})
         pushed = self.running.push(push, values, contacts=False)
-        return HandRun(travel=travel, values=values, push=push, pushed=pushed, end=end)
+        return VelocityProbe(travel=travel, values=values, push=push, pushed=pushed, end=end)
 
     @cached_property
     def speeds(self) -> dict[str, float]:
-        """Every joint at a hand's speed towards the wider side of its range, followers with it [rad/s or m/s]."""
+        """Every joint at the hand's speed towards the wider side of its range, followers with it [rad/s or m/s]."""
         speeds = dict.fromkeys(self.loaded.joints, 0.0)
         for travel in self.travels:
             up = travel.upper - travel.rest >= travel.rest - travel.lower
@@ -318,7 +318,7 @@ class AsLoadedContext:
         masses = [link.inertial.mass for link in self.robot.links if link.inertial is not None]
         return GRAVITY * float(sum(masses)) * self.size
 
-    def arrives(self, run: HandRun, farthest: float) -> bool:
+    def arrives(self, run: VelocityProbe, farthest: float) -> bool:
         """Whether a push got so far that the joint counts as moving to its end [rad or m]."""
         travel, way = run.travel, abs(run.end - run.travel.rest)
         gone, stopped = abs(farthest - travel.rest), run.end not in (travel.lower, travel.upper)

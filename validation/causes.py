@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from kinematify.robot.robot import rigid_groups
-from kinematify.validation.check import Shared
+from kinematify.validation.check import CauseScope
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity
 
@@ -23,14 +23,14 @@ _ORDER = tuple(Severity)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Told:
+class FindingGroup:
     """A finding that follows from no other, with those that follow from it."""
 
     finding: Finding
     consequences: tuple[Finding, ...] = ()
 
 
-def told_with_consequences(findings: Iterable[Finding]) -> tuple[Told, ...]:
+def group_by_cause(findings: Iterable[Finding]) -> tuple[FindingGroup, ...]:
     """Return the findings without a cause, in their order, each with what follows from it."""
     findings = tuple(findings)
     under: dict[int, list[Finding]] = {}
@@ -38,7 +38,7 @@ def told_with_consequences(findings: Iterable[Finding]) -> tuple[Told, ...]:
         if finding.cause is not None:
             under.setdefault(id(finding.cause), []).append(finding)
     return tuple(
-        Told(finding=finding, consequences=tuple(under.get(id(finding), ())))
+        FindingGroup(finding=finding, consequences=tuple(under.get(id(finding), ())))
         for finding in findings
         if finding.cause is None
     )
@@ -99,16 +99,16 @@ class _Subjects:
         self._body = {link: group.links[0] for group in groups for link in group.links}
         self._joints = {} if robot is None else robot.joint_by_name
 
-    def share(self, cause: Finding, finding: Finding, shared: Shared) -> bool:
+    def share(self, cause: Finding, finding: Finding, shared: CauseScope) -> bool:
         """Whether two findings are both about what a cause and its consequence must share."""
-        if shared is Shared.MODEL:
+        if shared is CauseScope.MODEL:
             return True
-        if shared is Shared.CONTACT and finding.pair is None:
+        if shared is CauseScope.CONTACT and finding.pair is None:
             return cause.engine is not None and cause.engine == finding.engine
-        if shared is Shared.JOINT:
+        if shared is CauseScope.JOINT:
             return cause.joint is not None and cause.joint == finding.joint
         first, second = self._bodies(cause), self._bodies(finding)
-        if shared in (Shared.PAIR, Shared.CONTACT):
+        if shared in (CauseScope.PAIR, CauseScope.CONTACT):
             return len(first) == len(second) == 2 and first == second
         return bool(first & second)
 

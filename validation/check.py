@@ -79,7 +79,7 @@ class FeedbackRow(StrEnum):
     EXPORTER = "none: files, frames or masses are the exporter's to mend"
 
 
-class Shared(StrEnum):
+class CauseScope(StrEnum):
     """What a cause and what follows from it must both be about."""
 
     MODEL = "the model"
@@ -117,7 +117,7 @@ class Check:
     """Its findings put axis, place, type, parent or direction of a joint in doubt; a robot's task wants to know."""
     opinion: bool = False
     """Its findings are what our own inference holds of the shapes; they blame nobody where no fact agrees."""
-    follows: Mapping[str, Shared] = field(default_factory=dict)
+    follows: Mapping[str, CauseScope] = field(default_factory=dict)
     """Checks whose findings can be the cause of its own, and what both must be about; the first that fits is taken."""
     prepared: bool = False
     """Its findings about contact are seen in a prepared copy; they count where the file as loaded shows it too."""
@@ -235,7 +235,7 @@ def check(
     feedback: FeedbackRow | None = None,
     doubts: bool = False,
     opinion: bool = False,
-    follows: Mapping[str, Shared] | None = None,
+    follows: Mapping[str, CauseScope] | None = None,
     prepared: bool = False,
     needs: tuple[Need, ...] = (),
 ) -> Callable[[CheckFunction], CheckFunction]:
@@ -276,7 +276,7 @@ def engine_check(
     severity: Severity,
     blame: Blame,
     feedback: FeedbackRow | None = None,
-    follows: Mapping[str, Shared] | None = None,
+    follows: Mapping[str, CauseScope] | None = None,
     prepared: bool = False,
     needs: tuple[Need, ...] = (),
 ) -> Callable[[CheckFunction], CheckFunction]:

@@ -101,7 +101,7 @@ class Allowance:
 
 
 @dataclass(frozen=True, kw_only=True)
-class NotOurs:
+class UnfixableFinding:
     """A failure that no choice of the search can mend, and who can."""
 
     check: str
@@ -119,7 +119,7 @@ class Feedback:
     types: tuple[TypeSignal, ...] = ()
     ranges: tuple[RangeSignal, ...] = ()
     allowances: tuple[Allowance, ...] = ()
-    left: tuple[NotOurs, ...] = ()
+    left: tuple[UnfixableFinding, ...] = ()
 
     def __bool__(self) -> bool:
         """Whether the search has something to act on."""
@@ -218,7 +218,7 @@ class _Case:
     types: list[TypeSignal] = field(default_factory=list)
     ranges: list[RangeSignal] = field(default_factory=list)
     allowances: list[Allowance] = field(default_factory=list)
-    left: list[NotOurs] = field(default_factory=list)
+    left: list[UnfixableFinding] = field(default_factory=list)
 
     def has(self, *checks: str, joint: str | None = None) -> bool:
         """Whether one of the checks found something that counts, of one joint if it is given."""
@@ -307,7 +307,7 @@ class _Case:
     def leave(self, finding: Finding, reason: str, blame: Blame | None = None) -> None:
         """Note that the search does nothing about a finding, and why."""
         known = blame or finding.blame
-        self.left.append(NotOurs(check=finding.check, joint=finding.joint, blame=known.value, reason=reason))
+        self.left.append(UnfixableFinding(check=finding.check, joint=finding.joint, blame=known.value, reason=reason))
 
 
 def _route(case: _Case, finding: Finding) -> None:

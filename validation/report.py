@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import ExitStatus
 from kinematify.validation.as_loaded import as_loaded_words
-from kinematify.validation.causes import told_with_consequences
+from kinematify.validation.causes import group_by_cause
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.validation.causes import Told
+    from kinematify.validation.causes import FindingGroup
     from kinematify.validation.finding import CheckResult, Finding
     from kinematify.validation.summary import JointCurve, JointSummary, PairTable
 
@@ -52,9 +52,9 @@ class ValidationReport:
         return tuple(finding for finding in self.findings if finding.suppressed is None)
 
     @property
-    def told(self) -> tuple[Told, ...]:
+    def told(self) -> tuple[FindingGroup, ...]:
         """Findings that follow from no other, the worst first, each with what follows from it."""
-        return told_with_consequences(self.findings)
+        return group_by_cause(self.findings)
 
     @property
     def verdict(self) -> str:

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING
 
 from kinematify.config.validation import load_settings
 from kinematify.errors import DescriptionError
-from kinematify.manipulation.request import Suspicion
+from kinematify.manipulation.request import PriorFinding
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine
-from kinematify.validation.as_loaded import across_engines, shown_as_loaded
+from kinematify.validation.as_loaded import across_engines, confirm_on_raw_model
 from kinematify.validation.causes import with_causes
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.environment import environment
@@ -233,7 +233,7 @@ class _Run:
         for end in run_stages([task_stage()], request, workers=1):
             self._take_end(end)
 
-    def _suspects(self) -> dict[str, Suspicion]:
+    def _suspects(self) -> dict[str, PriorFinding]:
         """Joints that the checks by geometry doubt, each with the worst that is said of it."""
         found = [
             finding
@@ -244,7 +244,7 @@ class _Run:
         ]
         found.sort(key=lambda finding: finding.severity is Severity.ERROR)
         return {
-            str(finding.joint): Suspicion(
+            str(finding.joint): PriorFinding(
                 check=finding.check, message=finding.message, error=finding.severity is Severity.ERROR
             )
             for finding in found
@@ -256,7 +256,7 @@ class _Run:
             self._explain_rest(Status.SKIPPED, "the run was interrupted")
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
         told = [self._result(key) for key in keys(list(self.checks.values()))]
-        results = evidence_before_blame(shown_as_loaded(across_engines(told, self.engines)))
+        results = evidence_before_blame(confirm_on_raw_model(across_engines(told, self.engines)))
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)
         robot = _bodies(self.path)
         checks = with_causes(checks, robot)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config.validation import ValidationSettings
-    from kinematify.manipulation.request import Suspicion, TaskRequest
+    from kinematify.manipulation.request import PriorFinding, TaskRequest
     from kinematify.validation.check import Check
     from kinematify.validation.summary import Summary
 
@@ -51,7 +51,7 @@ class StageRequest:
     """Engines in which its plans are executed."""
     free_travel: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Range around rest in which nothing collides by exact geometry, of joints where it was measured [rad or m]."""
-    suspects: Mapping[str, Suspicion] = field(default_factory=dict)
+    suspects: Mapping[str, PriorFinding] = field(default_factory=dict)
     """Joints that earlier stages doubt, for the stage of the task."""
 
     @property

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.fit.broken_off import with_pieces_broken_off
 from benchmarks.fit.composed import compose
 from benchmarks.fit.edges import read_tree_examples, tree_example, write_tree_examples
 from benchmarks.fit.examples import content_key, examples_of, read_examples, write_examples
-from benchmarks.fit.modelling import WAYS, remodelled
+from benchmarks.fit.fragmentation import with_pieces_broken_off
+from benchmarks.fit.modelling import WAYS, augment
 from benchmarks.recipes import OBJECTS, drawn_object
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
@@ -292,9 +292,9 @@ def _drawn(source: CorpusSource, number: int) -> Blueprint:
         return drawn_object(source.name, number)
     if source.origin == COMPOSED:
         way = ways[number % len(ways)] if number % 3 == 0 else "as_drawn"
-        return remodelled(compose(number), way, rng=np.random.default_rng(number))
+        return augment(compose(number), way, rng=np.random.default_rng(number))
     rng = np.random.default_rng([number, zlib.crc32(source.name.encode())])
     ajar = round(float(rng.uniform(0.05, 0.6)), 2) if rng.random() < _AJAR else 0.0
     drawn = int(rng.integers(2**31))
     blueprint = build(known_families()[source.name], {"open": ajar}, seed=drawn, name=source.name)
-    return remodelled(blueprint, ways[(number + zlib.crc32(source.name.encode())) % len(ways)], rng=rng)
+    return augment(blueprint, ways[(number + zlib.crc32(source.name.encode())) % len(ways)], rng=rng)

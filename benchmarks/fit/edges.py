@@ -95,7 +95,7 @@ def fit_edges(examples: Sequence[TreeExample], provenance: Mapping[str, Any]) ->
     shares = np.array([counts[item.category] ** -0.5 for item in usable])
     shares /= shares.sum()
 
-    def surprise(weights: FloatArray) -> tuple[float, FloatArray]:
+    def log_loss(weights: FloatArray) -> tuple[float, FloatArray]:
         """Mean of -log P(true tree) with the penalty, and its gradient."""
         total = _PENALTY * float(weights @ weights)
         slope = 2.0 * _PENALTY * weights
@@ -106,7 +106,7 @@ def fit_edges(examples: Sequence[TreeExample], provenance: Mapping[str, Any]) ->
             slope = slope + share * ((likely - right) @ columns)
         return total, slope
 
-    found = minimize(surprise, np.zeros(values.shape[1]), jac=True, method="L-BFGS-B")
+    found = minimize(log_loss, np.zeros(values.shape[1]), jac=True, method="L-BFGS-B")
     return EdgeWeights(
         measurements=MEASUREMENTS,
         mean=mean,

@@ -79,7 +79,7 @@ class Example:
     sides: Mapping[str, FloatArray] = field(default_factory=dict)
     """What is measured towards either side of the true turn (`measure_sides`), the one that opens first, shape (2,)
     each; empty where the joint slides, goes both ways or is a link in series."""
-    goes_round: bool | None = None
+    is_continuous: bool | None = None
     """The true joint turns by a whole turn or without end; None where it does not turn."""
 
     @property
@@ -166,7 +166,7 @@ def examples_of(
                 alike=next((number for number, group in enumerate(alike) if edge in group), -1),
                 broken=broken,
                 sides={} if broken else _sides(weighed.scene, joints[0]),
-                goes_round=_goes_round(joints[0]),
+                is_continuous=_goes_round(joints[0]),
             )
         )
     return found
@@ -181,7 +181,7 @@ def _sides(scene: JointScene, joint: TrueJoint) -> Values:
 
 
 def _goes_round(joint: TrueJoint) -> bool | None:
-    """See `Example.goes_round`."""
+    """See `Example.is_continuous`."""
     return joint.upper - joint.lower > _WHOLE_TURN if joint.kind.turns else None
 
 
@@ -230,7 +230,7 @@ def write_examples(path: Path, examples: Sequence[Example]) -> None:
                 "size": example.size,
                 "groups": example.groups,
                 "alike": example.alike,
-                "goes_round": example.goes_round,
+                "goes_round": example.is_continuous,
                 "sources": example.hypotheses.sources,
                 "names": names,
                 "side_names": sorted(example.sides),

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Solids = dict[str, Manifold]
 
 
-def remodelled(blueprint: Blueprint, way: str, *, rng: np.random.Generator) -> Blueprint:
+def augment(blueprint: Blueprint, way: str, *, rng: np.random.Generator) -> Blueprint:
     """Return the same mechanism as another hand would have modelled it.
 
     Args:

@@ -22,8 +22,7 @@ from benchmarks.fit.corpora import (
     real_sources,
     tree_sources,
 )
-from benchmarks.fit.edges import edges_row, fit_edges, write_edge_weights
-from benchmarks.fit.judged import (
+from benchmarks.fit.cross_validation import (
     CAUSES,
     agreed_examples,
     calibration_of,
@@ -38,6 +37,7 @@ from benchmarks.fit.judged import (
     sets_of,
     surprise_of,
 )
+from benchmarks.fit.edges import edges_row, fit_edges, write_edge_weights
 from benchmarks.fit.trees import (
     Seeds,
     data_key,

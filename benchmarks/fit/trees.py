@@ -141,7 +141,7 @@ def fit_turning(examples: Sequence[Example], *, seeds: Sequence[int], provenance
     """
     names = turning_names(examples)
     columns = turns_of(examples, names)
-    rounds = np.array([example.goes_round for example in examples], dtype=np.float64)
+    rounds = np.array([example.is_continuous for example in examples], dtype=np.float64)
     weights = _weights(examples)
     boosters = _boost_logistic(columns, rounds, weights, _TURNING, seeds=seeds, rounds=_TURNING_ROUNDS)
     return _trees_alone(names, boosters, provenance)
@@ -160,7 +160,7 @@ def turns_of(examples: Sequence[Example], names: Sequence[str]) -> NDArray[Any]:
 
 def turns_known(example: Example) -> bool:
     """The joint turns, and its line was proposed."""
-    return example.goes_round is not None and example.right.max() >= _PROPOSED
+    return example.is_continuous is not None and example.right.max() >= _PROPOSED
 
 
 def is_fixed(example: Example) -> bool:

@@ -21,7 +21,7 @@ from benchmarks.recipes import (
     vehicles,
     wheeled,
 )
-from benchmarks.recipes.draft import Draft, Hand
+from benchmarks.recipes.object_builder import ModelingStyle, ObjectBuilder
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -42,7 +42,7 @@ _MODULES = (
     wheeled,
 )
 
-OBJECTS: Mapping[str, Callable[[Draft], None]] = {
+OBJECTS: Mapping[str, Callable[[ObjectBuilder], None]] = {
     name: recipe
     for module in _MODULES
     for name, recipe in vars(module).items()
@@ -51,7 +51,7 @@ OBJECTS: Mapping[str, Callable[[Draft], None]] = {
 """Every public function of the modules of recipes, keyed by its name."""
 
 
-def drawn_object(name: str, seed: int, hand: Hand | None = None) -> Blueprint:
+def drawn_object(name: str, seed: int, hand: ModelingStyle | None = None) -> Blueprint:
     """Draw an object.
 
     Args:
@@ -60,7 +60,7 @@ def drawn_object(name: str, seed: int, hand: Hand | None = None) -> Blueprint:
         hand: How it is modelled.
     """
     rng = np.random.default_rng([seed, zlib.crc32(name.encode())])
-    someone = Hand.drawn(rng)
-    draft = Draft(name, hand or someone, rng)
+    someone = ModelingStyle.drawn(rng)
+    draft = ObjectBuilder(name, hand or someone, rng)
     OBJECTS[name](draft)
     return draft.blueprint()

@@ -6,19 +6,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.recipes.draft import spread
 from benchmarks.recipes.mechanisms import button, case, knob
+from benchmarks.recipes.object_builder import spread
 from benchmarks.recipes.panels import box_drawer, carcass, pull, rack, seam, slab
 from benchmarks.recipes.shapes import X, Y, Z, ball, beam, box, cone, rod, tube
 
 if TYPE_CHECKING:
-    from benchmarks.recipes.draft import Draft
+    from benchmarks.recipes.object_builder import ObjectBuilder
 
 # fmt: off
 # A recipe reads as a list of shapes and joints, which one argument a line would hide.
 
 
-def slab_microwave(d: Draft) -> None:
+def slab_microwave(d: ObjectBuilder) -> None:
     """A box with a slab at its front, hung at a side or below, a panel beside it and a plate that turns."""
     w, t, h = d.u(0.4, 0.65), d.u(0.28, 0.45), d.u(0.22, 0.38)
     panel, wall, thick = d.pick(0.0, d.u(0.15, 0.3)) * w, d.u(0.01, 0.03), d.u(0.015, 0.04)
@@ -45,7 +45,7 @@ def slab_microwave(d: Draft) -> None:
                 button(d, f"button_{k}", "body", at, (0.5 * panel, 0.06 * h), 0.006, -Y)
 
 
-def slab_oven(d: Draft) -> None:
+def slab_oven(d: ObjectBuilder) -> None:
     """One or two chambers with flaps that fall down or doors at a side, racks on ledges, a row of knobs."""
     w, t, chamber = d.u(0.45, 0.8), d.u(0.45, 0.65), d.u(0.3, 0.5)
     n, top, foot, wall, thick = d.n(1, 2), d.u(0.08, 0.15), d.pick(0.0, 0.1), d.u(0.02, 0.05), d.u(0.02, 0.05)
@@ -72,7 +72,7 @@ def slab_oven(d: Draft) -> None:
             for y in (0.25 * t, 0.75 * t)))
 
 
-def slab_fridge(d: Draft) -> None:
+def slab_fridge(d: ObjectBuilder) -> None:
     """A tall body with slabs: one, one above the other, two side by side, drawers below."""
     w, t, h, thick = d.u(0.5, 0.95), d.u(0.5, 0.75), d.u(0.8, 2.0), d.u(0.03, 0.09)
     wall = d.u(0.03, 0.06)
@@ -102,7 +102,7 @@ def slab_fridge(d: Draft) -> None:
             rack(d, f"shelf_{k}", "body", (-w / 2 + wall, 0.03, z), (w / 2 - wall, t - wall, z + 0.06), travel=0.6)
 
 
-def slab_dishwasher(d: Draft) -> None:
+def slab_dishwasher(d: ObjectBuilder) -> None:
     """A box under a worktop with a slab that falls down, baskets, a strip with buttons above the slab or on it."""
     w, t, h, thick = d.pick(0.45, 0.6), d.u(0.5, 0.6), d.u(0.6, 0.88), d.u(0.02, 0.06)
     strip, foot, wall = d.pick(0.0, d.u(0.08, 0.14)), d.pick(0.0, 0.1), d.u(0.01, 0.03)
@@ -121,7 +121,7 @@ def slab_dishwasher(d: Draft) -> None:
                 travel=d.u(0.6, 0.9))
 
 
-def round_door_washer(d: Draft) -> None:
+def round_door_washer(d: ObjectBuilder) -> None:
     """A box with a round door before a drum, a dial, buttons, and a drawer for powder."""
     w, t, h = d.u(0.5, 0.7), d.u(0.45, 0.65), d.u(0.75, 0.95)
     r, z, thick = d.u(0.26, 0.36) * w, d.u(0.45, 0.52) * h, d.u(0.02, 0.06)
@@ -149,7 +149,7 @@ def round_door_washer(d: Draft) -> None:
         d.u(1.4, 2.6))
     if d.maybe():
         box_drawer(d, "drawer", "housing", (-0.47 * w, 0, 0.86 * h), (-0.2 * w, 0.3, 0.97 * h), lap=d.pick(0.0, 0.006))
-        if d.hand.bored:
+        if d.hand.has_bore:
             d.cut("housing", box((-0.47 * w, -0.001, 0.86 * h), (-0.2 * w, 0.3, 0.97 * h)))
     if d.maybe(0.8):
         knob(d, "dial", "housing", (0.05 * w, 0, 0.92 * h), 0.03, d.u(0.015, 0.03), -Y, reach=d.pick(None, None, 5.5))
@@ -157,7 +157,7 @@ def round_door_washer(d: Draft) -> None:
         button(d, f"button_{k}", "housing", (x, 0, 0.92 * h), (0.02, 0.015), 0.006, -Y, is_round=d.maybe())
 
 
-def lever_toaster(d: Draft) -> None:
+def lever_toaster(d: ObjectBuilder) -> None:
     """Slots, levers that go down at an end or the front, knobs, and a crumb tray."""
     n = d.n(1, 2)
     w, t, h = d.u(0.22, 0.4), d.u(0.08, 0.14) * n, d.u(0.15, 0.22)
@@ -174,17 +174,17 @@ def lever_toaster(d: Draft) -> None:
     for k, s in enumerate(spread(n, -t / 2, t / 2) if end else spread(n, -0.4 * w, 0.4 * w)):
         at = face * out + s * along + z * Z
         wide, deep = d.u(0.02, 0.045), d.u(0.015, 0.035)
-        root = max(d.hand.gap, 0.001) if d.maybe(0.4) or not d.hand.bored else -0.02
+        root = max(d.hand.gap, 0.001) if d.maybe(0.4) or not d.hand.has_bore else -0.02
         if root < 0.0:  # through a slot
             d.cut("body", box(at - 0.03 * out - 0.005 * along - (travel + 0.01) * Z, at + 0.1 * out + 0.005 * along
                 + 0.01 * Z))
             d.part(f"lever_{k}", beam(0.006, 0.006, at + root * out, at + 0.01 * out, Z))
             root = 0.002
-        elif not d.hand.bored:
+        elif not d.hand.has_bore:
             root = d.pick(root, 0.0, -0.01)
         d.part(f"lever_{k}", box(at + root * out - wide / 2 * along - 0.006 * Z, at + deep * out + wide / 2 * along
             + 0.006 * Z), material="plastic")
-        d.slide(f"lever_{k}", "body", -Z, travel, ajar=d.maybe())
+        d.slide(f"lever_{k}", "body", -Z, travel, initial_opening=d.maybe())
         if d.maybe():
             knob(d, f"knob_{k}", "body", face * out + (s + 0.03) * along + 0.25 * h * Z, 0.012, 0.012, out,
                 reach=d.pick(None, 4.7))
@@ -201,7 +201,7 @@ def lever_toaster(d: Draft) -> None:
         d.slide("crumb_tray", "body", -Y if end else Y, 0.7 * t)
 
 
-def plain_kettle(d: Draft) -> None:
+def plain_kettle(d: ObjectBuilder) -> None:
     """A jug on a base, a lid that lifts or is hinged, a handle and a spout that are one with it."""
     r, h = d.u(0.06, 0.1), d.u(0.12, 0.24)
     top = d.u(0.6, 1.0) * r
@@ -229,7 +229,7 @@ def plain_kettle(d: Draft) -> None:
             d.slide("jug", "base", Z, d.u(0.1, 0.3))
 
 
-def plain_coffee_machine(d: Draft) -> None:
+def plain_coffee_machine(d: ObjectBuilder) -> None:
     """A tower over a tray: a lid, a lever or a knob, a tray that is drawn out, a jug that is taken away."""
     w, t, h = d.u(0.15, 0.3), d.u(0.2, 0.35), d.u(0.28, 0.4)
     head, foot, back = d.u(0.28, 0.4) * h, d.u(0.08, 0.14) * h, 0.45 * t
@@ -242,11 +242,11 @@ def plain_coffee_machine(d: Draft) -> None:
             reach=d.u(1.2, 1.7), material="plastic")
     elif kind == "lever":
         side = d.pick(X, -X)
-        x = 0.5 * w + d.gap(w) if d.hand.bored else 0.5 * w
+        x = 0.5 * w + d.gap(w) if d.hand.has_bore else 0.5 * w
         at = x * side + 0.5 * t * Y + (h - 0.4 * head) * Z
         d.part("lever", rod(0.02, at, at + 0.015 * side), beam(0.015, 0.012, at + 0.008 * side, at + 0.008 * side
             - d.u(0.3, 0.6) * t * Y + 0.3 * head * Z, side), material="metal")
-        d.hinge("lever", "body", X, at, d.u(0.6, 1.4), ajar=False)
+        d.hinge("lever", "body", X, at, d.u(0.6, 1.4), initial_opening=False)
     if d.maybe(0.7):
         play = seam(d, w, 0.01)
         d.part("tray", box((-0.45 * w, 0.01, foot + play), (0.45 * w, back - 0.01, foot + play + 0.015)))
@@ -256,7 +256,7 @@ def plain_coffee_machine(d: Draft) -> None:
         z0, z1 = foot + 0.03, h - head - 0.02
         d.part("jug", rod(r, (0, 0.5 * back, z0), (0, 0.5 * back, z1)), beam(0.02, 0.012, (0, 0.5 * back - 0.9 * r,
             0.8 * z1 + 0.2 * z0), (0, 0.5 * back - 1.6 * r, 0.75 * z1 + 0.25 * z0)), material="glass")
-        d.slide("jug", "body", -Y, d.u(0.1, 0.25), ajar=False)
+        d.slide("jug", "body", -Y, d.u(0.1, 0.25), initial_opening=False)
     for k, x in enumerate(spread(d.n(0, 3), -0.45 * w, 0.45 * w)):
         at = (x, 0, h - head / 2)
         if d.maybe():
@@ -265,7 +265,7 @@ def plain_coffee_machine(d: Draft) -> None:
             button(d, f"button_{k}", "body", at, (0.08 * w, 0.08 * w), 0.005, -Y, is_round=d.maybe())
 
 
-def slab_safe(d: Draft) -> None:
+def slab_safe(d: ObjectBuilder) -> None:
     """A thick box with a thick slab before it or let into it, a dial and a handle on the slab."""
     w, t, h = d.u(0.25, 0.7), d.u(0.25, 0.6), d.u(0.25, 1.2)
     wall, thick = d.u(0.02, 0.06), d.u(0.03, 0.08)
@@ -293,4 +293,4 @@ def slab_safe(d: Draft) -> None:
         if d.maybe():
             d.spin("handle", "door", -Y, at)
         else:
-            d.hinge("handle", "door", -Y, at, d.u(0.8, 1.6), ajar=False)
+            d.hinge("handle", "door", -Y, at, d.u(0.8, 1.6), initial_opening=False)

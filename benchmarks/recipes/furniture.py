@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.recipes.draft import spread
 from benchmarks.recipes.mechanisms import case, caster, drawer, grip, leaf, legs, lever, wheel
+from benchmarks.recipes.object_builder import spread
 from benchmarks.recipes.shapes import X, Y, Z, beam, box, rod
 
 if TYPE_CHECKING:
-    from benchmarks.recipes.draft import Draft
+    from benchmarks.recipes.object_builder import ObjectBuilder
 
 # fmt: off
 # A recipe reads as a list of shapes and joints, which one argument a line would hide.
 
 
-def wardrobe(d: Draft) -> None:
+def wardrobe(d: ObjectBuilder) -> None:
     """Two or three tall doors, now and then two drawers below."""
     w, t, h, foot = d.u(0.8, 1.8), d.u(0.4, 0.65), d.u(1.7, 2.3), d.pick(0.0, 0.35)
     case(d, "carcass", (-w / 2, 0, 0), (w / 2, t, h), opening=-Y, wall=0.02)
@@ -33,7 +33,7 @@ def wardrobe(d: Draft) -> None:
             reach=d.u(1.4, 2.4))
 
 
-def chest_of_drawers(d: Draft) -> None:
+def chest_of_drawers(d: ObjectBuilder) -> None:
     """Rows of drawers."""
     w, t, h, n = d.u(0.4, 1.2), d.u(0.35, 0.55), d.u(0.5, 1.3), d.n(2, 6)
     case(d, "chest", (-w / 2, 0, 0), (w / 2, t, h))
@@ -44,7 +44,7 @@ def chest_of_drawers(d: Draft) -> None:
             drawer(d, f"drawer_{i}_{k}", "chest", (x - a, 0, z - b), (x + a, d.u(0.7, 0.9) * t, z + b), out=-Y)
 
 
-def nightstand(d: Draft) -> None:
+def nightstand(d: ObjectBuilder) -> None:
     """On legs, a drawer over a shelf or a door."""
     w, h, leg = d.u(0.35, 0.6), d.u(0.4, 0.7), d.u(0.05, 0.2)
     case(d, "stand", (-w / 2, 0, leg), (w / 2, 0.8 * w, h), opening=-Y, wall=0.018)
@@ -57,7 +57,7 @@ def nightstand(d: Draft) -> None:
         leaf(d, "door", "stand", (-w / 2, -0.018, leg), (w / 2, 0, level - 0.005), hinge=d.pick(X, -X), out=-Y)
 
 
-def kitchen_block(d: Draft) -> None:
+def kitchen_block(d: ObjectBuilder) -> None:
     """A row of base units: doors, drawers, a sink front that tilts."""
     n, h, t = d.n(2, 4), 0.87, 0.58
     case(d, "block", (0, 0, 0), (0.6 * n, t, h), opening=-Y, wall=0.02)
@@ -80,7 +80,7 @@ def kitchen_block(d: Draft) -> None:
                 reach=d.u(0.4, 1.5))
 
 
-def wall_cupboard(d: Draft) -> None:
+def wall_cupboard(d: ObjectBuilder) -> None:
     """Flaps that go up, or doors, on a wall unit."""
     w, h, t = d.u(0.5, 1.2), d.u(0.35, 0.8), d.u(0.25, 0.4)
     case(d, "unit", (-w / 2, 0, 0), (w / 2, t, h), opening=-Y, wall=0.018)
@@ -92,7 +92,7 @@ def wall_cupboard(d: Draft) -> None:
             hinge=Z, out=-Y, reach=d.u(1.2, 1.8))
 
 
-def sideboard_with_sliding_doors(d: Draft) -> None:
+def sideboard_with_sliding_doors(d: ObjectBuilder) -> None:
     """Two panels that pass each other before a case."""
     w, h, t = d.u(1.0, 2.0), d.u(0.5, 0.9), d.u(0.35, 0.5)
     case(d, "case", (-w / 2, 0, 0.1), (w / 2, t, h), opening=-Y, wall=0.02)
@@ -109,7 +109,7 @@ def sideboard_with_sliding_doors(d: Draft) -> None:
         d.slide(f"door_{k}", "case", -s * X, w / 2 - 0.04)
 
 
-def desk_with_pedestal(d: Draft) -> None:
+def desk_with_pedestal(d: ObjectBuilder) -> None:
     """A desk with three drawers on one side and a keyboard tray."""
     w, t, h = d.u(1.1, 1.8), d.u(0.55, 0.8), d.u(0.7, 0.78)
     p = d.u(0.35, 0.5)
@@ -127,7 +127,7 @@ def desk_with_pedestal(d: Draft) -> None:
         d.slide("tray", "desk", -Y, 0.3)
 
 
-def standing_desk(d: Draft) -> None:
+def standing_desk(d: ObjectBuilder) -> None:
     """A top on two or one telescopic columns."""
     w, t, h = d.u(1.0, 1.8), d.u(0.6, 0.8), d.u(0.6, 0.75)
     g = d.gap(0.06)
@@ -135,13 +135,13 @@ def standing_desk(d: Draft) -> None:
         d.part("feet", box((x - 0.04, -t / 2 + 0.05, 0), (x + 0.04, t / 2 - 0.05, 0.03)), box((x - 0.04, -0.04, 0.02),
             (x + 0.04, 0.04, 0.55)), material="steel")
         d.bore("feet", box((x - 0.03 - g, -0.03 - g, 0.05), (x + 0.03 + g, 0.03 + g, 0.6)))
-        d.part("top", box((x - 0.03, -0.03, 0.1 if d.hand.bored else 0.54), (x + 0.03, 0.03, h)))
+        d.part("top", box((x - 0.03, -0.03, 0.1 if d.hand.has_bore else 0.54), (x + 0.03, 0.03, h)))
     d.part("feet", box((-0.35 * w, -0.02, 0.03), (0.35 * w, 0.02, 0.1)))
     d.part("top", box((-w / 2, -t / 2, h), (w / 2, t / 2, h + 0.025)), material="wood")
     d.slide("top", "feet", Z, d.u(0.3, 0.5))
 
 
-def gateleg_table(d: Draft) -> None:
+def gateleg_table(d: ObjectBuilder) -> None:
     """Leaves that hang from a narrow middle, or lie level with it."""
     w, t, h, m = d.u(0.7, 1.1), d.u(0.8, 1.4), 0.74, d.u(0.2, 0.5)
     d.part("middle", box((-m / 2, -t / 2, h - 0.025), (m / 2, t / 2, h)), material="wood")
@@ -151,7 +151,7 @@ def gateleg_table(d: Draft) -> None:
             out=-Z, reach=d.u(1.3, 1.57), handle=False)
 
 
-def piano_stool(d: Draft) -> None:
+def piano_stool(d: ObjectBuilder) -> None:
     """A seat that turns on its screw."""
     r, h = d.u(0.15, 0.22), d.u(0.4, 0.6)
     d.part("base", rod(0.04, (0, 0, 0.1), (0, 0, h)), material="wood")
@@ -159,13 +159,13 @@ def piano_stool(d: Draft) -> None:
         d.part("base", beam(0.04, 0.04, (0, 0, 0.2), (1.2 * r * np.cos(a), 1.2 * r * np.sin(a), 0.02)))
     g = d.gap(r)
     d.part("seat", rod(r, (0, 0, h + g), (0, 0, h + d.u(0.03, 0.1))))
-    if d.hand.bored:
+    if d.hand.has_bore:
         d.cut("base", rod(0.02 + 2 * g, (0, 0, 0.2), (0, 0, h + 0.01)))
         d.part("seat", rod(0.02, (0, 0, 0.22), (0, 0, h + 0.02)))
     d.spin("seat", "base", Z, (0, 0, h))
 
 
-def recliner(d: Draft) -> None:
+def recliner(d: ObjectBuilder) -> None:
     """A back that leans and a foot rest that comes up."""
     w, t, h = d.u(0.6, 0.9), d.u(0.5, 0.6), d.u(0.38, 0.48)
     d.part("seat", box((-w / 2, 0, 0.05), (w / 2, t, h)), material="wood")
@@ -180,7 +180,7 @@ def recliner(d: Draft) -> None:
         lever(d, "handle", "seat", ((w / 2 + 0.12), 0.3 * t, h), X, -Y, 0.15)
 
 
-def folding_bed(d: Draft) -> None:
+def folding_bed(d: ObjectBuilder) -> None:
     """A bed that folds down out of a wall case."""
     w, h = d.u(0.9, 1.6), d.u(2.0, 2.2)
     case(d, "case", (-w / 2 - 0.03, 0, 0), (w / 2 + 0.03, 0.4, h + 0.05), opening=-Y, wall=0.025)
@@ -189,7 +189,7 @@ def folding_bed(d: Draft) -> None:
     d.hinge("bed", "case", X, (0, 0 if d.hand.line else 0.1, 0.36 if d.hand.line else 0.4), 1.57)
 
 
-def trundle_bed(d: Draft) -> None:
+def trundle_bed(d: ObjectBuilder) -> None:
     """A second bed on wheels, or a bed box, below the first."""
     w, t, h = d.u(0.8, 1.2), 2.0, 0.45
     d.part("bed", box((0, 0, 0.3), (t, w, h)), box((0, 0, 0), (0.03, w, 0.9)), box((t - 0.03, 0, 0), (t, w, 0.7)),
@@ -205,7 +205,7 @@ def trundle_bed(d: Draft) -> None:
         d.slide(f"box_{k}", "bed", -Y, 0.6)
 
 
-def crib(d: Draft) -> None:
+def crib(d: ObjectBuilder) -> None:
     """A cot with a side that slides down or swings out."""
     w, t, h = d.u(1.1, 1.4), d.u(0.6, 0.75), d.u(0.8, 1.0)
     d.part("cot", box((0, 0, 0.25), (w, t, 0.3)), material="wood")
@@ -222,7 +222,7 @@ def crib(d: Draft) -> None:
         d.hinge("side", "cot", X, (w / 2, -0.025, 0.31), 1.5)
 
 
-def rocking_cradle(d: Draft) -> None:
+def rocking_cradle(d: ObjectBuilder) -> None:
     """A cradle that swings between two posts."""
     w, r, h = d.u(0.7, 1.0), d.u(0.2, 0.3), d.u(0.7, 1.0)
     for s in (-1.0, 1.0):
@@ -241,10 +241,10 @@ def rocking_cradle(d: Draft) -> None:
         d.part("cradle", beam(0.02, 0.06, (x, 0, top - 0.2), (x, 0, top + 0.02), Y))
         if d.hand.barrels:
             d.part("cradle", rod(0.012, (x, 0, top), (s * (w / 2 + 0.06), 0, top)))
-    d.hinge("cradle", "stand", X, (0, 0, top), 0.4, -0.4, ajar=False)
+    d.hinge("cradle", "stand", X, (0, 0, top), 0.4, -0.4, initial_opening=False)
 
 
-def mirror_on_stand(d: Draft) -> None:
+def mirror_on_stand(d: ObjectBuilder) -> None:
     """A mirror that tilts between two posts or in a fork."""
     w, h = d.u(0.2, 0.7), d.u(0.3, 1.6)
     g = d.gap(0.04) + 0.001
@@ -255,13 +255,13 @@ def mirror_on_stand(d: Draft) -> None:
     glass = (rod(w / 2, (0, -0.01, z), (0, 0.01, z)) if h < 1.1 * w else box((-w / 2, -0.01, 0.08), (w / 2, 0.01,
         0.08 + h)))
     d.part("mirror", glass, material="glass")
-    if d.hand.barrels or d.hand.bored:
+    if d.hand.barrels or d.hand.has_bore:
         d.part(d.pick("mirror", "stand"), rod(0.006, (-w / 2 - 0.02, 0, z), (-w / 2 + 0.001, 0, z)), rod(0.006,
             (w / 2 - 0.001, 0, z), (w / 2 + 0.02, 0, z)))
     d.hinge("mirror", "stand", X, (0, 0, z), 0.5, -0.5)
 
 
-def bar_cart(d: Draft) -> None:
+def bar_cart(d: ObjectBuilder) -> None:
     """Two trays on a frame with four wheels or casters, and a drawer."""
     w, t, h = d.u(0.5, 0.9), d.u(0.35, 0.5), d.u(0.7, 0.95)
     foot = 0.1
@@ -279,7 +279,7 @@ def bar_cart(d: Draft) -> None:
             d.part("frame", box((x - 0.015, y - 0.012, 0.05), (x + 0.015, y + 0.012, foot + 0.01)))
 
 
-def office_drawer_unit(d: Draft) -> None:
+def office_drawer_unit(d: ObjectBuilder) -> None:
     """A roll container."""
     w, t, h, foot = d.u(0.35, 0.45), d.u(0.5, 0.7), d.u(0.5, 0.65), 0.07
     case(d, "unit", (-w / 2, 0, foot), (w / 2, t, h), material="steel")
@@ -290,7 +290,7 @@ def office_drawer_unit(d: Draft) -> None:
         caster(d, f"caster_{k}", "unit", (x, y, foot), foot)
 
 
-def swivel_bookcase(d: Draft) -> None:
+def swivel_bookcase(d: ObjectBuilder) -> None:
     """A square bookcase that turns on its foot."""
     w, h, foot = d.u(0.35, 0.5), d.u(0.6, 1.4), d.u(0.04, 0.1)
     d.part("foot", rod(0.45 * w, (0, 0, 0), (0, 0, foot)), material="wood")
@@ -301,7 +301,7 @@ def swivel_bookcase(d: Draft) -> None:
     d.spin("case", "foot", Z, (0, 0, foot))
 
 
-def roller_shutter_cabinet(d: Draft) -> None:
+def roller_shutter_cabinet(d: ObjectBuilder) -> None:
     """A shutter of slats drawn as one plate that slides up or aside."""
     w, h, t = d.u(0.6, 1.2), d.u(0.6, 1.8), 0.4
     case(d, "cabinet", (-w / 2, 0, 0), (w / 2, t, h), opening=-Y, wall=0.03)

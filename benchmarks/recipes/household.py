@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.recipes.draft import spread
 from benchmarks.recipes.mechanisms import (
     bail,
     button,
@@ -20,16 +19,17 @@ from benchmarks.recipes.mechanisms import (
     lever,
     rotor,
 )
+from benchmarks.recipes.object_builder import spread
 from benchmarks.recipes.shapes import X, Y, Z, ball, beam, block, box, capsule, cone, prism, rod
 
 if TYPE_CHECKING:
-    from benchmarks.recipes.draft import Draft
+    from benchmarks.recipes.object_builder import ObjectBuilder
 
 # fmt: off
 # A recipe reads as a list of shapes and joints, which one argument a line would hide.
 
 
-def pot_with_lid(d: Draft) -> None:
+def pot_with_lid(d: ObjectBuilder) -> None:
     """A pot whose lid is lifted off."""
     r, h = d.u(0.08, 0.18), d.u(0.06, 0.2)
     d.part("pot", rod(r, (0, 0, 0), (0, 0, h)), material="steel")
@@ -44,7 +44,7 @@ def pot_with_lid(d: Draft) -> None:
     d.slide("lid", "pot", Z, d.u(1.0, 2.0) * h)
 
 
-def pedal_bin(d: Draft) -> None:
+def pedal_bin(d: ObjectBuilder) -> None:
     """A bin with a lid and a pedal."""
     r, h = d.u(0.12, 0.2), d.u(0.3, 0.65)
     shape = d.pick(rod(r, (0, 0, 0), (0, 0, h)), box((-r, -r, 0), (r, r, h)))
@@ -56,11 +56,11 @@ def pedal_bin(d: Draft) -> None:
         h + g + 0.02]})
     d.hinge("lid", "bin", -X, (0, r, h + g), d.u(1.2, 1.6))
     low = 0.02 + d.gap(0.05)
-    d.part("pedal", box((-0.03, -r - 0.07, low), (0.03, -r - g - 0.001 if d.hand.bored else -0.6 * r, low + 0.012)))
-    d.hinge("pedal", "bin", X, (0, -r - g - 0.001 if d.hand.bored else -r, low), 0.25, ajar=False)
+    d.part("pedal", box((-0.03, -r - 0.07, low), (0.03, -r - g - 0.001 if d.hand.has_bore else -0.6 * r, low + 0.012)))
+    d.hinge("pedal", "bin", X, (0, -r - g - 0.001 if d.hand.has_bore else -r, low), 0.25, initial_opening=False)
 
 
-def kettle(d: Draft) -> None:
+def kettle(d: ObjectBuilder) -> None:
     """A lid on a hinge, a bail or a fixed handle, a whistle or switch."""
     r, h = d.u(0.07, 0.11), d.u(0.12, 0.25)
     d.part("body", cone(r, 0.75 * r, (0, 0, 0), (0, 0, h)), cone(0.25 * r, 0.12 * r, (0.6 * r, 0, 0.5 * h), (1.5 * r, 0,
@@ -77,7 +77,7 @@ def kettle(d: Draft) -> None:
         bail(d, "handle", "body", (0, -0.7 * r, h * 0.98), (0, 0.7 * r, h * 0.98), r, 0.012, Z, lower=-1.0, upper=1.0)
 
 
-def pepper_mill(d: Draft) -> None:
+def pepper_mill(d: ObjectBuilder) -> None:
     """A head that turns on a body."""
     r, h = d.u(0.02, 0.035), d.u(0.08, 0.3)
     d.part("body", rod(r, (0, 0, 0), (0, 0, 0.3 * h)), cone(r, 0.6 * r, (0, 0, 0.3 * h), (0, 0, 0.7 * h)),
@@ -91,7 +91,7 @@ def pepper_mill(d: Draft) -> None:
     d.spin("head", "body", Z, (0, 0, 0.7 * h))
 
 
-def jar_with_clip(d: Draft) -> None:
+def jar_with_clip(d: ObjectBuilder) -> None:
     """A glass jar with a hinged lid, or one that is screwed."""
     r, h = d.u(0.03, 0.07), d.u(0.08, 0.2)
     d.part("jar", rod(r, (0, 0, 0), (0, 0, h)), material="glass")
@@ -106,7 +106,7 @@ def jar_with_clip(d: Draft) -> None:
         cap(d, "lid", "jar", (0, 0, h), r, 0.02, Z, turns=d.maybe())
 
 
-def tap(d: Draft) -> None:
+def tap(d: ObjectBuilder) -> None:
     """A basin mixer: a lever or two handles, a spout that swings."""
     r, h, reach = d.u(0.018, 0.03), d.u(0.08, 0.3), d.u(0.1, 0.22)
     d.part("base", rod(1.3 * r, (0, 0, 0), (0, 0, 0.02)), rod(r, (0, 0, 0), (0, 0, 0.6 * h)), material="steel")
@@ -118,7 +118,7 @@ def tap(d: Draft) -> None:
     if not swings:
         d.part("base", rod(0.98 * r, (0, 0, 0.5 * h), (0, 0, 0.7 * h)))
     else:
-        d.hinge("spout", "base", Z, (0, 0, 0.6 * h), 1.4, -1.4, ajar=False)
+        d.hinge("spout", "base", Z, (0, 0, 0.6 * h), 1.4, -1.4, initial_opening=False)
     if d.maybe():
         for k, s in enumerate((-1.0, 1.0)):
             d.part("base", rod(0.6 * r, (0, 0, 0.3 * h), (s * 3 * r, 0, 0.3 * h)))
@@ -127,10 +127,10 @@ def tap(d: Draft) -> None:
         on = "spout" if swings else "base"
         d.part("lever", rod(0.8 * r, (0, 0, h + g), (0, 0, h + 0.02)), beam(0.014, 0.008, (0, 0, h + 0.016), (0, -0.1,
             h + 0.03)))
-        d.hinge("lever", on, Z, (0, 0, h), 1.0, -1.0, ajar=False)
+        d.hinge("lever", on, Z, (0, 0, h), 1.0, -1.0, initial_opening=False)
 
 
-def shower_mixer(d: Draft) -> None:
+def shower_mixer(d: ObjectBuilder) -> None:
     """A bar on a wall with a knob at either end and a hand shower on a rail."""
     w, r = d.u(0.2, 0.35), d.u(0.018, 0.028)
     d.part("bar", box((-w, 0.04, -0.1), (w, 0.06, 1.0)), rod(r, (-w / 2, 0, 0), (w / 2, 0, 0)), material="steel")
@@ -143,10 +143,10 @@ def shower_mixer(d: Draft) -> None:
     d.part("holder", block((0, -0.02, z := d.u(0.4, 0.7)), (0.05, 0.05, 0.06)), cone(0.02, 0.04, (0, -0.05, z), (0,
         -0.1, z + 0.03)))
     d.bore("holder", rod(0.01 + 1.5 * g, (0, -0.02, 0), (0, -0.02, 1)))
-    d.slide("holder", "bar", Z, 0.8 - z, 0.28 - z, ajar=False)
+    d.slide("holder", "bar", Z, 0.8 - z, 0.28 - z, initial_opening=False)
 
 
-def cistern(d: Draft) -> None:
+def cistern(d: ObjectBuilder) -> None:
     """A toilet: seat, lid and a flush button, lever or chain pull."""
     w, h = d.u(0.34, 0.4), d.u(0.36, 0.45)
     d.part("bowl", cone(0.3 * w, 0.48 * w, (0, 0, 0), (0, 0, h)), box((-w / 2, 0.45 * w, 0), (w / 2, 0.95 * w, h)),
@@ -159,7 +159,7 @@ def cistern(d: Draft) -> None:
     d.hinge("seat", "bowl", -X, (0, y, h + g), 1.55)
     d.part("lid", rod(0.5 * w, (0, -0.06 * w, h + 2 * g + 0.02), (0, -0.06 * w, h + 2 * g + 0.035)), box((-0.3 * w,
         0.4 * w, h + 2 * g + 0.02), (0.3 * w, y, h + 2 * g + 0.035)))
-    d.hinge("lid", "bowl", -X, (0, y, h + g), 1.55, ajar=False)
+    d.hinge("lid", "bowl", -X, (0, y, h + g), 1.55, initial_opening=False)
     top = (0, 0.78 * w, h + 0.38)
     if d.maybe():
         button(d, "flush", "bowl", top, (0.05, 0.05), 0.012, Z, is_round=d.maybe())
@@ -167,7 +167,7 @@ def cistern(d: Draft) -> None:
         lever(d, "flush", "bowl", (0.5 * w, 0.75 * w, h + 0.3), X, -Y, 0.08, reach=0.7)
 
 
-def towel_rail(d: Draft) -> None:
+def towel_rail(d: ObjectBuilder) -> None:
     """Arms that swing about an upright on a wall."""
     h, n = d.u(0.2, 0.6), d.n(2, 4)
     d.part("wall_mount", box((-0.04, 0.02, 0), (0.04, 0.04, h)), rod(0.012, (0, 0, 0.03), (0, 0, h - 0.03)),
@@ -181,7 +181,7 @@ def towel_rail(d: Draft) -> None:
         d.hinge(f"arm_{k}", "wall_mount", Z, (0, 0, z), 1.2, -1.2)
 
 
-def ironing_board(d: Draft) -> None:
+def ironing_board(d: ObjectBuilder) -> None:
     """Legs that fold about a pin under a board."""
     w, t, h = d.u(1.0, 1.4), d.u(0.3, 0.45), d.u(0.75, 0.95)
     d.part("board", box((-w / 2, -t / 2, h), (w / 2, t / 2, h + 0.03)), material="steel")
@@ -195,10 +195,10 @@ def ironing_board(d: Draft) -> None:
         h * 0.6), (0, y, h * 0.6)))
     if d.hand.barrels:
         d.part("legs", rod(0.006, (0.2 * w, -0.3 * t, h - 0.025), (0.2 * w, 0.3 * t, h - 0.025)))
-    d.hinge("legs", "board", Y, (0.2 * w, 0, h - 0.025), 0.4, -0.3, ajar=False)
+    d.hinge("legs", "board", Y, (0.2 * w, 0, h - 0.025), 0.4, -0.3, initial_opening=False)
 
 
-def clothes_airer(d: Draft) -> None:
+def clothes_airer(d: ObjectBuilder) -> None:
     """A frame with wings that fold up."""
     w, t, h = d.u(0.8, 1.1), d.u(0.5, 0.6), d.u(0.8, 1.0)
     r = 0.008
@@ -212,10 +212,10 @@ def clothes_airer(d: Draft) -> None:
         a, b = s * (w / 2 + 2 * r + g), s * (w / 2 + d.u(0.3, 0.5))
         d.part(f"wing_{k}", *(rod(r, (x, -t / 2, h), (x, t / 2, h)) for x in (a, b)), *(rod(r, (a, y, h), (b, y,
             h)) for y in (-t / 2, t / 2)))
-        d.hinge(f"wing_{k}", "frame", Y * -s, (a, 0, h), 1.3, -1.4, ajar=False)
+        d.hinge(f"wing_{k}", "frame", Y * -s, (a, 0, h), 1.3, -1.4, initial_opening=False)
 
 
-def bread_bin(d: Draft) -> None:
+def bread_bin(d: ObjectBuilder) -> None:
     """A quarter round lid that rolls back, or a front flap."""
     w, r = d.u(0.3, 0.45), d.u(0.1, 0.16)
     d.part("bin", box((-w / 2, -r, 0), (w / 2, r, 0.02)), box((-w / 2, 0.7 * r, 0), (w / 2, r, r)), material="wood")
@@ -230,7 +230,7 @@ def bread_bin(d: Draft) -> None:
     d.hinge("lid", "bin", -X, (0, -0.2 * r, 0.05 + g), 0.5)
 
 
-def knife_block(d: Draft) -> None:
+def knife_block(d: ObjectBuilder) -> None:
     """Knives that are drawn out of a slanted block."""
     w, h, n = d.u(0.1, 0.2), d.u(0.2, 0.28), d.n(3, 6)
     d.part("block", prism([(-0.1, 0), (0.08, 0), (0.08, 0.6 * h), (-0.02, h)], (0, 0, 0), w, "x"), material="wood")
@@ -244,7 +244,7 @@ def knife_block(d: Draft) -> None:
         d.slide(f"knife_{k}", "block", out, 0.12)
 
 
-def stand_mixer(d: Draft) -> None:
+def stand_mixer(d: ObjectBuilder) -> None:
     """A head that tilts, a beater that turns, a speed lever."""
     k = d.u(0.8, 1.2)
     d.part("base", box((-0.09 * k, -0.2 * k, 0), (0.09 * k, 0.12 * k, 0.03)), box((-0.05 * k, 0.02 * k, 0), (0.05 * k,
@@ -255,20 +255,20 @@ def stand_mixer(d: Draft) -> None:
     d.hinge("head", "base", -X, (0, 0.1 * k, z), 0.8)
     d.part("beater", rod(0.012, (0, -0.14 * k, z - g - 0.02), (0, -0.14 * k, z - g)), ball(0.04 * k, (0, -0.14 * k,
         z - 0.07 * k)))
-    if d.hand.bored:
+    if d.hand.has_bore:
         d.cut("head", rod(0.006 + 2 * g, (0, -0.14 * k, 0), (0, -0.14 * k, z + 0.05)))
         d.part("beater", rod(0.006, (0, -0.14 * k, z - 0.03), (0, -0.14 * k, z + 0.045)))
     d.spin("beater", "head", Z, (0, -0.14 * k, z))
     knob(d, "speed", "head", (0.05 * k, -0.02, z + 0.05 * k), 0.015, 0.015, X, reach=3.0)
 
 
-def food_processor(d: Draft) -> None:
+def food_processor(d: ObjectBuilder) -> None:
     """A bowl on a base, a lid, a knob, buttons."""
     r = d.u(0.07, 0.1)
     case(d, "base", (-0.11, -0.1, 0), (0.11, 0.1, 0.12), material="plastic")
     g = d.gap(r)
     d.part("bowl", rod(r, (0, 0, 0.12 + g), (0, 0, 0.27)), material="glass")
-    d.hinge("bowl", "base", Z, (0, 0, 0.12), 0.5, ajar=False)
+    d.hinge("bowl", "base", Z, (0, 0, 0.12), 0.5, initial_opening=False)
     d.part("lid", rod(1.03 * r, (0, 0, 0.27 + g), (0, 0, 0.285 + g)), rod(0.3 * r, (0, 0.4 * r, 0.27 + g), (0, 0.4 * r,
         0.35)))
     d.slide("lid", "bowl", Z, 0.1)
@@ -277,7 +277,7 @@ def food_processor(d: Draft) -> None:
         button(d, f"button_{k}", "base", (-0.05, -0.1, z), (0.03, 0.02), 0.006, -Y, is_round=d.maybe())
 
 
-def waffle_iron(d: Draft) -> None:
+def waffle_iron(d: ObjectBuilder) -> None:
     """Two shells on a hinge with handles, sandwich maker or grill."""
     w, t = d.u(0.2, 0.35), d.u(0.2, 0.3)
     shape = d.maybe()
@@ -292,7 +292,7 @@ def waffle_iron(d: Draft) -> None:
     d.hinge("upper", "lower", -X, (0, r + 0.02, 0.07 + g / 2), d.u(1.2, 1.7))
 
 
-def range_cooker(d: Draft) -> None:
+def range_cooker(d: ObjectBuilder) -> None:
     """An oven with a door, knobs in a row, a drawer for pans."""
     w, t, h = d.u(0.5, 0.9), 0.6, d.u(0.85, 0.92)
     case(d, "range", (-w / 2, 0, 0), (w / 2, t, h), material="steel")
@@ -304,7 +304,7 @@ def range_cooker(d: Draft) -> None:
         knob(d, f"knob_{k}", "range", (x, 0, h - 0.07), 0.022, 0.025, -Y, reach=d.pick(None, 4.7))
 
 
-def top_loader(d: Draft) -> None:
+def top_loader(d: ObjectBuilder) -> None:
     """A washing machine with a lid above, a drum and a dial."""
     w, h = d.u(0.4, 0.65), d.u(0.85, 1.0)
     case(d, "housing", (-w / 2, -0.3, 0), (w / 2, 0.3, h), material="steel")
@@ -320,7 +320,7 @@ def top_loader(d: Draft) -> None:
         knob(d, f"dial_{k}", "housing", (x, 0.25, h + 0.15), 0.03, 0.03, Z)
 
 
-def urn(d: Draft) -> None:
+def urn(d: ObjectBuilder) -> None:
     """An urn with a spigot."""
     r, h = d.u(0.12, 0.18), d.u(0.3, 0.5)
     d.part("urn", rod(r, (0, 0, 0.05), (0, 0, h)), rod(0.7 * r, (0, 0, 0), (0, 0, 0.06)), rod(0.012, (0, -0.8 * r, 0.1),
@@ -333,7 +333,7 @@ def urn(d: Draft) -> None:
     d.hinge("spigot", "urn", Z, (0, -r - 0.04, 0.112), 1.57)
 
 
-def manual_coffee_grinder(d: Draft) -> None:
+def manual_coffee_grinder(d: ObjectBuilder) -> None:
     """A box with a crank above and a drawer below."""
     w, h = d.u(0.09, 0.14), d.u(0.1, 0.2)
     d.part("mill", box((-w / 2, -w / 2, 0), (w / 2, w / 2, h)), cone(0.4 * w, 0.2 * w, (0, 0, h), (0, 0, h + 0.04)),
@@ -342,7 +342,7 @@ def manual_coffee_grinder(d: Draft) -> None:
     drawer(d, "drawer", "mill", (-0.35 * w, -w / 2, 0.01), (0.35 * w, 0.3 * w, 0.4 * h), out=-Y)
 
 
-def french_press(d: Draft) -> None:
+def french_press(d: ObjectBuilder) -> None:
     """A plunger through a lid, on a glass."""
     r, h = d.u(0.035, 0.055), d.u(0.12, 0.2)
     d.part("glass", rod(r, (0, 0, 0), (0, 0, h)), material="glass")
@@ -353,10 +353,10 @@ def french_press(d: Draft) -> None:
     z = d.u(0.5, 0.85) * h
     d.part("plunger", rod(0.92 * r - 2 * g - 0.0003, (0, 0, z), (0, 0, z + 0.006)), rod(0.003, (0, 0, z), (0, 0,
         h + 0.08)), ball(0.01, (0, 0, h + 0.085)), material="steel")
-    d.slide("plunger", "glass", -Z, 0.8 * z, ajar=False)
+    d.slide("plunger", "glass", -Z, 0.8 * z, initial_opening=False)
 
 
-def salad_spinner(d: Draft) -> None:
+def salad_spinner(d: ObjectBuilder) -> None:
     """A lid with a crank or a pump knob on a bowl."""
     r, h = d.u(0.1, 0.14), d.u(0.12, 0.18)
     d.part("bowl", cone(0.8 * r, r, (0, 0, 0), (0, 0, h)))
@@ -371,31 +371,31 @@ def salad_spinner(d: Draft) -> None:
         button(d, "pump", "lid", (0, 0, h + g + 0.03), (0.5 * r, 0.5 * r), 0.03, Z, is_round=True)
 
 
-def soap_dispenser(d: Draft) -> None:
+def soap_dispenser(d: ObjectBuilder) -> None:
     """A pump head that goes down on a bottle."""
     r, h = d.u(0.025, 0.045), d.u(0.1, 0.18)
     d.part("bottle", d.pick(rod(r, (0, 0, 0), (0, 0, h)), box((-r, -r, 0), (r, r, h))), rod(0.4 * r, (0, 0, h), (0, 0,
         h + 0.02)))
     g = d.gap(0.01)
     d.bore("bottle", rod(0.004 + 1.5 * g, (0, 0, 0.3 * h), (0, 0, h + 0.1)))
-    d.part("pump", rod(0.004, (0, 0, 0.5 * h if d.hand.bored else h + 0.02), (0, 0, h + 0.06)), rod(0.3 * r, (0, 0,
+    d.part("pump", rod(0.004, (0, 0, 0.5 * h if d.hand.has_bore else h + 0.02), (0, 0, h + 0.06)), rod(0.3 * r, (0, 0,
         h + 0.05), (0, 0, h + 0.065)), beam(0.01, 0.008, (0, 0, h + 0.06), (0, -1.6 * r, h + 0.058)))
-    d.slide("pump", "bottle", -Z, 0.025, ajar=False)
+    d.slide("pump", "bottle", -Z, 0.025, initial_opening=False)
 
 
-def spray_bottle(d: Draft) -> None:
+def spray_bottle(d: ObjectBuilder) -> None:
     """A trigger below a head, a nozzle that turns."""
     r, h = d.u(0.03, 0.045), d.u(0.14, 0.2)
     d.part("bottle", rod(r, (0, 0, 0), (0, 0, h)), cone(r, 0.4 * r, (0, 0, h), (0, 0, h + 0.04)), box((-0.012, -0.09,
         h + 0.035), (0.012, 0.03, h + 0.07)))
     g = d.gap(0.01)
     d.part("trigger", beam(0.016, 0.008, (0, -0.07, h + 0.034 - g), (0, -0.09, h - 0.03), Y))
-    d.hinge("trigger", "bottle", X, (0, -0.07, h + 0.034 - g), 0.35, ajar=False)
+    d.hinge("trigger", "bottle", X, (0, -0.07, h + 0.034 - g), 0.35, initial_opening=False)
     d.part("nozzle", rod(0.009, (0, -0.09 - g, h + 0.055), (0, -0.108, h + 0.055)))
     d.spin("nozzle", "bottle", -Y, (0, -0.09, h + 0.055))
 
 
-def window_blind(d: Draft) -> None:
+def window_blind(d: ObjectBuilder) -> None:
     """Slats that all tilt, and a wand."""
     w, n = d.u(0.5, 1.2), d.n(4, 9)
     h = 0.06 * n
@@ -405,10 +405,10 @@ def window_blind(d: Draft) -> None:
     g = d.gap(0.02) + 0.0003
     for k, z in enumerate(spread(n, 0, h - 0.01)):
         d.part(f"slat_{k}", box((-w / 2 + g, -0.025, z - 0.001), (w / 2 - g, 0.025, z + 0.001)), material="metal")
-        d.hinge(f"slat_{k}", "rail", X, (0, 0, z), 0.9, -0.9, ajar=False)
+        d.hinge(f"slat_{k}", "rail", X, (0, 0, z), 0.9, -0.9, initial_opening=False)
 
 
-def dishwasher_with_racks(d: Draft) -> None:
+def dishwasher_with_racks(d: ObjectBuilder) -> None:
     """A dishwasher: a door that folds down, two racks that roll out."""
     w, t, h = d.pick(0.45, 0.6), 0.55, d.u(0.8, 0.87)
     case(d, "washer", (-w / 2, 0, 0), (w / 2, t, h), opening=-Y, wall=0.025, material="steel")
@@ -427,7 +427,7 @@ def dishwasher_with_racks(d: Draft) -> None:
         d.slide(f"rack_{k}", "washer", -Y, 0.4)
 
 
-def ceiling_fan(d: Draft) -> None:
+def ceiling_fan(d: ObjectBuilder) -> None:
     """Blades on a motor below a rod, pull chain now and then."""
     h, r = d.u(0.2, 0.4), d.u(0.4, 0.7)
     d.part("mount", rod(0.06, (0, 0, h), (0, 0, h + 0.04)), rod(0.012, (0, 0, 0), (0, 0, h + 0.02)), rod(0.08, (0, 0,
@@ -435,19 +435,19 @@ def ceiling_fan(d: Draft) -> None:
     rotor(d, "rotor", "mount", (0, 0, -0.06), -Z, r, d.n(3, 5), wide=0.2)
 
 
-def tower_fan(d: Draft) -> None:
+def tower_fan(d: ObjectBuilder) -> None:
     """A column that swings on its base, with buttons and a dial."""
     h, r = d.u(0.7, 1.1), d.u(0.06, 0.1)
     d.part("base", rod(1.8 * r, (0, 0, 0), (0, 0, 0.03)))
     g = d.gap(r)
     d.part("column", rod(r, (0, 0, 0.03 + g), (0, 0, h)))
-    d.hinge("column", "base", Z, (0, 0, 0.03), 0.7, -0.7, ajar=False)
+    d.hinge("column", "base", Z, (0, 0, 0.03), 0.7, -0.7, initial_opening=False)
     for k, x in enumerate(spread(d.n(1, 3), -0.7 * r, 0.7 * r)):
         button(d, f"button_{k}", "column", (x, -0.3 * r, h), (0.015, 0.015), 0.005, Z, is_round=True)
     knob(d, "timer", "column", (0, 0.4 * r, h), 0.3 * r, 0.015, Z, reach=d.pick(None, 4.0))
 
 
-def wood_stove(d: Draft) -> None:
+def wood_stove(d: ObjectBuilder) -> None:
     """A wood stove with a glazed door, an ash drawer and a damper."""
     w, h = d.u(0.4, 0.7), d.u(0.6, 1.0)
     case(d, "stove", (-w / 2, -0.2, 0.1), (w / 2, 0.2, h), material="steel")

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.recipes.draft import spread
 from benchmarks.recipes.mechanisms import (
     arm,
     bail,
@@ -21,6 +20,7 @@ from benchmarks.recipes.mechanisms import (
     plunger,
     rotor,
 )
+from benchmarks.recipes.object_builder import spread
 from benchmarks.recipes.shapes import (
     X,
     Y,
@@ -39,14 +39,14 @@ from benchmarks.recipes.shapes import (
 )
 
 if TYPE_CHECKING:
-    from benchmarks.recipes.draft import Draft
+    from benchmarks.recipes.object_builder import ObjectBuilder
     from benchmarks.recipes.shapes import Shape
 
 # fmt: off
 # A recipe reads as a list of shapes and joints, which one argument a line would hide.
 
 
-def toolbox(d: Draft) -> None:
+def toolbox(d: ObjectBuilder) -> None:
     """A case with a lid, a bail and drawers."""
     w, t, h = d.u(0.35, 0.6), d.u(0.18, 0.3), d.u(0.15, 0.3)
     case(d, "box", (-w / 2, -t / 2, 0), (w / 2, t / 2, h), opening=Z, wall=0.008, material="steel")
@@ -60,10 +60,10 @@ def toolbox(d: Draft) -> None:
         x = s * 0.35 * w
         d.part(f"latch_{k}", box((x - 0.015, -t / 2 - 0.008 - g, h - 0.03), (x + 0.015, -t / 2 - g, h + 0.02)),
             material="steel")
-        d.hinge(f"latch_{k}", "box", X, (x, -t / 2 - g - 0.008 * d.pick(0, 1), h - 0.03), 1.4, ajar=False)
+        d.hinge(f"latch_{k}", "box", X, (x, -t / 2 - g - 0.008 * d.pick(0, 1), h - 0.03), 1.4, initial_opening=False)
 
 
-def tool_cart(d: Draft) -> None:
+def tool_cart(d: ObjectBuilder) -> None:
     """Drawers of many heights, a lid, casters, a push bar."""
     w, t, z, h = d.u(0.55, 0.8), d.u(0.4, 0.5), 0.13, d.u(0.75, 1.0)
     case(d, "cabinet", (-w / 2, -t / 2, z), (w / 2, t / 2, h), material="steel")
@@ -85,7 +85,7 @@ def tool_cart(d: Draft) -> None:
         caster(d, f"caster_{k}", "cabinet", (x, y, z), z)
 
 
-def bench_vice(d: Draft) -> None:
+def bench_vice(d: ObjectBuilder) -> None:
     """A jaw that slides, a screw with a tommy bar."""
     w, n = d.u(0.1, 0.16), d.u(0.2, 0.3)
     d.part("body", box((-w / 2, 0, 0), (w / 2, 0.7 * n, 0.06)), box((-w / 2, 0, 0), (w / 2, 0.12 * n, 0.14)),
@@ -94,40 +94,40 @@ def bench_vice(d: Draft) -> None:
     y = -d.u(0.05, 0.3) * n
     d.bore("body", box((-0.16 * w - g, -0.1, 0.06 - g), (0.16 * w + g, n, 0.09 + g)))
     d.part("jaw", box((-w / 2, y - 0.12 * n, 0.03), (w / 2, y, 0.14)), box((-0.16 * w, y - 0.01, 0.06), (0.16 * w,
-        0.5 * n if d.hand.bored else -g, 0.09)), material="steel")
-    d.slide("jaw", "body", -Y, 0.3 * n, y + g, ajar=False)
+        0.5 * n if d.hand.has_bore else -g, 0.09)), material="steel")
+    d.slide("jaw", "body", -Y, 0.3 * n, y + g, initial_opening=False)
     at = np.array([0, y - 0.12 * n, 0.075])
     d.part("screw", rod(0.014, at - g * Y, at - 0.05 * Y), rod(0.005, at + np.array([-0.07, -0.04, 0]),
         at + np.array([0.07, -0.04, 0])), material="steel")
     d.spin("screw", "jaw", -Y, at)
 
 
-def drill_press(d: Draft) -> None:
+def drill_press(d: ObjectBuilder) -> None:
     """A table that slides on the column, a quill, a star handle, a chuck."""
     h = d.u(0.7, 1.6)
     d.part("stand", box((-0.15, -0.25, 0), (0.15, 0.15, 0.04)), rod(0.035, (0, 0.08, 0.03), (0, 0.08, h)), box((-0.09,
         -0.22, h - 0.2), (0.09, 0.14, h)), material="steel")
     g = d.gap(0.03) + 0.0004
     z = d.u(0.25, 0.45) * h
-    d.part("table", box((-0.13, -0.24, z), (0.13, 0.02, z + 0.025)), tube(0.055, 0.036 + g if d.hand.bored else 0.01,
+    d.part("table", box((-0.13, -0.24, z), (0.13, 0.02, z + 0.025)), tube(0.055, 0.036 + g if d.hand.has_bore else 0.01,
         (0, 0.08, z - 0.04), (0, 0.08, z + 0.06)), box((-0.04, -0.1, z - 0.02), (0.04, 0.035, z + 0.01)),
         material="steel")
     d.bore("table", rod(0.036 + 1.5 * g, (0, 0.08, 0), (0, 0.08, h)))
-    d.slide("table", "stand", Z, 0.15 * h, -0.1 * h, ajar=False)
+    d.slide("table", "stand", Z, 0.15 * h, -0.1 * h, initial_opening=False)
     q = np.array([0, -0.14, h - 0.2])
-    d.part("quill", rod(0.03, q - 0.06 * Z, q + (0.1 * Z if d.hand.bored else -g * Z)), material="steel")
+    d.part("quill", rod(0.03, q - 0.06 * Z, q + (0.1 * Z if d.hand.has_bore else -g * Z)), material="steel")
     d.bore("stand", rod(0.03 + 1.5 * g, q - Z, q + 0.12 * Z))
-    d.slide("quill", "stand", -Z, 0.03 if not d.hand.bored else 0.08, ajar=False)
+    d.slide("quill", "stand", -Z, 0.03 if not d.hand.has_bore else 0.08, initial_opening=False)
     d.part("chuck", cone(0.014, 0.022, q - 0.11 * Z, q - (0.06 + g) * Z), rod(0.004, q - 0.18 * Z, q - 0.1 * Z),
         material="steel")
     d.spin("chuck", "quill", Z, q - 0.06 * Z)
     at = np.array([0.09, -0.08, h - 0.12])
     d.part("feed", rod(0.018, at + g * X, at + 0.04 * X), *(rod(0.007, at + 0.025 * X,
         at + 0.04 * X + 0.16 * np.array([0.2, np.cos(a), np.sin(a)])) for a in np.arange(3) * 2.1), material="steel")
-    d.hinge("feed", "stand", X, at, 3.0, -0.2, ajar=False)
+    d.hinge("feed", "stand", X, at, 3.0, -0.2, initial_opening=False)
 
 
-def lathe_machine(d: Draft) -> None:
+def lathe_machine(d: ObjectBuilder) -> None:
     """A spindle, a carriage on a bed, a tailstock, handwheels."""
     n = d.u(1.2, 2.0)
     d.part("bed", box((-n / 2, -0.14, 0), (n / 2, 0.14, 0.1)), box((-n / 2, -0.02, 0.05), (n / 2, 0.02, 0.14)),
@@ -142,11 +142,11 @@ def lathe_machine(d: Draft) -> None:
         d.part(name, box((x - 0.07, -0.13, 0.1 + g), (x + 0.07, 0.13, 0.18)), box((x - 0.04, -0.04, 0.15), (x + 0.04,
             0.04, h)), material="steel")
         d.bore(name, box((x - 1, -0.02 - g, 0), (x + 1, 0.02 + g, 0.14 + g)))
-        d.slide(name, "bed", -X if name == "tailstock" else X, 0.12 * n, -0.06 * n, ajar=False)
+        d.slide(name, "bed", -X if name == "tailstock" else X, 0.12 * n, -0.06 * n, initial_opening=False)
     knob(d, "handwheel", "carriage", (x_carriage, -0.13, 0.14), 0.025, 0.03, -Y)
 
 
-def press(d: Draft) -> None:
+def press(d: ObjectBuilder) -> None:
     """An arbor press: a ram and a lever."""
     h = d.u(0.35, 0.6)
     d.part("frame", box((-0.08, -0.1, 0), (0.08, 0.14, 0.04)), box((-0.04, 0.05, 0.03), (0.04, 0.13, h)), box((-0.05,
@@ -154,13 +154,13 @@ def press(d: Draft) -> None:
     g = d.gap(0.02) + 0.0003
     a = 0.016
     d.bore("frame", box((-a - g, -a - g - 0.02, 0.05), (a + g, a + g - 0.02, h + 1)))
-    d.part("ram", box((-a, -a - 0.02, 0.12), (a, a - 0.02, h + 0.06 if d.hand.bored else h - 0.14 - g)),
+    d.part("ram", box((-a, -a - 0.02, 0.12), (a, a - 0.02, h + 0.06 if d.hand.has_bore else h - 0.14 - g)),
         material="steel")
-    d.slide("ram", "frame", -Z, 0.06, ajar=False)
+    d.slide("ram", "frame", -Z, 0.06, initial_opening=False)
     lever(d, "lever", "frame", (0.05, 0.03, h - 0.06), X, np.array([0, -0.8, 0.6]), d.u(0.2, 0.4), reach=1.2)
 
 
-def hand_pump(d: Draft) -> None:
+def hand_pump(d: ObjectBuilder) -> None:
     """A well pump: a long lever on a post and a spout; the rod goes up and down."""
     h = d.u(0.7, 1.1)
     d.part("post", rod(0.09, (0, 0, 0), (0, 0, 0.04)), rod(0.055, (0, 0, 0.03), (0, 0, h)), capsule(0.025, (0, 0,
@@ -168,12 +168,12 @@ def hand_pump(d: Draft) -> None:
         material="steel")
     g = d.gap(0.02) + 0.0005
     d.bore("post", rod(0.01 + 1.5 * g, (0, 0, 0.4), (0, 0, h + 1)))
-    d.part("rod", rod(0.01, (0, 0, 0.5 * h if d.hand.bored else h + g), (0, 0, h + 0.12)), material="steel")
-    d.slide("rod", "post", Z, 0.08, ajar=False)
+    d.part("rod", rod(0.01, (0, 0, 0.5 * h if d.hand.has_bore else h + g), (0, 0, h + 0.12)), material="steel")
+    d.slide("rod", "post", Z, 0.08, initial_opening=False)
     arm(d, "handle", "post", (-0.12, 0, h + 0.05), (-0.6, 0, h - 0.2), 0.03, Y, lower=-0.4, upper=0.4)
 
 
-def gate_valve(d: Draft) -> None:
+def gate_valve(d: ObjectBuilder) -> None:
     """A handwheel above a body between flanges."""
     r = d.u(0.02, 0.15)
     d.part("body", tube(r, 0.7 * r, (-3 * r, 0, 0), (3 * r, 0, 0)), *(tube(1.7 * r, 0.7 * r, (s * 3 * r, 0, 0),
@@ -185,10 +185,10 @@ def gate_valve(d: Draft) -> None:
     d.part("handwheel", rod(0.25 * r, at + g * Z, at + 1.2 * r * Z), ring(1.6 * r, 0.18 * r, at + 0.9 * r * Z, Z),
         *(beam(0.2 * r, 0.15 * r, at + 0.9 * r * Z, at + 0.9 * r * Z + 1.6 * r * np.array([np.cos(a), np.sin(a),
         0])) for a in np.arange(n) * 2 * np.pi / n), material="steel")
-    d.spin("handwheel", "body", Z, at) if d.maybe() else d.hinge("handwheel", "body", Z, at, 9.0, ajar=False)
+    d.spin("handwheel", "body", Z, at) if d.maybe() else d.hinge("handwheel", "body", Z, at, 9.0, initial_opening=False)
 
 
-def ball_valve(d: Draft) -> None:
+def ball_valve(d: ObjectBuilder) -> None:
     """A lever that turns by a quarter above a pipe."""
     r, n = d.u(0.01, 0.06), d.n(1, 3)
     d.part("pipe", rod(r, (-4 * r * n, 0, 0), (4 * r * n, 0, 0)), material="steel")
@@ -197,7 +197,7 @@ def ball_valve(d: Draft) -> None:
         lever(d, f"lever_{k}", "pipe", (x, 0, 1.8 * r), Z, d.pick(X, Y), 5.0 * r, reach=1.57)
 
 
-def control_box(d: Draft) -> None:
+def control_box(d: ObjectBuilder) -> None:
     """Knobs, push buttons, an emergency stop, switches and a key on a box."""
     w, h, t = d.u(0.15, 0.4), d.u(0.15, 0.5), d.u(0.06, 0.2)
     case(d, "box", (-w / 2, 0, 0), (w / 2, t, h), material="steel")
@@ -217,18 +217,19 @@ def control_box(d: Draft) -> None:
                 tip = (x, -0.5 * pitch, z + 0.25 * pitch)
                 d.part("box", rod(0.18 * pitch, (x, 0.01 * pitch, z), (x, -0.06 * pitch, z)))
                 d.part(name, capsule(0.06 * pitch, (x, -0.12 * pitch - g, z), tip))
-                d.hinge(name, "box", X, (x, -0.12 * pitch - g if d.hand.bored else 0.0, z), 0.8, -0.05, ajar=False)
+                d.hinge(name, "box", X, (x, -0.12 * pitch - g if d.hand.has_bore else 0.0, z), 0.8, -0.05,
+                    initial_opening=False)
             else:
                 g = d.gap(0.1 * pitch) + 0.0002
                 d.bore("box", box((x - 0.05 * pitch - g, -0.01, z - 0.4 * pitch), (x + 0.05 * pitch + g, 0.1 * t,
                     z + 0.4 * pitch)))
-                d.part(name, box((x - 0.05 * pitch, 0.05 * t if d.hand.bored else -g, z - 0.1 * pitch),
+                d.part(name, box((x - 0.05 * pitch, 0.05 * t if d.hand.has_bore else -g, z - 0.1 * pitch),
                     (x + 0.05 * pitch, -0.2 * pitch, z + 0.1 * pitch)), box((x - 0.12 * pitch, -0.08 * pitch,
                     z - 0.1 * pitch), (x + 0.12 * pitch, -0.25 * pitch, z + 0.1 * pitch)))
-                d.slide(name, "box", Z, 0.25 * pitch, -0.25 * pitch, ajar=False)
+                d.slide(name, "box", Z, 0.25 * pitch, -0.25 * pitch, initial_opening=False)
 
 
-def fuse_box(d: Draft) -> None:
+def fuse_box(d: ObjectBuilder) -> None:
     """A door with switches behind or beside it."""
     w, h = d.u(0.2, 0.4), d.u(0.25, 0.5)
     case(d, "box", (-w / 2, 0, 0), (w / 2, 0.12, h), opening=-Y, wall=0.01, material="steel")
@@ -238,10 +239,10 @@ def fuse_box(d: Draft) -> None:
         for k, x in enumerate(spread(d.n(3, 8), -0.4 * w, 0.4 * w)):
             g = d.gap(0.01)
             d.part(f"breaker_{k}", box((x - 0.006, 0.06 - g, 0.5 * h - 0.01), (x + 0.006, 0.035, 0.5 * h + 0.012)))
-            d.hinge(f"breaker_{k}", "box", X, (x, 0.06 - g, 0.5 * h - 0.01), 0.6, ajar=False)
+            d.hinge(f"breaker_{k}", "box", X, (x, 0.06 - g, 0.5 * h - 0.01), 0.6, initial_opening=False)
 
 
-def knife_switch(d: Draft) -> None:
+def knife_switch(d: ObjectBuilder) -> None:
     """A blade with a handle between clips."""
     n, w = d.n(1, 3), d.u(0.04, 0.08)
     d.part("board", box((-w * n, -0.01, -0.12), (w * n, 0.0, 0.12)), material="plastic")
@@ -254,12 +255,12 @@ def knife_switch(d: Draft) -> None:
         d.part("blade", box((x - 0.004, -0.035, -0.085), (x + 0.004, -0.02, 0.09)), material="metal")
     d.part("blade", box((xs[0] - 0.005, -0.035, 0.09), (xs[-1] + 0.005, -0.02, 0.1)), rod(0.008, (0, -0.027, 0.095), (0,
         -0.09, 0.11)))
-    if not d.hand.bored:
+    if not d.hand.has_bore:
         d.part(d.pick("board", "blade"), rod(0.003, (xs[0] - 0.01, -0.0275, -0.08), (xs[-1] + 0.01, -0.0275, -0.08)))
     d.hinge("blade", "board", X, (0, -0.0275, -0.08), 1.2)
 
 
-def big_lever_console(d: Draft) -> None:
+def big_lever_console(d: ObjectBuilder) -> None:
     """Levers in slots on a desk, joysticks, pedals below."""
     w = d.u(0.5, 1.2)
     d.part("console", prism([(0, 0), (0.5, 0), (0.5, 0.9), (0.3, 0.9), (0, 0.75)], (0, 0, 0), w, "x"), material="steel")
@@ -269,24 +270,25 @@ def big_lever_console(d: Draft) -> None:
         at = np.array([x, 0.15, 0.825])
         g = d.gap(0.02) + 0.001
         d.bore("console", box((x - 0.009 - g, 0.03, 0.7), (x + 0.009 + g, 0.27, 1.0)))
-        d.part(f"lever_{k}", rod(0.008, at - (0.06 * up if d.hand.bored else -g * up), at + 0.2 * up), ball(0.02,
+        d.part(f"lever_{k}", rod(0.008, at - (0.06 * up if d.hand.has_bore else -g * up), at + 0.2 * up), ball(0.02,
             at + 0.21 * up))
-        d.hinge(f"lever_{k}", "console", X, at - (0.05 * up if d.hand.bored else 0 * up), 0.35, -0.35, ajar=False)
+        d.hinge(f"lever_{k}", "console", X, at - (0.05 * up if d.hand.has_bore else 0 * up), 0.35, -0.35,
+            initial_opening=False)
     for k, x in enumerate(spread(d.n(0, 2) or 1, -0.3 * w, 0.3 * w)):
         g = d.gap(0.02) + 0.0005
         d.part(f"pedal_{k}", beam(0.08, 0.015, (x, -g, 0.06), (x, -0.2, 0.14), Z), material="metal")
-        d.hinge(f"pedal_{k}", "console", X, (x, -g, 0.05), 0.3, ajar=False)
+        d.hinge(f"pedal_{k}", "console", X, (x, -g, 0.05), 0.3, initial_opening=False)
 
 
-def robot_arm(d: Draft) -> None:
+def robot_arm(d: ObjectBuilder) -> None:
     """Four to six links of blocks and cylinders; turns about z, then y, y, x, y."""
     k = d.u(0.3, 1.2)
     d.part("base", rod(0.16 * k, (0, 0, 0), (0, 0, 0.12 * k)), material="steel")
     g = d.gap(0.1 * k)
     d.part("shoulder", rod(0.13 * k, (0, 0, 0.12 * k + g), (0, 0, 0.25 * k)), box((-0.06 * k, -0.05 * k, 0.2 * k),
         (0.06 * k, 0.05 * k, 0.36 * k)))
-    d.hinge("shoulder", "base", Z, (0, 0, 0.12 * k), 2.9, -2.9, ajar=False)
-    step = 0.1 * k + d.gap(0.1 * k) if d.hand.bored else 0.0
+    d.hinge("shoulder", "base", Z, (0, 0, 0.12 * k), 2.9, -2.9, initial_opening=False)
+    step = 0.1 * k + d.gap(0.1 * k) if d.hand.has_bore else 0.0
     chain = [np.array([0, 0, 0.32 * k]), np.array([0.1 * k, 0, 0.75 * k]), np.array([0.5 * k, 0, 0.8 * k]),
         np.array([0.62 * k, 0, 0.7 * k])]
     parent = "shoulder"
@@ -297,24 +299,24 @@ def robot_arm(d: Draft) -> None:
     end = chain[-1] + 3 * step * Y
     d.part("flange", rod(0.04 * k, end + np.array([0.05 * k + g + 0.02 * k, 0, -0.06 * k]), end + np.array([0.12 * k, 0,
         -0.06 * k])))
-    if not d.hand.bored:
+    if not d.hand.has_bore:
         d.spin("flange", parent, X, end + np.array([0.07 * k, 0, -0.06 * k]))
     else:
         d.fix("flange", parent)
 
 
-def scissor_table(d: Draft) -> None:
+def scissor_table(d: ObjectBuilder) -> None:
     """A platform over a base; the links are left out, as quick models do."""
     w, t, h = d.u(0.5, 1.2), d.u(0.4, 0.8), d.u(0.3, 0.6)
     d.part("base", box((-w / 2, -t / 2, 0), (w / 2, t / 2, 0.06)), tube(0.05, 0.035, (0, 0, 0.05), (0, 0, 0.8 * h)),
         material="steel")
     g = d.gap(0.03) + 0.0005
     d.part("platform", box((-w / 2, -t / 2, h), (w / 2, t / 2, h + 0.05)),
-        rod(0.035 - 1.5 * g if d.hand.bored else 0.035, (0, 0, 0.3 * h), (0, 0, h + 0.01)), material="steel")
-    d.slide("platform", "base", Z, 0.4 * h, -0.1 * h, ajar=False)
+        rod(0.035 - 1.5 * g if d.hand.has_bore else 0.035, (0, 0, 0.3 * h), (0, 0, h + 0.01)), material="steel")
+    d.slide("platform", "base", Z, 0.4 * h, -0.1 * h, initial_opening=False)
 
 
-def bottle_jack(d: Draft) -> None:
+def bottle_jack(d: ObjectBuilder) -> None:
     """A post that rises out of a body, with a lever."""
     r, h = d.u(0.03, 0.05), d.u(0.15, 0.25)
     d.part("body", box((-2 * r, -2 * r, 0), (2 * r, 2 * r, 0.02)), rod(1.3 * r, (0, 0, 0.01), (0, 0, h)), rod(0.5 * r,
@@ -324,7 +326,7 @@ def bottle_jack(d: Draft) -> None:
     arm(d, "lever", "body", (1.6 * r, 0, 0.5 * h), (1.6 * r + 0.3, 0, 0.6 * h), 0.5 * r, Y, lower=-0.8, upper=0.2)
 
 
-def telescope_mast(d: Draft) -> None:
+def telescope_mast(d: ObjectBuilder) -> None:
     """Three to five tubes in each other: a mast, an antenna, a crane's boom."""
     n, r, h = d.n(2, 4), d.u(0.02, 0.1), d.u(0.4, 1.5)
     square = d.maybe()
@@ -340,13 +342,13 @@ def telescope_mast(d: Draft) -> None:
     for k in range(1, n + 1):
         q = r * (1 - 0.2 * k)
         g = d.gap(0.1 * r) + 0.0002
-        d.part(f"tube_{k}", shape(q, 0.05 * h * k + 0.01, h + 0.08 * h * k) if d.hand.bored else shape(q,
+        d.part(f"tube_{k}", shape(q, 0.05 * h * k + 0.01, h + 0.08 * h * k) if d.hand.has_bore else shape(q,
             h + 0.08 * h * (k - 1), h + 0.08 * h * k + 0.08 * h), material="metal")
         d.bore(f"tube_{k - 1}", shape(q + 1.5 * g, 0.04 * h * k, 3 * h))
         d.slide(f"tube_{k}", f"tube_{k - 1}", along, 0.6 * h)
 
 
-def syringe(d: Draft) -> None:
+def syringe(d: ObjectBuilder) -> None:
     """A syringe: a plunger in a barrel."""
     r, n = d.u(0.004, 0.02), d.u(0.06, 0.15)
     up = d.pick(X, Z)
@@ -356,7 +358,7 @@ def syringe(d: Draft) -> None:
     d.part("plunger", rod(1.5 * r, 1.95 * n * up, (1.95 * n + 0.004) * up), rod(0.6 * r, 0.9 * n * up, 1.95 * n * up))
 
 
-def cable_reel(d: Draft) -> None:
+def cable_reel(d: ObjectBuilder) -> None:
     """A drum with flanges on a stand, with a crank."""
     r, w = d.u(0.1, 0.4), 0.0
     w = d.u(0.6, 1.2) * r
@@ -380,7 +382,7 @@ def cable_reel(d: Draft) -> None:
     d.spin("drum", "stand", X, c)
 
 
-def conveyor(d: Draft) -> None:
+def conveyor(d: ObjectBuilder) -> None:
     """Rollers between two rails."""
     n, w, k = d.n(5, 10), d.u(0.3, 0.8), d.u(0.05, 0.09)
     length = 2.6 * k * n
@@ -392,13 +394,13 @@ def conveyor(d: Draft) -> None:
     for i, x in enumerate(spread(n, 0, length)):
         c = np.array([x, 0, 0.58])
         d.part(f"roller_{i}", rod(k, c - (w / 2 - g) * Y, c + (w / 2 - g) * Y), material="metal")
-        if d.hand.barrels or d.hand.bored:
+        if d.hand.barrels or d.hand.has_bore:
             d.part(f"roller_{i}", rod(0.25 * k, c - (w / 2 + 0.02) * Y, c + (w / 2 + 0.02) * Y))
             d.bore("frame", rod(0.25 * k + 1.5 * g, c - w * Y, c + w * Y))
         d.spin(f"roller_{i}", "frame", Y, c)
 
 
-def gear_train(d: Draft) -> None:
+def gear_train(d: ObjectBuilder) -> None:
     """Toothed wheels side by side on a plate; the others follow the first."""
     n, r = d.n(2, 4), d.u(0.03, 0.08)
     radii = [r * d.u(0.6, 1.4) for _ in range(n)]
@@ -416,7 +418,7 @@ def gear_train(d: Draft) -> None:
             d.follow(f"gear_{k}", "gear_0", (-1.0) ** k * radii[0] / q)
 
 
-def microscope(d: Draft) -> None:
+def microscope(d: ObjectBuilder) -> None:
     """A stage that slides, a turret, focus knobs, a tilting tube."""
     k = d.u(0.8, 1.2)
     p = scaled(k)
@@ -426,7 +428,7 @@ def microscope(d: Draft) -> None:
     g = d.gap(0.01) + 0.0003
     d.part("stage", box(p(-0.07, -0.09, 0.13), p(0.07, 0.05, 0.14) - g * Y), box(p(-0.02, 0.02, 0.12), p(0.02, 0.05,
         0.17) - g * Y))
-    d.slide("stage", "stand", Z, 0.03 * k, -0.03 * k, ajar=False)
+    d.slide("stage", "stand", Z, 0.03 * k, -0.03 * k, initial_opening=False)
     at = p(0, -0.02, 0.27)
     d.part("turret", rod(0.025 * k, at - g * Z, at - 0.015 * k * Z), *(rod(0.006 * k, at - 0.01 * k * Z + 0.015 * k * v,
         at - 0.05 * k * Z + 0.018 * k * v) for v in (X, -0.5 * X + 0.87 * Y, -0.5 * X - 0.87 * Y)), material="metal")
@@ -435,23 +437,23 @@ def microscope(d: Draft) -> None:
         knob(d, f"focus_{int(s > 0)}", "stand", p(s * 0.03, 0.07, 0.08), 0.02 * k, 0.02 * k, s * X)
 
 
-def balance_scale(d: Draft) -> None:
+def balance_scale(d: ObjectBuilder) -> None:
     """A beam that tilts on a post, two pans that hang."""
     k = d.u(0.2, 0.5)
     d.part("stand", rod(0.25 * k, (0, 0, 0), (0, 0, 0.04 * k)), rod(0.03 * k, (0, 0, 0), (0, 0, k)), material="metal")
     g = d.gap(0.03 * k)
     z = k + g + 0.02 * k
     d.part("beam", box((-0.5 * k, -0.02 * k, z - 0.02 * k), (0.5 * k, 0.02 * k, z + 0.02 * k)), material="metal")
-    d.hinge("beam", "stand", Y, (0, 0, d.pick(z, k)), 0.15, -0.15, ajar=False)
+    d.hinge("beam", "stand", Y, (0, 0, d.pick(z, k)), 0.15, -0.15, initial_opening=False)
     for i, s in enumerate((-1.0, 1.0)):
         x = s * 0.47 * k
         low = z - 0.02 * k - g
         d.part(f"pan_{i}", rod(0.008 * k, (x, 0, low), (x, 0, low - 0.45 * k)), rod(0.18 * k, (x, 0, low - 0.47 * k),
             (x, 0, low - 0.45 * k)))
-        d.hinge(f"pan_{i}", "beam", Y, (x, 0, low), 0.3, -0.3, ajar=False)
+        d.hinge(f"pan_{i}", "beam", Y, (x, 0, low), 0.3, -0.3, initial_opening=False)
 
 
-def desk_fan(d: Draft) -> None:
+def desk_fan(d: ObjectBuilder) -> None:
     """A base, a neck that tilts, a guard with a rotor."""
     r, h = d.u(0.1, 0.2), d.u(0.2, 0.35)
     d.part("base", rod(0.8 * r, (0, 0, 0), (0, 0, 0.03)), rod(0.12 * r, (0, 0.1 * r, 0.02), (0, 0.1 * r, h)))
@@ -459,27 +461,28 @@ def desk_fan(d: Draft) -> None:
     c = np.array([0, 0.1 * r, h + 0.25 * r + g])
     d.part("head", rod(0.25 * r, c + 0.4 * r * Y, c - 0.2 * r * Y), ring(r, 0.04 * r, c - 0.45 * r * Y, Y),
         *(beam(0.02 * r, 0.02 * r, c - 0.19 * r * Y + 0.22 * r * v, c - 0.45 * r * Y + r * v) for v in (X, -X, Z, -Z)))
-    d.hinge("head", "base", X, (0, 0.1 * r, h + (g if d.hand.bored else 0)), 0.02 if d.hand.bored else 0.4, ajar=False)
+    d.hinge("head", "base", X, (0, 0.1 * r, h + (g if d.hand.has_bore else 0)), 0.02 if d.hand.has_bore else 0.4,
+        initial_opening=False)
     rotor(d, "rotor", "head", c - 0.2 * r * Y, -Y, 0.7 * r, d.n(3, 5), wide=0.25)
 
 
-def reading_lamp(d: Draft) -> None:
+def reading_lamp(d: ObjectBuilder) -> None:
     """Two arms and a shade on a foot."""
     k = d.u(0.25, 0.45)
     d.part("foot", rod(0.3 * k, (0, 0, 0), (0, 0, 0.06 * k)), rod(0.05 * k, (0, 0, 0.05 * k), (0, 0, 0.2 * k)),
         material="metal")
-    step = 0.06 * k + d.gap(0.06 * k) if d.hand.bored else 0.0
+    step = 0.06 * k + d.gap(0.06 * k) if d.hand.has_bore else 0.0
     a, b, c = np.array([0, 0, 0.18 * k]), np.array([-0.35 * k, 0, 1.0 * k]), np.array([0.5 * k, 0, 1.5 * k])
     arm(d, "lower_arm", "foot", a, b, 0.06 * k, Y, lower=-0.5, upper=0.5)
     arm(d, "upper_arm", "lower_arm", b + step * Y, c + step * Y, 0.06 * k, Y, lower=-0.6, upper=0.6)
     g = d.gap(0.05 * k)
     e = c + 2 * step * Y
     d.part("shade", cone(0.08 * k, 0.3 * k, e + (0.04 * k + g) * X + 0.0 * Z, e + 0.4 * k * X - 0.2 * k * Z))
-    d.hinge("shade", "upper_arm", Y, e + (0 if not d.hand.bored else 0.03 * k) * X, 0.05 if d.hand.bored else 0.8,
-        -0.05 if d.hand.bored else -0.5, ajar=False)
+    d.hinge("shade", "upper_arm", Y, e + (0 if not d.hand.has_bore else 0.03 * k) * X, 0.05 if d.hand.has_bore else 0.8,
+        -0.05 if d.hand.has_bore else -0.5, initial_opening=False)
 
 
-def pallet_truck(d: Draft) -> None:
+def pallet_truck(d: ObjectBuilder) -> None:
     """Two forks, a drawbar that swings, wheels under it."""
     n, r = d.u(1.0, 1.3), 0.09
     d.part("truck", *(box((0, s * 0.2 - 0.08, 0.08), (n, s * 0.2 + 0.08, 0.13)) for s in (-1, 1)), box((-0.2, -0.28,
@@ -488,16 +491,17 @@ def pallet_truck(d: Draft) -> None:
     g = d.gap(0.05) + 0.0005
     d.part("drawbar_head", rod(0.05, (-0.1, 0, 0.2 - g), (-0.1, 0, 0.14)), box((-0.16, -0.05, 0.06), (-0.04, 0.05,
         0.15)), material="steel")
-    d.hinge("drawbar_head", "truck", Z, (-0.1, 0, 0.2), 1.5, -1.5, ajar=False)
+    d.hinge("drawbar_head", "truck", Z, (-0.1, 0, 0.2), 1.5, -1.5, initial_opening=False)
     for s in (-1.0, 1.0):
         d.part(f"wheel_{int(s > 0)}", rod(r, (-0.1, s * (0.05 + g), r), (-0.1, s * (0.11 + g), r)), material="rubber")
         d.spin(f"wheel_{int(s > 0)}", "drawbar_head", s * Y, (-0.1, 0, r))
     d.part("drawbar", beam(0.04, 0.04, (-0.16 - g, 0, 0.12), (-0.4, 0, 1.1), Y), rod(0.015, (-0.4, -0.15, 1.1), (-0.4,
         0.15, 1.1)), material="steel")
-    d.hinge("drawbar", "drawbar_head", -Y, (-0.16 - g, 0, 0.12), 0.5 if not d.hand.bored else 0.3, ajar=False)
+    d.hinge("drawbar", "drawbar_head", -Y, (-0.16 - g, 0, 0.12), 0.5 if not d.hand.has_bore else 0.3,
+        initial_opening=False)
 
 
-def door_bolt(d: Draft) -> None:
+def door_bolt(d: ObjectBuilder) -> None:
     """A sliding bolt in guides with a keeper."""
     n = d.u(0.08, 0.25)
     k = 0.06 * n
@@ -513,7 +517,7 @@ def door_bolt(d: Draft) -> None:
     d.slide("bolt", "plate", X, 3 * k)
 
 
-def hasp_latch(d: Draft) -> None:
+def hasp_latch(d: ObjectBuilder) -> None:
     """A toggle or hook that turns on a plate."""
     k = d.u(0.02, 0.06)
     d.part("plate", box((-k, 0, -k), (k, 0.15 * k, k)), box((2.5 * k, 0, -k), (3.5 * k, 0.15 * k, k)), box((-k, 0.1 * k,
@@ -525,10 +529,10 @@ def hasp_latch(d: Draft) -> None:
         0), (0, -0.45 * k - g, 0)), material="steel")
     if hook:
         d.part("hook", beam(0.3 * k, 0.4 * k, (2.6 * k, -0.2 * k - g, 0.1 * k), (2.6 * k, -0.2 * k - g, 0.9 * k), Y))
-    d.hinge("hook", "plate", -Y, (0, 0, 0), 2.0, ajar=False)
+    d.hinge("hook", "plate", -Y, (0, 0, 0), 2.0, initial_opening=False)
 
 
-def pulley_block(d: Draft) -> None:
+def pulley_block(d: ObjectBuilder) -> None:
     """Sheaves between cheeks with a hook that swivels."""
     r = d.u(0.03, 0.15)
     n = d.n(1, 3)

@@ -24,13 +24,13 @@ from benchmarks.recipes.shapes import (
 )
 
 if TYPE_CHECKING:
-    from benchmarks.recipes.draft import Draft
+    from benchmarks.recipes.object_builder import ObjectBuilder
     from benchmarks.recipes.shapes import Point, Shape
     from kinematify.robot.arrays import FloatArray
 
 
 def case(
-    d: Draft,
+    d: ObjectBuilder,
     name: str,
     lower: Point,
     upper: Point,
@@ -53,7 +53,7 @@ def case(
         d.cut(name, box(low + thick + np.minimum(2 * out * thick, 0), high - thick + np.maximum(2 * out * thick, 0)))
 
 
-def legs(d: Draft, name: str, lower: Point, upper: Point, thick: float) -> None:
+def legs(d: ObjectBuilder, name: str, lower: Point, upper: Point, thick: float) -> None:
     """Four legs at the corners of a box, square or round."""
     (x0, y0, z0), (x1, y1, z1) = lower, upper
     h = 0.5 * thick
@@ -63,7 +63,7 @@ def legs(d: Draft, name: str, lower: Point, upper: Point, thick: float) -> None:
             d.part(name, rod(h, foot, top) if d.hand.sides > 12 else beam(thick, thick, foot, top))
 
 
-def grip(d: Draft, on: str, at: Point, out: FloatArray, along: FloatArray, length: float) -> None:
+def grip(d: ObjectBuilder, on: str, at: Point, out: FloatArray, along: FloatArray, length: float) -> None:
     """A handle on a part: a bar on posts, a block or a knob; apart or none where the hand makes it so."""
     if d.hand.grips == "none":
         return
@@ -94,7 +94,7 @@ def grip(d: Draft, on: str, at: Point, out: FloatArray, along: FloatArray, lengt
 
 
 def leaf(
-    d: Draft,
+    d: ObjectBuilder,
     name: str,
     parent: str,
     lower: Point,
@@ -135,7 +135,7 @@ def leaf(
 
 
 def drawer(
-    d: Draft,
+    d: ObjectBuilder,
     name: str,
     parent: str,
     lower: Point,
@@ -177,7 +177,7 @@ def drawer(
 
 
 def wheel(
-    d: Draft,
+    d: ObjectBuilder,
     name: str,
     parent: str,
     middle: Point,
@@ -211,8 +211,8 @@ def wheel(
                 ),
             )
     if axle > 0.0:
-        stub = rod(0.15 * radius, inner - (axle + 0.02 * radius) * out, inner if d.hand.bored else at)
-        if d.hand.bored:
+        stub = rod(0.15 * radius, inner - (axle + 0.02 * radius) * out, inner if d.hand.has_bore else at)
+        if d.hand.has_bore:
             d.part(name, rod(0.15 * radius, inner - (axle - d.gap(radius)) * out, at))
         else:
             d.part(d.pick(parent, name), stub)
@@ -220,7 +220,7 @@ def wheel(
 
 
 def knob(
-    d: Draft,
+    d: ObjectBuilder,
     name: str,
     parent: str,
     at: Point,
@@ -234,10 +234,10 @@ def knob(
     """A knob or dial on a surface; without `reach` [rad] it turns without end."""
     at = np.asarray(at, dtype=np.float64)
     gap = d.gap(radius)
-    foot = at + (gap - d.hand.sunk * high) * out
+    foot = at + (gap - d.hand.max_penetration * high) * out
     top = at + high * out
     side = np.roll(out, 1)
-    if d.hand.bored:
+    if d.hand.has_bore:
         deep = 0.6 * high
         d.cut(parent, rod(0.3 * radius + 1.5 * gap, at - (deep + gap) * out, at + 0.05 * high * out))
         d.part(name, rod(0.3 * radius, at - deep * out, top), material=material)
@@ -268,7 +268,7 @@ def knob(
 
 
 def button(
-    d: Draft,
+    d: ObjectBuilder,
     name: str,
     parent: str,
     at: Point,
@@ -282,7 +282,7 @@ def button(
     """A button of a width and a height that stands out of a surface and is pressed in."""
     at = np.asarray(at, dtype=np.float64)
     gap = d.gap(min(size))
-    deep = 0.8 * high if d.hand.bored else d.hand.sunk * high
+    deep = 0.8 * high if d.hand.has_bore else d.hand.max_penetration * high
     low, high_end = at + (0.0 if deep else gap) * out - deep * out, at + high * out
     if is_round:
         d.bore(parent, rod(0.5 * size[0] + 1.5 * gap, at - (deep + high) * out, at + 0.05 * high * out))
@@ -295,11 +295,11 @@ def button(
             box(at - half - gap * _ones(out) - (deep + high) * out, at + half + gap * _ones(out) + 0.05 * high * out),
         )
         d.part(name, box(low - half, high_end + half), material=material)
-    d.slide(name, parent, -out, 0.7 * high, ajar=False)
+    d.slide(name, parent, -out, 0.7 * high, initial_opening=False)
 
 
 def lever(
-    d: Draft,
+    d: ObjectBuilder,
     name: str,
     parent: str,
     at: Point,
@@ -316,13 +316,13 @@ def lever(
     thick = 0.12 * length
     level = at + d.u(1.0, 2.0) * thick * out
     d.part(name, d.pick(capsule, rod)(0.5 * thick, level, level + length * direction), material=material)
-    d.part(name, rod(0.45 * thick, at + (d.gap(thick) - (2.0 * thick if d.hand.bored else 0.0)) * out, level))
+    d.part(name, rod(0.45 * thick, at + (d.gap(thick) - (2.0 * thick if d.hand.has_bore else 0.0)) * out, level))
     d.bore(parent, rod(0.45 * thick + 1.5 * d.gap(thick), at - 2.5 * thick * out, at + 0.01 * thick * out))
     d.hinge(name, parent, out, at, reach, lower)
 
 
 def arm(
-    d: Draft,
+    d: ObjectBuilder,
     name: str,
     parent: str,
     start: Point,
@@ -350,17 +350,17 @@ def arm(
         material: Of the link.
         side: How far beside the plane of the joint it lies, along the axis [m]; careful hands lay it beside its parent.
     """
-    beside = (thick + d.gap(thick) if d.hand.bored else 0.0) if side is None else side
+    beside = (thick + d.gap(thick) if d.hand.has_bore else 0.0) if side is None else side
     a, b = np.asarray(start, dtype=np.float64) + beside * axis, np.asarray(end, dtype=np.float64) + beside * axis
     half = 0.5 * thick * axis
     kind = d.pick("beam", "beam", "rod", "plate")
-    if kind == "rod" and not d.hand.bored:
+    if kind == "rod" and not d.hand.has_bore:
         d.part(name, capsule(0.5 * thick, a, b), material=material)
     else:
         wide = thick if kind == "beam" else 1.4 * thick
         d.part(name, beam(wide, 0.9 * thick, a, b, axis), material=material)
         d.part(name, *(rod(0.5 * wide, p - 0.45 * thick * axis, p + 0.45 * thick * axis) for p in (a, b)))
-    if d.hand.bored:
+    if d.hand.has_bore:
         gap = d.gap(thick)
         d.part(name, rod(0.2 * thick, a - 2.4 * half, a))
         d.cut(parent, rod(0.2 * thick + 1.5 * gap, np.asarray(start) - 3.0 * half, np.asarray(start) + 3.0 * half))
@@ -370,7 +370,7 @@ def arm(
 
 
 def plunger(
-    d: Draft,
+    d: ObjectBuilder,
     name: str,
     parent: str,
     start: Point,
@@ -398,7 +398,7 @@ def plunger(
 
 
 def cap(
-    d: Draft,
+    d: ObjectBuilder,
     name: str,
     parent: str,
     at: Point,
@@ -415,7 +415,7 @@ def cap(
     top = at + high * out
     d.part(parent, rod(0.8 * radius, at - 0.1 * high * out, at + 0.75 * high * out))
     d.part(name, rod(radius, at + gap * out, top), material=material)
-    if d.hand.bored:
+    if d.hand.has_bore:
         d.cut(name, rod(0.8 * radius + 1.5 * gap, at - high * out, at + 0.8 * high * out + gap * out))
     if turns:
         d.spin(name, parent, out, at)
@@ -424,7 +424,7 @@ def cap(
 
 
 def rotor(
-    d: Draft,
+    d: ObjectBuilder,
     name: str,
     parent: str,
     at: Point,
@@ -439,7 +439,7 @@ def rotor(
     at = np.asarray(at, dtype=np.float64)
     hub = 0.14 * radius
     gap = d.gap(hub)
-    foot = at + (gap - d.hand.sunk * hub) * out
+    foot = at + (gap - d.hand.max_penetration * hub) * out
     d.part(name, rod(hub, foot, at + 1.6 * hub * out), material=material)
     if d.maybe():
         d.part(name, cone(hub, 0.2 * hub, at + 1.6 * hub * out, at + 2.6 * hub * out))
@@ -453,7 +453,7 @@ def rotor(
     d.spin(name, parent, out, at)
 
 
-def caster(d: Draft, name: str, parent: str, top: Point, high: float) -> None:
+def caster(d: ObjectBuilder, name: str, parent: str, top: Point, high: float) -> None:
     """A fork that swivels below a point and a wheel in it."""
     at = np.asarray(top, dtype=np.float64)
     radius = 0.38 * high
@@ -468,7 +468,7 @@ def caster(d: Draft, name: str, parent: str, top: Point, high: float) -> None:
         block(plate, (1.6 * radius, 1.8 * wide, 0.1 * high)),
         material="steel",
     )
-    if d.hand.bored:
+    if d.hand.has_bore:
         d.cut(parent, rod(0.2 * radius + 1.5 * gap, at - 0.1 * high * Z, at + 0.32 * high * Z))
         d.part(fork, rod(0.2 * radius, at - 0.1 * high * Z, at + 0.3 * high * Z))
     for side in (-1.0, 1.0):
@@ -480,7 +480,7 @@ def caster(d: Draft, name: str, parent: str, top: Point, high: float) -> None:
 
 
 def crank(
-    d: Draft,
+    d: ObjectBuilder,
     name: str,
     parent: str,
     at: Point,
@@ -496,7 +496,7 @@ def crank(
     along = np.roll(out, 1)
     level = at + 0.35 * length * out
     gap = d.gap(thick)
-    start = at - (0.3 * length if d.hand.bored else -gap) * out
+    start = at - (0.3 * length if d.hand.has_bore else -gap) * out
     d.bore(parent, rod(0.5 * thick + 1.5 * gap, start - gap * out, at + 1e-3 * length * out))
     d.part(
         name,
@@ -516,7 +516,7 @@ def crank(
 
 
 def bail(
-    d: Draft,
+    d: ObjectBuilder,
     name: str,
     parent: str,
     start: Point,
@@ -543,7 +543,7 @@ def bail(
         material=material,
     )
     d.part(name, shape(r, a + high * up - r * along, b + high * up + r * along))
-    if d.hand.bored:
+    if d.hand.has_bore:
         d.part(name, rod(0.3 * thick, a, a + 1.5 * thick * along), rod(0.3 * thick, b, b - 1.5 * thick * along))
         d.cut(parent, rod(0.3 * thick + 1.5 * gap, a, a + (1.5 * thick + gap) * along))
         d.cut(parent, rod(0.3 * thick + 1.5 * gap, b, b - (1.5 * thick + gap) * along))

@@ -6,26 +6,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.recipes.draft import spread
 from benchmarks.recipes.mechanisms import knob, lever
+from benchmarks.recipes.object_builder import spread
 from benchmarks.recipes.panels import pane, pull, seam, slab, surround
 from benchmarks.recipes.shapes import X, Y, Z, beam, box, rod
 
 if TYPE_CHECKING:
-    from benchmarks.recipes.draft import Draft
+    from benchmarks.recipes.object_builder import ObjectBuilder
 
 # fmt: off
 # A recipe reads as a list of shapes and joints, which one argument a line would hide.
 
 
-def room_door(d: Draft) -> None:
+def room_door(d: ObjectBuilder) -> None:
     """One leaf in a frame, in a wall or between posts; now and then its handle turns."""
     w, h, t, low = d.u(0.65, 1.2), d.u(1.8, 2.4), d.u(0.025, 0.07), d.pick(0.0, 0.0, 0.015)
     surround(d, "frame", w, low, h, -t, sill=d.maybe(0.3))
     side = d.pick(X, -X)
     turning = d.maybe(0.3)
     slab(d, "leaf", "frame", (-w / 2, -t, low), (w / 2, 0, h), hinge=side, inset=True, reach=d.u(1.2, 2.4),
-        back=d.pick(0.0, 0.0, 0.0, 0.0 if d.hand.bored else 1.4), handle=not turning)
+        back=d.pick(0.0, 0.0, 0.0, 0.0 if d.hand.has_bore else 1.4), handle=not turning)
     if turning:
         at = -0.42 * w * side - t * Y + 0.48 * h * Z
         if d.maybe():
@@ -34,7 +34,7 @@ def room_door(d: Draft) -> None:
             knob(d, "handle", "leaf", at, 0.03, 0.06, -Y, reach=d.u(0.7, 1.6))
 
 
-def double_door(d: Draft) -> None:
+def double_door(d: ObjectBuilder) -> None:
     """Two leaves that meet in the middle, of one width or one narrow."""
     w, h, t, low = d.u(1.1, 2.2), d.u(1.9, 2.6), d.u(0.03, 0.08), d.pick(0.0, 0.0, 0.02)
     surround(d, "frame", w, low, h, -t, sill=d.maybe(0.3))
@@ -44,7 +44,7 @@ def double_door(d: Draft) -> None:
         slab(d, f"leaf_{k}", "frame", (edge, -t, low), (middle, 0, h), hinge=side, inset=True, reach=reach)
 
 
-def dutch_door(d: Draft) -> None:
+def dutch_door(d: ObjectBuilder) -> None:
     """A leaf that is cut across: the halves turn alone."""
     w, h, t = d.u(0.7, 1.1), d.u(1.9, 2.2), d.u(0.03, 0.06)
     surround(d, "frame", w, 0.0, h, -t, sill=d.maybe(0.3))
@@ -54,7 +54,7 @@ def dutch_door(d: Draft) -> None:
         slab(d, name, "frame", (-w / 2, -t, a), (w / 2, 0, b), hinge=side, inset=True, reach=d.u(1.4, 2.2))
 
 
-def sliding_room_door(d: Draft) -> None:
+def sliding_room_door(d: ObjectBuilder) -> None:
     """A leaf or two before a wall or behind it, on a rail or on nothing."""
     w, h, t = d.u(0.8, 1.3), d.u(1.9, 2.3), d.u(0.03, 0.05)
     n = d.n(1, 2)
@@ -81,7 +81,7 @@ def sliding_room_door(d: Draft) -> None:
             box((half - 0.02, -t - play - 0.05, h + 0.12), (half + 0.02, 0.02, h + 0.18)))
 
 
-def folding_door(d: Draft) -> None:
+def folding_door(d: ObjectBuilder) -> None:
     """Two to four narrow leaves that hang on each other: a bifold door or a screen."""
     n, w, h, t = d.n(2, 4), d.u(0.35, 0.6), d.u(1.6, 2.2), d.u(0.02, 0.04)
     stands = d.maybe()
@@ -97,7 +97,7 @@ def folding_door(d: Draft) -> None:
         parent = f"leaf_{k}"
 
 
-def slab_garage_door(d: Draft) -> None:
+def slab_garage_door(d: ObjectBuilder) -> None:
     """A plate before or in an opening that tilts about its upper edge or its middle, or is pushed up."""
     w, h, t = d.u(2.2, 3.0), d.u(1.9, 2.4), d.u(0.03, 0.08)
     kind = d.pick("top", "middle", "slides")
@@ -116,10 +116,10 @@ def slab_garage_door(d: Draft) -> None:
         d.slide("door", "wall", Z, d.u(0.7, 0.95) * h)
     else:
         middle = d.u(0.45, 0.55) * (h - 0.15)
-        d.hinge("door", "wall", X, (0, -0.5 * t, middle), 1.3, ajar=False)
+        d.hinge("door", "wall", X, (0, -0.5 * t, middle), 1.3, initial_opening=False)
 
 
-def slab_gate(d: Draft) -> None:
+def slab_gate(d: ObjectBuilder) -> None:
     """One or two leaves of boards between posts or in a fence."""
     w, h, t, n = d.u(0.8, 1.3), d.u(0.8, 1.9), d.u(0.02, 0.06), d.n(1, 2)
     post = d.u(0.06, 0.25)
@@ -150,7 +150,7 @@ def slab_gate(d: Draft) -> None:
         d.hinge(name, "posts", np.cross(-Y, side), (edge, y + (1.0 - d.hand.line) * t, 0.5 * h), d.u(1.2, 1.6))
 
 
-def house_shutters(d: Draft) -> None:
+def house_shutters(d: ObjectBuilder) -> None:
     """Two leaves before a wall beside a window, shut or folded back."""
     w, h, t = d.u(0.7, 1.4), d.u(0.8, 1.6), d.u(0.02, 0.04)
     for x in (-0.5 * w - 0.6, 0.5 * w):
@@ -173,7 +173,7 @@ def house_shutters(d: Draft) -> None:
             d.hinge(f"shutter_{k}", "wall", np.cross(-Y, side), edge, d.u(2.5, 3.0))
 
 
-def pane_window(d: Draft) -> None:
+def pane_window(d: ObjectBuilder) -> None:
     """One to three panes in a frame: hinged at a side, above, below, or about their middle; some stand fast."""
     n, w, h, t = d.n(1, 3), d.u(0.4, 0.9), d.u(0.5, 1.5), d.u(0.02, 0.05)
     surround(d, "frame", n * w, 0.0, h, -t, sill=True)
@@ -190,14 +190,14 @@ def pane_window(d: Draft) -> None:
             play = max(seam(d, w, t), 0.001)
             pane(d, name, (a + play, -t, play), (b - play, 0.0, h - play))
             level = 0.5 * h
-            d.hinge(name, "frame", X, ((a + b) / 2, -t / 2, level), d.u(0.6, 1.5), ajar=False)
+            d.hinge(name, "frame", X, ((a + b) / 2, -t / 2, level), d.u(0.6, 1.5), initial_opening=False)
         else:
             hinge = {"side": d.pick(X, -X), "top": Z, "bottom": -Z}[kind]
             slab(d, name, "frame", (a, -t, 0), (b, 0, h), hinge=hinge, inset=True, glazed=0.8,
                 reach=d.u(0.8, 1.7) if kind == "side" else d.u(0.2, 0.9))
 
 
-def plain_sliding_window(d: Draft) -> None:
+def plain_sliding_window(d: ObjectBuilder) -> None:
     """Sashes in two planes, side by side or one above the other; one or both slide."""
     w, h, t = d.u(0.7, 1.8), d.u(0.6, 1.5), d.u(0.02, 0.04)
     upright = d.maybe(0.4)
@@ -220,7 +220,7 @@ def plain_sliding_window(d: Draft) -> None:
         d.slide(name, "frame", s * (Z if upright else X), d.u(0.75, 0.9) * (share - lap))
 
 
-def floor_hatch(d: Draft) -> None:
+def floor_hatch(d: ObjectBuilder) -> None:
     """A flap in a floor, a deck or a roof, flush or on its rim."""
     w, t, high = d.u(0.5, 1.0), d.u(0.5, 0.9), d.u(0.02, 0.06)
     rim = d.u(0.1, 0.5)

@@ -11,12 +11,12 @@ from benchmarks.recipes.shapes import X, Y, Z, ball, beam, box, rod
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from benchmarks.recipes.draft import Draft
+    from benchmarks.recipes.object_builder import ObjectBuilder
     from benchmarks.recipes.shapes import Point
     from kinematify.robot.arrays import FloatArray
 
 
-def seam(d: Draft, size: float, thick: float) -> float:
+def seam(d: ObjectBuilder, size: float, thick: float) -> float:
     """Distance between faces that meet [m]; below zero where a hand that makes no holes lets one stand in the other.
 
     Args:
@@ -25,10 +25,10 @@ def seam(d: Draft, size: float, thick: float) -> float:
         thick: Of the part, which bounds how far it stands in the other [m].
     """
     gap = d.gap(size)
-    return gap if d.hand.bored else float(d.pick(gap, gap, 0.0, -d.u(0.02, 0.3) * thick))
+    return gap if d.hand.has_bore else float(d.pick(gap, gap, 0.0, -d.u(0.02, 0.3) * thick))
 
 
-def surround(d: Draft, name: str, wide: float, low: float, high: float, front: float, *, sill: bool) -> None:
+def surround(d: ObjectBuilder, name: str, wide: float, low: float, high: float, front: float, *, sill: bool) -> None:
     """What a leaf closes: a frame, a wall with an opening, or two posts, from `front` backward."""
     kind = d.pick("frame", "frame", "wall", "posts")
     side = d.u(0.3, 1.0) if kind == "wall" else d.u(0.03, 0.12)
@@ -51,7 +51,7 @@ def surround(d: Draft, name: str, wide: float, low: float, high: float, front: f
 
 
 def carcass(
-    d: Draft,
+    d: ObjectBuilder,
     name: str,
     lower: Point,
     upper: Point,
@@ -88,7 +88,7 @@ def carcass(
         d.part(name, box((x - wall / 2, y0, z0), (x + wall / 2, y1, z1)))
 
 
-def pull(d: Draft, on: str, at: Point, out: FloatArray, along: FloatArray, room: float) -> None:
+def pull(d: ObjectBuilder, on: str, at: Point, out: FloatArray, along: FloatArray, room: float) -> None:
     """A handle on a slab: a rail, a bare rod before it, a lip, a stub or a knob; apart or none as the hand has it.
 
     Args:
@@ -126,7 +126,7 @@ def pull(d: Draft, on: str, at: Point, out: FloatArray, along: FloatArray, room:
 
 
 def slab(
-    d: Draft,
+    d: ObjectBuilder,
     name: str,
     parent: str,
     lower: Point,
@@ -168,7 +168,7 @@ def slab(
         low, high = low + play * out, high + play * out
     middle = 0.5 * (low + high)
     _filled(d, name, low, high, out, "pane" if d.maybe(glazed) else d.pick("plain", "plain", "panel"), material)
-    inward = 0.0 if d.hand.bored else d.pick(0.0, 0.0, 0.0, d.u(0.01, 0.05) * wide)
+    inward = 0.0 if d.hand.has_bore else d.pick(0.0, 0.0, 0.0, d.u(0.01, 0.05) * wide)
     half = 0.5 * float((high - low) @ across) - inward
     if handle:
         upright = d.maybe(0.8)  # most handles run along the hinge
@@ -182,13 +182,15 @@ def slab(
     d.hinge(name, parent, np.cross(out, hinge), pivot, reach, -back)
 
 
-def pane(d: Draft, name: str, lower: Point, upper: Point, out: FloatArray = -Y, material: str = "wood") -> None:
+def pane(d: ObjectBuilder, name: str, lower: Point, upper: Point, out: FloatArray = -Y, material: str = "wood") -> None:
     """A plate between two corners that is a plain slab, has a panel let in, or is a frame about a pane."""
     low, high = np.minimum(lower, upper), np.maximum(lower, upper)
     _filled(d, name, low, high, out, d.pick("plain", "panel", "pane", "pane"), material)
 
 
-def _filled(d: Draft, name: str, low: FloatArray, high: FloatArray, out: FloatArray, kind: str, material: str) -> None:
+def _filled(
+    d: ObjectBuilder, name: str, low: FloatArray, high: FloatArray, out: FloatArray, kind: str, material: str
+) -> None:
     """Shapes of a plate: the same on both sides but for a panel."""
     flat = 1.0 - np.abs(out)
     thick = float((high - low) @ np.abs(out))
@@ -220,7 +222,14 @@ def _filled(d: Draft, name: str, low: FloatArray, high: FloatArray, out: FloatAr
 
 
 def box_drawer(
-    d: Draft, name: str, parent: str, lower: Point, upper: Point, *, lap: float = 0.0, front: float | None = None
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    lower: Point,
+    upper: Point,
+    *,
+    lap: float = 0.0,
+    front: float | None = None,
 ) -> None:
     """A drawer in the bay between two corners, open at -y: a tray, a block or a front, before the bay or let into it.
 
@@ -256,7 +265,7 @@ def box_drawer(
                 d.part(name, box(body_low + (body_high - body_low - wall) * axis, ends))
         else:
             d.part(name, box(body_low, body_high))
-    if not d.hand.hollow and d.hand.bored and d.hand.drawer != "front":
+    if not d.hand.hollow and d.hand.has_bore and d.hand.drawer != "front":
         d.cut(parent, box(low - 1e-3 * Y, high))
     at = 0.5 * (a + b)
     at[1] = y
@@ -265,7 +274,7 @@ def box_drawer(
     d.slide(name, parent, -Y, d.u(0.5, 0.95) * float(high[1] - low[1]))
 
 
-def rack(d: Draft, name: str, parent: str, lower: Point, upper: Point, *, travel: float = 0.8) -> None:
+def rack(d: ObjectBuilder, name: str, parent: str, lower: Point, upper: Point, *, travel: float = 0.8) -> None:
     """A tray, a sheet or a wire rack between two corners that is drawn out to -y, on ledges now and then."""
     low, high = np.minimum(lower, upper), np.maximum(lower, upper)
     size = high - low
@@ -296,6 +305,6 @@ def rack(d: Draft, name: str, parent: str, lower: Point, upper: Point, *, travel
         under = a[2] - max(play, 0.0)
         for x, s in ((low[0], 1.0), (high[0], -1.0)):
             d.part(parent, box((x - s * wall, low[1], under - wall), (x + s * 1.5 * wall, high[1], under)))
-    elif not d.hand.hollow and d.hand.bored:
+    elif not d.hand.hollow and d.hand.has_bore:
         d.cut(parent, box(low - size[2] * Z - 1.0 * Y, high + size[2] * Z))
     d.slide(name, parent, -Y, travel * float(size[1]))

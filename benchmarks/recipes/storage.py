@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.recipes.draft import spread
 from benchmarks.recipes.mechanisms import legs, wheel
+from benchmarks.recipes.object_builder import spread
 from benchmarks.recipes.panels import box_drawer, carcass, pane, pull, rack, seam, slab
 from benchmarks.recipes.shapes import X, Y, Z, box, cone, prism, rod
 
 if TYPE_CHECKING:
-    from benchmarks.recipes.draft import Draft
+    from benchmarks.recipes.object_builder import ObjectBuilder
 
 # fmt: off
 # A recipe reads as a list of shapes and joints, which one argument a line would hide.
 
 
-def slab_cabinet(d: Draft) -> None:
+def slab_cabinet(d: ObjectBuilder) -> None:
     """Rows and columns of doors before a body or let into it, on the floor, on feet, or on a wall."""
     w, t, h = d.u(0.35, 1.6), d.u(0.25, 0.6), d.u(0.4, 2.0)
     wall, thick, foot = d.u(0.012, 0.03), d.u(0.012, 0.03), d.pick(0.0, 0.0, d.u(0.05, 0.2))
@@ -46,7 +46,7 @@ def slab_cabinet(d: Draft) -> None:
                 handle=d.maybe(0.8))
 
 
-def slab_wardrobe(d: Draft) -> None:
+def slab_wardrobe(d: ObjectBuilder) -> None:
     """A tall case with two or three leaves that slide past each other, between boards or before the case."""
     n, w, t, h = d.n(2, 3), d.u(0.5, 0.9), d.u(0.45, 0.65), d.u(1.2, 2.4)
     wall, thick = d.u(0.015, 0.03), d.u(0.012, 0.03)
@@ -73,7 +73,7 @@ def slab_wardrobe(d: Draft) -> None:
         d.slide(f"leaf_{k}", "body", s * X, d.u(0.7, 0.95) * (w - 2 * wall))
 
 
-def drawer_stack(d: Draft) -> None:
+def drawer_stack(d: ObjectBuilder) -> None:
     """Drawers one above the other, now and then in columns, with fronts before the body or in it, or as open trays."""
     w, t, h, n = d.u(0.3, 1.2), d.u(0.3, 0.6), d.u(0.3, 1.3), d.n(1, 5)
     wall, foot, columns = d.u(0.012, 0.025), d.pick(0.0, 0.0, d.u(0.05, 0.15)), d.pick(1, 1, 2)
@@ -95,7 +95,7 @@ def drawer_stack(d: Draft) -> None:
             box_drawer(d, f"drawer_{i}_{k}", "body", low, high, lap=0.45 * share if lap and not boards else lap / 2.2)
 
 
-def tray_rack(d: Draft) -> None:
+def tray_rack(d: ObjectBuilder) -> None:
     """Trays, baskets or sheets without fronts that slide in an open case: cutlery, letters, bread."""
     w, t, h, n = d.u(0.2, 0.7), d.u(0.25, 0.6), d.u(0.1, 1.5), d.n(1, 6)
     wall = d.u(0.006, 0.025)
@@ -106,7 +106,7 @@ def tray_rack(d: Draft) -> None:
             t - 1.5 * wall, z + high / 2), travel=d.u(0.5, 0.95))
 
 
-def doors_and_drawers(d: Draft) -> None:
+def doors_and_drawers(d: ObjectBuilder) -> None:
     """A sideboard or kitchen unit: fields that hold a door, drawers, a flap or nothing."""
     n, field, t, h = d.n(1, 4), d.u(0.3, 0.6), d.u(0.3, 0.6), d.u(0.4, 1.0)
     wall, thick = d.u(0.012, 0.025), d.u(0.012, 0.025)
@@ -131,7 +131,7 @@ def doors_and_drawers(d: Draft) -> None:
                 else h), hinge=d.pick(-X, X), reach=d.u(1.4, 2.2))
 
 
-def drawer_table(d: Draft) -> None:
+def drawer_table(d: ObjectBuilder) -> None:
     """A table or desk whose apron or pedestal holds drawers: fronts alone, trays or blocks."""
     w, t, h = d.u(0.7, 1.8), d.u(0.45, 0.9), d.u(0.45, 0.8)
     top, apron, wall = d.u(0.015, 0.04), d.u(0.08, 0.16), 0.018
@@ -153,7 +153,7 @@ def drawer_table(d: Draft) -> None:
         d.slide("board", "table", side, d.u(0.15, 0.3) * w)
 
 
-def lidded_box(d: Draft) -> None:
+def lidded_box(d: ObjectBuilder) -> None:
     """A box with one lid, two flaps or four, thin or thick, shut or half open; or a lid that is lifted off."""
     w, t, h = d.u(0.15, 1.2), d.u(0.12, 0.6), d.u(0.08, 0.6)
     wall, kind = d.u(0.01, 0.06) * min(w, t, h), d.pick("lid", "lid", "lid", "two", "four", "off")
@@ -183,7 +183,7 @@ def lidded_box(d: Draft) -> None:
                 + d.hand.gap), hinge=side, out=Z, reach=reach, handle=False, glazed=0.0)
 
 
-def plain_bin(d: Draft) -> None:
+def plain_bin(d: ObjectBuilder) -> None:
     """A bin whose lid is hinged behind, swings about its middle, or is two halves; at times wheels, a pedal."""
     w, t, h = d.u(0.25, 0.6), d.u(0.25, 0.6), d.u(0.35, 1.1)
     round_one = d.maybe(0.3)
@@ -212,7 +212,7 @@ def plain_bin(d: Draft) -> None:
         d.part("lid", prism([(-0.4 * t, z - 0.3 * t), (0.0, z + 0.02), (0.0, z + 0.03), (-0.42 * t, z - 0.29 * t)],
             (0, 0, 0), 0.88 * w - 2 * g, "x"), prism([(0.4 * t, z - 0.3 * t), (0.42 * t, z - 0.29 * t), (0.0, z + 0.03),
             (0.0, z + 0.02)], (0, 0, 0), 0.88 * w - 2 * g, "x"))
-        d.hinge("lid", "bin", X, (0, 0, z), 0.6, -0.6, ajar=False)
+        d.hinge("lid", "bin", X, (0, 0, z), 0.6, -0.6, initial_opening=False)
     else:
         for k, (side, a, b) in enumerate(((-X, -w / 2, 0.0), (X, 0.0, w / 2))):
             slab(d, f"lid_{k}", "bin", (a, -t / 2, h), (b, t / 2, h + thick), hinge=side, out=Z, reach=d.u(1.2, 1.8),
@@ -224,12 +224,12 @@ def plain_bin(d: Draft) -> None:
     elif d.maybe(0.4):
         deep = t / 2 if not round_one else 0.85 * r
         g = d.gap(0.05)
-        d.part("pedal", box((-0.05, -deep - 0.08, 0.01), (0.05, -deep - g if d.hand.bored else -0.9 * deep, 0.022)))
-        d.hinge("pedal", "bin", X, (0, -deep - g if d.hand.bored else -0.9 * deep, 0.016), d.u(0.1, 0.3), -0.02,
-            ajar=False)
+        d.part("pedal", box((-0.05, -deep - 0.08, 0.01), (0.05, -deep - g if d.hand.has_bore else -0.9 * deep, 0.022)))
+        d.hinge("pedal", "bin", X, (0, -deep - g if d.hand.has_bore else -0.9 * deep, 0.016), d.u(0.1, 0.3), -0.02,
+            initial_opening=False)
 
 
-def plain_suitcase(d: Draft) -> None:
+def plain_suitcase(d: ObjectBuilder) -> None:
     """A case on end with two halves or one block, a handle that telescopes, a carry handle, and wheels below."""
     w, t, h, foot = d.u(0.35, 0.5), d.u(0.18, 0.3), d.u(0.5, 0.75), d.u(0.03, 0.06)
     split = d.maybe(0.4)
@@ -240,7 +240,7 @@ def plain_suitcase(d: Draft) -> None:
         d.part("lid", box((-w / 2, -t / 2, foot), (w / 2, middle - play, foot + h)), material="plastic")
         side = d.pick(X, -X)
         d.hinge("lid", "body", np.cross(-Y, side), w / 2 * side + (middle - d.pick(0.0, play)) * Y + 0.5 * h * Z,
-            d.u(1.5, 3.0), ajar=False)
+            d.u(1.5, 3.0), initial_opening=False)
         if d.hand.hollow:
             d.cut("body", box((-0.48 * w, middle - 1, foot + 0.02 * h), (0.48 * w, 0.46 * t, foot + 0.98 * h)))
             d.cut("lid", box((-0.48 * w, -0.46 * t, foot + 0.02 * h), (0.48 * w, middle + 1, foot + 0.98 * h)))
@@ -251,7 +251,7 @@ def plain_suitcase(d: Draft) -> None:
         d.bore("body", box((s * x - r - gap, y - r - gap, low - 0.01), (s * x + r + gap, y + r + gap, foot + h + 0.1)))
         d.part("handle", box((s * x - r, y - r, low), (s * x + r, y + r, foot + h + top)), material="metal")
     d.part("handle", box((-x - r, y - 0.014, foot + h + top), (x + r, y + 0.014, foot + h + top + 0.025)))
-    d.slide("handle", "body", Z, d.u(0.5, 0.9) * (foot + h - low), ajar=d.maybe())
+    d.slide("handle", "body", Z, d.u(0.5, 0.9) * (foot + h - low), initial_opening=d.maybe())
     for k, s in enumerate((-1.0, 1.0)) if d.maybe(0.7) else ():
         at = (s * 0.38 * w, t / 2 - 0.035, foot - d.pick(0.005, 0.0))
         g = max(d.gap(0.03), 0.001)
@@ -268,4 +268,4 @@ def plain_suitcase(d: Draft) -> None:
             d.part("grip", box((a, -0.012, z - half), (a + lift, 0.012, z - half + 0.012)), box((a, -0.012,
                 z + half - 0.012), (a + lift, 0.012, z + half)), box((a + lift, -0.012, z - half), (a + 0.75 * lift,
                 0.012, z + half)), material="plastic")
-            d.hinge("grip", "body", Z, (a, 0, z), 1.2, -1.2, ajar=False)
+            d.hinge("grip", "body", Z, (a, 0, z), 1.2, -1.2, initial_opening=False)

@@ -14,7 +14,7 @@ from benchmarks.recipes.shapes import X, Y, Z, ball, beam, box, capsule, cone, l
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from benchmarks.recipes.draft import Draft
+    from benchmarks.recipes.object_builder import ObjectBuilder
     from benchmarks.recipes.shapes import Shape
     from kinematify.robot.arrays import FloatArray
 
@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 # A recipe reads as a list of shapes and joints, which one argument a line would hide.
 
 
-def _pinned(d: Draft, names: tuple[str, str], shapes: Sequence[Sequence[Shape]], r: float, low: float, high: float,
+def _pinned(d: ObjectBuilder, names: tuple[str, str], shapes: Sequence[Sequence[Shape]], r: float, low: float,
+    high: float,
         upper: float, lower: float) -> None:
     """Two arms that cross at the origin, and a pin about z in both: of one of them, of its own, or not drawn."""
     for name, some in zip(names, shapes, strict=True):
@@ -35,15 +36,15 @@ def _pinned(d: Draft, names: tuple[str, str], shapes: Sequence[Sequence[Shape]],
             d.part(names[0], pin)
         else:
             d.fix(d.part("pin", pin, material="steel"), names[0])
-    d.hinge(names[1], names[0], Z, (0, 0, 0), upper, lower, ajar=False)
+    d.hinge(names[1], names[0], Z, (0, 0, 0), upper, lower, initial_opening=False)
 
 
-def plain_scissors(d: Draft) -> None:
+def plain_scissors(d: ObjectBuilder) -> None:
     """Two blades that lie on each other, or in one plane and in each other, with loops at their ends."""
     blade, grip, wide = d.u(0.05, 0.15), d.u(0.05, 0.1), d.u(0.008, 0.018)
     thick, half = d.u(0.0015, 0.004), d.u(0.08, 0.5)
     play = seam(d, wide, thick)
-    flat = not d.hand.bored and d.maybe()
+    flat = not d.hand.has_bore and d.maybe()
     shapes = []
     for k, s in enumerate((1.0, -1.0)):
         z = 0.0 if flat else k * (thick + play)
@@ -60,12 +61,12 @@ def plain_scissors(d: Draft) -> None:
         2 * half, -d.u(0.2, 0.8))
 
 
-def plain_pliers(d: Draft) -> None:
+def plain_pliers(d: ObjectBuilder) -> None:
     """Two thick arms with jaws and curved or straight handles about a pin: pliers, tongs, shears, clamps."""
     jaw, grip, wide = d.u(0.02, 0.06), d.u(0.08, 0.16), d.u(0.01, 0.02)
     thick, half = d.u(0.005, 0.012), d.u(0.06, 0.3)
     play = seam(d, wide, thick)
-    flat = not d.hand.bored and d.maybe()
+    flat = not d.hand.has_bore and d.maybe()
     bend = d.u(0.0, 0.3)
     shapes = []
     for k, s in enumerate((1.0, -1.0)):
@@ -81,7 +82,7 @@ def plain_pliers(d: Draft) -> None:
         2 * half, -d.u(0.2, 0.6))
 
 
-def capped_pen(d: Draft) -> None:
+def capped_pen(d: ObjectBuilder) -> None:
     """A pen on end or lying: a cap that is drawn off, or a button that is pressed, and a clip."""
     r, length = d.u(0.004, 0.01), d.u(0.09, 0.15)
     out: FloatArray = d.pick(Z, -Y)
@@ -109,7 +110,7 @@ def capped_pen(d: Draft) -> None:
             0.6 * r, 0.69 * length * out + 1.5 * r * side, 0.3 * length * out + 1.5 * r * side, side))
 
 
-def pump_bottle(d: Draft) -> None:
+def pump_bottle(d: ObjectBuilder) -> None:
     """A bottle with a head that goes down or a cap that turns or comes off; round, square or waisted."""
     r, h = d.u(0.02, 0.05), d.u(0.08, 0.25)
     neck, top = 0.4 * r, h + d.u(0.01, 0.03)
@@ -121,11 +122,11 @@ def pump_bottle(d: Draft) -> None:
         z = top + play
         stem = d.u(0.015, 0.04)
         d.bore("bottle", rod(0.35 * neck + 1.5 * d.gap(neck) + 1e-5, (0, 0, 0.4 * h), (0, 0, top + 1)))
-        d.part("head", rod(0.35 * neck, (0, 0, 0.5 * h if d.hand.bored else top), (0, 0, z + stem)),
+        d.part("head", rod(0.35 * neck, (0, 0, 0.5 * h if d.hand.has_bore else top), (0, 0, z + stem)),
             d.pick(rod(0.9 * neck,
             (0, 0, z + stem), (0, 0, z + stem + 0.012)), box((-0.8 * neck, -neck, z + stem), (0.8 * neck, neck,
             z + stem + 0.012))), beam(0.4 * neck, 0.3 * neck, (0, 0, z + stem + 0.006), (0, -1.5 * r, z + stem)))
-        d.slide("head", "bottle", -Z, 0.8 * stem, ajar=False)
+        d.slide("head", "bottle", -Z, 0.8 * stem, initial_opening=False)
     else:
         high = d.u(0.01, 0.04)
         z = top - 0.8 * high if d.maybe() else top + max(play, -0.3 * high)
@@ -137,7 +138,7 @@ def pump_bottle(d: Draft) -> None:
             d.slide("cap", "bottle", Z, d.u(0.02, 0.06))
 
 
-def plain_bucket(d: Draft) -> None:
+def plain_bucket(d: ObjectBuilder) -> None:
     """A pail or a basket with one bow or two that swing about their ends, upright or laid on the rim."""
     r, h = d.u(0.1, 0.2), d.u(0.12, 0.35)
     d.part("pail", cone(d.u(0.6, 1.0) * r, r, (0, 0, 0), (0, 0, h)), material="metal")
@@ -157,10 +158,10 @@ def plain_bucket(d: Draft) -> None:
         if d.hand.barrels and d.hand.hollow:
             d.part("pail", *(rod(0.8 * wire, (s * 0.9 * r, y, z), (s * (wide - wire), y, z)) for s in (-1.0, 1.0)))
         swing = d.u(1.0, 1.5)
-        d.hinge(name, "pail", X, (0, y, z), swing, -swing, ajar=False, rest=d.pick(0.0, 0.0, 0.9 * swing))
+        d.hinge(name, "pail", X, (0, y, z), swing, -swing, initial_opening=False, rest=d.pick(0.0, 0.0, 0.9 * swing))
 
 
-def plain_stapler(d: Draft) -> None:
+def plain_stapler(d: ObjectBuilder) -> None:
     """A base and an arm that is hinged behind: a stapler, a punch, a clip, a press."""
     length, wide, t = d.u(0.08, 0.18), d.u(0.02, 0.04), d.u(0.006, 0.015)
     arm, rise = d.u(0.8, 1.3) * t, d.pick(0.0, d.u(0.05, 0.3))
@@ -177,10 +178,10 @@ def plain_stapler(d: Draft) -> None:
     if d.maybe():
         d.part("arm", box((-0.8 * half, 0.0, low + arm), (0.8 * half, 0.6 * length, low + 1.4 * arm)))
     pivot = (0, end, low + (0.5 * arm if cheeks else 0.0))
-    d.hinge("arm", "base", -X, pivot, d.u(0.6, 1.4 if cheeks else 2.0), ajar=False, rest=rise)
+    d.hinge("arm", "base", -X, pivot, d.u(0.6, 1.4 if cheeks else 2.0), initial_opening=False, rest=rise)
 
 
-def slab_laptop(d: Draft) -> None:
+def slab_laptop(d: ObjectBuilder) -> None:
     """Two slabs on an edge, mostly open: a laptop, a game, a case for make-up; keys or a pad at times."""
     w, t, a, b = d.u(0.08, 0.4), d.u(0.06, 0.28), d.u(0.008, 0.03), d.u(0.004, 0.015)
     d.part("base", box((-w / 2, 0, 0), (w / 2, t, a)), material="plastic")
@@ -195,10 +196,10 @@ def slab_laptop(d: Draft) -> None:
         button(d, "key", "base", (0.44 * w, 0.95 * t - 0.005, a), (0.006, 0.006), 0.001, Z)
     pivot = (0, t, d.pick(low, a + play / 2, low + b / 2))
     reach = d.u(1.8, 3.0)
-    d.hinge("screen", "base", -X, pivot, reach, ajar=False, rest=d.pick(0.0, d.u(1.2, 1.9), d.u(1.5, 1.8)))
+    d.hinge("screen", "base", -X, pivot, reach, initial_opening=False, rest=d.pick(0.0, d.u(1.2, 1.9), d.u(1.5, 1.8)))
 
 
-def plain_globe(d: Draft) -> None:
+def plain_globe(d: ObjectBuilder) -> None:
     """A ball between the ends of a bow, or on a rod: it turns about a tilted line, with pins or without."""
     r, tilt = d.u(0.06, 0.2), d.pick(0.0, d.u(0.2, 0.5))
     up = np.array([np.sin(tilt), 0.0, np.cos(tilt)])
@@ -216,12 +217,12 @@ def plain_globe(d: Draft) -> None:
     d.part("stand", *(beam(0.06 * r, 0.1 * r, p, q, Y) for p, q in pairwise(low)))
     d.part("ball", ball(r, middle), material="plastic")
     if d.hand.barrels:  # stubs on the ball that end before the bow
-        reach = wide - 0.06 * r if d.hand.bored else wide
+        reach = wide - 0.06 * r if d.hand.has_bore else wide
         d.part("ball", rod(0.03 * r, middle - reach * up, middle + reach * up))
     d.spin("ball", "stand", up, middle)
 
 
-def rod_lamp(d: Draft) -> None:
+def rod_lamp(d: ObjectBuilder) -> None:
     """Plain rods that touch or stand in each other at their ends, a shade or a head at the last."""
     n, length, r = d.n(1, 3), d.u(0.15, 0.4), d.u(0.004, 0.012)
     foot = d.u(0.06, 0.1)
@@ -236,24 +237,25 @@ def rod_lamp(d: Draft) -> None:
     for k in range(n):
         along = np.array([0.0, -np.sin(angle), np.cos(angle)])
         # Careful hands lay a rod beside the one before it.
-        beside = (2.5 * r + play) * X if d.hand.bored else 0.0 * X
-        start, end = at + beside + (0.0 if d.hand.bored else d.pick(0.0, 0.8 * r)) * along, at + beside + length * along
+        beside = (2.5 * r + play) * X if d.hand.has_bore else 0.0 * X
+        start = at + beside + (0.0 if d.hand.has_bore else d.pick(0.0, 0.8 * r)) * along
+        end = at + beside + length * along
         d.part(f"arm_{k}", d.pick(capsule(r, start, end), rod(r, start, end)), material="metal")
-        if not d.hand.bored and d.maybe():
+        if not d.hand.has_bore and d.maybe():
             d.part(f"arm_{k}", ball(1.8 * r, at))
-        d.hinge(f"arm_{k}", parent, X, at + beside, d.u(0.6, 1.5), -d.u(0.3, 0.8), ajar=False)
+        d.hinge(f"arm_{k}", parent, X, at + beside, d.u(0.6, 1.5), -d.u(0.3, 0.8), initial_opening=False)
         at, parent, angle = end, f"arm_{k}", angle + d.u(0.5, 1.5)
     out = np.array([0.0, -np.sin(angle), np.cos(angle)])
-    beside = (2.5 * r + play) * X if d.hand.bored else 0.0 * X
+    beside = (2.5 * r + play) * X if d.hand.has_bore else 0.0 * X
     high = d.u(0.05, 0.12)
     d.part("head", d.pick(cone(0.3 * high, high, at + beside, at + beside + high * out), beam(0.5 * high, 0.2 * high,
         at + beside, at + beside + 2 * high * out)), material="metal")
-    if d.hand.bored:
+    if d.hand.has_bore:
         d.cut("head", box(at - 5 * r - X, at + 5 * r + (r + play / 2 - 5 * r) * X))
-    d.hinge("head", parent, X, at + beside, d.u(0.5, 1.2), -d.u(0.5, 1.2), ajar=False)
+    d.hinge("head", parent, X, at + beside, d.u(0.5, 1.2), -d.u(0.5, 1.2), initial_opening=False)
 
 
-def plain_clock(d: Draft) -> None:
+def plain_clock(d: ObjectBuilder) -> None:
     """A disc or a box with two or three thin hands before it about one line; a knob behind at times."""
     r, t = d.u(0.04, 0.25), d.u(0.01, 0.06)
     d.part("case", d.pick(rod(r, (0, 0, 0), (0, t, 0)), box((-r, 0, -r), (r, t, r))), material="wood")
@@ -281,7 +283,7 @@ def plain_clock(d: Draft) -> None:
         knob(d, "setter", "case", (0, t, -0.3 * r), 0.1 * r, 0.1 * r, Y)
 
 
-def box_fan(d: Draft) -> None:
+def box_fan(d: ObjectBuilder) -> None:
     """Blades in a ring or a box that nothing visible holds, or a spindle behind them does."""
     r, t, n = d.u(0.04, 0.25), d.u(0.03, 0.12), d.n(3, 7)
     d.part("case", box((-1.15 * r, -t / 2, -1.15 * r), (1.15 * r, t / 2, 1.15 * r)), material="plastic")
@@ -304,7 +306,7 @@ def box_fan(d: Draft) -> None:
     d.spin("rotor", "case", -Y, (0, 0, 0))
 
 
-def flip_cap(d: Draft) -> None:
+def flip_cap(d: ObjectBuilder) -> None:
     """A stick or a block with a cover: hinged at an end, turning about a pin, or drawn off: a lighter, a USB stick."""
     w, t, h = d.u(0.015, 0.04), d.u(0.008, 0.02), d.u(0.03, 0.07)
     kind = d.pick("flips", "turns", "off")
@@ -312,26 +314,27 @@ def flip_cap(d: Draft) -> None:
     d.part("body", box((-w / 2, -t / 2, 0), (w / 2, t / 2, share * h)), material="metal")
     play = seam(d, t, 0.004)
     if kind == "turns":  # a bow of sheet over both faces
-        g = max(d.gap(t), 0.0) if d.hand.bored else d.pick(0.0, d.gap(t))
+        g = max(d.gap(t), 0.0) if d.hand.has_bore else d.pick(0.0, d.gap(t))
         sheet = 0.08 * t
         for s in (-1.0, 1.0):
             d.part("cover", box((-0.5 * w, s * (t / 2 + g), -0.1 * h), (0.5 * w, s * (t / 2 + g + sheet), 0.9 * h)))
         d.part("cover", box((-0.5 * w, -t / 2 - g - sheet, 0.9 * h), (0.5 * w, t / 2 + g + sheet, 0.9 * h + sheet)))
         d.part("body", *(rod(0.08 * w, (0, s * t / 2, 0.15 * h), (0, s * (t / 2 - 1e-3), 0.15 * h)) for s in (-1.0,
             1.0)))
-        d.hinge("cover", "body", Y, (0, 0, 0.15 * h), d.u(2.0, 3.1), -d.u(2.0, 3.1), ajar=False)
+        d.hinge("cover", "body", Y, (0, 0, 0.15 * h), d.u(2.0, 3.1), -d.u(2.0, 3.1), initial_opening=False)
         return
     d.part("body", box((-0.35 * w, -0.35 * t, 0), (0.35 * w, 0.35 * t, 0.9 * h)))
     low = share * h + play
     d.part("cover", box((-w / 2, -t / 2, low), (w / 2, t / 2, h)), material="metal")
     d.bore("cover", box((-0.4 * w, -0.4 * t, 0), (0.4 * w, 0.4 * t, 0.95 * h)))
     if kind == "flips":
-        d.hinge("cover", "body", Y, (w / 2, 0, share * h + d.pick(0.0, 0.5, 1.0) * play), d.u(1.5, 2.8), ajar=False)
+        d.hinge("cover", "body", Y, (w / 2, 0, share * h + d.pick(0.0, 0.5, 1.0) * play), d.u(1.5, 2.8),
+            initial_opening=False)
     else:
         d.slide("cover", "body", Z, d.u(0.3, 0.6) * h)
 
 
-def plain_bag(d: Draft) -> None:
+def plain_bag(d: ObjectBuilder) -> None:
     """A bag or a basket with one handle or two that swing on its rim, and a flap at times."""
     w, t, h = d.u(0.2, 0.45), d.u(0.08, 0.2), d.u(0.15, 0.35)
     d.part("bag", box((-w / 2, -t / 2, 0), (w / 2, t / 2, h)), material="plastic")
@@ -342,8 +345,8 @@ def plain_bag(d: Draft) -> None:
             glazed=0.0, reach=d.u(1.5, 2.8))
     wire, half, tall = d.u(0.003, 0.008), d.u(0.15, 0.35) * w, d.u(0.3, 0.7) * h
     for k, s in enumerate((-1.0, 1.0)):
-        y = s * (t / 2 + wire + max(d.gap(t), 0.0 if d.hand.bored else -wire))
+        y = s * (t / 2 + wire + max(d.gap(t), 0.0 if d.hand.has_bore else -wire))
         z = h - d.u(0.02, 0.15) * h
         points = [np.array([half * np.cos(a), y, z + tall * np.sin(a)]) for a in np.linspace(0, np.pi, d.n(5, 10))]
         d.part(f"strap_{k}", *(capsule(wire, p, q) for p, q in pairwise(points)))
-        d.hinge(f"strap_{k}", "bag", s * -X, (0, y, z), d.u(0.8, 2.5), ajar=False)
+        d.hinge(f"strap_{k}", "bag", s * -X, (0, y, z), d.u(0.8, 2.5), initial_opening=False)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.recipes.draft import spread
 from benchmarks.recipes.mechanisms import arm, case, caster, grip, leaf, rotor, wheel
+from benchmarks.recipes.object_builder import spread
 from benchmarks.recipes.shapes import (
     X,
     Y,
@@ -27,20 +27,20 @@ from benchmarks.recipes.shapes import (
 )
 
 if TYPE_CHECKING:
-    from benchmarks.recipes.draft import Draft
+    from benchmarks.recipes.object_builder import ObjectBuilder
 
 # fmt: off
 # A recipe reads as a list of shapes and joints, which one argument a line would hide.
 
 
-def _axles(d: Draft, on: str, xs: list[float], half: float, radius: float, wide: float, axle: float) -> None:
+def _axles(d: ObjectBuilder, on: str, xs: list[float], half: float, radius: float, wide: float, axle: float) -> None:
     """Pairs of wheels; the car drives along x, its sides are at y = -half and half."""
     for i, x in enumerate(xs):
         for s, side in ((-1.0, "right"), (1.0, "left")):
             wheel(d, f"wheel_{i}_{side}", on, (x, s * (half + axle + wide / 2), radius), radius, wide, s * Y, axle=axle)
 
 
-def box_car(d: Draft) -> None:
+def box_car(d: ObjectBuilder) -> None:
     """A car of boxes: four wheels, doors, a tailgate and a bonnet as they come."""
     n, w, r = d.u(2.5, 4.5), d.u(1.4, 1.9), d.u(0.25, 0.35)
     d.part("body", box((-n / 2, -w / 2, r), (n / 2, w / 2, r + 0.55)), box((-0.45 * n, -0.45 * w, r + 0.5), (0.15 * n,
@@ -59,7 +59,7 @@ def box_car(d: Draft) -> None:
             -Z), out=-X, reach=1.4, material="steel")
 
 
-def pickup_truck(d: Draft) -> None:
+def pickup_truck(d: ObjectBuilder) -> None:
     """A cab, a bed with a tailgate, four wheels."""
     n, w, r = d.u(4.0, 5.5), d.u(1.7, 2.0), d.u(0.32, 0.42)
     d.part("body", box((-n / 2, -w / 2, r), (n / 2, w / 2, r + 0.4)), box((-0.05 * n, -0.46 * w, r + 0.3), (0.28 * n,
@@ -74,7 +74,7 @@ def pickup_truck(d: Draft) -> None:
             reach=1.0, handle=False)
 
 
-def van(d: Draft) -> None:
+def van(d: ObjectBuilder) -> None:
     """A sliding side door, two rear doors, wheels."""
     n, w, r, h = d.u(4.5, 6.0), d.u(1.8, 2.1), 0.33, d.u(1.6, 2.2)
     case(d, "body", (-n / 2, -w / 2, r), (n / 2, w / 2, r + h), material="steel")
@@ -91,7 +91,7 @@ def van(d: Draft) -> None:
     _axles(d, "body", [-0.3 * n, 0.32 * n], w / 2, r, 0.22, 0.02)
 
 
-def bus_or_tram(d: Draft) -> None:
+def bus_or_tram(d: ObjectBuilder) -> None:
     """Double doors that slide apart or swing, and many wheels."""
     n, w, r, h = d.u(6.0, 12.0), 2.5, 0.45, 2.5
     case(d, "body", (-n / 2, -w / 2, r), (n / 2, w / 2, r + h), material="steel")
@@ -110,7 +110,7 @@ def bus_or_tram(d: Draft) -> None:
     _axles(d, "body", [-0.35 * n, 0.3 * n], w / 2, r, 0.28, 0.02)
 
 
-def tractor(d: Draft) -> None:
+def tractor(d: ObjectBuilder) -> None:
     """Large wheels behind, small ones in front on a swinging axle; a three-point arm."""
     r, q = d.u(0.6, 0.9), d.u(0.3, 0.45)
     d.part("body", box((-0.7, -0.3, r - 0.2), (1.4, 0.3, r + 0.4)), box((-0.7, -0.5, r + 0.3), (0.1, 0.5, r + 0.45)),
@@ -120,18 +120,18 @@ def tractor(d: Draft) -> None:
     g = d.gap(0.1) + 0.005
     d.part("axle", box((1.1, -0.55, q - 0.05), (1.2, 0.55, q + 0.05)), box((1.1, -0.06, q), (1.2, 0.06, r - 0.2 - g)),
         material="steel")
-    d.hinge("axle", "body", X, (1.15, 0, q), 0.1, -0.1, ajar=False)
+    d.hinge("axle", "body", X, (1.15, 0, q), 0.1, -0.1, initial_opening=False)
     for s, side in ((-1.0, "right"), (1.0, "left")):
         wheel(d, f"front_{side}", "axle", (1.15, s * 0.68, q), q, 0.2, s * Y, axle=0.03)
     d.part("hitch", beam(0.5, 0.06, (-0.71 - g, 0, r), (-1.4, 0, r - 0.2)))
-    d.hinge("hitch", "body", Y, (-0.71 - g, 0, r + 0.04), 0.4, ajar=False)
+    d.hinge("hitch", "body", Y, (-0.71 - g, 0, r + 0.04), 0.4, initial_opening=False)
     d.part("steering", rod(0.02, (0.2, 0, r + 0.4 + d.gap(0.02)), (0.12, 0, r + 0.7)), ring(0.18, 0.015, (0.12, 0,
         r + 0.7), np.array([-0.25, 0, 0.97])))
     d.hinge("steering", "body", np.array([-0.08, 0, 0.3]) / np.hypot(0.08, 0.3), (0.2, 0, r + 0.4), 3.0, -3.0,
-        ajar=False)
+        initial_opening=False)
 
 
-def bicycle(d: Draft) -> None:
+def bicycle(d: ObjectBuilder) -> None:
     """A frame, a fork that steers, two wheels, cranks."""
     r, b = d.u(0.28, 0.36), d.u(0.9, 1.1)
     t = 0.02
@@ -150,14 +150,14 @@ def bicycle(d: Draft) -> None:
     foot = np.array([b, 0, r])
     d.part("fork", *(rod(0.6 * t, low + s * Y, foot + s * Y) for s in (-0.05, 0.05)), beam(0.12, 0.03, low - 0.06 * Y,
         low + 0.06 * Y), material="steel")
-    if d.hand.bored:
+    if d.hand.has_bore:
         d.part("fork", rod(0.4 * t, low, top + 0.2 * axis))
         d.cut("frame", rod(0.4 * t + 1.5 * g, low - 0.05 * axis, top + 0.1 * axis))
     else:
         d.part("fork", rod(0.8 * t, low, top + 0.2 * axis))
     bar = top + 0.2 * axis
     d.part("fork", rod(0.6 * t, bar - 0.28 * Y, bar + 0.28 * Y))
-    d.hinge("fork", "frame", axis, head, 0.7, -0.7, ajar=False)
+    d.hinge("fork", "frame", axis, head, 0.7, -0.7, initial_opening=False)
     for name, on, at in (("rear_wheel", "frame", np.array([0, 0, r])), ("front_wheel", "fork", foot)):
         d.part(name, ring(r - 0.02, 0.018, at, Y), rod(0.03, at - 0.03 * Y, at + 0.03 * Y), *(beam(0.004, 0.004,
             at - (r - 0.02) * v, at + (r - 0.02) * v) for v in (X, Z, (X + Z) / 2**0.5, (X - Z) / 2**0.5)),
@@ -171,27 +171,27 @@ def bicycle(d: Draft) -> None:
     d.spin("cranks", "frame", Y, axle)
 
 
-def scooter(d: Draft) -> None:
+def scooter(d: ObjectBuilder) -> None:
     """A kick scooter: a deck, a steering column, two wheels."""
     n, r, h = d.u(0.5, 0.7), d.u(0.05, 0.1), d.u(0.7, 1.0)
     g = d.gap(0.02) + 0.0005
     d.part("deck", box((0, -0.06, 0.07), (n, 0.06, 0.09)), *(box((-2.2 * r, s, r - 0.015), (0.02, s * 1.4,
         0.085)) for s in (-0.03, 0.03)), material="metal")
     d.part("deck", beam(0.04, 0.04, (n - 0.01, 0, 0.08), (n + 0.08, 0, 0.2)), tube(0.028,
-        0.02 if d.hand.bored else 0.001, (n + 0.08, 0, 0.17), (n + 0.08, 0, 0.27)))
-    d.part("column", rod(0.02 - (g if d.hand.bored else 0.0), (n + 0.08, 0, 0.12), (n + 0.08, 0, h)), rod(0.014,
+        0.02 if d.hand.has_bore else 0.001, (n + 0.08, 0, 0.17), (n + 0.08, 0, 0.27)))
+    d.part("column", rod(0.02 - (g if d.hand.has_bore else 0.0), (n + 0.08, 0, 0.12), (n + 0.08, 0, h)), rod(0.014,
         (n + 0.08, -0.2, h), (n + 0.08, 0.2, h)), box((n + 0.055, -0.045, 0.12), (n + 0.105, 0.045, 0.14)),
         material="metal")
     for s in (-0.04, 0.04):
         d.part("column", beam(0.03, 0.008, (n + 0.08, s, 0.14), (n + 0.1, s, 0.035), Y))
-    d.hinge("column", "deck", Z, (n + 0.08, 0, 0.2), 0.9, -0.9, ajar=False)
+    d.hinge("column", "deck", Z, (n + 0.08, 0, 0.2), 0.9, -0.9, initial_opening=False)
     for name, on, x in (("rear_wheel", "deck", -1.4 * r), ("front_wheel", "column", n + 0.1)):
         q = 0.045 if on == "column" else r
         d.part(name, rod(q, (x, -0.025, q), (x, 0.025, q)), material="rubber")
         d.spin(name, on, Y, (x, 0, q))
 
 
-def skateboard(d: Draft) -> None:
+def skateboard(d: ObjectBuilder) -> None:
     """A deck, two trucks that tilt, four wheels."""
     n, w, r = d.u(0.6, 0.9), d.u(0.18, 0.24), d.u(0.025, 0.035)
     d.part("deck", box((-n / 2, -w / 2, 0.1), (n / 2, w / 2, 0.112)), *(rod(w / 2, (s * n / 2, 0, 0.1), (s * n / 2, 0,
@@ -203,12 +203,12 @@ def skateboard(d: Draft) -> None:
         name = f"truck_{k}"
         d.part(name, box((x - 0.015, -0.38 * w, r - 0.008), (x + 0.015, 0.38 * w, r + 0.008)), rod(0.012, (x, 0, r), (x,
             0, 0.085 - g)), material="metal")
-        d.hinge(name, "deck", X, (x, 0, 0.07), 0.2, -0.2, ajar=False)
+        d.hinge(name, "deck", X, (x, 0, 0.07), 0.2, -0.2, initial_opening=False)
         for q in (-1.0, 1.0):
             wheel(d, f"wheel_{k}_{int(q > 0)}", name, (x, q * (0.38 * w + 0.022), r), r, 0.035, q * Y, axle=0.004)
 
 
-def wheelbarrow(d: Draft) -> None:
+def wheelbarrow(d: ObjectBuilder) -> None:
     """A tray, two handles, one wheel in a fork."""
     n, w, r = d.u(0.7, 0.9), d.u(0.5, 0.65), d.u(0.15, 0.2)
     d.part("barrow", prism([(-0.4 * n, 0.35), (0.35 * n, 0.35), (0.55 * n, 0.65), (-0.5 * n, 0.65)], (0, 0, 0), w, "y"),
@@ -221,12 +221,12 @@ def wheelbarrow(d: Draft) -> None:
             0.34), (0.62 * n, s * 0.08, r)), rod(0.018, (-0.4 * n, s * 0.2, 0.36), (-0.4 * n, s * 0.2, 0)))
     at = np.array([0.6 * n, 0, r])
     d.part("wheel", rod(r, at - 0.04 * Y, at + 0.04 * Y), material="rubber")
-    if d.hand.barrels and not d.hand.bored:
+    if d.hand.barrels and not d.hand.has_bore:
         d.part(d.pick("wheel", "barrow"), rod(0.01, at - 0.09 * Y, at + 0.09 * Y))
     d.spin("wheel", "barrow", Y, at)
 
 
-def hand_truck(d: Draft) -> None:
+def hand_truck(d: ObjectBuilder) -> None:
     """A sack truck with two wheels and a plate that folds up."""
     w, h, r = d.u(0.35, 0.5), d.u(1.0, 1.3), d.u(0.08, 0.14)
     for s in (-1.0, 1.0):
@@ -239,10 +239,10 @@ def hand_truck(d: Draft) -> None:
     g = d.gap(0.03) + 0.001
     y = -0.018 - g
     d.part("plate", box((-0.45 * w, -0.25, 0.025), (0.45 * w, y, 0.033)), material="steel")
-    d.hinge("plate", "frame", -X, (0, y, 0.029), 1.5, ajar=False)
+    d.hinge("plate", "frame", -X, (0, y, 0.029), 1.5, initial_opening=False)
 
 
-def shopping_cart(d: Draft) -> None:
+def shopping_cart(d: ObjectBuilder) -> None:
     """A wire basket, four casters, a child's flap."""
     n, w, h = d.u(0.7, 1.0), d.u(0.45, 0.6), d.u(0.9, 1.05)
     z0 = 0.45
@@ -260,7 +260,7 @@ def shopping_cart(d: Draft) -> None:
         caster(d, f"caster_{k}", "cart", (x, y, 0.12), 0.12)
 
 
-def wheelchair(d: Draft) -> None:
+def wheelchair(d: ObjectBuilder) -> None:
     """Two large wheels, two casters, foot rests that swing up."""
     w, r, z = d.u(0.42, 0.52), d.u(0.28, 0.32), 0.5
     d.part("chair", box((-0.22, -w / 2, z), (0.22, w / 2, z + 0.03)), box((-0.25, -w / 2, z), (-0.22, w / 2, z + 0.45)),
@@ -275,10 +275,10 @@ def wheelchair(d: Draft) -> None:
             0.15), (0.56, s * 0.15, 0.16)))
         d.part("chair", rod(0.012, (0.2, s * 0.1, 0.47), (0.25, s * 0.1, 0.45)), box((0.18, s * 0.08, 0.46), (0.22,
             s * 0.12, z + 0.01)))
-        d.hinge(f"rest_{k}", "chair", Y * -1.0, (0.26 + g, s * 0.1, 0.45), 0.9, ajar=False)
+        d.hinge(f"rest_{k}", "chair", Y * -1.0, (0.26 + g, s * 0.1, 0.45), 0.9, initial_opening=False)
 
 
-def helicopter(d: Draft) -> None:
+def helicopter(d: ObjectBuilder) -> None:
     """A main rotor, a tail rotor, a door on each side."""
     k = d.u(0.1, 1.0)
     d.part("hull", capsule(0.6 * k, (-0.5 * k, 0, 1.2 * k), (0.6 * k, 0, 1.2 * k)), cone(0.3 * k, 0.1 * k, (-0.8 * k, 0,
@@ -292,7 +292,7 @@ def helicopter(d: Draft) -> None:
     rotor(d, "tail_rotor", "hull", (-3.15 * k, 0.2 * k, 1.8 * k), Y, 0.5 * k, d.n(2, 4))
 
 
-def light_aircraft(d: Draft) -> None:
+def light_aircraft(d: ObjectBuilder) -> None:
     """A propeller, ailerons, an elevator, a rudder, wheels."""
     n, b = d.u(5.0, 8.0), d.u(7.0, 11.0)
     k = d.pick(1.0, 0.1)
@@ -307,19 +307,19 @@ def light_aircraft(d: Draft) -> None:
     for k2, s in enumerate((-1.0, 1.0)):
         d.part(f"aileron_{k2}", box(p(-0.11 * n, s * 0.3 * b, z + 0.02), p(-0.05 * n - g, s * 0.49 * b, z + 0.1)))
         d.hinge(f"aileron_{k2}", "airframe", Y, p(-0.05 * n - g, 0, z + d.pick(0.06, 0.06, 0.1)), 0.4,
-            -0.02 if d.hand.bored else -0.4, ajar=False)
+            -0.02 if d.hand.has_bore else -0.4, initial_opening=False)
     d.part("elevator", box(p(-0.74 * n, -1.4, 1.41), p(-0.68 * n - g - 0.04, -0.2, 1.45)), box(p(-0.74 * n, 0.2, 1.41),
         p(-0.68 * n - g - 0.04, 1.4, 1.45)), box(p(-0.74 * n, -0.2, 1.42), p(-0.72 * n, 0.2, 1.44)))
-    d.hinge("elevator", "airframe", Y, p(-0.68 * n - g, 0, 1.43), 0.4, -0.4, ajar=False)
+    d.hinge("elevator", "airframe", Y, p(-0.68 * n - g, 0, 1.43), 0.4, -0.4, initial_opening=False)
     d.part("rudder", box(p(-0.74 * n, -0.02, 1.75), p(-0.68 * n - g - 0.04, 0.02, 2.4)))
-    d.hinge("rudder", "airframe", Z, p(-0.68 * n - g, 0, 1.5), 0.4, -0.4, ajar=False)
+    d.hinge("rudder", "airframe", Z, p(-0.68 * n - g, 0, 1.5), 0.4, -0.4, initial_opening=False)
     rotor(d, "propeller", "airframe", p(0.33 * n, 0, 1.2), X, 0.95 * k, d.n(2, 3), wide=0.12)
     for i, (x, y) in enumerate(((0.05 * n, -1.1), (0.05 * n, 1.1))):
         d.part("airframe", rod(0.05 * k, p(x, 0.2 * np.sign(y), 1.0), p(x, y * 0.86, 0.22)))
         wheel(d, f"wheel_{i}", "airframe", p(x, y, 0.22), 0.2 * k, 0.14 * k, np.sign(y) * Y, axle=0.04 * k)
 
 
-def drone(d: Draft) -> None:
+def drone(d: ObjectBuilder) -> None:
     """A quadcopter: four or six rotors on arms, a camera that tilts."""
     r, n = d.u(0.1, 0.4), d.pick(4, 4, 6)
     d.part("frame", block((0, 0, 0.25 * r), (0.6 * r, 0.4 * r, 0.15 * r)), material="plastic")
@@ -331,10 +331,10 @@ def drone(d: Draft) -> None:
     g = d.gap(0.1 * r)
     d.part("camera", ball(0.09 * r, (0.3 * r + 0.1 * r + g, 0, 0.22 * r)), rod(0.05 * r, (0.4 * r, 0, 0.22 * r),
         (0.55 * r, 0, 0.22 * r)))
-    d.hinge("camera", "frame", Y, (0.4 * r + g, 0, 0.22 * r), 1.0, -0.3, ajar=False)
+    d.hinge("camera", "frame", Y, (0.4 * r + g, 0, 0.22 * r), 1.0, -0.3, initial_opening=False)
 
 
-def sailing_boat(d: Draft) -> None:
+def sailing_boat(d: ObjectBuilder) -> None:
     """A hull, a boom that swings at the mast, a rudder with a tiller."""
     n = d.u(2.0, 6.0)
     d.part("hull", prism([(-0.5 * n, -0.16 * n), (0.25 * n, -0.17 * n), (0.5 * n, 0), (0.25 * n, 0.17 * n), (-0.5 * n,
@@ -354,7 +354,7 @@ def sailing_boat(d: Draft) -> None:
     d.hinge("rudder", "hull", Z, (x, 0, 0), 0.7, -0.7)
 
 
-def rowing_boat(d: Draft) -> None:
+def rowing_boat(d: ObjectBuilder) -> None:
     """Two oars in their locks."""
     n = d.u(2.0, 4.0)
     d.part("hull", prism([(-0.5 * n, -0.12 * n), (0.2 * n, -0.18 * n), (0.5 * n, 0), (0.2 * n, 0.18 * n), (-0.5 * n,
@@ -374,7 +374,7 @@ def rowing_boat(d: Draft) -> None:
         d.hinge(f"oar_{k}", "hull", Z, (0, y, 0.2 * n), 0.7, -0.7)
 
 
-def motor_boat(d: Draft) -> None:
+def motor_boat(d: ObjectBuilder) -> None:
     """An outboard that steers, its propeller, a steering wheel, a hatch."""
     n = d.u(3.0, 7.0)
     d.part("hull", prism([(-0.5 * n, 0), (0.4 * n, 0), (0.5 * n, 0.18 * n), (-0.5 * n, 0.18 * n)], (0, 0, 0), 0.36 * n,
@@ -384,8 +384,8 @@ def motor_boat(d: Draft) -> None:
     d.part("outboard", box((x - 0.1 * n, -0.04 * n, 0.12 * n), (x, 0.04 * n, 0.26 * n)), box((x - 0.07 * n, -0.015 * n,
         -0.1 * n), (x - 0.03 * n, 0.015 * n, 0.13 * n)), rod(0.02 * n, (x - 0.09 * n, 0, -0.07 * n), (x - 0.02 * n, 0,
         -0.07 * n)))
-    d.hinge("outboard", "hull", Z, (x, 0, 0), 0.03 if d.hand.bored else 0.6, -0.03 if d.hand.bored else -0.6,
-        ajar=False)
+    d.hinge("outboard", "hull", Z, (x, 0, 0), 0.03 if d.hand.has_bore else 0.6, -0.03 if d.hand.has_bore else -0.6,
+        initial_opening=False)
     rotor(d, "propeller", "outboard", (x - 0.09 * n, 0, -0.07 * n), -X, 0.06 * n, 3, wide=0.5)
     at = np.array([0.0, 0.06 * n, 0.24 * n])
     d.part("wheel", ring(0.045 * n, 0.005 * n, at - 0.03 * n * X, X), rod(0.008 * n, at - g * X, at - 0.03 * n * X),
@@ -396,7 +396,7 @@ def motor_boat(d: Draft) -> None:
         -X), out=Z, reach=1.5)
 
 
-def trailer(d: Draft) -> None:
+def trailer(d: ObjectBuilder) -> None:
     """A flat bed with sides that fold down, two wheels, a jockey wheel that goes up."""
     n, w, r = d.u(1.5, 3.0), d.u(1.0, 1.5), d.u(0.22, 0.32)
     z = r + 0.2
@@ -411,18 +411,18 @@ def trailer(d: Draft) -> None:
     leaf(d, "tailgate", "bed", (-n / 2 - 0.025, -w / 2, z + 0.055), (-n / 2, w / 2, z + 0.05 + h), hinge=-Z, out=-X,
         reach=1.6, handle=d.maybe())
     x = n / 2 + 0.6
-    d.part("bed", tube(0.035, 0.022 if d.hand.bored else 0.002, (x, 0.07, z - 0.1), (x, 0.07, z + 0.15)))
+    d.part("bed", tube(0.035, 0.022 if d.hand.has_bore else 0.002, (x, 0.07, z - 0.1), (x, 0.07, z + 0.15)))
     g = d.gap(0.02) + 0.0005
-    d.part("jockey", rod(0.022 - (1.5 * g if d.hand.bored else 0), (x, 0.07, 0.14), (x, 0.07, z + 0.2)), *(beam(0.03,
+    d.part("jockey", rod(0.022 - (1.5 * g if d.hand.has_bore else 0), (x, 0.07, 0.14), (x, 0.07, z + 0.2)), *(beam(0.03,
         0.006, (x, 0.07 + s, 0.15), (x, 0.07 + s, 0.06), Y) for s in (-0.035, 0.035)), block((x, 0.07, 0.15), (0.04,
         0.08, 0.02)), material="steel")
-    d.slide("jockey", "bed", Z, 0.05, ajar=False)
+    d.slide("jockey", "bed", Z, 0.05, initial_opening=False)
     d.part("jockey_wheel", rod(0.08, (x, 0.045, 0.07), (x, 0.095, 0.07)), material="rubber")
     d.cut("jockey", rod(0.085, (x, 0.043, 0.07), (x, 0.097, 0.07)))
     d.spin("jockey_wheel", "jockey", Y, (x, 0.07, 0.07))
 
 
-def forklift(d: Draft) -> None:
+def forklift(d: ObjectBuilder) -> None:
     """A carriage that rises on a mast, wheels, a seat lid."""
     n, w, r = 1.6, 1.0, d.u(0.22, 0.3)
     d.part("truck", box((-n / 2, -w / 2, 0.15), (n / 2, w / 2, 0.8)), *(box((n / 2, s * 0.42 * w - 0.05, 0.08),
@@ -440,7 +440,7 @@ def forklift(d: Draft) -> None:
     leaf(d, "seat", "truck", (-0.6, -0.3, 0.8), (-0.05, 0.3, 0.9), hinge=X, out=Z, reach=1.2, handle=False)
 
 
-def digger(d: Draft) -> None:
+def digger(d: ObjectBuilder) -> None:
     """A turntable on tracks, boom, stick and bucket."""
     k = d.u(0.1, 1.0)
     p = scaled(k)
@@ -453,15 +453,15 @@ def digger(d: Draft) -> None:
     a, b, c = p(1.25, -0.3, 1.1), p(3.0, -0.3, 3.0), p(4.6, -0.3, 1.8)
     d.part("house", box(p(0.9, -0.42, 0.95), p(1.4, -0.18, 1.25)))
     arm(d, "boom", "house", a, b, 0.26 * k, Y, lower=-0.3, upper=0.4)
-    arm(d, "stick", "boom", b + (0.26 * k + d.gap(0.26 * k) if d.hand.bored else 0.0) * Y,
-        c + (0.26 * k + d.gap(0.26 * k) if d.hand.bored else 0.0) * Y, 0.2 * k, Y, lower=-0.5, upper=0.5)
-    c = c + (0.46 * k + 2 * d.gap(0.26 * k) if d.hand.bored else 0.0) * Y
+    arm(d, "stick", "boom", b + (0.26 * k + d.gap(0.26 * k) if d.hand.has_bore else 0.0) * Y,
+        c + (0.26 * k + d.gap(0.26 * k) if d.hand.has_bore else 0.0) * Y, 0.2 * k, Y, lower=-0.5, upper=0.5)
+    c = c + (0.46 * k + 2 * d.gap(0.26 * k) if d.hand.has_bore else 0.0) * Y
     d.part("bucket", prism([(-0.1 * k, 0.1 * k), (0.25 * k, 0.1 * k), (0.35 * k, -0.5 * k), (-0.35 * k, -0.6 * k)],
-        c + (0.35 * k + g if d.hand.bored else 0.0) * Y, 0.5 * k, "y"), material="steel")
-    d.hinge("bucket", "stick", Y, c, 0.8, -0.3, ajar=False)
+        c + (0.35 * k + g if d.hand.has_bore else 0.0) * Y, 0.5 * k, "y"), material="steel")
+    d.hinge("bucket", "stick", Y, c, 0.8, -0.3, initial_opening=False)
 
 
-def swing(d: Draft) -> None:
+def swing(d: ObjectBuilder) -> None:
     """Seats on ropes below a beam."""
     n, w, h = d.n(1, 3), d.u(1.5, 3.0), d.u(1.6, 2.3)
     d.part("frame", rod(0.05, (-w / 2, 0, h), (w / 2, 0, h)), *(beam(0.07, 0.07, (s * w / 2, 0, h), (s * w / 2, t * 0.8,
@@ -472,11 +472,11 @@ def swing(d: Draft) -> None:
         top = h - 0.05 - g if not d.hand.barrels else h
         d.part(f"seat_{k}", box((x - a, -0.12, 0.42), (x + a, 0.12, 0.45)), *(rod(0.01, (x + s * 0.9 * a, 0, 0.43),
             (x + s * 0.9 * a, 0, top)) for s in (-1, 1)), material="wood")
-        d.hinge(f"seat_{k}", "frame", X, (0, 0, d.pick(h, top)) if not d.hand.bored else (0, 0, h), 0.8, -0.8,
-            ajar=False)
+        d.hinge(f"seat_{k}", "frame", X, (0, 0, d.pick(h, top)) if not d.hand.has_bore else (0, 0, h), 0.8, -0.8,
+            initial_opening=False)
 
 
-def seesaw(d: Draft) -> None:
+def seesaw(d: ObjectBuilder) -> None:
     """A plank on a block or a post."""
     n, h = d.u(1.5, 3.0), d.u(0.35, 0.6)
     d.part("stand", prism([(-0.3, 0), (0.3, 0), (0.05, h - 0.02), (-0.05, h - 0.02)], (0, 0, 0), 0.2, "x"),
@@ -485,12 +485,12 @@ def seesaw(d: Draft) -> None:
     d.part("plank", box((-0.12, -n / 2, h + g), (0.12, n / 2, h + g + 0.04)), *(rod(0.015, (-0.12, s * 0.4 * n,
         h + 0.25), (0.12, s * 0.4 * n, h + 0.25)) for s in (-1, 1)), *(rod(0.015, (0, s * 0.4 * n, h), (0, s * 0.4 * n,
         h + 0.25)) for s in (-1, 1)), material="wood")
-    if not d.hand.bored:
+    if not d.hand.has_bore:
         d.part(d.pick("stand", "plank"), rod(0.03, (-0.13, 0, h), (0.13, 0, h)))
-    d.hinge("plank", "stand", X, (0, 0, h + (g if d.hand.bored else 0)), 0.3, -0.3)
+    d.hinge("plank", "stand", X, (0, 0, h + (g if d.hand.has_bore else 0)), 0.3, -0.3)
 
 
-def merry_go_round(d: Draft) -> None:
+def merry_go_round(d: ObjectBuilder) -> None:
     """A disc with rails on a post."""
     r = d.u(0.8, 1.6)
     d.part("base", rod(0.15 * r, (0, 0, 0), (0, 0, 0.15)), material="steel")
@@ -503,7 +503,7 @@ def merry_go_round(d: Draft) -> None:
     d.spin("disc", "base", Z, (0, 0, 0.15))
 
 
-def ferris_wheel(d: Draft) -> None:
+def ferris_wheel(d: ObjectBuilder) -> None:
     """A wheel on two stands with gondolas that hang."""
     r, n = d.u(0.3, 3.0), d.n(4, 8)
     h = 1.25 * r
@@ -532,7 +532,7 @@ def ferris_wheel(d: Draft) -> None:
     d.spin("wheel", "stand", X, (0, 0, h))
 
 
-def windmill(d: Draft) -> None:
+def windmill(d: ObjectBuilder) -> None:
     """Sails on a cap that turns on a tower, a door below."""
     h, r = d.u(1.0, 8.0), 0.0
     r = 0.45 * h
@@ -544,7 +544,7 @@ def windmill(d: Draft) -> None:
     rotor(d, "sails", "cap", (0, -0.24 * h, 0.87 * h), -Y, r, d.pick(3, 4), wide=0.2)
 
 
-def wind_turbine(d: Draft) -> None:
+def wind_turbine(d: ObjectBuilder) -> None:
     """A nacelle that yaws on a mast and a rotor with three blades."""
     h = d.u(0.5, 40.0)
     d.part("mast", cone(0.04 * h, 0.025 * h, (0, 0, 0), (0, 0, h)), material="steel")
@@ -554,7 +554,7 @@ def wind_turbine(d: Draft) -> None:
     rotor(d, "rotor", "nacelle", (0, -0.06 * h, h + 0.03 * h), -Y, 0.6 * h, d.n(2, 4), wide=0.08)
 
 
-def water_wheel(d: Draft) -> None:
+def water_wheel(d: ObjectBuilder) -> None:
     """Paddles between two rings, between walls."""
     r, w = d.u(0.3, 2.0), 0.0
     w = 0.4 * r
@@ -573,7 +573,7 @@ def water_wheel(d: Draft) -> None:
     d.spin("wheel", "walls", X, c)
 
 
-def well_with_windlass(d: Draft) -> None:
+def well_with_windlass(d: ObjectBuilder) -> None:
     """A roller with a crank above a well, a bucket beside."""
     r, h = d.u(0.4, 0.7), d.u(0.6, 0.9)
     d.part("well", tube(r, 0.85 * r, (0, 0, 0), (0, 0, h)), *(box((s * 0.93 * r - 0.04, -0.05, 0.5 * h),
@@ -588,7 +588,7 @@ def well_with_windlass(d: Draft) -> None:
     d.spin("roller", "well", X, (0, 0, z))
 
 
-def garden_gate(d: Draft) -> None:
+def garden_gate(d: ObjectBuilder) -> None:
     """One or two leaves of slats between posts."""
     w, h, n = d.u(0.8, 1.2), d.u(0.9, 1.6), d.n(1, 2)
     g = d.gap(0.05) + 0.001
@@ -607,7 +607,7 @@ def garden_gate(d: Draft) -> None:
         d.hinge(f"leaf_{k}", "posts", Z * s, pivot, d.u(1.2, 1.6))
 
 
-def mailbox(d: Draft) -> None:
+def mailbox(d: ObjectBuilder) -> None:
     """A door in front and a flag at the side."""
     w, n, h = d.u(0.15, 0.25), d.u(0.35, 0.55), d.u(0.9, 1.2)
     d.part("box", box((-w / 2, 0, h), (w / 2, n, h + w)), rod(w / 2, (0, 0, h + w), (0, n, h + w)), box((-0.04, 0.4 * n,
@@ -623,7 +623,7 @@ def mailbox(d: Draft) -> None:
     d.hinge("flag", "box", X * d.pick(1.0, -1.0), (x, 0.2 * n + 0.01, h + 0.35 * w), 1.57)
 
 
-def barrier(d: Draft) -> None:
+def barrier(d: ObjectBuilder) -> None:
     """A boom that goes up beside a post."""
     n, h = d.u(1.5, 4.0), d.u(0.9, 1.1)
     d.part("post", box((-0.15, -0.12, 0), (0.15, 0.12, h + 0.1)), material="steel")
@@ -632,12 +632,12 @@ def barrier(d: Draft) -> None:
     d.part("boom", beam(0.05, 0.1, (-0.35, y - 0.025, h), (n, y - 0.025, h)), material="metal")
     if d.maybe():
         d.part("boom", block((-0.35, y - 0.05, h), (0.25, 0.1, 0.2)))
-    if d.hand.barrels and not d.hand.bored:
+    if d.hand.barrels and not d.hand.has_bore:
         d.part(d.pick("boom", "post"), rod(0.03, (0, 0, h), (0, y - 0.06, h)))
     d.hinge("boom", "post", -Y, (0, y, h), 1.5)
 
 
-def turnstile(d: Draft) -> None:
+def turnstile(d: ObjectBuilder) -> None:
     """Three arms on a slanted hub, or a wing."""
     h = d.u(0.85, 1.0)
     d.part("cabinet", box((-0.15, -0.5, 0), (0.15, 0.5, h)), material="steel")
@@ -652,10 +652,10 @@ def turnstile(d: Draft) -> None:
         d.part("cabinet", rod(0.04, (0.19, 0, 0), (0.19, 0, 0.1)))
         d.part("arms", rod(0.04, (0.2, 0, 0.1 + g), (0.2, 0, h)), box((0.2, -0.01, 0.3), (0.75, 0.01, h - 0.1)),
             material="glass")
-        d.hinge("arms", "cabinet", Z, (0.2, 0, 0.1), 1.5, -1.5, ajar=False)
+        d.hinge("arms", "cabinet", Z, (0.2, 0, 0.1), 1.5, -1.5, initial_opening=False)
 
 
-def greenhouse(d: Draft) -> None:
+def greenhouse(d: ObjectBuilder) -> None:
     """A house of glass: roof vents that lift, a sliding door."""
     w, n, h = d.u(1.5, 2.5), d.u(1.5, 3.0), 1.6
     t = 0.04
@@ -676,7 +676,7 @@ def greenhouse(d: Draft) -> None:
     d.slide("door", "frame", X, 0.7)
 
 
-def lawn_mower(d: Draft) -> None:
+def lawn_mower(d: ObjectBuilder) -> None:
     """A deck with wheels, a blade below, a handle that folds."""
     n, w, r = d.u(0.5, 0.8), d.u(0.4, 0.5), d.u(0.08, 0.12)
     d.part("deck", box((-n / 2, -w / 2, r), (n / 2, w / 2, r + 0.12)), rod(0.12, (0, 0, r + 0.1), (0, 0, r + 0.3)),
@@ -697,7 +697,7 @@ def lawn_mower(d: Draft) -> None:
     d.hinge("handle", "deck", Y, (x, 0, r + 0.135 + g), 1.2, -0.3)
 
 
-def barbecue(d: Draft) -> None:
+def barbecue(d: ObjectBuilder) -> None:
     """A bowl with a lid, vents that turn, a tray, wheels."""
     r, z = d.u(0.2, 0.32), d.u(0.6, 0.75)
     d.part("bowl", lathe([(0, 0), (0.6 * r, 0.1 * r), (r, 0.7 * r), (0, 0.7 * r)], (0, 0, z)), *(rod(0.012,
@@ -715,16 +715,17 @@ def barbecue(d: Draft) -> None:
         d.slide("lid", "bowl", Z, 0.2)
     d.part("vent", rod(0.2 * r, (0, 0, top + 0.7 * r + g), (0, 0, top + 0.7 * r + 0.004 + g)), rod(0.03 * r, (0, 0,
         top + 0.7 * r + g), (0, 0, top + 0.75 * r)))
-    d.hinge("vent", "lid", Z, (0, 0, top + 0.7 * r), 0.8, ajar=False)
+    d.hinge("vent", "lid", Z, (0, 0, top + 0.7 * r), 0.8, initial_opening=False)
 
 
-def parasol(d: Draft) -> None:
+def parasol(d: ObjectBuilder) -> None:
     """A canopy that tilts on a pole that slides in its stand."""
     h, r = d.u(1.8, 2.5), d.u(0.8, 1.5)
-    d.part("stand", rod(0.25, (0, 0, 0), (0, 0, 0.08)), tube(0.03, 0.02 if d.hand.bored else 0.001, (0, 0, 0.05), (0, 0,
+    d.part("stand", rod(0.25, (0, 0, 0), (0, 0, 0.08)), tube(0.03, 0.02 if d.hand.has_bore else 0.001, (0, 0, 0.05),
+        (0, 0,
         0.5)), material="steel")
     g = d.gap(0.02) + 0.0003
-    d.part("pole", rod(0.02 - (g if d.hand.bored else 0), (0, 0, 0.1), (0, 0, 0.8 * h)), material="metal")
+    d.part("pole", rod(0.02 - (g if d.hand.has_bore else 0), (0, 0, 0.1), (0, 0, 0.8 * h)), material="metal")
     d.slide("pole", "stand", Z, 0.25)
     d.part("canopy", rod(0.018, (0, 0, 0.8 * h + g), (0, 0, h)), cone(r, 0.02, (0, 0, h - 0.05), (0, 0, h + 0.25 * r)))
-    d.hinge("canopy", "pole", X, (0, 0, 0.8 * h), 0.02 if d.hand.bored else 0.7, ajar=False)
+    d.hinge("canopy", "pole", X, (0, 0, 0.8 * h), 0.02 if d.hand.has_bore else 0.7, initial_opening=False)

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.recipes.draft import spread
 from benchmarks.recipes.mechanisms import button, caster, legs, wheel
+from benchmarks.recipes.object_builder import spread
 from benchmarks.recipes.panels import seam, slab
 from benchmarks.recipes.shapes import X, Y, Z, beam, block, box, capsule, rod
 
 if TYPE_CHECKING:
-    from benchmarks.recipes.draft import Draft
+    from benchmarks.recipes.object_builder import ObjectBuilder
     from benchmarks.recipes.shapes import Point
     from kinematify.robot.arrays import FloatArray
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 # A recipe reads as a list of shapes and joints, which one argument a line would hide.
 
 
-def _in_fork(d: Draft, name: str, parent: str, middle: Point, radius: float, wide: float, top: float) -> None:
+def _in_fork(d: ObjectBuilder, name: str, parent: str, middle: Point, radius: float, wide: float, top: float) -> None:
     """A wheel about x between two cheeks of its parent that come down from a height, without an axle."""
     at = np.asarray(middle, dtype=np.float64)
     play = max(d.pick(d.hand.gap, 0.1 * wide, 0.3 * wide), 0.0005)
@@ -35,7 +35,7 @@ def _in_fork(d: Draft, name: str, parent: str, middle: Point, radius: float, wid
     wheel(d, name, parent, at, radius, wide, X)
 
 
-def platform_cart(d: Draft) -> None:
+def platform_cart(d: ObjectBuilder) -> None:
     """A plate with a push bar on fixed wheels in forks and on casters."""
     w, t, r = d.u(0.35, 0.7), d.u(0.5, 1.1), d.u(0.03, 0.1)
     top = 2.6 * r
@@ -54,7 +54,7 @@ def platform_cart(d: Draft) -> None:
             _in_fork(d, f"front_wheel_{k}", "deck", (s * 0.38 * w, 0.15 * t, r), r, wide, top + 0.005)
 
 
-def fork_barrow(d: Draft) -> None:
+def fork_barrow(d: ObjectBuilder) -> None:
     """A tray or a frame on one wheel in a fork, or on two: a barrow, a walker, a stroller of plain bars."""
     w, t, r = d.u(0.4, 0.7), d.u(0.6, 1.0), d.u(0.1, 0.22)
     floor = 2 * r + d.u(0.05, 0.15)
@@ -71,7 +71,7 @@ def fork_barrow(d: Draft) -> None:
         _in_fork(d, f"wheel_{k}", "tray", (x, d.u(0.0, 0.2) * t if n == 1 else 0.2 * t, r), r, wide, floor + 0.01)
 
 
-def box_on_wheels(d: Draft) -> None:
+def box_on_wheels(d: ObjectBuilder) -> None:
     """A toy, a cabinet or a carriage: a block with four to six discs at its sides, below it or half in it."""
     w, t, h, n = d.u(0.05, 0.8), d.u(0.1, 1.4), d.u(0.05, 0.6), d.n(2, 3)
     r = d.u(0.15, 0.4) * min(h, t / n, w)
@@ -81,7 +81,7 @@ def box_on_wheels(d: Draft) -> None:
     if d.maybe(0.4):
         d.part("box", box((-0.4 * w, 0.3 * t, foot + h), (0.4 * w, 0.9 * t, foot + 1.6 * h)))
     play = seam(d, r, wide)
-    if form != "beside" or d.hand.bored:
+    if form != "beside" or d.hand.has_bore:
         play = max(play, 0.001)
     for i, y in enumerate(spread(n, 0, t)):
         for s in (-1.0, 1.0):
@@ -92,7 +92,7 @@ def box_on_wheels(d: Draft) -> None:
             wheel(d, f"wheel_{i}_{'left' if s < 0 else 'right'}", "box", (x, y, r), r, wide, s * X)
 
 
-def plain_swivel_chair(d: Draft) -> None:
+def plain_swivel_chair(d: ObjectBuilder) -> None:
     """A seat that turns or goes up on a column on feet; wheels in forks or bare discs below, a back that leans."""
     h, w = d.u(0.38, 0.55), d.u(0.38, 0.55)
     n, r, foot = d.n(3, 5), d.u(0.2, 0.32), d.pick(0.0, d.u(0.04, 0.07))
@@ -110,7 +110,8 @@ def plain_swivel_chair(d: Draft) -> None:
             d.spin(f"wheel_{k}", "base", axis, at)
     play = seam(d, 0.06, 0.03)
     low = 0.75 * h + play
-    d.part("seat", rod(0.02, (0, 0, 0.4 * h if d.hand.bored else low), (0, 0, h)), d.pick(rod(w / 2, (0, 0, h), (0, 0,
+    d.part("seat", rod(0.02, (0, 0, 0.4 * h if d.hand.has_bore else low), (0, 0, h)), d.pick(rod(w / 2, (0, 0, h),
+        (0, 0,
         h + 0.06)), box((-w / 2, -w / 2, h), (w / 2, w / 2, h + 0.08))))
     d.bore("base", rod(0.02 + 2 * d.gap(0.06) + 1e-4, (0, 0, 0.38 * h), (0, 0, h)))
     if d.maybe(0.75):
@@ -129,10 +130,10 @@ def plain_swivel_chair(d: Draft) -> None:
         gap = max(seam(d, w, 0.02), -0.01)
         lift = h + 0.04 + gap - top
         d.part("back", {**back, "xyz": (np.array(back["xyz"]) + lift * Z).tolist()}, material="plastic")
-        d.hinge("back", "seat", -X, (0, w / 2 + thick, h + 0.04 + gap), 0.5, ajar=False)
+        d.hinge("back", "seat", -X, (0, w / 2 + thick, h + 0.04 + gap), 0.5, initial_opening=False)
 
 
-def folding_table(d: Draft) -> None:
+def folding_table(d: ObjectBuilder) -> None:
     """A plate whose legs fold under it about their upper ends, or that folds itself in two."""
     w, t, h, thick = d.u(0.5, 1.8), d.u(0.4, 0.9), d.u(0.4, 0.8), d.u(0.015, 0.04)
     leg = d.u(0.015, 0.04)
@@ -147,7 +148,7 @@ def folding_table(d: Draft) -> None:
             for z in (d.u(0.1, 0.3) * h, high - leg):
                 d.part(f"legs_{k}", box((x - leg / 2, -0.42 * t, z), (x + leg / 2, 0.42 * t, z + leg)))
             # It turns about the edge that stays below the plate.
-            d.hinge(f"legs_{k}", "top", s * Y, (x - s * leg / 2, 0, high), 1.5, ajar=False)
+            d.hinge(f"legs_{k}", "top", s * Y, (x - s * leg / 2, 0, high), 1.5, initial_opening=False)
     else:
         d.part("half", box((-w / 2, -t / 2, h), (0, t / 2, h + thick)), material="wood")
         legs(d, "half", (-w / 2 + 0.02, -t / 2 + 0.02, 0), (-0.02, t / 2 - 0.02, h + 0.002), leg)
@@ -155,7 +156,7 @@ def folding_table(d: Draft) -> None:
             out=d.pick(Z, -Z), glazed=0.0, reach=d.u(1.4, 1.6))
 
 
-def plain_toilet(d: Draft) -> None:
+def plain_toilet(d: ObjectBuilder) -> None:
     """A bowl and a tank: a seat and a lid behind it, a tank lid that lifts, a flush button or lever."""
     w, t, h = d.u(0.34, 0.42), d.u(0.4, 0.5), d.u(0.36, 0.42)
     d.part("bowl", box((-w / 2, 0.1, 0), (w / 2, t, 0.5 * h)), rod(w / 2, (0, w / 2, 0.4 * h), (0, w / 2, h)),
@@ -173,7 +174,7 @@ def plain_toilet(d: Draft) -> None:
             low + thick)), material="plastic")
         if name == "seat":
             d.cut(name, rod(0.33 * w, (0, w / 2, low - 1), (0, w / 2, low + 1)))
-        d.hinge(name, "bowl", -X, (0, edge, low + d.pick(0.0, 0.5) * thick), reach, ajar=False,
+        d.hinge(name, "bowl", -X, (0, edge, low + d.pick(0.0, 0.5) * thick), reach, initial_opening=False,
             rest=d.pick(0.0, 0.0, 0.95 * reach) if name == "lid" else 0.0)
         level = low + thick
     if tank:
@@ -182,18 +183,18 @@ def plain_toilet(d: Draft) -> None:
         if d.maybe(0.5):
             d.part("tank_lid", box((-0.53 * w, t + 0.02 - min(0.0, gap), high + gap), (0.53 * w, t + 0.19, high + gap
                 + 0.03)))
-            d.slide("tank_lid", "bowl", Z, d.u(0.05, 0.2), ajar=False)
+            d.slide("tank_lid", "bowl", Z, d.u(0.05, 0.2), initial_opening=False)
         elif d.maybe():
             button(d, "flush", "bowl", (0, t + 0.1, high), (0.05, 0.05), 0.01, Z, is_round=d.maybe())
         else:
             at = np.array([-0.35 * w, t + 0.02, high - 0.06])
-            gap = d.gap(0.02) if d.hand.bored else 0.0
+            gap = d.gap(0.02) if d.hand.has_bore else 0.0
             d.part("lever", rod(0.012, at - gap * Y, at - 0.015 * Y), beam(0.012, 0.008, at - 0.012 * Y, at - 0.012 * Y
                 + 0.08 * X), material="metal")
-            d.hinge("lever", "bowl", Y, at, 0.6, ajar=False)
+            d.hinge("lever", "bowl", Y, at, 0.6, initial_opening=False)
 
 
-def grand_piano(d: Draft) -> None:
+def grand_piano(d: ObjectBuilder) -> None:
     """A case on legs, a large lid on its long side, a fall before the keys, keys and pedals as they come."""
     w, t, h, deep = d.u(1.3, 1.5), d.u(1.4, 2.4), d.u(0.65, 0.75), d.u(0.25, 0.35)
     d.part("case", box((-w / 2, 0.25, h), (w / 2, t, h + deep)), box((-w / 2, 0, h), (w / 2, 0.3, h + 0.3 * deep)),
@@ -207,14 +208,14 @@ def grand_piano(d: Draft) -> None:
     gap, low = d.gap(0.1), h + 0.3 * deep
     if d.maybe(0.7):
         d.part("fall", box((-0.46 * w, 0.03, low + 0.03 + gap), (0.46 * w, 0.24, low + 0.045 + gap)))
-        d.hinge("fall", "case", -X, (0, 0.24, low + 0.03 + gap), d.u(1.2, 1.6), ajar=False)
+        d.hinge("fall", "case", -X, (0, 0.24, low + 0.03 + gap), d.u(1.2, 1.6), initial_opening=False)
     for k, x in enumerate(spread(d.n(0, 6), -0.4 * w, 0.4 * w)):
         half = 0.025
         d.part(f"key_{k}", box((x - half, -0.02, low + gap), (x + half, 0.23, low + gap + 0.015)))
-        d.hinge(f"key_{k}", "case", X, (x, 0.23, low + gap + 0.0075), 0.05, -0.02, ajar=False)
+        d.hinge(f"key_{k}", "case", X, (x, 0.23, low + gap + 0.0075), 0.05, -0.02, initial_opening=False)
 
 
-def tilting_screen(d: Draft) -> None:
+def tilting_screen(d: ObjectBuilder) -> None:
     """A flat screen on a foot or an arm: it tilts, it swivels, or it goes up on a post."""
     w, h, t, z = d.u(0.15, 1.2), d.u(0.12, 0.7), d.u(0.01, 0.06), d.u(0.05, 0.3)
     d.part("foot", box((-0.25 * w, -0.1, 0), (0.25 * w, 0.12, 0.02)), material="metal")
@@ -226,17 +227,18 @@ def tilting_screen(d: Draft) -> None:
         d.part("foot", rod(2 * r, (0, y, 0), (0, y, 0.04)))
         low = 0.04 + play
         d.part("screen", rod(r, (0, y, low), (0, y, post)), box((-r, 0, post - 2 * r), (r, y, post + 2 * r)))
-        d.hinge("screen", "foot", Z, (0, y, low), d.u(0.5, 1.6), -d.u(0.5, 1.6), ajar=False)
+        d.hinge("screen", "foot", Z, (0, y, low), d.u(0.5, 1.6), -d.u(0.5, 1.6), initial_opening=False)
     elif kind == "tilts":
         d.part("foot", box((-r, y, 0), (r, y + 2 * r, post + r)))
-        g = max(play, 0.0) if d.hand.bored else play
+        g = max(play, 0.0) if d.hand.has_bore else play
         d.part("screen", capsule(r, (-2 * r, y - r - g, post), (2 * r, y - r - g, post)))
-        d.hinge("screen", "foot", X, (0, y - r - g, post), 0.3, -0.4, ajar=False)
+        d.hinge("screen", "foot", X, (0, y - r - g, post), 0.3, -0.4, initial_opening=False)
     else:
         d.part("foot", box((-r, y, 0), (r, y + r, post + 0.2 * h)))
         g = d.gap(r)
         d.part("screen", box((-2.2 * r, t - 0.002, post - 3 * r), (2.2 * r, y + 2.2 * r, post + 3 * r)))
-        d.cut("screen", box((-r - g, y - g, 0), (r + g, y + r + g, 10)) if d.hand.bored else box((-r, y, 0), (r, y + r,
+        d.cut("screen", box((-r - g, y - g, 0), (r + g, y + r + g, 10)) if d.hand.has_bore else box((-r, y, 0), (r,
+            y + r,
             10)))
-        d.slide("screen", "foot", Z, d.u(0.1, 0.3) * h, -0.1 * h, ajar=False)
+        d.slide("screen", "foot", Z, d.u(0.1, 0.3) * h, -0.1 * h, initial_opening=False)
     d.part("screen", box((-w / 2, 0, z), (w / 2, t, z + h)), material="plastic")

@@ -33,7 +33,7 @@ from kinematify.validation.outcome import Unusable, counted_words, severity_coun
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from kinematify.validation.causes import Told
+    from kinematify.validation.causes import FindingGroup
     from kinematify.validation.finding import Finding
     from kinematify.validation.formats.content import FindingBlock, Table
     from kinematify.validation.outcome import Outcome
@@ -103,7 +103,7 @@ def _height(blocks: Sequence[str]) -> int:
     return sum(block.count("\n") + 2 for block in blocks if block)
 
 
-def _notes(told: Sequence[Told]) -> str:
+def _notes(told: Sequence[FindingGroup]) -> str:
     """How many notes there are, by check."""
     counts = Counter(item.finding.check for item in told if item.finding.severity is Severity.NOTE)
     listed = ", ".join(f"{check}{f' ({count})' if count > 1 else ''}" for check, count in sorted(counts.items()))
@@ -133,7 +133,7 @@ def describe_briefly(report: ValidationReport) -> str:
     """The verdict of one model, every error in full, and the warnings by what they are about, a line each."""
     told = [item for item in report.told if item.finding.suppressed is None]
     errors = blocks(item for item in told if item.finding.severity is Severity.ERROR)
-    warnings: dict[tuple[str, str | None], list[Told]] = {}
+    warnings: dict[tuple[str, str | None], list[FindingGroup]] = {}
     for item in told:
         if item.finding.severity is Severity.WARNING:
             warnings.setdefault((item.finding.check, item.finding.engine), []).append(item)

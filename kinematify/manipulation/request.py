@@ -17,7 +17,7 @@ TASKS = (PULL, POUR)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Suspicion:
+class PriorFinding:
     """What the geometry has against a joint."""
 
     check: str

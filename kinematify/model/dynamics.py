@@ -158,13 +158,13 @@ def _lightened(robot: Robot, joint: Joint, config: DynamicsConfig) -> Robot:
     """Scale the masses that a joint carries so that a hand, or a motor, moves them against weight and friction."""
     load = joint_load(robot, joint)
     if moved_by_hand(robot, joint):
-        needed, bearable = load.largest + _rubbing(load, config), config.hand_share * _hand(joint, config)
+        needed, max_safe_force = load.largest + _rubbing(load, config), config.hand_share * _hand(joint, config)
     else:
         needed = _Motor.of(load, config).effort
-        bearable = config.motor_torque if joint.kind.turns else config.motor_force
-    if needed <= bearable:
+        max_safe_force = config.motor_torque if joint.kind.turns else config.motor_force
+    if needed <= max_safe_force:
         return robot
-    scale = bearable / needed
+    scale = max_safe_force / needed
     carried = set(carried_links(robot, joint.child))
     return replace(
         robot,

@@ -27,7 +27,7 @@ from kinematify.validation.check import FeedbackRow, OpenCheck
 from kinematify.validation.checks import checks_of
 from kinematify.validation.failure_rates import ENGINES, GEOMETRY, TASK
 from kinematify.validation.finding import Severity
-from kinematify.validation.geometry.look import GeometryLook, JointMotion
+from kinematify.validation.geometry.look import GeometryContext, JointMotion
 from kinematify.validation.run import validate
 from kinematify.validation.summary import JointSummary
 
@@ -174,7 +174,7 @@ class Simulator:
 
     def judge(self, model: KinematicModel) -> MotionVerdict:
         """Judge a whole plan."""
-        look = GeometryLook(self._world.scene(model), compare_visible=False)
+        look = GeometryContext(self._world.scene(model), compare_visible=False)
         found = _findings([check for check in checks_of("KV30") if check.id != "KV304"], look)  # a table, no failure
         summaries: list[JointSummary] = []
         for leader, travel in enumerate(look.scene.travels):
@@ -185,7 +185,7 @@ class Simulator:
 
     def judge_joint(self, model: KinematicModel, joint: str) -> MotionVerdict:
         """Judge one joint of a plan by its motion alone; a fixed joint has nothing to say."""
-        look = GeometryLook(self._world.scene(model), compare_visible=False)
+        look = GeometryContext(self._world.scene(model), compare_visible=False)
         names = [travel.joint for travel in look.scene.travels]
         if joint not in names:
             return MotionVerdict(findings=(), joints=())
@@ -193,7 +193,7 @@ class Simulator:
         return MotionVerdict(findings=tuple(found), joints=(summary,))
 
     def _joint(
-        self, look: GeometryLook, model: KinematicModel, leader: int, name: str
+        self, look: GeometryContext, model: KinematicModel, leader: int, name: str
     ) -> tuple[list[Finding], JointSummary]:
         key = _key(model, name)
         if key not in self._sweeps:

@@ -367,7 +367,7 @@ class DrakeModel:
         return np.array([damping, np.zeros(len(damping))])
 
     @cached_property
-    def silent(self) -> frozenset[tuple[int, int]]:
+    def ignored_pairs(self) -> frozenset[tuple[int, int]]:
         """Pairs of links that touch at rest."""
         self.looking.place(self.values_at_rest)
         return frozenset((min(a, b), max(a, b)) for a, b, _ in self.looking.touching())
@@ -445,7 +445,7 @@ class DrakeSimulation:
 
     def _free(self, world: _World, steps: int, *, told: FloatArray | None = None, finer: int = 1) -> FreeRun:
         leaders = [world.mechanism.joints.index(travel.joint) for travel in world.mechanism.travels]
-        world.act(self.model.silent, on=False)
+        world.act(self.model.ignored_pairs, on=False)
         world.place(self.model.values_at_rest)
         looks = set(np.linspace(0, steps - 1, _FREE_LOOKS).astype(int).tolist())
         values, energies, fastest = [], [world.energy()], 0.0
@@ -476,7 +476,7 @@ class DrakeSimulation:
     def _drive(self, drive: Drive) -> DriveRun:
         world, mechanism = self._drive_world, self.model.mechanism
         samples = self.model.engine.settings.sweep_samples
-        pairs = acting_pairs(mechanism, self.sweep, drive, self.model.silent, samples)
+        pairs = acting_pairs(mechanism, self.sweep, drive, self.model.ignored_pairs, samples)
         world.act(pairs, on=True)
         world.place(self.model.values_at_rest)
         world.failure.clear()
@@ -509,7 +509,7 @@ class DrakeSimulation:
         looking.place(self.model.values_at_rest)
         height = float(_corners(looking)[:, 2].min()) - settings.drop
         world = self.model.world(servos=self.servos, floor=height)
-        world.act(self.model.silent, on=False)
+        world.act(self.model.ignored_pairs, on=False)
         world.place(self.model.values_at_rest)
         steps, window = _steps(settings.drop_seconds, self.step), _steps(SLOW_SECONDS, self.step)
         early = late = world.poses()

@@ -13,7 +13,7 @@ from pydrake.multibody.tree import PrismaticJoint, RevoluteJoint
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
-from kinematify.simulation.loaded_file import (
+from kinematify.simulation.raw_model import (
     MovesFreely,
     Pushed,
     PushProgress,
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.loaded_file import Overlap, Push
+    from kinematify.simulation.raw_model import Overlap, Push
 
 _LOAD = """import numpy as np; from pydrake.all import *
 builder = DiagramBuilder(); plant, scene = AddMultibodyPlant(MultibodyPlantConfig(), builder); \
@@ -140,7 +140,7 @@ class DrakeFile(RunningFile):
         return np.array([values[name] for name in self.joints])
 
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
-        """See `LoadedFile`."""
+        """See `RawEngineModel`."""
         world = self._world(contacts=True)
         world.place(self._row(values))
         return world.overlaps()

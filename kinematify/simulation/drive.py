@@ -126,7 +126,7 @@ def drive_all(
     sweep = touching(together, mechanism, prepared, rows=rows + len(looks), tolerance=sweep.tolerance)
     return DriveSession(
         driven=tuple(
-            _driven(mechanism, record, sweep, range(rows + k * LOOKS, rows + (k + 1) * LOOKS), model.silent)
+            _driven(mechanism, record, sweep, range(rows + k * LOOKS, rows + (k + 1) * LOOKS), model.ignored_pairs)
             for k, record in enumerate(records)
         ),
         sweep=sweep,
@@ -161,7 +161,7 @@ def _both(sweep: Contacts, looked: Contacts, rows: int) -> Contacts:
 
 
 def _driven(
-    mechanism: LeaderMechanism, record: _Record, sweep: Touching, rows: range, silent: Iterable[tuple[int, int]]
+    mechanism: LeaderMechanism, record: _Record, sweep: Touching, rows: range, ignored_pairs: Iterable[tuple[int, int]]
 ) -> Driven:
     """Put the contacts to a drive, which ends where a pair that does not act gets too deep.
 
@@ -170,14 +170,14 @@ def _driven(
         record: The drive.
         sweep: Pairs of bodies.
         rows: Of the sweep, its looks.
-        silent: Pairs of links that do not act.
+        ignored_pairs: Pairs of links that do not act.
     """
     excess = sweep.excess[:, rows.start : rows.stop]
     reached, looks = record.reached, np.vstack([record.way, excess.max(axis=0, initial=0.0)])
     pressed = np.array([(a, b) in record.pressed for a, b in sweep.bodies.tolist()], dtype=bool)
     at_end = np.where(pressed, np.maximum(excess[:, -1], 0.0), excess[:, -1])
     body, moved = mechanism.body_of_link, mechanism.moved[record.drive.leader]
-    quiet = {tuple(sorted((int(body[a]), int(body[b])))) for a, b in silent}
+    quiet = {tuple(sorted((int(body[a]), int(body[b])))) for a, b in ignored_pairs}
     stops = np.array([(a, b) in quiet and moved[a] != moved[b] for a, b in sweep.bodies.tolist()], dtype=bool)
     deep = np.flatnonzero((excess[stops] > 0.0).any(axis=0))
     if len(deep):

@@ -164,7 +164,7 @@ class PhysicsModel(EngineModel, Protocol):
         """Damping and friction of all joints, shape (2, J)."""
 
     @property
-    def silent(self) -> frozenset[tuple[int, int]]:
+    def ignored_pairs(self) -> frozenset[tuple[int, int]]:
         """Pairs of links that touch at rest and do not act on each other in runs, smaller index first.
 
         Not empty only where the engine knows no depth that a pair may have.

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import EngineSettings
     from kinematify.simulation.engine import Engine
-    from kinematify.simulation.loaded_file import LoadedFile
+    from kinematify.simulation.raw_model import RawEngineModel
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +25,7 @@ class EngineEntry:
 
     name: str
     """As users write it; ``kinematify.simulation.NAME_engine`` holds a function ``open_engine(settings, log)``, and
-    ``NAME_file`` a class of `kinematify.simulation.loaded_file.LoadedFile`, `RunningFile` if it runs."""
+    ``NAME_file`` a class of `kinematify.simulation.raw_model.RawEngineModel`, `RunningFile` if it runs."""
     title: str
     """As it is written in messages."""
     package: str
@@ -104,7 +104,7 @@ def open_engine(name: str, settings: EngineSettings, log: Path) -> Engine:
     return cast("Engine", _module(name, "engine").open_engine(settings, log))
 
 
-def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> LoadedFile:
+def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> RawEngineModel:
     """Load a file into an engine as users do, with the engine's own defaults.
 
     Args:
@@ -118,7 +118,7 @@ def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = (
         Unloadable: The engine does not open the file.
     """
     opened = getattr(_module(name, "file"), f"{name.capitalize()}File")
-    return cast("LoadedFile", opened(urdf, root, package_dirs))
+    return cast("RawEngineModel", opened(urdf, root, package_dirs))
 
 
 def _module(name: str, what: str) -> ModuleType:

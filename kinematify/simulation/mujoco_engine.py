@@ -127,7 +127,7 @@ class MujocoModel:
         return np.array([model.dof_damping[dof], model.dof_frictionloss[dof]])
 
     @property
-    def silent(self) -> frozenset[tuple[int, int]]:
+    def ignored_pairs(self) -> frozenset[tuple[int, int]]:
         """None: MuJoCo lets each pair have the depth that it has at rest."""
         return frozenset()
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from kinematify.simulation.loaded_file import (
+from kinematify.simulation.raw_model import (
     MovesFreely,
     Pushed,
     PushProgress,
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.loaded_file import Overlap, Push
+    from kinematify.simulation.raw_model import Overlap, Push
 
 _OPEN = """import mujoco, numpy as np
 model = mujoco.MjModel.from_xml_path({path!r})

@@ -9,14 +9,14 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from kinematify.simulation.loaded_file import LoadedFile, MovesFreely, Reproductions, Unloadable, deepest_first
+from kinematify.simulation.raw_model import MovesFreely, RawEngineModel, Reproductions, Unloadable, deepest_first
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.loaded_file import Overlap
+    from kinematify.simulation.raw_model import Overlap
 
 _OPEN = """import coal, numpy as np, pinocchio as pin
 model = pin.buildModelFromUrdf({path!r}); \
@@ -45,8 +45,8 @@ _CONVEX = 0.99
 """Volume of a mesh that counts as convex, fraction of its hull's."""
 
 
-class PinocchioFile(LoadedFile):
-    """See `LoadedFile`; what a joint connects is not looked at for overlaps."""
+class PinocchioFile(RawEngineModel):
+    """See `RawEngineModel`; what a joint connects is not looked at for overlaps."""
 
     code = Reproductions(joints=_JOINTS, overlap=_OVERLAP)
 
@@ -77,7 +77,7 @@ class PinocchioFile(LoadedFile):
             self.limits[name] = ends if joint.nq == 1 else (-np.inf, np.inf)
 
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
-        """See `LoadedFile`; depths are told of convex shapes, by distances: `computeCollisions` misses boxes."""
+        """See `RawEngineModel`; depths are told of convex shapes, by distances: `computeCollisions` misses boxes."""
         model, geometry, q = self._model, self._geometry, self._configuration(values)
         seen = geometry.createData()
         pin.updateGeometryPlacements(model, model.createData(), geometry, seen, q)

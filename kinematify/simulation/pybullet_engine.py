@@ -130,7 +130,7 @@ class PybulletModel:
         return np.array([[info[6] for info in infos], [info[7] for info in infos]]).reshape(2, -1)
 
     @cached_property
-    def silent(self) -> frozenset[tuple[int, int]]:
+    def ignored_pairs(self) -> frozenset[tuple[int, int]]:
         """Pairs of links whose inflated shapes touch at rest; how deep they get is measured beside."""
         self.looking.place(self.values_at_rest)
         return frozenset((min(a, b), max(a, b)) for _, a, b, depth in self.looking.contacts(0) if depth > 0.0)
@@ -208,7 +208,7 @@ class PybulletSimulation:
     def _free_world(self) -> PybulletBody:
         """Where nothing is driven."""
         world = self.model.world()
-        world.act(self.model.silent, on=False)
+        world.act(self.model.ignored_pairs, on=False)
         return world
 
     @cached_property
@@ -278,7 +278,7 @@ class PybulletSimulation:
         column = mechanism.joints.index(mechanism.travels[drive.leader].joint)
         force = float(self.force[drive.leader])
         samples = self.model.engine.settings.sweep_samples
-        pairs = acting_pairs(mechanism, self.sweep, drive, self.model.silent, samples)
+        pairs = acting_pairs(mechanism, self.sweep, drive, self.model.ignored_pairs, samples)
         world.act(pairs, on=True)
         motors = _Motors(world, self.model.values_at_rest)
         motors.hold(_UNLIMITED)
@@ -311,7 +311,7 @@ class PybulletSimulation:
         """Let the model fall on a floor."""
         world, settings = self.model.world(fixed=False), self.model.engine.settings
         client = world.client
-        world.act(self.model.silent, on=False)
+        world.act(self.model.ignored_pairs, on=False)
         _Motors(world, self.model.values_at_rest).hold(np.inf)
         height = _lowest(world) - settings.drop
         shape = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=client)

@@ -9,7 +9,7 @@ import numpy as np
 import pybullet as bullet
 
 from kinematify.simulation.configurations import GRAVITY
-from kinematify.simulation.loaded_file import (
+from kinematify.simulation.raw_model import (
     Pushed,
     PushProgress,
     ReleaseRun,
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.loaded_file import Overlap, Push
+    from kinematify.simulation.raw_model import Overlap, Push
 
 
 def _without_contacts(lines: str) -> str:
@@ -214,7 +214,7 @@ class PybulletFile(RunningFile):
             total += mass * float(arm @ arm) + float(local @ (np.array(tensor) * local))
         return total
 
-    def bearable(self, values: Mapping[str, float]) -> FloatArray:
+    def max_safe_force(self, values: Mapping[str, float]) -> FloatArray:
         """See `RunningFile`.
 
         Bullet lets no joint be faster than 100 rad/s within a step either, before motors hold the others: a joint that

@@ -131,9 +131,9 @@ def commands(drive: Drive, mechanism: LeaderMechanism, servos: Servos, samples: 
 
 
 def acting_pairs(
-    mechanism: LeaderMechanism, sweep: Touching, drive: Drive, silent: frozenset[tuple[int, int]], samples: int
+    mechanism: LeaderMechanism, sweep: Touching, drive: Drive, ignored_pairs: frozenset[tuple[int, int]], samples: int
 ) -> list[tuple[int, int]]:
-    """Return the pairs of links of the bodies that get too deep into each other on the way, but for silent ones.
+    """Return the pairs of links of the bodies that get too deep into each other on the way, but for ignored ones.
 
     Where an engine knows no depth that a pair may have, only these act on each other in a drive: others would stop a
     joint that slides past them within the tolerance.
@@ -142,7 +142,7 @@ def acting_pairs(
         mechanism: The tree.
         sweep: Along `LeaderMechanism.sweep`.
         drive: One of `drives`.
-        silent: Pairs of links, smaller index first.
+        ignored_pairs: Pairs of links, smaller index first.
         samples: Of each joint in the sweep.
     """
     travel = mechanism.travels[drive.leader]
@@ -155,4 +155,4 @@ def acting_pairs(
         for first, second in sweep.bodies[(excess > 0.0).any(axis=1)].tolist()
         for a, b in product(np.flatnonzero(body == first), np.flatnonzero(body == second))
     ]
-    return [pair for pair in pairs if (min(pair), max(pair)) not in silent]
+    return [pair for pair in pairs if (min(pair), max(pair)) not in ignored_pairs]

@@ -36,7 +36,7 @@ _SIDES = ((HingeSide.LEFT, HingeSide.RIGHT), (HingeSide.FRONT, HingeSide.BACK), 
 
 
 @dataclass(frozen=True, kw_only=True)
-class Heard:
+class VoteResult:
     """What came of asking about one joint."""
 
     child: str
@@ -45,7 +45,7 @@ class Heard:
     """Another candidate was chosen than without the votes."""
 
 
-def with_votes(inference: Inference, oracle: JointOracle) -> tuple[Inference, list[Heard]]:
+def with_votes(inference: Inference, oracle: JointOracle) -> tuple[Inference, list[VoteResult]]:
     """Ask about the joints of an inference, the least sure first, and choose again with the answers.
 
     Args:
@@ -68,7 +68,7 @@ def with_votes(inference: Inference, oracle: JointOracle) -> tuple[Inference, li
     return chosen_anew(inference, votes)
 
 
-def chosen_anew(inference: Inference, votes: dict[int, JointVotes]) -> tuple[Inference, list[Heard]]:
+def chosen_anew(inference: Inference, votes: dict[int, JointVotes]) -> tuple[Inference, list[VoteResult]]:
     """Choose the joints of an inference again with votes on some of them, keyed by their place in `joints`."""
     config, names = inference.config.vision, inference.assembly.names
     maker = CandidateJoints(inference.assembly, inference.graph, inference.bearings, inference.config)
@@ -80,7 +80,7 @@ def chosen_anew(inference: Inference, votes: dict[int, JointVotes]) -> tuple[Inf
         changed = best is not None and not is_same(joint, best)
         if best is not None and changed:
             joints[k] = maker.realise(inference.trees[0], joint, best)
-        heard.append(Heard(child=names[joint.child], votes=own, changed=changed))
+        heard.append(VoteResult(child=names[joint.child], votes=own, changed=changed))
     return replace(inference, joints=tuple(joints)), heard
 
 
@@ -186,7 +186,7 @@ def side_of(candidate: JointCandidate, part: Part, off_center: float) -> str:
 _NAMED = 5
 
 
-def describe_votes(heard: Sequence[Heard]) -> str:
+def describe_votes(heard: Sequence[VoteResult]) -> str:
     """Say how many questions were answered, what changed, and why there were no answers."""
     answered = [item for item in heard if not item.votes.note]
     changed = [item.child for item in heard if item.changed]

@@ -7,7 +7,7 @@ import pytest
 from manifold3d import Manifold, Mesh64, OpType
 
 from benchmarks.recipes import OBJECTS, drawn_object
-from benchmarks.recipes.draft import CAREFUL
+from benchmarks.recipes.object_builder import CAREFUL
 from kinematify.robot.joint_type import JointType
 
 _MORE = 1e-3

@@ -10,7 +10,7 @@ import pytest
 
 from benchmarks.fit.categories import ALIKE, category_of
 from benchmarks.fit.corpora import gather_examples, generated_sources
-from benchmarks.fit.judged import cause_of, folds_of
+from benchmarks.fit.cross_validation import cause_of, folds_of
 from benchmarks.fit.run import run_fit
 from benchmarks.recipes import OBJECTS
 from kinematify.generate.described import known_families

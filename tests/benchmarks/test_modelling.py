@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.fit.composed import compose
-from benchmarks.fit.modelling import WAYS, remodelled
+from benchmarks.fit.modelling import WAYS, augment
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 
@@ -14,7 +14,7 @@ from kinematify.generate.procedural.family import build
 @pytest.mark.parametrize("way", sorted(WAYS))
 def test_every_way_keeps_the_joints_and_leaves_parts(way: str) -> None:
     drawn = build(FAMILIES["cabinet"], {}, seed=1)
-    changed = remodelled(drawn, way, rng=np.random.default_rng(0))
+    changed = augment(drawn, way, rng=np.random.default_rng(0))
     assert changed.joints == drawn.joints
     assert [part.name for part in changed.parts] == [part.name for part in drawn.parts]
     assert all(len(part.faces) for part in changed.parts)

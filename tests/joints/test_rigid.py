@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from benchmarks.fit.broken_off import with_pieces_broken_off
+from benchmarks.fit.fragmentation import with_pieces_broken_off
 from kinematify.assembly.part import Assembly, Part
 from kinematify.assembly.truth import GroundTruth
 from kinematify.contact.build import build_contact_graph

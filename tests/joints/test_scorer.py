@@ -23,13 +23,13 @@ from tests.objects import BUILDERS
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.joints.choice.kind import WeighedJoints
+    from kinematify.joints.choice.kind import ScoredHypotheses
     from kinematify.joints.measure.measurements import Values
     from kinematify.joints.measure.workspace import Cloud
     from kinematify.robot.arrays import IntArray
 
 
-def weighed_joints(name: str) -> WeighedJoints:
+def weighed_joints(name: str) -> ScoredHypotheses:
     """The first edge of a known object."""
     known = BUILDERS[name]()
     tree, graph, bearings = evidence(known)
@@ -39,12 +39,12 @@ def weighed_joints(name: str) -> WeighedJoints:
     return weigh_joints(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=CONFIG.joints)
 
 
-def measured_of(weighed: WeighedJoints) -> Values:
+def measured_of(weighed: ScoredHypotheses) -> Values:
     """All that the scorer reads."""
     return {**measure(weighed.scene, hypotheses_of(weighed)), **cues_of(weighed), **verdicts_of(weighed)}
 
 
-def cloud_of(weighed: WeighedJoints) -> Cloud:
+def cloud_of(weighed: ScoredHypotheses) -> Cloud:
     """The points that the scorer sees."""
     scene = weighed.scene
     return point_cloud(scene.cache, scene.parent, scene.child, scene.others, scene.frame.diagonal)

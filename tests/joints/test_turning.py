@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.fit.trees import turning_recipe_key
 from kinematify.generate.procedural.solids import box, cylinder
-from kinematify.joints.choice.opening import goes_round, turning_columns
+from kinematify.joints.choice.opening import is_continuous, turning_columns
 from kinematify.joints.choice.scorer import TURNING_WEIGHTS, shipped_scorer
 from tests.joints.joint_scenes import scene_of
 from tests.known import known_object, turning
@@ -27,14 +27,14 @@ def wheel(gap: float):
 @pytest.mark.parametrize("gap", [0.01, -0.002])
 def test_a_wheel_goes_round_even_where_its_tyre_stands_in_the_mudguard(gap: float) -> None:
     free = np.full(2, np.pi if gap > 0.0 else 0.3)
-    assert goes_round(wheel(gap), Y, np.array([0.0, 0.13, 0.05]), free)
+    assert is_continuous(wheel(gap), Y, np.array([0.0, 0.13, 0.05]), free)
 
 
 def test_a_door_does_not() -> None:
     shell = box((0, 0, 0), (0.6, 0.5, 0.8)) - box((0.02, -1, 0.02), (0.58, 0.48, 0.78))
     joint = turning("shell", "door", -Z, (0.0, -0.01, 0.4), (0.0, 1.6))
     known = known_object("cabinet", {"shell": shell, "door": box((0, -0.021, 0), (0.6, -0.001, 0.8))}, joint)
-    assert not goes_round(scene_of(known, "door"), -Z, np.array([0.0, -0.01, 0.4]), np.array([3.0, 0.0]))
+    assert not is_continuous(scene_of(known, "door"), -Z, np.array([0.0, -0.01, 0.4]), np.array([3.0, 0.0]))
 
 
 def test_what_is_not_finite_never_reaches_the_trees() -> None:

@@ -134,7 +134,7 @@ def cabinet() -> Model:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Told:
+class FindingGroup:
     """What a stage told of one model."""
 
     results: dict[str, CheckResult]
@@ -162,14 +162,14 @@ def prepared_request(
     )
 
 
-def tell(run: Callable[[StageRequest, Recorder], None], request: StageRequest) -> Told:
+def tell(run: Callable[[StageRequest, Recorder], None], request: StageRequest) -> FindingGroup:
     """Run a stage in this process."""
     told: list[CheckResult | Summary] = []
     run(request, Recorder(told.append, request.selected))
     results = [item for item in told if isinstance(item, CheckResult)]
     assert len({item.check for item in results}) == len(results)
     curves = tuple(item for item in told if isinstance(item, JointCurve))
-    return Told(results={item.check: item for item in results}, work=request.work, curves=curves)
+    return FindingGroup(results={item.check: item for item in results}, work=request.work, curves=curves)
 
 
 def engine_settings(**changes: Any) -> ValidationSettings:

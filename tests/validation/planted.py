@@ -24,7 +24,7 @@ from kinematify.validation.summary import JointSummary
 from tests.known import KnownJoint, KnownObject
 
 SELECTED = frozenset(CHECKS)
-Told = list[CheckResult | JointSummary]
+FindingGroup = list[CheckResult | JointSummary]
 
 
 def write(known: KnownObject, folder: Path) -> Path:
@@ -54,9 +54,9 @@ def _estimate(index: dict[str, int], joint: KnownJoint) -> JointEstimate:
     )
 
 
-def told(urdf: Path, folder: Path, *, seconds: float = 100.0) -> Told:
+def told(urdf: Path, folder: Path, *, seconds: float = 100.0) -> FindingGroup:
     """Run the evidence stage on a URDF."""
-    results: Told = []
+    results: FindingGroup = []
     request = StageRequest(
         urdf=urdf,
         package_dirs=(),
@@ -69,12 +69,12 @@ def told(urdf: Path, folder: Path, *, seconds: float = 100.0) -> Told:
     return results
 
 
-def judged(known: KnownObject, folder: Path) -> Told:
+def judged(known: KnownObject, folder: Path) -> FindingGroup:
     """Write a known object and run the evidence stage on it."""
     return told(write(known, folder), folder)
 
 
-def findings(results: Told) -> list[Finding]:
+def findings(results: FindingGroup) -> list[Finding]:
     """All findings of a stage."""
     return [finding for result in results if isinstance(result, CheckResult) for finding in result.findings]
 

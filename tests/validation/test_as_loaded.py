@@ -15,14 +15,14 @@ import pytest
 
 from kinematify.config.validation import load_settings
 from kinematify.simulation.engines import DEFAULT_ENGINES
-from kinematify.validation.as_loaded import across_engines, as_loaded_words, shown_as_loaded
+from kinematify.validation.as_loaded import across_engines, as_loaded_words, confirm_on_raw_model
 from kinematify.validation.as_loaded_context import AsLoadedContext
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.run import validate
 from kinematify.validation.stage import StageRequest
 from kinematify.validation.stages import as_loaded
-from tests.validation.engine_models import Box, Model, Part, Told, cabinet, tell
+from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, tell
 
 ENGINES = ("mujoco", "pybullet")
 NO_DRAKE = pytest.mark.skipif(
@@ -44,7 +44,7 @@ def request_of(model: Model, folder: Path) -> StageRequest:
     )
 
 
-def told(model: Model, folder: Path, engine: str) -> Told:
+def told(model: Model, folder: Path, engine: str) -> FindingGroup:
     return tell(partial(as_loaded.run, engine=engine), request_of(model, folder))
 
 
@@ -327,15 +327,15 @@ def stop(**about: object) -> CheckResult:
 
 def test_contacts_that_only_the_prepared_copy_shows_are_notes() -> None:
     fine = replace(jam("mujoco"), status=Status.PASS, findings=())
-    (told,) = shown_as_loaded([stop(), fine])[0].findings
-    assert (told.severity, shown_as_loaded([stop(), fine])[0].status) == (Severity.NOTE, Status.PASS)
+    (told,) = confirm_on_raw_model([stop(), fine])[0].findings
+    assert (told.severity, confirm_on_raw_model([stop(), fine])[0].status) == (Severity.NOTE, Status.PASS)
     assert told.message.endswith("no engine that loads the file itself.")
     pressed = replace(jam("pybullet").findings[0], check="KV805", joint="hinge")
     other = CheckResult(check="KV805", engine="pybullet", status=Status.FAIL, findings=(pressed,))
-    assert shown_as_loaded([stop(), fine, other])[0].status is Status.PASS
+    assert confirm_on_raw_model([stop(), fine, other])[0].status is Status.PASS
     jammed = jam("mujoco").findings[0].joint
     for kept in ([stop()], [stop(joint=jammed), jam("mujoco")], [stop(blame=Blame.KINEMATICS), fine]):
-        assert shown_as_loaded(kept) == kept
+        assert confirm_on_raw_model(kept) == kept
 
 
 def test_the_verdict_says_what_moves_as_loaded(tmp_path: Path) -> None:

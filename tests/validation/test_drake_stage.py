@@ -15,7 +15,7 @@ from kinematify.simulation.prepared import URDF_FILE
 from kinematify.validation.checks import checks_of
 from kinematify.validation.finding import Blame, Severity, Status
 from kinematify.validation.stages import engine as engine_stage
-from tests.validation.engine_models import Box, Model, Part, Told, cabinet, prepared_request, tell
+from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, prepared_request, tell
 
 pytest.importorskip("pydrake.multibody.plant", reason="Drake is not installed: pip install 'kinematify[drake]'")
 
@@ -23,7 +23,7 @@ IDS = {check.id for check in checks_of("KV9")}
 run = partial(engine_stage.run, engine="drake")
 
 
-def told(model: Model, folder: Path) -> Told:
+def told(model: Model, folder: Path) -> FindingGroup:
     return tell(run, prepared_request(model, folder))
 
 

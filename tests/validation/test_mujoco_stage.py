@@ -26,9 +26,9 @@ from kinematify.validation.stages import engine as engine_stage
 from tests.places import BENCH
 from tests.validation.engine_models import (
     Box,
+    FindingGroup,
     Model,
     Part,
-    Told,
     cabinet,
     engine_settings,
     prepared_request,
@@ -40,11 +40,11 @@ run = partial(engine_stage.run, engine="mujoco")
 PANDA = BENCH / "robots/panda/model.urdf"
 
 
-def told(model: Model, folder: Path, **settings: float) -> Told:
+def told(model: Model, folder: Path, **settings: float) -> FindingGroup:
     return tell(run, prepared_request(model, folder, engine_settings(**settings)))
 
 
-def only(result: Told, check: str) -> Finding:
+def only(result: FindingGroup, check: str) -> Finding:
     (finding,) = [f for f in result.results[check].findings if f.severity is not Severity.NOTE]
     return finding
 

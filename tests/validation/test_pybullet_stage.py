@@ -19,18 +19,18 @@ from kinematify.validation.checks import checks_of
 from kinematify.validation.finding import Blame, Finding, Severity, Status
 from kinematify.validation.stages import engine as engine_stage
 from tests.places import BENCH
-from tests.validation.engine_models import Box, Model, Part, Told, cabinet, prepared_request, tell
+from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, prepared_request, tell
 
 IDS = {check.id for check in checks_of("KV5")}
 run = partial(engine_stage.run, engine="pybullet")
 PANDA = BENCH / "robots/panda/model.urdf"
 
 
-def told(model: Model, folder: Path) -> Told:
+def told(model: Model, folder: Path) -> FindingGroup:
     return tell(run, prepared_request(model, folder))
 
 
-def only(result: Told, check: str) -> Finding:
+def only(result: FindingGroup, check: str) -> Finding:
     (finding,) = [f for f in result.results[check].findings if f.severity is not Severity.NOTE]
     return finding
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from kinematify.validation.stage import StageRequest
 
 
-class MeshLook:
+class MeshContext:
     """The mesh files of a document that has passed the pre-check, and the model that they make."""
 
     def __init__(self, request: StageRequest) -> None:

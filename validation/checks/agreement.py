@@ -9,7 +9,7 @@ import numpy as np
 
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.engines import ENGINES
-from kinematify.validation.check import Shared, check
+from kinematify.validation.check import CauseScope, check
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
@@ -259,7 +259,7 @@ def _tell_dynamics(
     fails="The model weighs something else in an engine",
     severity=Severity.ERROR,
     blame=Blame.ENGINE,
-    follows={"KV201": Shared.MODEL, "KV202": Shared.MODEL},
+    follows={"KV201": CauseScope.MODEL, "KV202": CauseScope.MODEL},
 )
 def masses_differ(result: OpenCheck, left: EngineResults) -> None:
     """The mass of each link and of the whole model in every engine against the file; a relative difference above

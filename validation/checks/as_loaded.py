@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.simulation.engines import ENGINES
-from kinematify.simulation.loaded_file import MovesFreely, Unloadable
-from kinematify.validation.check import FeedbackRow, OpenCheck, Shared, check
+from kinematify.simulation.raw_model import MovesFreely, Unloadable
+from kinematify.validation.check import CauseScope, FeedbackRow, OpenCheck, check
 from kinematify.validation.checks.engine_rest import FLOOR_OF_ENERGY, find_growth
 from kinematify.validation.checks.follow import IN_ENGINES, NOT_A_BODY
 from kinematify.validation.checks.needs import late
@@ -17,8 +17,8 @@ from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from kinematify.robot.mechanism import Travel
-    from kinematify.simulation.loaded_file import Overlap, RestRun
-    from kinematify.validation.as_loaded_context import AsLoadedContext, HandRun
+    from kinematify.simulation.raw_model import Overlap, RestRun
+    from kinematify.validation.as_loaded_context import AsLoadedContext, VelocityProbe
 
 _ENGINES = tuple(ENGINES)
 _RUNNING = tuple(name for name, engine in ENGINES.items() if engine.runs)
@@ -47,7 +47,7 @@ def nothing_moves(context: AsLoadedContext) -> str | None:
     severity=Severity.ERROR,
     blame=Blame.ASSET,
     engines=_ENGINES,
-    follows={**dict.fromkeys(NOT_A_BODY, Shared.BODY), "KV138": Shared.MODEL},
+    follows={**dict.fromkeys(NOT_A_BODY, CauseScope.BODY), "KV138": CauseScope.MODEL},
 )
 def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     """The untouched file, loaded with the engine's own defaults (`MjModel.from_xml_path`; `loadURDF` with a fixed
@@ -150,7 +150,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
     blame=Blame.PHYSICS,
     engines=_RUNNING,
     feedback=FeedbackRow.AS_LOADED,
-    follows={**IN_ENGINES, "KV802": Shared.CONTACT},
+    follows={**IN_ENGINES, "KV802": CauseScope.CONTACT},
     needs=(not_loaded, nothing_moves, late),
 )
 def stays(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -234,7 +234,7 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
     blame=Blame.PHYSICS,
     engines=_RUNNING,
     feedback=FeedbackRow.AS_LOADED,
-    follows={**IN_ENGINES, "KV802": Shared.CONTACT, "KV803": Shared.CONTACT},
+    follows={**IN_ENGINES, "KV802": CauseScope.CONTACT, "KV803": CauseScope.CONTACT},
     needs=(not_loaded, nothing_moves, late),
 )
 def moves(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -259,12 +259,12 @@ def moves(result: OpenCheck, context: AsLoadedContext) -> None:
         _find_short(result, context, run, jammed=_free_without_contacts(context, run))
 
 
-def _free_without_contacts(context: AsLoadedContext, run: HandRun) -> bool:
+def _free_without_contacts(context: AsLoadedContext, run: VelocityProbe) -> bool:
     """Whether a push that fell short gets to the end where nothing touches."""
     return run.without_contacts is not None and context.arrives(run, run.without_contacts)
 
 
-def _find_short(result: OpenCheck, context: AsLoadedContext, run: HandRun, *, jammed: bool) -> None:
+def _find_short(result: OpenCheck, context: AsLoadedContext, run: VelocityProbe, *, jammed: bool) -> None:
     travel, push, stop = run.travel, run.push, run.pushed.farthest
     overlap = context.between(travel, run.pushed.overlaps)
     unit = "N m" if travel.turns else "N"
@@ -288,7 +288,7 @@ def _find_short(result: OpenCheck, context: AsLoadedContext, run: HandRun, *, ja
     )
 
 
-def _severity(run: HandRun) -> Severity | None:
+def _severity(run: VelocityProbe) -> Severity | None:
     """How bad it is that contacts keep a joint from its end: over half of the way it works, and it is a warning."""
     if not run.free:
         return Severity.NOTE
@@ -313,8 +313,8 @@ def _cause(overlap: Overlap | None, *, jammed: bool) -> str:
     blame=Blame.PHYSICS,
     engines=_RUNNING,
     follows={
-        **dict.fromkeys(("KV221", "KV801"), Shared.JOINT),
-        **dict.fromkeys(("KV204", "KV205", "KV207"), Shared.BODY),
+        **dict.fromkeys(("KV221", "KV801"), CauseScope.JOINT),
+        **dict.fromkeys(("KV204", "KV205", "KV207"), CauseScope.BODY),
     },
     needs=(not_loaded, nothing_moves, late),
 )

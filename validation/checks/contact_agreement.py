@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.simulation.engines import ENGINES
-from kinematify.validation.check import Shared, check
+from kinematify.validation.check import CauseScope, check
 from kinematify.validation.checks.follow import IN_ENGINES
 from kinematify.validation.finding import Blame, Severity
 
@@ -54,7 +54,7 @@ class _Disagreement:
     fails="An engine sees a collision that the exact geometry does not have",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
-    follows={**IN_ENGINES, "KV802": Shared.PAIR},
+    follows={**IN_ENGINES, "KV802": CauseScope.PAIR},
     prepared=True,
 )
 def contacts_differ(result: OpenCheck, left: EngineResults) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.robot.joint_type import JointType
-from kinematify.validation.check import Shared, check
+from kinematify.validation.check import CauseScope, check
 from kinematify.validation.checks.needs import something_moves, something_weighs
 from kinematify.validation.finding import Blame, Severity
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     fails="Joints state no effort or velocity",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
-    follows={"KV221": Shared.JOINT},
+    follows={"KV221": CauseScope.JOINT},
     needs=(something_moves,),
 )
 def missing_drives(result: OpenCheck, physics: Physics) -> None:

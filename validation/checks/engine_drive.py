@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.simulation.contacts import stand_in_error, stand_in_reason
-from kinematify.validation.check import FeedbackRow, Shared, engine_check
+from kinematify.validation.check import CauseScope, FeedbackRow, engine_check
 from kinematify.validation.checks.follow import IN_ENGINES, ON_THE_WAY
 from kinematify.validation.checks.needs import late, not_driven, nothing_moves
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.geometry.words import SLIMMER, UNSEEN
+from kinematify.validation.geometry.formatting import SLIMMER, UNSEEN
 
 if TYPE_CHECKING:
     from kinematify.robot.mechanism import Travel
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     severity=Severity.ERROR,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.NOT_REACHED,
-    follows={**ON_THE_WAY, **IN_ENGINES, "KV804": Shared.JOINT, "KV225": Shared.JOINT},
+    follows={**ON_THE_WAY, **IN_ENGINES, "KV804": CauseScope.JOINT, "KV225": CauseScope.JOINT},
     prepared=True,
     needs=(nothing_moves, late),
 )
@@ -66,7 +66,7 @@ def reaches_both_ends(result: OpenCheck, context: EngineContext) -> None:
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.COLLISION,
-    follows={**ON_THE_WAY, **IN_ENGINES, "05": Shared.PAIR, "KV804": Shared.JOINT},
+    follows={**ON_THE_WAY, **IN_ENGINES, "05": CauseScope.PAIR, "KV804": CauseScope.JOINT},
     prepared=True,
     needs=(not_driven,),
 )
@@ -101,7 +101,7 @@ def little_penetration(result: OpenCheck, context: EngineContext) -> None:
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.UNSTABLE,
-    follows={"KV221": Shared.JOINT, "KV207": Shared.BODY},
+    follows={"KV221": CauseScope.JOINT, "KV207": CauseScope.BODY},
     needs=(not_driven,),
 )
 def limits_hold(result: OpenCheck, context: EngineContext) -> None:

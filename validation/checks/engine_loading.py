@@ -9,7 +9,7 @@ import numpy as np
 from kinematify.simulation.configurations import link_poses
 from kinematify.simulation.engine import Refused
 from kinematify.simulation.engines import ENGINES
-from kinematify.validation.check import FeedbackRow, Shared, check, engine_check
+from kinematify.validation.check import CauseScope, FeedbackRow, check, engine_check
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ _LIMIT_SLACK = 1e-6
     severity=Severity.ERROR,
     blame=Blame.ENGINE,
     feedback=FeedbackRow.EXPORTER,
-    follows={"KV221": Shared.JOINT, "KV202": Shared.BODY},
+    follows={"KV221": CauseScope.JOINT, "KV202": CauseScope.BODY},
 )
 def loads(result: OpenCheck, context: EngineContext) -> None:
     """{engine} loads the model; every link and joint is there, with the type, axis, limits, mass and inertia of the
@@ -58,7 +58,7 @@ def loads(result: OpenCheck, context: EngineContext) -> None:
     severity=Severity.ERROR,
     blame=Blame.ENGINE,
     engines=("pinocchio",),
-    follows={"KV221": Shared.JOINT, "KV202": Shared.BODY},
+    follows={"KV221": CauseScope.JOINT, "KV202": CauseScope.BODY},
 )
 def pinocchio_loads(result: OpenCheck, context: EngineContext) -> None:
     """Pinocchio reads the file and has the same moving joints with the same types and limits, and the same masses.

@@ -8,7 +8,7 @@ import numpy as np
 
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import stand_in_error, stand_in_reason
-from kinematify.validation.check import FeedbackRow, Shared, engine_check
+from kinematify.validation.check import CauseScope, FeedbackRow, engine_check
 from kinematify.validation.checks.follow import IN_ENGINES, NOT_A_BODY
 from kinematify.validation.checks.needs import late, no_geometry, nothing_moves
 from kinematify.validation.finding import Blame, Severity
@@ -48,13 +48,13 @@ def starts_without_contact(result: OpenCheck, context: EngineContext) -> None:
     overlaps although the mesh does not, write convex pieces as collision geometry.
     """
     _find_overlaps(result, context)
-    silent, inflation = context.physics.silent, context.entry.inflation
-    if silent:
+    ignored_pairs, inflation = context.physics.ignored_pairs, context.entry.inflation
+    if ignored_pairs:
         links = context.mechanism.links
-        names = sorted(f"{links[a]} and {links[b]}" for a, b in silent)
+        names = sorted(f"{links[a]} and {links[b]}" for a, b in ignored_pairs)
         more = f" and {len(names) - _TOLD_PAIRS} more pairs" if len(names) > _TOLD_PAIRS else ""
         thicker = f"inflates every mesh by {inflation * 1e3:.3g} mm and " if inflation else ""
-        result.measured["switched_off_pairs"] = float(len(silent))
+        result.measured["switched_off_pairs"] = float(len(ignored_pairs))
         result.find(
             f"{context.entry.title} {thicker}knows no overlap that is allowed. These pairs touch at rest that way and "
             f"would be pushed apart, so they do not act on each other while the model moves: "
@@ -73,7 +73,7 @@ def starts_without_contact(result: OpenCheck, context: EngineContext) -> None:
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.SINKS,
-    follows={"KV226": Shared.JOINT, "KV221": Shared.JOINT},
+    follows={"KV226": CauseScope.JOINT, "KV221": CauseScope.JOINT},
     needs=(nothing_moves, late),
 )
 def holds_under_gravity(result: OpenCheck, context: EngineContext) -> None:

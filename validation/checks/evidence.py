@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.joint_type import JointType
-from kinematify.validation.check import FeedbackRow, Shared, check
+from kinematify.validation.check import CauseScope, FeedbackRow, check
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def askew_together(result: OpenCheck, case: JointCase) -> None:
     feedback=FeedbackRow.NOT_CARRIED,
     doubts=True,
     opinion=True,
-    follows={"KV303": Shared.JOINT, "KV350": Shared.BODY},
+    follows={"KV303": CauseScope.JOINT, "KV350": CauseScope.BODY},
 )
 def hangs_elsewhere(result: OpenCheck, case: JointCase) -> None:
     """At rest, every moving body touches the body that carries it, or at least no other one. A child that is more than
@@ -118,7 +118,7 @@ def hangs_elsewhere(result: OpenCheck, case: JointCase) -> None:
     feedback=FeedbackRow.LINE,
     doubts=True,
     opinion=True,
-    follows={"KV341": Shared.JOINT, "KV350": Shared.BODY},
+    follows={"KV341": CauseScope.JOINT, "KV350": CauseScope.BODY},
 )
 def unknown_direction(result: OpenCheck, case: JointCase) -> None:
     """The axis lies within evidence.unknown_deg of a direction that the two bodies show: axes of round surfaces and
@@ -156,7 +156,7 @@ def unknown_direction(result: OpenCheck, case: JointCase) -> None:
     feedback=FeedbackRow.LINE,
     doubts=True,
     opinion=True,
-    follows={"KV341": Shared.JOINT, "KV350": Shared.BODY},
+    follows={"KV341": CauseScope.JOINT, "KV350": CauseScope.BODY},
 )
 def unknown_place(result: OpenCheck, case: JointCase) -> None:
     """A turning joint's axis runs within evidence.unknown_distance of the child's size (in linkages
@@ -193,7 +193,7 @@ def unknown_place(result: OpenCheck, case: JointCase) -> None:
     feedback=FeedbackRow.LINE,
     doubts=True,
     opinion=True,
-    follows={"KV341": Shared.JOINT, "KV350": Shared.BODY},
+    follows={"KV341": CauseScope.JOINT, "KV350": CauseScope.BODY},
 )
 def another_fits(result: OpenCheck, case: JointCase) -> None:
     """The declared joint is scored beside all candidates of its type by the cues of the inference (room, contact near
@@ -230,7 +230,7 @@ def another_fits(result: OpenCheck, case: JointCase) -> None:
     feedback=FeedbackRow.TYPE,
     doubts=True,
     opinion=True,
-    follows={"KV341": Shared.JOINT, "KV350": Shared.BODY},
+    follows={"KV341": CauseScope.JOINT, "KV350": CauseScope.BODY},
 )
 def other_type(result: OpenCheck, case: JointCase) -> None:
     """Shape and room of the part do not speak for the other type of joint: plates hinge, boxes in a cavity slide,
@@ -284,7 +284,7 @@ def _type_open(case: JointCase) -> bool:
     blame=Blame.KINEMATICS,
     doubts=True,
     opinion=True,
-    follows={"KV341": Shared.JOINT, "KV350": Shared.BODY},
+    follows={"KV341": CauseScope.JOINT, "KV350": CauseScope.BODY},
 )
 def opens_inwards(result: OpenCheck, case: JointCase) -> None:
     """With a one-sided range (evidence.one_sided), the permitted side does not lead into the parent within
@@ -332,7 +332,7 @@ def opens_inwards(result: OpenCheck, case: JointCase) -> None:
     fails="A slide leaves its parent",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
-    follows={"KV321": Shared.JOINT, "KV320": Shared.JOINT},
+    follows={"KV321": CauseScope.JOINT, "KV320": CauseScope.JOINT},
 )
 def leaves_guides(result: OpenCheck, case: JointCase) -> None:
     """At the end of its range, a part that slides by more than its own length along the axis is not evidence.far_gap

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from kinematify.validation.check import Shared
+from kinematify.validation.check import CauseScope
 
-AT_REST = {"KV301": Shared.PAIR, "KV302": Shared.PAIR}
+AT_REST = {"KV301": CauseScope.PAIR, "KV302": CauseScope.PAIR}
 """Two bodies are in each other as the file stands."""
-IN_ENGINES = {**AT_REST, "KV332": Shared.PAIR}
+IN_ENGINES = {**AT_REST, "KV332": CauseScope.PAIR}
 """Two bodies are in each other where engines collide their hulls."""
-ON_THE_WAY = {"KV312": Shared.JOINT, "KV310": Shared.JOINT, "KV311": Shared.JOINT}
+ON_THE_WAY = {"KV312": CauseScope.JOINT, "KV310": CauseScope.JOINT, "KV311": CauseScope.JOINT}
 """Exact geometry blocks a joint."""
-NOT_A_BODY = {"KV201": Shared.MODEL, "KV202": Shared.MODEL, "KV204": Shared.MODEL, "KV205": Shared.MODEL}
+NOT_A_BODY = {
+    "KV201": CauseScope.MODEL,
+    "KV202": CauseScope.MODEL,
+    "KV204": CauseScope.MODEL,
+    "KV205": CauseScope.MODEL,
+}
 """Masses and inertias that no engine can compute with."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.validation.check import Shared, check
+from kinematify.validation.check import CauseScope, check
 from kinematify.validation.checks.needs import something_moves, something_weighs
 from kinematify.validation.finding import Blame, Severity
 
@@ -154,7 +154,7 @@ def implausible_masses(result: OpenCheck, physics: Physics) -> None:
     fails="A density is implausible",
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
-    follows={"KV203": Shared.BODY},
+    follows={"KV203": CauseScope.BODY},
     needs=(something_weighs,),
 )
 def implausible_densities(result: OpenCheck, physics: Physics) -> None:
@@ -205,7 +205,7 @@ def _density(result: OpenCheck, body: Body, density: float, limit: float, *, cer
     fails="A light link carries a heavy one",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
-    follows={"KV203": Shared.BODY, "KV206": Shared.BODY},
+    follows={"KV203": CauseScope.BODY, "KV206": CauseScope.BODY},
     needs=(
         something_moves,
         something_weighs,

@@ -8,7 +8,7 @@ from kinematify.validation.check import check
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
-    from kinematify.validation.asset.mesh_look import MeshLook
+    from kinematify.validation.asset.mesh_look import MeshContext
     from kinematify.validation.check import OpenCheck
 
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     severity=Severity.ERROR,
     blame=Blame.ASSET,
 )
-def unreadable(result: OpenCheck, look: MeshLook) -> None:
+def unreadable(result: OpenCheck, look: MeshContext) -> None:
     """Every mesh file that the URDF names opens, is complete, not larger than `max_mesh_bytes`, and its faces refer to
     vertices that it has.
 
@@ -47,7 +47,7 @@ def unreadable(result: OpenCheck, look: MeshLook) -> None:
     severity=Severity.ERROR,
     blame=Blame.ASSET,
 )
-def wild_coordinates(result: OpenCheck, look: MeshLook) -> None:
+def wild_coordinates(result: OpenCheck, look: MeshContext) -> None:
     """Every coordinate is a finite number of at most `max_number`.
 
     Why it matters: PyBullet takes NaN without a word, and the state of the simulation becomes NaN with it.
@@ -75,7 +75,7 @@ def wild_coordinates(result: OpenCheck, look: MeshLook) -> None:
     severity=Severity.ERROR,
     blame=Blame.ASSET,
 )
-def triangle_counts(result: OpenCheck, look: MeshLook) -> None:
+def triangle_counts(result: OpenCheck, look: MeshContext) -> None:
     """All meshes together have at most `max_faces` triangles; a single mesh with more than `stl_faces` is a warning.
 
     Why it matters: MuJoCo refuses an STL with more than 200,000 triangles; collision checks of scans with millions
@@ -109,7 +109,7 @@ def triangle_counts(result: OpenCheck, look: MeshLook) -> None:
 
 
 @check("KV153", title="Meshes have a thickness", fails="A mesh is flat", severity=Severity.WARNING, blame=Blame.ASSET)
-def flat_meshes(result: OpenCheck, look: MeshLook) -> None:
+def flat_meshes(result: OpenCheck, look: MeshContext) -> None:
     """No mesh is thinner than `flat` times its diagonal; for meshes that are only seen it is a note.
 
     Why it matters: MuJoCo cannot make a hull of a flat mesh, and nothing rests on it safely.
@@ -138,7 +138,7 @@ def flat_meshes(result: OpenCheck, look: MeshLook) -> None:
     severity=Severity.WARNING,
     blame=Blame.ASSET,
 )
-def degenerate_faces(result: OpenCheck, look: MeshLook) -> None:
+def degenerate_faces(result: OpenCheck, look: MeshContext) -> None:
     """At most `degenerate_share` of the triangles of a mesh have no area; for meshes that are only seen it is a note.
 
     Why it matters: Normals of such triangles are noise, and so are masses and contacts computed from them.
@@ -161,7 +161,7 @@ def degenerate_faces(result: OpenCheck, look: MeshLook) -> None:
 
 
 @check("KV155", title="Meshes are closed", fails="A mesh has open edges", severity=Severity.NOTE, blame=Blame.ASSET)
-def open_meshes(result: OpenCheck, look: MeshLook) -> None:
+def open_meshes(result: OpenCheck, look: MeshContext) -> None:
     """Mesh files that do not enclose a volume are counted.
 
     Why it matters: Volumes, masses and signed distances of open meshes are estimates.
@@ -190,7 +190,7 @@ def open_meshes(result: OpenCheck, look: MeshLook) -> None:
     severity=Severity.WARNING,
     blame=Blame.ASSET,
 )
-def inward_faces(result: OpenCheck, look: MeshLook) -> None:
+def inward_faces(result: OpenCheck, look: MeshContext) -> None:
     """No closed collision mesh is inside out. Edges at which triangles face opposite sides, or with more than two
     triangles, are counted in a note.
 
@@ -233,7 +233,7 @@ def inward_faces(result: OpenCheck, look: MeshLook) -> None:
     severity=Severity.WARNING,
     blame=Blame.ASSET,
 )
-def stated_units(result: OpenCheck, look: MeshLook) -> None:
+def stated_units(result: OpenCheck, look: MeshContext) -> None:
     """Meshes that state a unit or an up axis of their own are named, because readers differ in whether they heed it. It
     is a warning where the links of the model meet only if the up axis is heeded; then it is heeded in all that follows.
 

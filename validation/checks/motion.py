@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.validation.check import FeedbackRow, Shared, check
+from kinematify.validation.check import CauseScope, FeedbackRow, check
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.geometry.words import (
+from kinematify.validation.geometry.formatting import (
     SLIMMER,
     UNSEEN,
     configuration,
@@ -92,7 +92,7 @@ def through_parent(result: OpenCheck, motion: JointMotion) -> None:
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.OTHER_PARENT,
-    follows={"KV312": Shared.JOINT, "KV310": Shared.JOINT},
+    follows={"KV312": CauseScope.JOINT, "KV310": CauseScope.JOINT},
 )
 def into_others(result: OpenCheck, motion: JointMotion) -> None:
     """While each joint moves alone over its range, bodies that are no neighbours do not meet. If another joint can
@@ -161,7 +161,7 @@ def _folds(motion: JointMotion, meeting: Meeting) -> bool:
     severity=Severity.ERROR,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.END,
-    follows={"KV310": Shared.JOINT},
+    follows={"KV310": CauseScope.JOINT},
 )
 def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
     """The range does not end beyond the place where the child meets its parent (by more than geometry.late of the
@@ -215,7 +215,7 @@ def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.DERAILED,
     doubts=True,
-    follows={"KV321": Shared.JOINT},
+    follows={"KV321": CauseScope.JOINT},
 )
 def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
     """Along the range, the gap between child and parent grows by less than geometry.lost of the model's size; beyond

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 from kinematify.validation.check import FeedbackRow, check
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.geometry.words import SLIMMER, UNSEEN, configuration, in_document_order, length
+from kinematify.validation.geometry.formatting import SLIMMER, UNSEEN, configuration, in_document_order, length
 
 if TYPE_CHECKING:
     from kinematify.geometry.rest import AtRest, Reason
     from kinematify.geometry.scene import Pair
     from kinematify.validation.check import OpenCheck
-    from kinematify.validation.geometry.look import GeometryLook
+    from kinematify.validation.geometry.look import GeometryContext
 
 
 @check(
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     blame=Blame.ASSET,
     feedback=FeedbackRow.ALLOWED,
 )
-def strangers_overlap(result: OpenCheck, look: GeometryLook) -> None:
+def strangers_overlap(result: OpenCheck, look: GeometryContext) -> None:
     """Of every pair of bodies that no joint joins (links held together by fixed joints are one body), the deepest
     point of one in the other is measured in the exact meshes: above geometry.rest_overlap of the model's size it is a
     warning, above geometry.wrong an error if the visible meshes overlap as much. A body inside another one counts as
@@ -48,7 +48,7 @@ def strangers_overlap(result: OpenCheck, look: GeometryLook) -> None:
     blame=Blame.ASSET,
     feedback=FeedbackRow.ALLOWED,
 )
-def neighbours_overlap(result: OpenCheck, look: GeometryLook) -> None:
+def neighbours_overlap(result: OpenCheck, look: GeometryContext) -> None:
     """The deepest point of a part in the one that carries it is less than geometry.rest_joined of the smaller part's
     size. Small overlaps at a bearing are common and tolerated from then on.
 
@@ -65,7 +65,7 @@ def neighbours_overlap(result: OpenCheck, look: GeometryLook) -> None:
             _overlap(result, look, rest, limit, message, joint=joint)
 
 
-def _how(look: GeometryLook, rest: AtRest) -> str:
+def _how(look: GeometryContext, rest: AtRest) -> str:
     first, second = look.links_at(rest.pair, {})
     if rest.contained:
         return f"One of {first} and {second} is inside the other one, {length(rest.depth)} deep,"
@@ -73,7 +73,7 @@ def _how(look: GeometryLook, rest: AtRest) -> str:
 
 
 def _overlap(
-    result: OpenCheck, look: GeometryLook, rest: AtRest, limit: float, message: str, *, joint: str | None = None
+    result: OpenCheck, look: GeometryContext, rest: AtRest, limit: float, message: str, *, joint: str | None = None
 ) -> None:
     seen = rest.depth if look.visible is None else look.visible.allowance.at_rest(rest.pair)
     unseen = seen <= limit
@@ -103,7 +103,7 @@ def _overlap(
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.NOT_CARRIED,
 )
-def hovering(result: OpenCheck, look: GeometryLook) -> None:
+def hovering(result: OpenCheck, look: GeometryContext) -> None:
     """At rest, a moving part is less than geometry.hover of the model's size away from the body that its joint hangs
     it on. What is visible counts: collision shapes are often stubs that leave the bearing out. Of a wheel or rotor,
     whose axis runs through what carries it, it is a note: axles are seldom modelled.
@@ -140,7 +140,7 @@ def hovering(result: OpenCheck, look: GeometryLook) -> None:
     severity=Severity.NOTE,
     blame=Blame.ASSET,
 )
-def tolerated(result: OpenCheck, look: GeometryLook) -> None:
+def tolerated(result: OpenCheck, look: GeometryContext) -> None:
     """Nothing: it lists the pairs whose contact other checks do not count (joined and in contact at rest, in contact
     at rest, in contact in more than geometry.always of all configurations, fixed together), with the overlap that
     each may reach, and the links that are judged by their visual geometry.
@@ -183,7 +183,7 @@ def tolerated(result: OpenCheck, look: GeometryLook) -> None:
     result.measured["deepest_at_rest"] = max((allowance.at_rest(pair) for pair in reasons), default=0.0)
 
 
-def _tolerated(look: GeometryLook, pair: Pair) -> str:
+def _tolerated(look: GeometryContext, pair: Pair) -> str:
     first, second = in_document_order(look.scene.model, *look.scene.name(pair))
     return f"{first} - {second} ({length(look.allowance.at_rest(pair) + look.allowance.tolerance(pair))})"
 

@@ -12,7 +12,7 @@ from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from kinematify.validation.asset.extents import Extent
-    from kinematify.validation.asset.mesh_look import MeshLook
+    from kinematify.validation.asset.mesh_look import MeshContext
     from kinematify.validation.check import OpenCheck
 
 _MILLIMETRES = 1000.0
@@ -26,7 +26,7 @@ _MILLIMETRES = 1000.0
     severity=Severity.ERROR,
     blame=Blame.ASSET,
 )
-def unit_slips(result: OpenCheck, look: MeshLook) -> None:
+def unit_slips(result: OpenCheck, look: MeshContext) -> None:
     """No link is more than `oversize` times as large as the largest other one, none with a mesh file `undersize` times
     smaller, unless 1000 times its size is beyond `large` (a button of a lorry); no link stands further from its parent
     than `apart` times the sizes of both (blamed on the joint).
@@ -92,7 +92,7 @@ def _likely_factor(ratio: float) -> str:
     severity=Severity.ERROR,
     blame=Blame.ASSET,
 )
-def model_size(result: OpenCheck, look: MeshLook) -> None:
+def model_size(result: OpenCheck, look: MeshContext) -> None:
     """The diagonal of the model at zero lies between `small` and `large`; above `huge` it is an error if the model has
     joints that move, and so is a largest link below `tiny`.
 

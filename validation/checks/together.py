@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.validation.check import FeedbackRow, Shared, check
+from kinematify.validation.check import CauseScope, FeedbackRow, check
 from kinematify.validation.checks.follow import AT_REST
 from kinematify.validation.finding import Blame, Severity, not_finished
-from kinematify.validation.geometry.words import configuration, joint_value, length
+from kinematify.validation.geometry.formatting import configuration, joint_value, length
 
 if TYPE_CHECKING:
     from kinematify.validation.check import OpenCheck
-    from kinematify.validation.geometry.look import GeometryLook
+    from kinematify.validation.geometry.look import GeometryContext
 
 _HULL_SAMPLES = 24
 
 
-def _two_joints(look: GeometryLook) -> str | None:
+def _two_joints(look: GeometryContext) -> str | None:
     return look.late or ("only one joint moves" if len(look.scene.travels) < 2 else None)
 
 
@@ -26,10 +26,10 @@ def _two_joints(look: GeometryLook) -> str | None:
     fails="Two joints at once bring bodies together",
     severity=Severity.NOTE,
     blame=Blame.KINEMATICS,
-    follows={"KV311": Shared.PAIR},
+    follows={"KV311": CauseScope.PAIR},
     needs=(_two_joints,),
 )
-def in_each_others_way(result: OpenCheck, look: GeometryLook) -> None:
+def in_each_others_way(result: OpenCheck, look: GeometryContext) -> None:
     """Every two joints that can bring the same two bodies together are moved over a grid of their values.
 
     Why it matters: Doors and drawers that stop one another are common; a planner must know.
@@ -67,10 +67,10 @@ def in_each_others_way(result: OpenCheck, look: GeometryLook) -> None:
     fails="Configurations of all joints collide",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
-    follows={"KV301": Shared.PAIR, "KV311": Shared.PAIR},
+    follows={"KV301": CauseScope.PAIR, "KV311": CauseScope.PAIR},
     needs=(lambda look: not_finished("time ran out before it") if look.random is None else None,),
 )
-def free_configurations(result: OpenCheck, look: GeometryLook) -> None:
+def free_configurations(result: OpenCheck, look: GeometryContext) -> None:
     """Quasi-random configurations of all joints (geometry.random_rows Sobol points); the share that is free is
     measured. A warning only if none is.
 
@@ -103,7 +103,7 @@ def free_configurations(result: OpenCheck, look: GeometryLook) -> None:
     )
 
 
-def _two_bodies_that_collide(look: GeometryLook) -> str | None:
+def _two_bodies_that_collide(look: GeometryContext) -> str | None:
     links = look.scene.model.link_by_name
     seen = sum(any(links[name].collisions for name in body.links) for body in look.scene.bodies)
     return "fewer than two bodies have collision geometry" if seen < 2 else None
@@ -120,7 +120,7 @@ def _two_bodies_that_collide(look: GeometryLook) -> str | None:
     prepared=True,
     needs=(_two_bodies_that_collide,),
 )
-def hulls_block(result: OpenCheck, look: GeometryLook) -> None:
+def hulls_block(result: OpenCheck, look: GeometryContext) -> None:
     """Where the exact surfaces are clear, so are the convex hulls of the collision shapes, which engines collide
     instead (neighbours only if the parent is the base). What the file declares concave="yes" is left out: PyBullet
     collides its surface then.

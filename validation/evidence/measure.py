@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.truth import TrueJoint
     from kinematify.config import JointsConfig
     from kinematify.config.validation import EvidenceSettings
-    from kinematify.joints.choice.kind import WeighedJoints
+    from kinematify.joints.choice.kind import ScoredHypotheses
     from kinematify.robot.arrays import FloatArray
     from kinematify.validation.evidence.bodies import Bodies, Pair
 
@@ -105,7 +105,7 @@ class JointMeasures:
     """Score of the best bearing line of the contact; 0 without one."""
     own_bearing: float
     """Score of the declared line as a bearing; 0 where there is no other to compare it with."""
-    weighed: WeighedJoints
+    weighed: ScoredHypotheses
 
     @property
     def slides(self) -> bool:
@@ -184,7 +184,7 @@ def _pair(first: int, second: int) -> Pair:
     return min(first, second), max(first, second)
 
 
-def _line_evidence(weighed: WeighedJoints, joint: TrueJoint, settings: EvidenceSettings) -> LineEvidence:
+def _line_evidence(weighed: ScoredHypotheses, joint: TrueJoint, settings: EvidenceSettings) -> LineEvidence:
     turns = joint.kind is not JointType.PRISMATIC
     angle = 0.0 if _is_ball(weighed) else float(_angles(joint.axis, _known_directions(weighed)).min())
     axes, pivots, scores, given = _candidates(weighed, turns)
@@ -203,7 +203,7 @@ def _line_evidence(weighed: WeighedJoints, joint: TrueJoint, settings: EvidenceS
     )
 
 
-def _candidates(weighed: WeighedJoints, turns: bool) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
+def _candidates(weighed: ScoredHypotheses, turns: bool) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
     """Axes (c, 3), pivots (c, 3), scores (c,) and whether each was given (c,), of one type."""
     if turns:
         ranked = weighed.turns
@@ -215,7 +215,7 @@ def _candidates(weighed: WeighedJoints, turns: bool) -> tuple[FloatArray, FloatA
     return slides.axes, np.tile(anchor, (len(slides.axes), 1)), slides.scores, np.array(slides.sources) == GIVEN
 
 
-def _known_directions(weighed: WeighedJoints) -> FloatArray:
+def _known_directions(weighed: ScoredHypotheses) -> FloatArray:
     """Directions that the geometry of the two bodies shows, whatever the type, shape (d, 3)."""
     scene = weighed.scene
     found = [weighed.turns.proposed.lines.axes, weighed.slides.proposed.axes, scene.frame.axes, scene.parent_frame.axes]
@@ -225,7 +225,7 @@ def _known_directions(weighed: WeighedJoints) -> FloatArray:
     return np.concatenate(found)
 
 
-def _is_ball(weighed: WeighedJoints) -> bool:
+def _is_ball(weighed: ScoredHypotheses) -> bool:
     """The child has no direction at all."""
     points = weighed.scene.cache.samples(weighed.scene.child).points
     radii = lengths_of(points - points.mean(axis=0))
@@ -237,7 +237,7 @@ def _angles(axis: FloatArray, axes: FloatArray) -> FloatArray:
     return np.asarray(np.degrees(np.arccos(np.clip(np.abs(axes @ axis), 0.0, 1.0))))
 
 
-def _room_evidence(weighed: WeighedJoints, joint: TrueJoint, config: JointsConfig) -> RoomEvidence:
+def _room_evidence(weighed: ScoredHypotheses, joint: TrueJoint, config: JointsConfig) -> RoomEvidence:
     scene = weighed.scene
     slides = joint.kind is JointType.PRISMATIC
     reach = config.slides.sweep * scene.diagonal if slides else np.radians(config.panels.sweep_deg)
@@ -261,14 +261,14 @@ def _room_evidence(weighed: WeighedJoints, joint: TrueJoint, config: JointsConfi
     )
 
 
-def _side(weighed: WeighedJoints, axis: FloatArray) -> float:
+def _side(weighed: ScoredHypotheses, axis: FloatArray) -> float:
     scene = weighed.scene
     child, parent = (scene.cache.samples(part).points @ axis for part in (scene.child, scene.parent))
     apart = 0.5 * float(child.min() + child.max() - parent.min() - parent.max())
     return apart / max(0.5 * float(np.ptp(child) + np.ptp(parent)), 1e-12)
 
 
-def _parted(weighed: WeighedJoints, joint: TrueJoint) -> float:
+def _parted(weighed: ScoredHypotheses, joint: TrueJoint) -> float:
     scene = weighed.scene
     points = scene.cache.samples(scene.child).points
     way = joint.upper if abs(joint.upper) >= abs(joint.lower) else joint.lower

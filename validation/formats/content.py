@@ -21,7 +21,7 @@ from kinematify.validation.outcome import counted_words, severity_counts, status
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
-    from kinematify.validation.causes import Told
+    from kinematify.validation.causes import FindingGroup
     from kinematify.validation.finding import CheckResult
     from kinematify.validation.report import ValidationReport
     from kinematify.validation.summary import JointSummary
@@ -151,7 +151,7 @@ def check_table(report: ValidationReport) -> Table:
     return Table(headings=("check", "status", "seconds", "remark"), rows=rows)
 
 
-def is_pair_note(told: Told) -> bool:
+def is_pair_note(told: FindingGroup) -> bool:
     """Whether a finding is a note on a pair, such as why it may touch: often hundreds, so no block each."""
     return told.finding.severity is Severity.NOTE and told.finding.pair is not None and not told.consequences
 
@@ -262,7 +262,7 @@ class FindingBlock:
     """Why it does not count."""
 
 
-def block_of(group: Sequence[Told]) -> FindingBlock:
+def block_of(group: Sequence[FindingGroup]) -> FindingBlock:
     """Return what is said of findings that were put into one group."""
     first = group[0].finding
     consequences = tuple(item for told in group for item in told.consequences)
@@ -283,14 +283,14 @@ def block_of(group: Sequence[Told]) -> FindingBlock:
     )
 
 
-def blocks(told: Iterable[Told], *, together: int = 2) -> list[FindingBlock]:
+def blocks(told: Iterable[FindingGroup], *, together: int = 2) -> list[FindingBlock]:
     """Return a block for all findings that differ in names and numbers only, in the order of the first of each.
 
     Args:
         told: The findings.
         together: From so many on they share a block; fewer have one each.
     """
-    grouped: dict[tuple[object, ...], list[Told]] = {}
+    grouped: dict[tuple[object, ...], list[FindingGroup]] = {}
     for item in told:
         finding = item.finding
         key = (finding.check, finding.engine, finding.severity, finding.blame, finding.suppressed)
@@ -311,7 +311,7 @@ def _facts(finding: Finding) -> tuple[str, ...]:
     return where(finding), f"at {at}" if at else "", measure(finding), line
 
 
-def _others(group: Sequence[Told]) -> str:
+def _others(group: Sequence[FindingGroup]) -> str:
     """Where else the same was found."""
     named = list(dict.fromkeys(where(item.finding) for item in group[1:]))
     more = len(named) - PLACES

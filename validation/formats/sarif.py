@@ -26,7 +26,7 @@ from kinematify.validation.outcome import Unusable
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.validation.causes import Told
+    from kinematify.validation.causes import FindingGroup
     from kinematify.validation.check import Check
     from kinematify.validation.finding import Finding
     from kinematify.validation.outcome import Outcome
@@ -83,7 +83,7 @@ def _words(text: str) -> list[str]:
     return "".join(letter if letter.isalnum() and letter.isascii() else " " for letter in text).split()
 
 
-def _result(report: ValidationReport, told: Told, index: dict[str, int]) -> dict[str, Any]:
+def _result(report: ValidationReport, told: FindingGroup, index: dict[str, int]) -> dict[str, Any]:
     finding, follows = told.finding, follow_words(told.consequences)
     about = [part for part in (where(finding), configuration(finding.q), measure(finding)) if part]
     more = [*([f"({'; '.join(about)})"] if about else []), finding.remedy]
@@ -134,7 +134,7 @@ def _fingerprint(finding: Finding) -> str:
     return hashlib.sha256(repr(names).encode("utf-8", "backslashreplace")).hexdigest()[:32]
 
 
-def _properties(told: Told) -> dict[str, Any]:
+def _properties(told: FindingGroup) -> dict[str, Any]:
     finding = told.finding
     values: dict[str, Any] = {
         "title": title(finding),

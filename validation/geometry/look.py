@@ -19,8 +19,8 @@ from kinematify.geometry.sweep import Sweeper
 from kinematify.geometry.together import joint_pairs, looked_at, random_rows
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.finding import not_finished
+from kinematify.validation.geometry.formatting import in_document_order
 from kinematify.validation.geometry.hulls import HullView
-from kinematify.validation.geometry.words import in_document_order
 from kinematify.validation.summary import PairSummary, PairTable
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ _NEARLY = 0.01
 """What ranges of +-3.14 leave out of half a turn [rad]."""
 
 
-class GeometryLook:
+class GeometryContext:
     """A model at rest and in motion, by exact geometry."""
 
     def __init__(
@@ -64,13 +64,13 @@ class GeometryLook:
         self._sweep_of: dict[int, JointSweep] = {}
 
     @cached_property
-    def visible(self) -> GeometryLook | None:
+    def visible(self) -> GeometryContext | None:
         """The same of the visual geometry; None where the collision geometry is a copy of it."""
         if not self._compare_visible or not simplified(self.scene.model):
             return None
         scene = read_scene(self.scene.model, self.scene.settings, visible_shapes)
         same = [body.group for body in scene.bodies] == [body.group for body in self.scene.bodies]
-        return GeometryLook(scene, compare_visible=False) if same else None
+        return GeometryContext(scene, compare_visible=False) if same else None
 
     def sweep(self, leader: int) -> JointSweep:
         """Sweep of one joint."""
@@ -219,7 +219,7 @@ def _runs_through_box(solid: Solid, point: FloatArray, axis: FloatArray) -> bool
 class JointMotion:
     """One joint that moves alone, over its range and beyond."""
 
-    look: GeometryLook
+    look: GeometryContext
     sweep: JointSweep
 
     @property

@@ -38,9 +38,9 @@ def check_mesh_files(request: StageRequest, recorder: Recorder) -> Robot | None:
         request: Names the document, which has passed the pre-check.
         recorder: Told every check; the later ones are blocked where a mesh cannot be used.
     """
-    from kinematify.validation.asset.mesh_look import MeshLook
+    from kinematify.validation.asset.mesh_look import MeshContext
 
-    look, usable = MeshLook(request), True
+    look, usable = MeshContext(request), True
     for check in _GUARDS:
         with recorder.check(check.id) as result:
             check.run(result, look)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from kinematify.geometry.scene import Scene
     from kinematify.geometry.sweep import JointSweep
     from kinematify.validation.check import Check
-    from kinematify.validation.geometry.look import GeometryLook
+    from kinematify.validation.geometry.look import GeometryContext
     from kinematify.validation.stage import Recorder, StageRequest
 
 AT_REST, IN_MOTION, TOGETHER = checks_of("KV30"), checks_of("KV31", "KV32"), checks_of("KV33")
@@ -27,7 +27,7 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     from kinematify.simulation.configurations import write_poses
     from kinematify.validation.engine_results import EXACT
     from kinematify.validation.geometry.exact_contacts import exact_contacts
-    from kinematify.validation.geometry.look import GeometryLook
+    from kinematify.validation.geometry.look import GeometryContext
     from kinematify.validation.left_model import model_of
 
     every = (*AT_REST, *IN_MOTION, *TOGETHER)
@@ -37,7 +37,7 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     if len(scene.bodies) < 2:
         recorder.skip(every, "fewer than two bodies have geometry")
         return
-    look = GeometryLook(scene, seed=request.settings.seed, in_time=lambda: request.remaining > 0.0)
+    look = GeometryContext(scene, seed=request.settings.seed, in_time=lambda: request.remaining > 0.0)
     for entry in AT_REST:
         recorder.run(entry, look)
     if not scene.travels:
@@ -54,7 +54,7 @@ def run(request: StageRequest, recorder: Recorder) -> None:
         write_poses(request.work, EXACT, exact_contacts(scene, look.overlap, request.settings))
 
 
-def _tell_motion(entry: Check, look: GeometryLook, recorder: Recorder) -> None:
+def _tell_motion(entry: Check, look: GeometryContext, recorder: Recorder) -> None:
     """Run a check for one joint after the other."""
     if not recorder.wants(entry.id):
         return

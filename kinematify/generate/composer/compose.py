@@ -50,7 +50,7 @@ _ANOTHER = 1_000_003  # the next seed where nothing that was drawn fits
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wanted:
+class MechanismSpec:
     """One kind of mechanism on an object."""
 
     mechanism: MechanismKind
@@ -84,7 +84,7 @@ class Composition:
     """An object: a body and what is placed on it."""
 
     body: BodyKind
-    wanted: tuple[Wanted, ...]
+    wanted: tuple[MechanismSpec, ...]
     said: str = ""
     """Word for the body, where it is not the usual one."""
     size: tuple[float | None, float | None, float | None] = (None, None, None)
@@ -176,7 +176,7 @@ class _Layout:
     """With the body alone."""
     size: Size
     sides: dict[str, BodySide]
-    placed: list[tuple[str, Wanted, Bay]]
+    placed: list[tuple[str, MechanismSpec, Bay]]
     """Name of the side, what goes there, and the rectangle that it takes."""
 
 
@@ -221,7 +221,7 @@ def _workshop(composition: Composition) -> Workshop:
     )
 
 
-def _has_place(wanted: Wanted, sides: dict[str, BodySide]) -> bool:
+def _has_place(wanted: MechanismSpec, sides: dict[str, BodySide]) -> bool:
     return any(side in sides and _fits(wanted.mechanism, sides[side]) for side in wanted.mechanism.sides)
 
 
@@ -238,9 +238,9 @@ def draw_composition(seed: int) -> Composition:
     rng = np.random.default_rng(seed)
     body = BODIES[int(rng.integers(len(BODIES)))]
     always = [kind for kind in MECHANISMS if kind.words[0] in body.always]
-    wanted = [Wanted(mechanism=kind, count=body.always[kind.words[0]]) for kind in always]
+    wanted = [MechanismSpec(mechanism=kind, count=body.always[kind.words[0]]) for kind in always]
     for k in rng.permutation(len(MECHANISMS))[: int(rng.integers(2, 9))]:
-        asked = Wanted(mechanism=MECHANISMS[int(k)], count=int(rng.choice([1, 2, 2, 3, 4])))
+        asked = MechanismSpec(mechanism=MECHANISMS[int(k)], count=int(rng.choice([1, 2, 2, 3, 4])))
         if asked.mechanism in always:
             continue
         try:
@@ -264,9 +264,9 @@ def _on_lid(place: Placement, lid: str) -> Placement:
     return replace(place, workshop=place.workshop.turned(np.eye(3), (0, -level, 0)), parent=lid, hollow=True)
 
 
-def _by_side(composition: Composition, sides: dict[str, BodySide]) -> dict[str, list[Wanted]]:
+def _by_side(composition: Composition, sides: dict[str, BodySide]) -> dict[str, list[MechanismSpec]]:
     """What goes on which side; wheels and other pairs are divided between left and right."""
-    found: dict[str, list[Wanted]] = {side: [] for side in sides}
+    found: dict[str, list[MechanismSpec]] = {side: [] for side in sides}
     body = composition.title
     for asked in sorted(composition.wanted, key=lambda item: item.mechanism.arranged == "grid"):
         # The front doors of a van are on its sides.
@@ -288,7 +288,7 @@ def _by_side(composition: Composition, sides: dict[str, BodySide]) -> dict[str, 
     return {side: items for side, items in found.items() if items}
 
 
-def _usual_sides(wanted: Wanted, sides: dict[str, BodySide], body: str) -> list[str]:
+def _usual_sides(wanted: MechanismSpec, sides: dict[str, BodySide], body: str) -> list[str]:
     """Sides of a body where a mechanism may go, the usual one first."""
     kind, what = wanted.mechanism, wanted.title
     if wanted.count < 1:
@@ -306,11 +306,11 @@ def _usual_sides(wanted: Wanted, sides: dict[str, BodySide], body: str) -> list[
     return usual
 
 
-def _says_half(wanted: Wanted) -> bool:
+def _says_half(wanted: MechanismSpec) -> bool:
     return wanted.mechanism.halves and wanted.side in ("left", "right")
 
 
-def _refuse_crowded(side: str, items: Sequence[Wanted]) -> None:
+def _refuse_crowded(side: str, items: Sequence[MechanismSpec]) -> None:
     lids = sum(item.count for item in items if item.mechanism.words[0] == "lid")
     over = next((item.mechanism.words[0] for item in items if item.mechanism.arranged == "over"), None)
     if over and lids > 1:
@@ -338,7 +338,7 @@ def _fits(kind: MechanismKind, side: BodySide) -> bool:
     return not side.is_open or kind.arranged == "over"
 
 
-def _freest(usual: Sequence[str], found: dict[str, list[Wanted]], kind: MechanismKind) -> str:
+def _freest(usual: Sequence[str], found: dict[str, list[MechanismSpec]], kind: MechanismKind) -> str:
     """The usual side, or for what takes little room the first one that nothing covers."""
     if kind.arranged == "grid":
         for side in usual:
@@ -347,7 +347,9 @@ def _freest(usual: Sequence[str], found: dict[str, list[Wanted]], kind: Mechanis
     return usual[0]
 
 
-def _arranged(name: str, side: BodySide, wanted: Sequence[Wanted], fine: float) -> list[tuple[Wanted, Bay]]:
+def _arranged(
+    name: str, side: BodySide, wanted: Sequence[MechanismSpec], fine: float
+) -> list[tuple[MechanismSpec, Bay]]:
     """Every single mechanism of a side with the rectangle that it takes; what fills the side comes first."""
     placed = []
     least = {item.mechanism.words: tuple(fine * length for length in item.mechanism.least) for item in wanted}
@@ -381,14 +383,14 @@ def _arranged(name: str, side: BodySide, wanted: Sequence[Wanted], fine: float) 
     return placed
 
 
-def _told(mechanism: MechanismKind, wanted: Sequence[Wanted], side: str) -> str:
+def _told(mechanism: MechanismKind, wanted: Sequence[MechanismSpec], side: str) -> str:
     count = sum(item.count for item in wanted if item.mechanism is mechanism)
     return f"{count} {mechanism.words[0]}{'s' if count > 1 else ''} on the {side}"
 
 
-def _bands(wanted: Sequence[Wanted]) -> list[tuple[float, list[Wanted]]]:
+def _bands(wanted: Sequence[MechanismSpec]) -> list[tuple[float, list[MechanismSpec]]]:
     """Strips of a side from the top, with their weights: controls, what stands in a row, stacks, what is trodden."""
-    found: list[tuple[float, list[Wanted]]] = []
+    found: list[tuple[float, list[MechanismSpec]]] = []
     for level in sorted({item.level for item in wanted}, reverse=True):
         here = [item for item in wanted if item.level == level]
         by_kind = {kind: [item for item in here if item.mechanism.arranged == kind] for kind in BANDS}
@@ -406,7 +408,7 @@ def _bands(wanted: Sequence[Wanted]) -> list[tuple[float, list[Wanted]]]:
     return found
 
 
-def _divided(wanted: Sequence[Wanted], strip: Bay) -> list[tuple[Wanted, Bay]]:
+def _divided(wanted: Sequence[MechanismSpec], strip: Bay) -> list[tuple[MechanismSpec, Bay]]:
     """One cell each: in one row where that leaves them nearly square, else in several rows."""
     each = [item for item in wanted for _ in range(item.count)]
     if wanted[0].mechanism.arranged != "grid":

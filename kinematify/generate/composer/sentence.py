@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from kinematify.errors import InputError
 from kinematify.generate.composer.bodies import BODIES, BodyKind
-from kinematify.generate.composer.compose import BANDS, Composition, Wanted, compose
+from kinematify.generate.composer.compose import BANDS, Composition, MechanismSpec, compose
 from kinematify.generate.composer.mechanisms import MECHANISMS, MechanismKind
 from kinematify.generate.composer.side import FACING
 from kinematify.generate.procedural.family import Family
@@ -178,7 +178,7 @@ def _not_understood(left: Sequence[str]) -> InputError:
     )
 
 
-def _taken_for_granted(reader: _Reader) -> list[Wanted]:
+def _taken_for_granted(reader: _Reader) -> list[MechanismSpec]:
     """What the body has without being asked for."""
     body = reader.body
     if body is None:
@@ -189,7 +189,7 @@ def _taken_for_granted(reader: _Reader) -> list[Wanted]:
         granted.pop("door", None)  # something else closes it
     called = {kind: word for word, kind in body.says.items()}
     return [
-        Wanted(
+        MechanismSpec(
             mechanism=kind,
             said=called.get(kind.words[0], ""),
             count=granted[kind.words[0]],
@@ -217,7 +217,7 @@ def told(composition: Composition) -> str:
     return f"{_phrase(1, composition.color, composition.material, composition.title)} with {listed}"
 
 
-def _told(item: Wanted) -> str:
+def _told(item: MechanismSpec) -> str:
     noun = item.title + ("s" if item.count > 1 else "")
     return _phrase(item.count, item.color, item.material, noun) + (f" on the {item.side} side" if item.side else "")
 
@@ -238,7 +238,7 @@ class _Reader:
         self.body: BodyKind | None = None
         self.said = ""
         self.of_body = _Look()
-        self.wanted: list[Wanted] = []
+        self.wanted: list[MechanismSpec] = []
         self.excluded: list[MechanismKind] = []
         self.handles: _Look | None = None
         self.size: list[float | None] = [None, None, None]
@@ -345,7 +345,7 @@ class _Reader:
         # What goes on the front alone is at its top or bottom there.
         banded = mechanism.arranged in BANDS and side in ("top", "bottom") and side not in mechanism.sides
         self.wanted.append(
-            Wanted(
+            MechanismSpec(
                 mechanism=mechanism,
                 said=_unusual(words, mechanism.words),
                 count=look.count or (_several(mechanism) if plural else 1),
@@ -367,7 +367,9 @@ class _Reader:
         """`with two handles`, which this body has anyway; `with five blades`, of the rotor that it has or just got."""
         if self.body is None:
             return 0
-        here = self.wanted[-1:] or [Wanted(mechanism=kind) for kind in MECHANISMS if kind.words[0] in self.body.always]
+        here = self.wanted[-1:] or [
+            MechanismSpec(mechanism=kind) for kind in MECHANISMS if kind.words[0] in self.body.always
+        ]
         count = self._look.count or 0
         for item in here if 2 <= count <= _MOST_MEMBERS and self._look == _Look(count=count) else []:
             member = _longest(self._texts(k), {_words_of(word): word for word in item.mechanism.members})
@@ -395,7 +397,7 @@ class _Reader:
         noun = self._words.text(k - 1)
         return self._opened_by(k, self.wanted[-1], (noun,)) if named and noun == named[-1] else 0
 
-    def _opened_by(self, k: int, item: Wanted, words: Sequence[str]) -> int:
+    def _opened_by(self, k: int, item: MechanismSpec, words: Sequence[str]) -> int:
         """How many words from word k on say how far a mechanism stands open."""
         at = k + 1 if self._words.text(k) in ("is", "are") else k
         amount = share_at(self._words, at)

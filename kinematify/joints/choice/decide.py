@@ -10,7 +10,7 @@ import numpy as np
 from kinematify.joints.bearings.line import Line
 from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
 from kinematify.joints.choice.judge import agreed, alike_edges, judge
-from kinematify.joints.choice.kind import Siblings, WeighedJoints, decide_kind
+from kinematify.joints.choice.kind import ScoredHypotheses, Siblings, decide_kind
 from kinematify.joints.choice.limits import find_range
 from kinematify.joints.hypotheses.panels import rank_turns
 from kinematify.joints.hypotheses.slides import rank_slides
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph
     from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import EdgeBearing
-    from kinematify.joints.choice.judge import Judgement
+    from kinematify.joints.choice.judge import Posterior
     from kinematify.joints.measure.frames import BoxFrame
     from kinematify.joints.measure.scene import JointScene
     from kinematify.robot.arrays import FloatArray
@@ -74,7 +74,7 @@ def estimate_joints(
     return tuple(with_exact_lines(assembly, estimate) for estimate in estimates)
 
 
-def _estimate(weighed: WeighedJoints, judged: Judgement, *, config: JointsConfig) -> JointEstimate:
+def _estimate(weighed: ScoredHypotheses, judged: Posterior, *, config: JointsConfig) -> JointEstimate:
     scene, decision = weighed.scene, weighed.decision
     fixed = decision.kind is JointType.FIXED or judged.fixed > config.confidence.fixed
     kind = JointType.FIXED if fixed else judged.kind(judged.best)
@@ -112,7 +112,7 @@ def weigh_joints(
     *,
     config: JointsConfig,
     given: Sequence[Line] = (),
-) -> WeighedJoints:
+) -> ScoredHypotheses:
     """Rank all turns and slides of the tree edge (parent, child) and weigh the types against each other.
 
     Args:
@@ -132,7 +132,7 @@ def weigh_joints(
     grips = _twin_directions(scene, frames, twins) if siblings.gripping else np.empty((0, 3))
     slides = rank_slides(scene, grips, config, [line.axis for line in given])
     decision = decide_kind(scene, siblings, turns.proposed, slides.proposed, config)
-    return WeighedJoints(scene=scene, turns=turns, slides=slides, decision=decision)
+    return ScoredHypotheses(scene=scene, turns=turns, slides=slides, decision=decision)
 
 
 # ---- twins ---------------------------------------------------------------------------------------------------------

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kinematify.config import ConfidenceConfig
     from kinematify.contact.graph import ContactGraph
     from kinematify.contact.tree import KinematicTree
-    from kinematify.joints.choice.kind import WeighedJoints
+    from kinematify.joints.choice.kind import ScoredHypotheses
     from kinematify.joints.measure.measurements import Values
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
@@ -34,7 +34,7 @@ _DISTANCE = 0.05  # of the child's diagonal, the same for a line
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Judgement:
+class Posterior:
     """The hypotheses of one edge with their probabilities."""
 
     hypotheses: Hypotheses
@@ -158,7 +158,7 @@ def rightness(degrees: FloatArray, apart: FloatArray) -> FloatArray:
     return np.asarray(np.exp(-((degrees / _ANGLE) ** 2) - (apart / _DISTANCE) ** 2))
 
 
-def judge(weighed: WeighedJoints, config: ConfidenceConfig) -> Judgement:
+def judge(weighed: ScoredHypotheses, config: ConfidenceConfig) -> Posterior:
     """Measure every proposed joint of an edge and score them together.
 
     Args:
@@ -177,7 +177,7 @@ def judge(weighed: WeighedJoints, config: ConfidenceConfig) -> Judgement:
         likely = likely * np.exp(config.name_weight * (hypotheses.kinds == said))
         odds += config.name_weight if said == FIXED else -config.name_weight
     by_cues = 1 + (len(weighed.turns.scores) if slides else 0)
-    return Judgement(
+    return Posterior(
         hypotheses=hypotheses,
         likely=likely / likely.sum(),
         fixed=float(1.0 / (1.0 + np.exp(-odds))),
@@ -193,7 +193,7 @@ def lead_of(source: str, config: ConfidenceConfig) -> float:
     return config.fold_lead if source == "fold" else config.cues_lead
 
 
-def hypotheses_of(weighed: WeighedJoints) -> Hypotheses:
+def hypotheses_of(weighed: ScoredHypotheses) -> Hypotheses:
     """Fixed, every turn and every slide, in this order."""
     scene, lines, slides = weighed.scene, weighed.turns.lines, weighed.slides
     anchor = scene.contact.centroid if len(scene.contact.points) else scene.centre
@@ -205,7 +205,7 @@ def hypotheses_of(weighed: WeighedJoints) -> Hypotheses:
     )
 
 
-def cues_of(weighed: WeighedJoints) -> Values:
+def cues_of(weighed: ScoredHypotheses) -> Values:
     """The cues of turns and of slides before any weight, as measurements like others; NaN where none applies, (h,)."""
     scene, turns, slides = weighed.scene, weighed.turns, weighed.slides
     n, m = len(turns.scores), len(slides.scores)
@@ -228,7 +228,7 @@ def cues_of(weighed: WeighedJoints) -> Values:
     }
 
 
-def verdicts_of(weighed: WeighedJoints) -> Values:
+def verdicts_of(weighed: ScoredHypotheses) -> Values:
     """What the weighted sums of cues say of each hypothesis, and the cues of the type, (h,) each.
 
     They were written while objects were looked at. Half of what is fitted does not see them.

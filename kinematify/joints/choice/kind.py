@@ -399,7 +399,7 @@ def _slide_room(scene: JointScene, free: FloatArray) -> float:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class WeighedJoints:
+class ScoredHypotheses:
     """Every joint that one tree edge may have, weighed, before one is chosen."""
 
     scene: JointScene

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.choice.opening import clockwise_sign, goes_round, neutral_sign, swing_sign, turn_sign
+from kinematify.joints.choice.opening import clockwise_sign, is_continuous, neutral_sign, swing_sign, turn_sign
 from kinematify.joints.measure.frames import UP
 from kinematify.joints.measure.scene import eccentricity
 from kinematify.joints.measure.sweep import moving_points, sweep_turns
@@ -44,7 +44,7 @@ def find_range(scene: JointScene, kind: JointType, axis: FloatArray, pivot: Floa
 
 def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> Range:
     free = _free_turn(scene, axis, pivot, (scene.parent, *scene.others), config)
-    if goes_round(scene, axis, pivot, free):
+    if is_continuous(scene, axis, pivot, free):
         return Range(
             kind=JointType.CONTINUOUS,
             sign=clockwise_sign(scene, axis),

@@ -220,7 +220,7 @@ _FREE = -0.5  # log odds beyond which what meets nothing goes round: both kinds 
 _STOPPED = 1.0  # the same of what meets something on its way, as a tyre its mudguard
 
 
-def goes_round(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> bool:
+def is_continuous(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> bool:
     """Whether a turn has no end: wheels, knobs and propellers, but not links in series, of which each has its stops.
 
     Args:

@@ -27,7 +27,7 @@ _NEAR, _FAR = 0.05, 20.0
 _LIGHT = (-0.4, -1.0, 1.6)
 
 
-class TinyPainter:
+class LowResRenderer:
     """Draws pieces at poses, as `kinematify.envs.picture.Painter` does; `close` frees what it holds."""
 
     def __init__(self, pieces: Sequence[Piece], view: View, settings: PictureSettings) -> None:

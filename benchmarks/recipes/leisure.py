@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.recipes.draft import spread
 from benchmarks.recipes.mechanisms import (
     bail,
     button,
@@ -21,6 +20,7 @@ from benchmarks.recipes.mechanisms import (
     plunger,
     wheel,
 )
+from benchmarks.recipes.object_builder import spread
 from benchmarks.recipes.shapes import (
     X,
     Y,
@@ -38,13 +38,13 @@ from benchmarks.recipes.shapes import (
 )
 
 if TYPE_CHECKING:
-    from benchmarks.recipes.draft import Draft
+    from benchmarks.recipes.object_builder import ObjectBuilder
 
 # fmt: off
 # A recipe reads as a list of shapes and joints, which one argument a line would hide.
 
 
-def toy_train(d: Draft) -> None:
+def toy_train(d: ObjectBuilder) -> None:
     """A locomotive of blocks with four to eight wheels."""
     n, w, r = d.u(0.12, 0.3), d.u(0.04, 0.08), d.u(0.012, 0.025)
     d.part("engine", box((-n / 2, -w / 2, r), (n / 2, w / 2, 2.5 * r)), rod(0.4 * w, (-0.1 * n, 0, 2.5 * r + 0.3 * w),
@@ -56,7 +56,7 @@ def toy_train(d: Draft) -> None:
                 s * Y, axle=0.15 * r)
 
 
-def pull_along_animal(d: Draft) -> None:
+def pull_along_animal(d: ObjectBuilder) -> None:
     """A body on wheels, a head that nods, a tail that wags."""
     k = d.u(0.08, 0.2)
     d.part("body", capsule(0.35 * k, (-0.5 * k, 0, 0.8 * k), (0.5 * k, 0, 0.8 * k)), *(box((x * k - 0.1 * k, -0.3 * k,
@@ -65,41 +65,42 @@ def pull_along_animal(d: Draft) -> None:
     x = 0.85 * k + g
     d.part("head", ball(0.3 * k, (x + 0.3 * k, 0, 1.1 * k)), cone(0.12 * k, 0.05 * k, (x + 0.5 * k, 0, 1.05 * k),
         (x + 0.75 * k, 0, 1.0 * k)))
-    d.hinge("head", "body", Y, (x + (0.3 * k if d.hand.bored else 0.0), 0, 1.1 * k), 0.25, -0.25, ajar=False)
+    d.hinge("head", "body", Y, (x + (0.3 * k if d.hand.has_bore else 0.0), 0, 1.1 * k), 0.25, -0.25,
+        initial_opening=False)
     d.part("tail", capsule(0.06 * k, (-0.9 * k - g, 0, 0.95 * k), (-1.2 * k, 0, 1.3 * k)))
-    d.hinge("tail", "body", X if d.maybe() else Z, (-0.9 * k - g, 0, 0.95 * k), 0.3, -0.3, ajar=False)
+    d.hinge("tail", "body", X if d.maybe() else Z, (-0.9 * k - g, 0, 0.95 * k), 0.3, -0.3, initial_opening=False)
     for i, x in enumerate((-0.45 * k, 0.45 * k)):
         for s in (-1.0, 1.0):
             wheel(d, f"wheel_{i}_{int(s > 0)}", "body", (x, s * 0.38 * k, 0.22 * k), 0.22 * k, 0.1 * k, s * Y,
                 axle=0.03 * k)
 
 
-def articulated_doll(d: Draft) -> None:
+def articulated_doll(d: ObjectBuilder) -> None:
     """Arms, legs and a head on a torso."""
     k = d.u(0.1, 1.0)
     g = d.gap(0.05 * k)
     d.part("torso", box((-0.18 * k, -0.1 * k, 0.5 * k), (0.18 * k, 0.1 * k, 0.95 * k)), rod(0.05 * k, (0, 0, 0.94 * k),
         (0, 0, 1.0 * k)), material="wood")
     d.part("head", ball(0.13 * k, (0, 0, 1.13 * k + g)))
-    d.hinge("head", "torso", Z, (0, 0, 1.0 * k), 1.3, -1.3, ajar=False)
+    d.hinge("head", "torso", Z, (0, 0, 1.0 * k), 1.3, -1.3, initial_opening=False)
     for s, side in ((-1.0, "right"), (1.0, "left")):
         x = s * (0.18 * k + g)
         top = np.array([x + s * 0.05 * k, 0, 0.9 * k])
         d.part(f"arm_{side}", capsule(0.05 * k, top, top - 0.4 * k * Z))
-        d.hinge(f"arm_{side}", "torso", -X, (x, 0, 0.9 * k), 2.5, -0.5, ajar=False)
+        d.hinge(f"arm_{side}", "torso", -X, (x, 0, 0.9 * k), 2.5, -0.5, initial_opening=False)
         hip = np.array([s * 0.09 * k, 0, 0.5 * k - g])
-        d.part(f"leg_{side}", rod(0.07 * k, hip, hip - 0.25 * k * Z) if d.hand.bored else capsule(0.07 * k,
+        d.part(f"leg_{side}", rod(0.07 * k, hip, hip - 0.25 * k * Z) if d.hand.has_bore else capsule(0.07 * k,
             hip - 0.03 * k * Z, hip - 0.25 * k * Z))
-        d.hinge(f"leg_{side}", "torso", -X, hip, 0.02 if d.hand.bored else 1.2,
-            -0.02 if d.hand.bored else -0.4, ajar=False)
+        d.hinge(f"leg_{side}", "torso", -X, hip, 0.02 if d.hand.has_bore else 1.2,
+            -0.02 if d.hand.has_bore else -0.4, initial_opening=False)
         if d.maybe():
-            knee = hip - (0.25 * k + g + (0.07 * k if not d.hand.bored else 0.0)) * Z
+            knee = hip - (0.25 * k + g + (0.07 * k if not d.hand.has_bore else 0.0)) * Z
             d.part(f"shin_{side}", rod(0.06 * k, knee, knee - 0.18 * k * Z), box((knee[0] - 0.06 * k, -0.16 * k,
                 knee[2] - 0.22 * k), (knee[0] + 0.06 * k, 0.06 * k, knee[2] - 0.17 * k)))
-            d.hinge(f"shin_{side}", f"leg_{side}", X, knee, 0.02 if d.hand.bored else 1.5, ajar=False)
+            d.hinge(f"shin_{side}", f"leg_{side}", X, knee, 0.02 if d.hand.has_bore else 1.5, initial_opening=False)
 
 
-def jack_in_the_box(d: Draft) -> None:
+def jack_in_the_box(d: ObjectBuilder) -> None:
     """A lid and a crank at the side."""
     k = d.u(0.08, 0.2)
     case(d, "box", (-k / 2, -k / 2, 0), (k / 2, k / 2, k), opening=Z)
@@ -107,7 +108,7 @@ def jack_in_the_box(d: Draft) -> None:
     crank(d, "crank", "box", (k / 2, 0, 0.5 * k), X, 0.35 * k)
 
 
-def abacus(d: Draft) -> None:
+def abacus(d: ObjectBuilder) -> None:
     """Beads that slide on rods."""
     w, n = d.u(0.15, 0.4), d.n(2, 4)
     h, r = 0.18 * w * n, 0.07 * w
@@ -122,12 +123,12 @@ def abacus(d: Draft) -> None:
             d.part(f"bead_{i}_{k}", rod(r, (x, 0, z), (x + 0.1 * w, 0, z)), material="wood")
             d.bore(f"bead_{i}_{k}", rod(0.02 * w + 1.5 * g, (x - 1, 0, z), (x + 1, 0, z)))
             if k == m - 1:
-                d.slide(f"bead_{i}_{k}", "frame", X, 0.4 * w, ajar=False)
+                d.slide(f"bead_{i}_{k}", "frame", X, 0.4 * w, initial_opening=False)
             else:
-                d.slide(f"bead_{i}_{k}", "frame", X, 0.02 * w, ajar=False)
+                d.slide(f"bead_{i}_{k}", "frame", X, 0.02 * w, initial_opening=False)
 
 
-def gyroscope(d: Draft) -> None:
+def gyroscope(d: ObjectBuilder) -> None:
     """A wheel in a ring in a ring."""
     r = d.u(0.03, 0.3)
     g = d.gap(0.05 * r) + 0.0002
@@ -145,7 +146,7 @@ def gyroscope(d: Draft) -> None:
     d.spin("wheel", "gimbal", Z, c)
 
 
-def upright_piano(d: Draft) -> None:
+def upright_piano(d: ObjectBuilder) -> None:
     """Keys, a fallboard, pedals, a lid."""
     w, n = 1.0 * d.u(0.6, 1.4), d.n(5, 10)
     d.part("piano", box((-w / 2, 0, 0), (w / 2, 0.35, 1.2)), box((-w / 2, -0.25, 0.6), (w / 2, 0.01, 0.65)),
@@ -154,14 +155,14 @@ def upright_piano(d: Draft) -> None:
     for k, x in enumerate(spread(n, -w / 2 + 0.05, w / 2 - 0.05)):
         a = (w - 0.1) / n / 2 - g
         d.part(f"key_{k}", box((x - a, -0.2, 0.665), (x + a, -g, 0.685)))
-        d.hinge(f"key_{k}", "piano", X, (x, -g, 0.665), 0.05, ajar=False)
+        d.hinge(f"key_{k}", "piano", X, (x, -g, 0.665), 0.05, initial_opening=False)
     for k, x in enumerate((-0.08, 0.08)):
         d.part(f"pedal_{k}", box((x - 0.02, -0.12, 0.06), (x + 0.02, -g, 0.075)), material="metal")
-        d.hinge(f"pedal_{k}", "piano", X, (x, -g, 0.06), 0.15, ajar=False)
+        d.hinge(f"pedal_{k}", "piano", X, (x, -g, 0.06), 0.15, initial_opening=False)
     leaf(d, "lid", "piano", (-w / 2, 0, 1.2), (w / 2, 0.35, 1.22), hinge=Y, out=Z, reach=1.5, handle=False)
 
 
-def mixing_console(d: Draft) -> None:
+def mixing_console(d: ObjectBuilder) -> None:
     """Faders in slots, knobs in a grid and pads on a desk: a mixer."""
     w, t, n = d.u(0.3, 0.9), d.u(0.25, 0.45), d.n(2, 5)
     case(d, "console", (-w / 2, 0, 0), (w / 2, t, 0.06), material="steel")
@@ -171,12 +172,12 @@ def mixing_console(d: Draft) -> None:
         y = d.u(0.06, 0.3 * t)
         d.part(f"fader_{k}", box((x - 0.003, y - 0.004, 0.045), (x + 0.003, y + 0.004, 0.07)), box((x - 0.012, y - 0.01,
             0.062), (x + 0.012, y + 0.01, 0.075)))
-        d.slide(f"fader_{k}", "console", Y, 0.48 * t - y, 0.05 - y, ajar=False)
+        d.slide(f"fader_{k}", "console", Y, 0.48 * t - y, 0.05 - y, initial_opening=False)
         for i, q in enumerate(spread(d.n(1, 2), 0.55 * t, 0.95 * t)):
             knob(d, f"knob_{k}_{i}", "console", (x, q, 0.06), 0.01, 0.015, Z, reach=5.0)
 
 
-def hi_hat(d: Draft) -> None:
+def hi_hat(d: ObjectBuilder) -> None:
     """A bass drum pedal, and a hi-hat whose upper cymbal rides on its rod."""
     h, r = d.u(0.7, 1.0), d.u(0.14, 0.2)
     d.part("stand", rod(0.012, (0, 0, 0.02), (0, 0, h - 0.02)), *(rod(0.01, (0, 0, 0.3 * h), (0.3 * np.cos(a),
@@ -184,14 +185,14 @@ def hi_hat(d: Draft) -> None:
         -0.35, 0), (0.05, 0, 0.02)), material="metal")
     g = d.gap(0.01) + 0.0003
     d.part("cymbal", cone(r, 0.03, (0, 0, h + 0.012), (0, 0, h + 0.05)), rod(0.004, (0, 0,
-        h - 0.2 if d.hand.bored else h + 0.01), (0, 0, h + 0.2)), material="metal")
+        h - 0.2 if d.hand.has_bore else h + 0.01), (0, 0, h + 0.2)), material="metal")
     d.bore("stand", rod(0.004 + 1.5 * g, (0, 0, h - 0.25), (0, 0, h + 1)))
-    d.slide("cymbal", "stand", Z, 0.05, ajar=False)
+    d.slide("cymbal", "stand", Z, 0.05, initial_opening=False)
     d.part("pedal", beam(0.08, 0.01, (0, -0.33, 0.03 + g), (0, -0.05, 0.12)), material="metal")
-    d.hinge("pedal", "stand", X, (0, -0.33, 0.03 + g), 0.05, -0.25, ajar=False)
+    d.hinge("pedal", "stand", X, (0, -0.33, 0.03 + g), 0.05, -0.25, initial_opening=False)
 
 
-def metronome(d: Draft) -> None:
+def metronome(d: ObjectBuilder) -> None:
     """A rod that swings on a tapered case, and a weight on it."""
     h = d.u(0.15, 0.25)
     d.part("case", prism([(-0.35 * h, 0), (0.35 * h, 0), (0.12 * h, h), (-0.12 * h, h)], (0, 0, 0), 0.4 * h, "y"),
@@ -203,10 +204,10 @@ def metronome(d: Draft) -> None:
     d.hinge("rod", "case", -Y, (0, y, 0.2 * h), 0.6, -0.6)
     z = d.u(0.5, 0.8) * h
     d.part("weight", box((-0.015, y - 0.012, z), (0.015, y - 0.002 - g, z + 0.025)), material="metal")
-    d.slide("weight", "rod", Z, 0.2 * h, -0.1 * h, ajar=False)
+    d.slide("weight", "rod", Z, 0.2 * h, -0.1 * h, initial_opening=False)
 
 
-def wall_clock(d: Draft) -> None:
+def wall_clock(d: ObjectBuilder) -> None:
     """Two or three hands about one axis, a pendulum."""
     r = d.u(0.08, 0.25)
     d.part("clock", rod(r, (0, 0, 0), (0, 0.04, 0)), material="wood")
@@ -226,10 +227,10 @@ def wall_clock(d: Draft) -> None:
             (0.4 * r, 0.04, -0.8 * r)), box((-0.4 * r, 0.03, -2.6 * r), (0.4 * r, 0.04, -0.8 * r)))
         d.part("pendulum", rod(0.02 * r, (0, 0.015, -1.02 * r - g), (0, 0.015, -2.1 * r)), rod(0.15 * r, (0, 0.01,
             -2.2 * r), (0, 0.02, -2.2 * r)), material="metal")
-        d.hinge("pendulum", "clock", Y, (0, 0.015, -1.02 * r - g), 0.08, -0.08, ajar=False)
+        d.hinge("pendulum", "clock", Y, (0, 0.015, -1.02 * r - g), 0.08, -0.08, initial_opening=False)
 
 
-def exercise_bike(d: Draft) -> None:
+def exercise_bike(d: ObjectBuilder) -> None:
     """A flywheel, cranks, a seat post."""
     r = d.u(0.16, 0.24)
     d.part("frame", box((-0.5, -0.25, 0), (-0.42, 0.25, 0.06)), box((0.45, -0.25, 0), (0.53, 0.25, 0.06)), box((-0.45,
@@ -251,12 +252,12 @@ def exercise_bike(d: Draft) -> None:
     d.bore("frame", rod(0.01 + 1.5 * g, c - 0.1 * Y, c + 0.1 * Y))
     d.spin("cranks", "frame", Y, c)
     d.bore("frame", beam(0.05, 0.05, (-0.2, 0, 0.1), (-0.26, 0, 0.72)))
-    d.part("seat", beam(0.05 - 2 * g if d.hand.bored else 0.05, 0.05 - 2 * g if d.hand.bored else 0.05, (-0.21, 0,
-        0.2) if d.hand.bored else (-0.25, 0, 0.6), (-0.27, 0, 0.8)), box((-0.4, -0.1, 0.8), (-0.15, 0.1, 0.86)))
-    d.slide("seat", "frame", np.array([-0.05, 0, 0.55]) / np.hypot(0.05, 0.55), 0.15, ajar=False)
+    d.part("seat", beam(0.05 - 2 * g if d.hand.has_bore else 0.05, 0.05 - 2 * g if d.hand.has_bore else 0.05, (-0.21, 0,
+        0.2) if d.hand.has_bore else (-0.25, 0, 0.6), (-0.27, 0, 0.8)), box((-0.4, -0.1, 0.8), (-0.15, 0.1, 0.86)))
+    d.slide("seat", "frame", np.array([-0.05, 0, 0.55]) / np.hypot(0.05, 0.55), 0.15, initial_opening=False)
 
 
-def weight_machine(d: Draft) -> None:
+def weight_machine(d: ObjectBuilder) -> None:
     """A stack that slides on two rods, an arm that swings."""
     h, w = d.u(1.6, 2.0), 0.5
     d.part("frame", box((-w / 2, -0.2, 0), (w / 2, 0.2, 0.06)), box((-w / 2, -0.05, h), (w / 2, 0.05, h + 0.08)),
@@ -269,12 +270,12 @@ def weight_machine(d: Draft) -> None:
         t = d.u(0.06, 0.2)
         d.part(f"plate_{k}", box((-0.2, -0.06, z), (0.2, 0.06, z + t)), material="steel")
         d.bore(f"plate_{k}", *(rod(0.014 + 1.5 * g, (s * 0.12, 0, 0), (s * 0.12, 0, h)) for s in (-1, 1)))
-        d.slide(f"plate_{k}", "frame", Z, 0.02 if k < n - 1 and d.hand.bored else 0.6 * h if k == n - 1 else 0.3,
-            ajar=False)
-        z += t + (0.021 if d.hand.bored else 0.0) + g
+        d.slide(f"plate_{k}", "frame", Z, 0.02 if k < n - 1 and d.hand.has_bore else 0.6 * h if k == n - 1 else 0.3,
+            initial_opening=False)
+        z += t + (0.021 if d.hand.has_bore else 0.0) + g
 
 
-def basketball_hoop(d: Draft) -> None:
+def basketball_hoop(d: ObjectBuilder) -> None:
     """A ring that folds down on a board, on a base with wheels."""
     h = d.u(1.2, 3.0)
     d.part("stand", box((-0.4, 0, 0), (0.4, 0.7, 0.15)), beam(0.1, 0.1, (0, 0.4, 0.1), (0, 0.4, h), Y), box((-0.55,
@@ -282,12 +283,12 @@ def basketball_hoop(d: Draft) -> None:
     g = d.gap(0.05) + 0.0005
     d.part("ring", ring(0.23, 0.01, (0, -0.25, h + 0.02), Z), box((-0.06, -0.03, h), (0.06, 0.05 - g, h + 0.04)),
         material="steel")
-    d.hinge("ring", "stand", X, (0, 0.05 - g, h + (0.0 if d.hand.bored else 0.02)), 0.6)
+    d.hinge("ring", "stand", X, (0, 0.05 - g, h + (0.0 if d.hand.has_bore else 0.02)), 0.6)
     for s in (-1.0, 1.0):
         wheel(d, f"wheel_{int(s > 0)}", "stand", (s * 0.43, 0.1, 0.06), 0.06, 0.04, s * X, axle=0.01)
 
 
-def table_football(d: Draft) -> None:
+def table_football(d: ObjectBuilder) -> None:
     """Rods with figures that turn (and slide); here they turn."""
     w, n, z = 0.7, d.u(0.8, 1.3), 0.8
     d.part("table", box((-w / 2, -n / 2, z - 0.25), (w / 2, n / 2, z - 0.2)), *(box((s * w / 2, -n / 2, z - 0.25),
@@ -303,7 +304,7 @@ def table_football(d: Draft) -> None:
         d.spin(f"rod_{k}", "table", X, (0, y, z - 0.06))
 
 
-def hole_punch(d: Draft) -> None:
+def hole_punch(d: ObjectBuilder) -> None:
     """A lever on a base."""
     n, w = d.u(0.08, 0.15), d.u(0.05, 0.12)
     d.part("base", box((-n / 2, -w / 2, 0), (n / 2, w / 2, 0.012)), *(box((-0.35 * n, s * 0.3 * w, 0.01), (-0.15 * n,
@@ -312,12 +313,12 @@ def hole_punch(d: Draft) -> None:
     half = 0.3 * w - 0.004 - g
     d.part("handle", box((-0.3 * n, -half, 0.035), (0.6 * n, half, 0.045)), *(box((-0.3 * n, s * half, 0.028),
         (-0.2 * n, s * (half - 0.003), 0.04)) for s in (-1, 1)), material="steel")
-    if not d.hand.bored:
+    if not d.hand.has_bore:
         d.part(d.pick("handle", "base"), rod(0.003, (-0.25 * n, -0.32 * w, 0.035), (-0.25 * n, 0.32 * w, 0.035)))
-    d.hinge("handle", "base", Y, (-0.25 * n, 0, 0.035), 0.2, -0.2, ajar=False)
+    d.hinge("handle", "base", Y, (-0.25 * n, 0, 0.035), 0.2, -0.2, initial_opening=False)
 
 
-def ring_binder(d: Draft) -> None:
+def ring_binder(d: ObjectBuilder) -> None:
     """Two covers about a spine, lying open or shut."""
     w, h, t = d.u(0.2, 0.3), d.u(0.25, 0.35), d.u(0.02, 0.08)
     g = d.gap(0.01) + 0.0002
@@ -327,7 +328,7 @@ def ring_binder(d: Draft) -> None:
         d.hinge(f"cover_{k}", "spine", Y * (1.0 if k == 0 else -1.0), (-0.003, 0, z1 if k == 0 else z0), d.u(1.4, 3.0))
 
 
-def printer(d: Draft) -> None:
+def printer(d: ObjectBuilder) -> None:
     """A scanner lid, a paper tray, an output flap, buttons."""
     w, t, h = d.u(0.35, 0.5), d.u(0.3, 0.45), d.u(0.12, 0.35)
     case(d, "printer", (-w / 2, 0, 0), (w / 2, t, h), material="plastic")
@@ -339,7 +340,7 @@ def printer(d: Draft) -> None:
         button(d, f"button_{k}", "printer", (x, 0.03, h), (0.02, 0.015), 0.003, Z, is_round=d.maybe())
 
 
-def desktop_computer(d: Draft) -> None:
+def desktop_computer(d: ObjectBuilder) -> None:
     """A side panel that slides or swings, a power button, drive trays."""
     w, t, h = d.u(0.17, 0.22), d.u(0.4, 0.5), d.u(0.38, 0.5)
     case(d, "tower", (-w / 2, 0, 0), (w / 2, t, h), opening=X, wall=0.006, material="steel")
@@ -356,7 +357,7 @@ def desktop_computer(d: Draft) -> None:
     button(d, "power", "tower", (0, 0, 0.5 * h), (0.02, 0.02), 0.004, -Y, is_round=d.maybe())
 
 
-def folding_phone(d: Draft) -> None:
+def folding_phone(d: ObjectBuilder) -> None:
     """Two halves on a hinge: a phone, a console, a compact, a cigarette case."""
     w, t, a = d.u(0.05, 0.15), d.u(0.05, 0.12), d.u(0.006, 0.015)
     round_ = d.maybe(0.3)
@@ -365,7 +366,7 @@ def folding_phone(d: Draft) -> None:
     y = w / 2 if round_ else t / 2
     d.part("upper", rod(w / 2, (0, 0, a + g), (0, 0, 2 * a)) if round_ else box((-w / 2, -t / 2, a + g), (w / 2, t / 2,
         2 * a)))
-    if d.hand.barrels and not d.hand.bored:
+    if d.hand.barrels and not d.hand.has_bore:
         d.part("lower", rod(0.5 * a, (-0.4 * w, y, a), (-0.2 * w, y, a)), rod(0.5 * a, (0.2 * w, y, a), (0.4 * w, y,
             a)))
         d.part("upper", rod(0.5 * a, (-0.19 * w, y, a), (0.19 * w, y, a)))
@@ -375,7 +376,7 @@ def folding_phone(d: Draft) -> None:
             button(d, f"key_{k}", "lower", (x, -t / 2, a / 2), (0.1 * w, 0.4 * a), 0.1 * a, -Y)
 
 
-def camera_on_tripod(d: Draft) -> None:
+def camera_on_tripod(d: ObjectBuilder) -> None:
     """A head that pans and tilts, a lens ring, legs that spread."""
     h = d.u(0.6, 1.5)
     d.part("column", rod(0.016, (0, 0, 0.5 * h), (0, 0, h)), rod(0.035, (0, 0, 0.8 * h), (0, 0, 0.86 * h)),
@@ -385,19 +386,19 @@ def camera_on_tripod(d: Draft) -> None:
         u = np.array([np.cos(a), np.sin(a), 0])
         p = (0.05 + g) * u + 0.84 * h * Z
         d.part(f"leg_{k}", rod(0.012, p, p + 0.4 * h * u - 0.84 * h * Z), material="metal")
-        d.hinge(f"leg_{k}", "column", np.cross(Z, u) * -1.0, p, 0.3, -0.3, ajar=False)
+        d.hinge(f"leg_{k}", "column", np.cross(Z, u) * -1.0, p, 0.3, -0.3, initial_opening=False)
     d.part("pan", rod(0.03, (0, 0, h + g), (0, 0, h + 0.04)), *(box((s * 0.035 - 0.005, -0.02, h + 0.02),
         (s * 0.035 + 0.005, 0.02, h + 0.1)) for s in (-1, 1)), material="metal")
     d.spin("pan", "column", Z, (0, 0, h))
     d.part("camera", box((-0.03 + g, -0.02, h + 0.05), (0.03 - g, 0.02, h + 0.12)), box((-0.07, -0.03, h + 0.11), (0.07,
         0.03, h + 0.2)), rod(0.03, (0, -0.02, h + 0.155), (0, -0.06, h + 0.155)))
-    d.hinge("camera", "pan", X, (0, 0, h + 0.08), 0.3, -0.3, ajar=False)
+    d.hinge("camera", "pan", X, (0, 0, h + 0.08), 0.3, -0.3, initial_opening=False)
     d.part("lens", tube(0.034, 0.0305 + g, (0, -0.035, h + 0.155), (0, -0.075,
-        h + 0.155)) if d.hand.bored else rod(0.03, (0, -0.06, h + 0.155), (0, -0.1, h + 0.155)))
+        h + 0.155)) if d.hand.has_bore else rod(0.03, (0, -0.06, h + 0.155), (0, -0.1, h + 0.155)))
     d.spin("lens", "camera", -Y, (0, -0.06, h + 0.155))
 
 
-def refracting_telescope(d: Draft) -> None:
+def refracting_telescope(d: ObjectBuilder) -> None:
     """An optical tube on a mount with two axes, a focuser that draws out."""
     k = d.u(0.5, 1.2)
     d.part("pier", cone(0.15 * k, 0.08 * k, (0, 0, 0), (0, 0, 0.8 * k)), material="metal")
@@ -409,11 +410,11 @@ def refracting_telescope(d: Draft) -> None:
     c = np.array([0, 0, 1.05 * k])
     d.part("tube", rod(0.07 * k, c - 0.5 * k * Y, c + 0.4 * k * Y), *(rod(0.03 * k, c + s * 0.05 * k * X,
         c + s * (0.095 * k - g) * X) for s in (-1, 1)), material="metal")
-    d.hinge("tube", "fork", X, c, 0.35, -0.35, ajar=False)
+    d.hinge("tube", "fork", X, c, 0.35, -0.35, initial_opening=False)
     plunger(d, "focuser", "tube", c + 0.55 * k * Y, c + 0.3 * k * Y, 0.03 * k, travel=0.06 * k)
 
 
-def centrifuge(d: Draft) -> None:
+def centrifuge(d: ObjectBuilder) -> None:
     """A lid over a rotor, a dial in front."""
     r = d.u(0.1, 0.22)
     case(d, "housing", (-1.3 * r, -1.4 * r, 0), (1.3 * r, 1.3 * r, 1.3 * r), material="plastic")
@@ -427,7 +428,7 @@ def centrifuge(d: Draft) -> None:
         knob(d, f"dial_{k}", "housing", (x, -1.4 * r, 0.6 * r), 0.18 * r, 0.15 * r, -Y, reach=4.0)
 
 
-def hospital_bed(d: Draft) -> None:
+def hospital_bed(d: ObjectBuilder) -> None:
     """A back section that rises, rails that drop, casters."""
     n, w, z = 2.0, d.u(0.85, 1.0), d.u(0.45, 0.6)
     d.part("frame", box((0, -w / 2, z - 0.1), (n, w / 2, z)), box((0.75, -w / 2, z), (n, w / 2, z + 0.1)), box((-0.03,
@@ -436,39 +437,39 @@ def hospital_bed(d: Draft) -> None:
         n - 0.2) for s in (-1, 1)), material="steel")
     g = d.gap(0.05) + 0.0005
     d.part("back", box((0.03, -w / 2 + 0.02, z + g), (0.75 - g, w / 2 - 0.02, z + 0.1)), material="plastic")
-    d.hinge("back", "frame", Y, (0.75 - g, 0, z + (0.1 if d.hand.bored else d.pick(0.0, 0.05, 0.1))), 1.0)
+    d.hinge("back", "frame", Y, (0.75 - g, 0, z + (0.1 if d.hand.has_bore else d.pick(0.0, 0.05, 0.1))), 1.0)
     for k, s in enumerate((-1.0, 1.0)):
         y = s * (w / 2 + g + 0.001)
         d.part(f"rail_{k}", *(rod(0.012, (0.5, y + s * 0.012, q), (1.5, y + s * 0.012, q)) for q in (z, z + 0.15,
             z + 0.3)), *(rod(0.01, (x, y + s * 0.012, z - 0.02), (x, y + s * 0.012, z + 0.3)) for x in spread(5, 0.5,
             1.5)), material="steel")
         if d.maybe():
-            d.slide(f"rail_{k}", "frame", -Z, 0.3, ajar=False)
+            d.slide(f"rail_{k}", "frame", -Z, 0.3, initial_opening=False)
         else:
-            d.hinge(f"rail_{k}", "frame", -s * X, (1.0, y + s * 0.012, z - 0.02), 2.5 if not d.hand.bored else 1.5,
-                ajar=False)
+            d.hinge(f"rail_{k}", "frame", -s * X, (1.0, y + s * 0.012, z - 0.02), 2.5 if not d.hand.has_bore else 1.5,
+                initial_opening=False)
     for k, (x, s) in enumerate([(x, s) for x in (0.2, n - 0.2) for s in (-1, 1)]):
         caster(d, f"caster_{k}", "frame", (x, s * 0.4 * w, 0.15), 0.15)
 
 
-def dentist_chair(d: Draft) -> None:
+def dentist_chair(d: ObjectBuilder) -> None:
     """A seat on a column, a back, a head rest that slides, a lamp on an arm."""
     z = d.u(0.45, 0.6)
     d.part("foot", box((-0.3, -0.25, 0), (0.4, 0.25, 0.05)), rod(0.09, (0, 0, 0.04), (0, 0, z - 0.1)), material="steel")
     g = d.gap(0.05) + 0.0005
-    d.part("seat", box((-0.25, -0.28, z), (0.35, 0.28, z + 0.1)), rod(0.07 if d.hand.bored else 0.09, (0, 0,
-        0.15 if d.hand.bored else z - 0.1), (0, 0, z + 0.01)), box((0.3, -0.25, 0.25), (0.4, 0.25, z + 0.08)))
+    d.part("seat", box((-0.25, -0.28, z), (0.35, 0.28, z + 0.1)), rod(0.07 if d.hand.has_bore else 0.09, (0, 0,
+        0.15 if d.hand.has_bore else z - 0.1), (0, 0, z + 0.01)), box((0.3, -0.25, 0.25), (0.4, 0.25, z + 0.08)))
     d.bore("foot", rod(0.07 + 1.5 * g, (0, 0, 0.1), (0, 0, 1)))
-    d.slide("seat", "foot", Z, 0.25, ajar=False)
+    d.slide("seat", "foot", Z, 0.25, initial_opening=False)
     d.part("back", box((-0.37, -0.27, z + 0.02), (-0.25 - g, 0.27, z + 0.65)))
     d.hinge("back", "seat", -Y, (-0.25 - g, 0, z + 0.02), 1.2)
     d.bore("back", box((-0.34 - g, -0.03 - g, z + 0.5), (-0.31 + g, 0.03 + g, z + 1)))
-    d.part("head_rest", box((-0.34, -0.03, z + 0.52 if d.hand.bored else z + 0.65), (-0.31, 0.03, z + 0.75)),
+    d.part("head_rest", box((-0.34, -0.03, z + 0.52 if d.hand.has_bore else z + 0.65), (-0.31, 0.03, z + 0.75)),
         box((-0.38, -0.13, z + 0.7), (-0.28, 0.13, z + 0.85)))
-    d.slide("head_rest", "back", Z, 0.1, ajar=False)
+    d.slide("head_rest", "back", Z, 0.1, initial_opening=False)
 
 
-def drip_stand(d: Draft) -> None:
+def drip_stand(d: ObjectBuilder) -> None:
     """A pole that telescopes on five casters, hooks that turn."""
     h, n = d.u(0.9, 1.2), d.n(4, 5)
     d.part("foot", rod(0.015, (0, 0, 0.1), (0, 0, h)), material="steel")
@@ -476,11 +477,11 @@ def drip_stand(d: Draft) -> None:
         tip = np.array([0.3 * np.cos(a), 0.3 * np.sin(a), 0.09])
         d.part("foot", beam(0.03, 0.02, (0, 0, 0.12), tip + 0.01 * Z), rod(0.015, tip - 0.015 * Z, tip + 0.02 * Z))
         caster(d, f"caster_{k}", "foot", tip - 0.015 * Z, 0.075)
-    plunger(d, "pole", "foot", (0, 0, h + 0.5), (0, 0, 0.4) if d.hand.bored else (0, 0, h - 0.05), 0.009, travel=0.4)
+    plunger(d, "pole", "foot", (0, 0, h + 0.5), (0, 0, 0.4) if d.hand.has_bore else (0, 0, h - 0.05), 0.009, travel=0.4)
     d.part("pole", *(rod(0.004, (0, 0, h + 0.48), (0.12 * s, 0, h + 0.54)) for s in (-1, 1)))
 
 
-def interior_door(d: Draft) -> None:
+def interior_door(d: ObjectBuilder) -> None:
     """A frame, a leaf with a lever handle on one or both sides, a bolt."""
     w, h, t = d.u(0.7, 1.0), d.u(1.9, 2.1), d.u(0.03, 0.05)
     d.part("frame", *(box((s * w / 2, -0.03, 0), (s * (w / 2 + 0.07), 0.09, h + 0.07)) for s in (-1, 1)),
@@ -497,7 +498,7 @@ def interior_door(d: Draft) -> None:
             lever(d, f"handle_{k}", "leaf", -side * (w / 2 - 0.07) + np.array([0, y, 1.0]), out, side, 0.12, reach=0.7)
 
 
-def revolving_door(d: Draft) -> None:
+def revolving_door(d: ObjectBuilder) -> None:
     """Wings about a post in a drum."""
     r, h, n = d.u(0.9, 1.6), d.u(2.0, 2.4), d.n(3, 4)
     d.part("drum", rod(r + 0.1, (0, 0, h), (0, 0, h + 0.15)), rod(r + 0.1, (0, 0, -0.03), (0, 0, 0)), material="metal")
@@ -511,7 +512,7 @@ def revolving_door(d: Draft) -> None:
     d.spin("wings", "drum", Z, (0, 0, 0))
 
 
-def garage_door(d: Draft) -> None:
+def garage_door(d: ObjectBuilder) -> None:
     """A panel that tilts up about a line, or slides up in rails."""
     w, h = d.u(2.2, 3.0), d.u(1.9, 2.3)
     d.part("frame", *(box((s * w / 2, -0.1, 0), (s * (w / 2 + 0.2), 0.3, h + 0.2)) for s in (-1, 1)), box((-w / 2 - 0.2,
@@ -530,7 +531,7 @@ def garage_door(d: Draft) -> None:
         d.hinge("panel", "frame", -X, (0, 0.05, h - g), 1.4)
 
 
-def casement_window(d: Draft) -> None:
+def casement_window(d: ObjectBuilder) -> None:
     """One or two sashes that swing, tilt or are hung at the top, with a handle."""
     w, h = d.u(0.6, 1.4), d.u(0.7, 1.4)
     t = 0.06
@@ -550,7 +551,7 @@ def casement_window(d: Draft) -> None:
                 0.005, h / 2]), -Y, X if way != "side" else -Z, 0.1, reach=1.57)
 
 
-def sash_window(d: Draft) -> None:
+def sash_window(d: ObjectBuilder) -> None:
     """Two sashes one before the other, up and down or left and right."""
     w, h, t = d.u(0.6, 1.2), d.u(0.9, 1.5), 0.05
     d.part("frame", *(box((s * w / 2, 0, 0), (s * (w / 2 + t), 0.1, h)) for s in (-1, 1)), *(box((-w / 2 - t, 0, z),
@@ -574,7 +575,7 @@ def sash_window(d: Draft) -> None:
         d.slide(f"sash_{k}", "frame", way, (w if flat else h) / 2 - 0.05)
 
 
-def elevator(d: Draft) -> None:
+def elevator(d: ObjectBuilder) -> None:
     """Doors that part, a call panel with buttons."""
     w, h = d.u(0.9, 1.3), 2.1
     d.part("shaft", box((-w - 0.3, 0, 0), (-w / 2, 0.2, h + 0.4)), box((w / 2, 0, 0), (w + 0.3, 0.2, h + 0.4)),
@@ -587,7 +588,7 @@ def elevator(d: Draft) -> None:
         button(d, f"call_{k}", "shaft", (w / 2 + 0.15, 0, z), (0.04, 0.04), 0.01, -Y, is_round=d.maybe())
 
 
-def vending_machine(d: Draft) -> None:
+def vending_machine(d: ObjectBuilder) -> None:
     """A door, a flap below, buttons, a coin knob."""
     w, t, h = d.u(0.7, 1.0), d.u(0.5, 0.8), d.u(1.6, 1.9)
     case(d, "machine", (-w / 2, 0, 0), (w / 2, t, h), material="steel")
@@ -599,7 +600,7 @@ def vending_machine(d: Draft) -> None:
     knob(d, "coin_return", "machine", (0.4 * w, 0, 0.7), 0.02, 0.02, -Y, reach=1.5)
 
 
-def slot_machine(d: Draft) -> None:
+def slot_machine(d: ObjectBuilder) -> None:
     """A lever at the side, reels in a window, a tray."""
     k = d.u(0.3, 0.6)
     case(d, "machine", (-0.5 * k, 0, 0), (0.5 * k, 0.7 * k, 1.4 * k), material="steel")
@@ -616,7 +617,7 @@ def slot_machine(d: Draft) -> None:
     d.hinge("lever", "machine", X, at - g * X, 1.2)
 
 
-def treasure_chest(d: Draft) -> None:
+def treasure_chest(d: ObjectBuilder) -> None:
     """A barrel lid, bails at both ends, a hasp."""
     w, t, h = d.u(0.3, 0.9), d.u(0.2, 0.5), d.u(0.15, 0.4)
     case(d, "chest", (-w / 2, -t / 2, 0), (w / 2, t / 2, h), opening=Z, wall=0.04 * t)
@@ -634,7 +635,7 @@ def treasure_chest(d: Draft) -> None:
             lower=-0.02, upper=1.3)
 
 
-def carousel(d: Draft) -> None:
+def carousel(d: ObjectBuilder) -> None:
     """A disc that turns with figures on rods that go up and down, a winding key."""
     r = d.u(0.06, 0.2)
     d.part("base", rod(r, (0, 0, 0), (0, 0, 0.4 * r)), material="wood")
@@ -649,14 +650,14 @@ def carousel(d: Draft) -> None:
         d.part("carousel", rod(0.02 * r, p + 0.49 * r * Z, p + 1.55 * r * Z))
         d.part(f"horse_{k}", block(p + z * Z, (0.25 * r, 0.15 * r, 0.2 * r)), material="wood")
         d.bore(f"horse_{k}", rod(0.02 * r + 1.5 * g, p, p + 3 * r * Z))
-        d.slide(f"horse_{k}", "carousel", Z, 0.25 * r, -0.1 * r, ajar=False)
+        d.slide(f"horse_{k}", "carousel", Z, 0.25 * r, -0.1 * r, initial_opening=False)
     at = np.array([0, -r, 0.2 * r])
     d.part("key", rod(0.05 * r, at - g * Y, at - 0.15 * r * Y), block(at - 0.25 * r * Y,
         (0.35 * r, 0.2 * r, 0.05 * r)), material="metal")
     d.spin("key", "base", -Y, at)
 
 
-def nutcracker(d: Draft) -> None:
+def nutcracker(d: ObjectBuilder) -> None:
     """Two arms about a pin: crackers, tongs, pliers, shears of plain bars."""
     n = d.u(0.1, 0.6)
     k = 0.06 * n
@@ -670,10 +671,10 @@ def nutcracker(d: Draft) -> None:
     if d.hand.barrels:
         d.part("arm_a", rod(0.3 * k, (0, -gap_y, 0), (0, gap_y + 0.6 * k, 0)))
         d.bore("arm_b", rod(0.3 * k + 1.5 * g, (0, -1, 0), (0, 1, 0)))
-    d.hinge("arm_b", "arm_a", Y, (0, 0, 0), 0.5, -0.2, ajar=False)
+    d.hinge("arm_b", "arm_a", Y, (0, 0, 0), 0.5, -0.2, initial_opening=False)
 
 
-def pocket_knife(d: Draft) -> None:
+def pocket_knife(d: ObjectBuilder) -> None:
     """Blades that fold into a handle."""
     n = d.u(0.06, 0.12)
     k = 0.1 * n
@@ -689,12 +690,12 @@ def pocket_knife(d: Draft) -> None:
         a = 0.5 * pitch - g
         d.part(f"blade_{j}", box((end - s * 0.06 * n, y - a, 0.0 * k), (end + s * 0.8 * n, y + a, 0.9 * k)),
             rod(0.6 * k, (end, y - a, 0.3 * k), (end, y + a, 0.3 * k)), material="steel")
-        if not d.hand.bored:
+        if not d.hand.has_bore:
             d.part("handle", rod(0.15 * k, (end, y - pitch / 2, 0.3 * k), (end, y + pitch / 2, 0.3 * k)))
-        d.hinge(f"blade_{j}", "handle", -s * Y, (end, y, 0.3 * k), 1.2 if d.hand.bored else 3.0)
+        d.hinge(f"blade_{j}", "handle", -s * Y, (end, y, 0.3 * k), 1.2 if d.hand.has_bore else 3.0)
 
 
-def awning(d: Draft) -> None:
+def awning(d: ObjectBuilder) -> None:
     """An awning: arms that fold out of a wall case, a crank."""
     w = d.u(1.5, 3.0)
     d.part("case", box((-w / 2, -0.1, 0), (w / 2, 0.1, 0.2)), material="metal")
@@ -705,11 +706,11 @@ def awning(d: Draft) -> None:
         y = -0.13
         d.part(f"arm_{k}", beam(0.05, 0.05, (x, y, 0.03 - 0.025 - g), (x - s * 0.3 * w, y - 0.5, 0.03 - 0.025 - g)),
             rod(0.03, (x, y, 0.03 - 0.05 - g), (x, y, 0.03 - g)), material="metal")
-        d.hinge(f"arm_{k}", "case", s * Z * -1.0, (x, y, 0), 0.6, -0.5, ajar=False)
+        d.hinge(f"arm_{k}", "case", s * Z * -1.0, (x, y, 0), 0.6, -0.5, initial_opening=False)
     crank(d, "crank", "case", (w / 2, 0, 0.1), X, 0.2)
 
 
-def solar_tracker(d: Draft) -> None:
+def solar_tracker(d: ObjectBuilder) -> None:
     """A panel that tilts on a head that turns on a post."""
     k = d.u(0.3, 2.0)
     d.part("post", rod(0.06 * k, (0, 0, 0), (0, 0, k)), rod(0.25 * k, (0, 0, 0), (0, 0, 0.03 * k)), material="steel")
@@ -721,12 +722,12 @@ def solar_tracker(d: Draft) -> None:
     c = np.array([0, 0, 1.26 * k])
     d.part("panel", beam(1.2 * k, 0.04 * k, c + np.array([0, -0.4 * k, 0.05 * k]), c + np.array([0, 0.4 * k,
         0.12 * k])), beam(0.15 * k, 0.08 * k, c - 0.04 * k * Y, c + 0.04 * k * Y), material="glass")
-    if d.hand.barrels or not d.hand.bored:
+    if d.hand.barrels or not d.hand.has_bore:
         d.part(d.pick("panel", "head"), rod(0.02 * k, c - 0.15 * k * X, c + 0.15 * k * X))
-    d.hinge("panel", "head", X, c, 0.5, -0.6, ajar=False)
+    d.hinge("panel", "head", X, c, 0.5, -0.6, initial_opening=False)
 
 
-def dish_antenna(d: Draft) -> None:
+def dish_antenna(d: ObjectBuilder) -> None:
     """A dish on a mount with two axes: radar, satellite, searchlight."""
     k = d.u(0.3, 3.0)
     d.part("base", cone(0.5 * k, 0.3 * k, (0, 0, 0), (0, 0, 0.5 * k)), material="metal")
@@ -739,10 +740,10 @@ def dish_antenna(d: Draft) -> None:
         c - 0.35 * k * Y))
     d.part("dish", dish, block(c, (0.3 * k, 0.1 * k, 0.1 * k)), rod(0.03 * k, c - 0.1 * k * Y, c - 0.7 * k * Y),
         beam(0.1 * k, 0.1 * k, c, c - 0.15 * k * Y))
-    d.hinge("dish", "yoke", -X, c, 1.2 if not d.hand.bored else 0.9, ajar=False)
+    d.hinge("dish", "yoke", -X, c, 1.2 if not d.hand.has_bore else 0.9, initial_opening=False)
 
 
-def lighthouse_lamp(d: Draft) -> None:
+def lighthouse_lamp(d: ObjectBuilder) -> None:
     """A lamp that turns on a tower: a beacon, a lidar, a rotating sign."""
     k = d.u(0.03, 1.0)
     d.part("tower", d.pick(cone(0.5 * k, 0.35 * k, (0, 0, 0), (0, 0, k)), box((-0.4 * k, -0.4 * k, 0), (0.4 * k,
@@ -756,7 +757,7 @@ def lighthouse_lamp(d: Draft) -> None:
     d.spin("lamp", "tower", Z, (0, 0, k))
 
 
-def flower_press(d: Draft) -> None:
+def flower_press(d: ObjectBuilder) -> None:
     """Two boards on screws with wing nuts: the upper board slides, the nuts turn."""
     w = d.u(0.15, 0.35)
     d.part("lower", box((-w / 2, -w / 2, 0), (w / 2, w / 2, 0.015)), *(rod(0.004, (x, y, 0.01), (x, y,
@@ -772,4 +773,4 @@ def flower_press(d: Draft) -> None:
             (x + 0.02, y, low + 0.012)), material="metal")
         d.bore(n, rod(0.004 + 1.5 * g, (x, y, 0), (x, y, 1)))
         d.spin(n, "lower", Z, (x, y, low))
-    d.slide("upper", "lower", Z, 0.018, ajar=False)
+    d.slide("upper", "lower", Z, 0.018, initial_opening=False)

@@ -21,12 +21,12 @@ _ROUND = {"cylinder", "capsule", "cone", "tube", "torus", "lathe"}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Hand:
+class ModelingStyle:
     """How one person models, whatever the object is."""
 
     gap: float
     """Clearance where parts move past each other [m]; less on small parts."""
-    bored: bool
+    has_bore: bool
     """Shafts and drawers stand in holes; otherwise in the solid, or on it."""
     hollow: bool
     """Cases have walls; otherwise they are blocks."""
@@ -36,7 +36,7 @@ class Hand:
     """``merged`` with what they are fixed to, ``apart``, or ``none``."""
     barrels: bool
     """Hinges are drawn."""
-    sunk: float
+    max_penetration: float
     """What is put on a surface stands in it by this share of its height."""
     line: float
     """Where hinges run in the thickness of a leaf: 0 at its back, 1 at its front."""
@@ -46,13 +46,13 @@ class Hand:
     """``disc``, ``tyre`` or ``spokes``."""
     knob: str
     """``plain``, ``pointer``, ``bar``, ``ball`` or ``star``."""
-    ajar: float
+    initial_opening: float
     """Share of the way that it stands open."""
     rounded: bool
     """Boxes have rounded edges."""
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator) -> Hand:
+    def drawn(cls, rng: np.random.Generator) -> ModelingStyle:
         """Somebody."""
 
         def one_of(*options: Any) -> Any:
@@ -60,32 +60,33 @@ class Hand:
 
         return cls(
             gap=one_of(0.0, 0.0, 0.0005, 0.002, 0.005, 0.01),
-            bored=one_of(True, False),
+            has_bore=one_of(True, False),
             hollow=one_of(True, True, False),
             sides=one_of(8, 12, 16, 24, 32, 48),
             grips=one_of("merged", "merged", "apart", "none"),
             barrels=one_of(True, False, False),
-            sunk=one_of(0.0, 0.0, 0.2, 0.5),
+            max_penetration=one_of(0.0, 0.0, 0.2, 0.5),
             line=one_of(0.0, 0.5, 0.5, 1.0),
             drawer=one_of("tray", "tray", "block", "front"),
             wheel=one_of("disc", "disc", "tyre", "spokes"),
             knob=one_of("plain", "plain", "pointer", "bar", "ball", "star"),
-            ajar=one_of(0.0, 0.0, 0.0, 0.1, 0.3, 0.6),
+            initial_opening=one_of(0.0, 0.0, 0.0, 0.1, 0.3, 0.6),
             rounded=one_of(False, False, False, True),
         )
 
 
-CAREFUL = Hand(
-    gap=0.001, bored=True, hollow=True, sides=24, grips="merged", barrels=False, sunk=0.0, line=1.0, drawer="tray",
-    wheel="disc", knob="plain", ajar=0.0, rounded=False,
+CAREFUL = ModelingStyle(
+    gap=0.001, has_bore=True, hollow=True, sides=24, grips="merged", barrels=False, max_penetration=0.0, line=1.0,
+        drawer="tray",
+    wheel="disc", knob="plain", initial_opening=0.0, rounded=False,
 )  # fmt: skip
 """Models so that everything moves freely."""
 
 
-class Draft:
+class ObjectBuilder:
     """Collects parts and joints; world frame, z up, metres; front is -y unless a recipe has none."""
 
-    def __init__(self, name: str, hand: Hand, rng: np.random.Generator) -> None:
+    def __init__(self, name: str, hand: ModelingStyle, rng: np.random.Generator) -> None:
         """Begin an object."""
         self.name, self.hand, self.rng = name, hand, rng
         self._parts: dict[str, dict[str, Any]] = {}
@@ -128,7 +129,7 @@ class Draft:
 
     def bore(self, name: str, *shapes: Shape) -> None:
         """Take shapes away where this hand makes holes."""
-        if self.hand.bored:
+        if self.hand.has_bore:
             self.cut(name, *shapes)
 
     def _handmade(self, shape: Shape) -> Shape:
@@ -147,11 +148,11 @@ class Draft:
         upper: float,
         lower: float = 0.0,
         *,
-        ajar: bool = True,
+        initial_opening: bool = True,
         rest: float = 0.0,
     ) -> None:
         """Let a part turn within limits [rad]; `rest` is where it stands unless it is drawn ajar."""
-        self._join("revolute", child, parent, axis, pivot, lower, upper, ajar, rest)
+        self._join("revolute", child, parent, axis, pivot, lower, upper, initial_opening, rest)
 
     def spin(self, child: str, parent: str, axis: Point, pivot: Point) -> None:
         """Let a part turn without end."""
@@ -160,10 +161,10 @@ class Draft:
         )
 
     def slide(
-        self, child: str, parent: str, axis: Point, upper: float, lower: float = 0.0, *, ajar: bool = True
+        self, child: str, parent: str, axis: Point, upper: float, lower: float = 0.0, *, initial_opening: bool = True
     ) -> None:
         """Let a part slide within limits [m]."""
-        self._join("prismatic", child, parent, axis, (0.0, 0.0, 0.0), lower, upper, ajar)
+        self._join("prismatic", child, parent, axis, (0.0, 0.0, 0.0), lower, upper, initial_opening)
 
     def fix(self, child: str, parent: str) -> None:
         """A part of its own that does not move."""
@@ -183,10 +184,10 @@ class Draft:
         pivot: Point,
         lower: float,
         upper: float,
-        ajar: bool,
+        initial_opening: bool,
         rest: float = 0.0,
     ) -> None:
-        value = self.hand.ajar * upper * self.u(0.3, 1.0) if ajar and self.maybe(0.7) else rest
+        value = self.hand.initial_opening * upper * self.u(0.3, 1.0) if initial_opening and self.maybe(0.7) else rest
         placed = {"axis": list(map(float, axis)), "pivot": list(map(float, pivot))}
         limits = {"lower": float(lower), "upper": float(upper), "value": value}
         self._joints.append({"type": kind, "child": child, "parent": parent, **placed, **limits})

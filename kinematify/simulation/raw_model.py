@@ -117,7 +117,7 @@ class Pushed:
 
 @dataclass(frozen=True, kw_only=True)
 class Reproductions:
-    """Templates of plain code of an engine, which repeats what was found; `LoadedFile` fills them in."""
+    """Templates of plain code of an engine, which repeats what was found; `RawEngineModel` fills them in."""
 
     joints: str
     """Prints a joint in each line: its name, lower and upper limit."""
@@ -133,7 +133,7 @@ class Reproductions:
     """Repeats `RunningFile.release`, and prints by how much the energy grows [J]."""
 
 
-class LoadedFile(ABC):
+class RawEngineModel(ABC):
     """A file in an engine. Every joint that the engine moves is known by its name."""
 
     code: ClassVar[Reproductions]
@@ -170,7 +170,7 @@ class LoadedFile(ABC):
         return links
 
 
-class RunningFile(LoadedFile):
+class RunningFile(RawEngineModel):
     """A file in an engine that simulates."""
 
     time_step: float
@@ -184,7 +184,7 @@ class RunningFile(LoadedFile):
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
         """What a force at each joint moves in a step of a push [kg or kg m^2], shape (joints,)."""
 
-    def bearable(self, values: Mapping[str, float]) -> FloatArray:
+    def max_safe_force(self, values: Mapping[str, float]) -> FloatArray:
         """Largest force at each joint that the engine answers rightly [N or N m], shape (joints,)."""
         return np.full(len(values), np.inf)
 
@@ -225,7 +225,7 @@ class RunningFile(LoadedFile):
         return [self._index_of(name) for name in push.moved]
 
 
-def hand(
+def velocity_probe(
     ratios: Mapping[str, float],
     way: tuple[float, float],
     *,
@@ -235,10 +235,10 @@ def hand(
     time_step: float,
     resistance: float = 0.0,
     damping: float = 0.0,
-    bearable: float = np.inf,
+    max_safe_force: float = np.inf,
     patience: float = PATIENCE,
 ) -> Push:
-    """Return the push of a hand.
+    """Return the push of a hand that holds a velocity.
 
     Args:
         ratios: Motion of the joint, 1, and of its followers, by name.
@@ -249,14 +249,14 @@ def hand(
         time_step: Of the engine [s].
         resistance: Declared friction that is overcome besides [N or N m].
         damping: The same of declared damping [N s/m or N m s/rad].
-        bearable: From `RunningFile.bearable`; no more is given [N or N m].
+        max_safe_force: From `RunningFile.max_safe_force`; no more is given [N or N m].
         patience: See `Push`.
     """
     inertia_of = {name: max(inertias[name], 1e-9) for name in ratios}
     inertia = sum(ratio**2 * inertia_of[name] for name, ratio in ratios.items())
     length = abs(way[1] - way[0])
     speed = max(speed, 0.5 * length)
-    force = min(max(force, inertia * speed / _START_SECONDS) + resistance + damping * speed, bearable)
+    force = min(max(force, inertia * speed / _START_SECONDS) + resistance + damping * speed, max_safe_force)
     whole = force * time_step / (speed * _START_SECONDS)  # grows to the full force in that time
     return Push(
         moved=tuple(ratios),

@@ -24,7 +24,7 @@ from benchmarks.fit.trees import (
     turns_of,
 )
 from kinematify.config import load_config
-from kinematify.joints.choice.judge import Judgement, agreed, lead_of
+from kinematify.joints.choice.judge import Posterior, agreed, lead_of
 from kinematify.joints.choice.opening import opening_odds
 
 if TYPE_CHECKING:
@@ -218,7 +218,7 @@ def judge_turning_left_out(examples: Sequence[Example]) -> dict[str, TurningRow]
         scorer = fit_turning(fitted, seeds=(0,), provenance={})
         judged = np.flatnonzero(folds == fold)
         taken[judged] = scorer.sums(turns_of([turning[k] for k in judged], scorer.measurements)) > 0.0
-    rounds = np.array([bool(example.goes_round) for example in turning])
+    rounds = np.array([bool(example.is_continuous) for example in turning])
     return {
         name: TurningRow(
             rounds=int(rounds[index].sum()),
@@ -249,10 +249,10 @@ def surprise_of(examples: Sequence[Example], likely: Sequence[FloatArray]) -> fl
     return float(np.mean([np.mean(values) for values in by_object.values()])) if by_object else 0.0
 
 
-def judgement_of(example: Example, probabilities: FloatArray) -> Judgement:
+def judgement_of(example: Example, probabilities: FloatArray) -> Posterior:
     """What the inference would make of these probabilities, shape (h,)."""
     by_cues = max(example.by_cues, 1)
-    return Judgement(
+    return Posterior(
         hypotheses=example.hypotheses,
         likely=probabilities,
         by_cues=by_cues,
