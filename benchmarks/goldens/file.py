@@ -43,7 +43,7 @@ class Goldens(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    format: Literal[1] = FORMAT
+    format: Literal[1] = 1
     sample: bool
     """A part of every subject."""
     platform: dict[str, str]

@@ -61,3 +61,10 @@ class KinematicTree:
         for parent, child in self.edges():
             depth[child] = depth[parent] + 1
         return tuple(depth)
+
+    def subtree(self, node: int) -> frozenset[int]:
+        """Return a node and all that it carries."""
+        found = [node]
+        for item in found:
+            found.extend(self.children[item])
+        return frozenset(found)

@@ -10,6 +10,7 @@ from kinematify.assembly.assemble import simplified
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
 from kinematify.contact.build import build_contact_graph, exact_gap
+from kinematify.contact.tree import KinematicTree
 from kinematify.geometry.part_stats import assembly_stats
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.fit import fit_edge, score_line
@@ -17,7 +18,7 @@ from kinematify.joints.choice.edges import edge_qualities
 from kinematify.joints.measure.pins import find_pins
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from kinematify.assembly.truth import GroundTruth
     from kinematify.config import Config
@@ -31,48 +32,6 @@ Pair = tuple[int, int]
 """Two bodies, the lower index first."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class DeclaredTree:
-    """Which body carries which, as the file says; body i is part i of the assembly (a `RootedTree`)."""
-
-    parents: tuple[int, ...]
-    """Parent of every body; -1 for the root."""
-
-    @property
-    def root(self) -> int:
-        """Index of the base body."""
-        return self.parents.index(-1)
-
-    @cached_property
-    def children(self) -> tuple[tuple[int, ...], ...]:
-        """Children of every body in ascending order."""
-        everything = range(len(self.parents))
-        return tuple(tuple(child for child in everything if self.parents[child] == body) for body in everything)
-
-    @cached_property
-    def depths(self) -> tuple[int, ...]:
-        """Joints between every body and the root."""
-        depths = [0] * len(self.parents)
-        for parent, child in self.edges():
-            depths[child] = depths[parent] + 1
-        return tuple(depths)
-
-    def edges(self) -> Iterator[Pair]:
-        """Yield (parent, child), parents before children."""
-        queue = [self.root]
-        for body in queue:
-            for child in self.children[body]:
-                yield body, child
-                queue.append(child)
-
-    def subtree(self, body: int) -> frozenset[int]:
-        """A body and everything that it carries."""
-        found = [body]
-        for item in found:
-            found.extend(self.children[item])
-        return frozenset(found)
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Bodies:
     """A model in its rest configuration; links that fixed joints hold together are one body."""
@@ -82,7 +41,8 @@ class Bodies:
     """The declared joints between the bodies, world frame at rest."""
     links: tuple[str, ...]
     """First link with geometry of every body."""
-    tree: DeclaredTree
+    tree: KinematicTree
+    """Which body carries which, as the file says; body i is part i of the assembly."""
     surfaces: Sequence[PartSurface]
     graph: ContactGraph
     bearings: Mapping[Pair, EdgeBearing]
@@ -138,7 +98,7 @@ def read_bodies(robot: Robot, config: Config, *, seed: int) -> Bodies | None:
         links=tuple(
             next(link for link in links if robot.link_by_name[link].has_geometry) for links in erased.truth.part_links
         ),
-        tree=DeclaredTree(parents=erased.truth.parents),
+        tree=KinematicTree(parents=erased.truth.parents),
         surfaces=surfaces,
         graph=graph,
         bearings=bearings,

@@ -21,12 +21,6 @@ if TYPE_CHECKING:
 
     Progress = Callable[[str, float], None]
 
-    Progress = Callable[[str, float], None]
-
-    Progress = Callable[[str, float], None]
-
-    Progress = Callable[[str, float], None]
-
 
 MOST_WORDS = 2000
 """Characters of a sentence; longer ones are documents."""
