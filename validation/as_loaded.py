@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from kinematify.validation.finding import CheckResult, Finding
 
 _FAMILY, _OPENS, _MOVES, _ENERGY = "KV8", "KV801", "KV804", "KV806"
+_TENSORS = ("KV204", "KV205")
+"""Checks of inertia tensors, for which engines refuse files."""
 _CONTACTS = ("KV802", "KV803", _MOVES)
 """Checks that tell of contacts."""
 
@@ -23,7 +26,8 @@ def as_loaded_words(checks: Sequence[CheckResult]) -> str:
     """Return how many joints move in the untouched file, by engine; empty if no engine was asked.
 
     A joint moves if a hand moves it over its free range and nothing throws it, e.g.
-    ``as loaded: MuJoCo 5 of 5 joints move, PyBullet 5 of 5``.
+    ``as loaded: MuJoCo 5 of 5 joints move, PyBullet 5 of 5``. Every engine has its defaults; a second line names the
+    flag of an engine with which fewer move.
     """
     opened = {check.engine: check for check in checks if check.check == _OPENS and check.engine is not None}
     moved = {check.engine: check for check in checks if check.check == _MOVES}
@@ -37,7 +41,44 @@ def as_loaded_words(checks: Sequence[CheckResult]) -> str:
             parts.append(f"{title} {found.measured['right']:.0f} of {found.measured['joints']:.0f}{joints}")
         elif not ENGINES[engine].runs and "read" in opening.measured:
             parts.append(f"{title} reads {opening.measured['read']:.0f} of {opening.measured['joints']:.0f}")
-    return f"as loaded: {', '.join(parts)}" if parts else ""
+    words = [f"as loaded: {', '.join(parts)}"] if parts else []
+    for name, found in moved.items():
+        entry = ENGINES[name or ""]
+        if entry.contact_flag and found.measured.get("with_contacts", math.inf) < found.measured.get("right", 0.0):
+            counted = f"{found.measured['with_contacts']:.0f} of {found.measured['joints']:.0f}"
+            words.append(f"with {entry.contact_flag}: {entry.title} {counted}")
+    return "\n".join(words)
+
+
+def with_refusals(checks: Sequence[CheckResult]) -> list[CheckResult]:
+    """Say of inertias for which an engine refuses the untouched file that it does; they are no mere notes then.
+
+    Args:
+        checks: All results.
+    """
+    refusals: dict[str, list[str]] = {}
+    for check in checks:
+        for finding in check.findings:
+            if check.check == _OPENS and finding.link is not None:
+                refusals.setdefault(finding.link, []).append(ENGINES[check.engine or ""].title)
+
+    def told(finding: Finding) -> Finding:
+        engines = refusals.get(finding.link or "", [])
+        if finding.check not in _TENSORS or not engines:
+            return finding
+        return replace(
+            finding,
+            severity=Severity.WARNING if finding.severity is Severity.NOTE else finding.severity,
+            message=f"{finding.message} {' and '.join(engines)} refuses the file for it.",
+        )
+
+    found = [check.with_findings(map(told, check.findings)) for check in checks]
+    return [
+        replace(check, status=Status.FAIL)
+        if check.check in _TENSORS and any(item.severity is not Severity.NOTE for item in check.findings)
+        else check
+        for check in found
+    ]
 
 
 def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> list[CheckResult]:

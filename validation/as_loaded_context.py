@@ -22,7 +22,16 @@ if TYPE_CHECKING:
     from kinematify.geometry.sweep import Sweeper
     from kinematify.robot.mechanism import Travel
     from kinematify.robot.robot import Joint, Robot
-    from kinematify.simulation.raw_model import Overlap, Push, Pushed, RawEngineModel, ReleaseRun, RestRun, RunningFile
+    from kinematify.simulation.raw_model import (
+        MotorFile,
+        Overlap,
+        Push,
+        Pushed,
+        RawEngineModel,
+        ReleaseRun,
+        RestRun,
+        RunningFile,
+    )
     from kinematify.validation.stage import StageRequest
 
 _LEAST_SIZE = 0.01
@@ -31,6 +40,8 @@ _SAME = 1e-6
 """Limits that differ by less are the same, beside their size [rad or m]."""
 _YIELDING = 0.25
 """A limit that does not give way for so long holds: the load is there after a few steps [s]."""
+_AHEAD = (0.0, 0.002, 0.005, 0.01, 0.02)
+"""Of a way: where what stopped a push is looked for, since engines stop bodies before they meet."""
 _FAR_BEYOND = 5.0
 """Where what presses against a limit is let off, in lengths that a limit may give way."""
 
@@ -63,6 +74,16 @@ class AsLoadedContext:
     def title(self) -> str:
         """Of the engine."""
         return ENGINES[self.engine].title
+
+    @property
+    def flag(self) -> str | None:
+        """Flag without which links of the file pass through each other; None where they collide by default."""
+        return ENGINES[self.engine].contact_flag
+
+    @property
+    def how(self) -> str:
+        """The engine, with its flag where contacts need one."""
+        return f"{self.title} with {self.flag}" if self.flag else self.title
 
     @property
     def settings(self) -> AsLoadedSettings:
@@ -209,6 +230,36 @@ class AsLoadedContext:
             for end in self.free(travel) or (travel.lower, travel.upper)
             if abs(end - travel.rest) > self._nothing(travel)
         )
+
+    def moves_plainly(self, run: VelocityProbe) -> bool:
+        """Whether a joint that a push did not bring to its end gets there as the file is loaded without flags.
+
+        By the push without contacts, or by the joint's own motor: engines answer pushes of light parts wrongly.
+        """
+        if self.flag is None:
+            return False
+        if run.without_contacts is not None and self.arrives(run, run.without_contacts):
+            return True
+        target = run.push.target
+        driven = cast("MotorFile", self.loaded).motor(run.travel.joint, run.values, target, self.settings.seconds)
+        return self.arrives(replace(run, end=target), driven)
+
+    def stopped_by(self, run: VelocityProbe) -> tuple[Overlap, float] | None:
+        """Return what is in each other where a push ended, and at which value of the joint [rad or m].
+
+        Contacts give way and throw back, so the value is looked at again: it is that where the push ended, or the next
+        one on its way where two links that the joint moves against each other overlap; None without any.
+        """
+        travel, stop = run.travel, run.pushed.farthest
+        for step in _AHEAD:
+            value = stop + step * (run.end - travel.rest)
+            values = dict(run.values)
+            for name, ratio in self.ratios(travel).items():
+                values[name] = run.values[name] + ratio * (value - travel.rest)
+            found = self.between(travel, self.loaded.overlaps(values))
+            if found is not None:
+                return found, value
+        return None
 
     @cached_property
     def inertias(self) -> dict[str, float]:

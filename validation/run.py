@@ -18,13 +18,14 @@ from kinematify.errors import DescriptionError
 from kinematify.manipulation.request import PriorFinding
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine
-from kinematify.validation.as_loaded import across_engines, confirm_on_raw_model
+from kinematify.validation.as_loaded import across_engines, confirm_on_raw_model, with_refusals
 from kinematify.validation.causes import with_causes
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.inferred import inferred_beside, with_next_best
 from kinematify.validation.isolation import load_imports, run_stages
+from kinematify.validation.lines import with_lines
 from kinematify.validation.opinions import evidence_before_blame
 from kinematify.validation.plan import (
     agreement_stage,
@@ -256,9 +257,11 @@ class _Run:
             self._explain_rest(Status.SKIPPED, "the run was interrupted")
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
         told = [self._result(key) for key in keys(list(self.checks.values()))]
-        results = evidence_before_blame(confirm_on_raw_model(across_engines(told, self.engines)))
-        checks = suppress([self._with_command(result, settings) for result in results], suppressions)
         robot = _bodies(self.path)
+        results = evidence_before_blame(
+            confirm_on_raw_model(across_engines(with_refusals(with_lines(told, robot)), self.engines))
+        )
+        checks = suppress([self._with_command(result, settings) for result in results], suppressions)
         checks = with_causes(checks, robot)
         facts = environment(
             settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted, engines=self.engines

@@ -85,7 +85,7 @@ def _short(report: ValidationReport) -> list[str]:
     Where they fill more than a screen, warnings are told without; what is beyond the longest report is counted.
     """
     told = [item for item in report.told if item.finding.suppressed is None]
-    shown = blocks(item for item in told if item.finding.severity is not Severity.NOTE)
+    shown = blocks((item for item in told if item.finding.severity is not Severity.NOTE), alike=False)
     head = [_first_lines(report), _reasons(report, Status.BLOCKED)]
     foot = [_next_best(report), _notes(told), _more(report)]
     texts = [_short_text(block) for block in shown]
@@ -132,7 +132,7 @@ def describe_all(outcomes: Sequence[Outcome]) -> str:
 def describe_briefly(report: ValidationReport) -> str:
     """The verdict of one model, every error in full, and the warnings by what they are about, a line each."""
     told = [item for item in report.told if item.finding.suppressed is None]
-    errors = blocks(item for item in told if item.finding.severity is Severity.ERROR)
+    errors = blocks((item for item in told if item.finding.severity is Severity.ERROR), alike=False)
     warnings: dict[tuple[str, str | None], list[FindingGroup]] = {}
     for item in told:
         if item.finding.severity is Severity.WARNING:
@@ -238,8 +238,10 @@ def _brief(outcome: Outcome) -> str:
 
 
 def _line(block: FindingBlock, indent: int = 2) -> str:
-    about = where(block.findings[0])
-    message = f"{about}: {block.message}" if about else block.message
+    first = block.findings[0]
+    names = {first.joint, first.link, *(first.pair or ())} - {None}
+    about = "" if all(str(name) in first.message for name in names) else where(first)
+    message = " ".join(text for text in (f"{about}: {block.message}" if about else block.message, block.also) if text)
     return _wrapped(f"{_heading(block)}{_times(len(block.findings))}: {printable(message)}", indent, indent + 2)
 
 

@@ -192,6 +192,11 @@ def judged_shapes(link: Link) -> tuple[Shape, ...]:
     return link.collisions or link.visuals
 
 
+def colliding_shapes(link: Link) -> tuple[Shape, ...]:
+    """Collision geometry alone: what engines see of a link."""
+    return link.collisions
+
+
 def visible_shapes(link: Link) -> tuple[Shape, ...]:
     """Visual geometry; frames, rotors and sensors that only collide are not seen."""
     return link.visuals

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import re
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import unquote, urlparse
@@ -16,7 +19,10 @@ MESH_SUFFIXES = (*GLTF_SUFFIXES, ".obj", ".stl", ".ply", ".off", ".3mf", ".dae")
 """Mesh formats that are read."""
 CAD_SUFFIXES = (".step", ".stp")
 """Formats whose surfaces are turned into triangles; an assembly may be one, the mesh of a link not."""
-_SHOWN = 6
+_SHOWN = 3
+_MANIFEST_BYTES = 100_000
+_NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
+"""Of a package in its `package.xml`."""
 
 
 def find_mesh(filename: str, folder: Path, package_dirs: Sequence[Path], where: str) -> Path:
@@ -34,8 +40,10 @@ def find_mesh(filename: str, folder: Path, package_dirs: Sequence[Path], where: 
     candidates = mesh_candidates(filename, folder, package_dirs, where)
     found = next((path for path in candidates if _is_file(path)), None)
     if found is None:
+        places = ", ".join(map(str, candidates[:_SHOWN]))
+        more = f" and {len(candidates) - _SHOWN} more places" if len(candidates) > _SHOWN else ""
         raise DescriptionError(
-            f"The mesh {filename!r} of {where} is not there: looked at {', '.join(map(str, candidates[:_SHOWN]))}. "
+            f"The mesh {filename!r} of {where} is not there: looked at {places}{more}. "
             "Put the file there, or name the folder that holds the package with --package-dir."
         )
     return found
@@ -61,19 +69,43 @@ def mesh_candidates(filename: str, folder: Path, package_dirs: Sequence[Path], w
 
 
 def _package_candidates(package: str, inside: str, folder: Path, package_dirs: Sequence[Path]) -> list[Path]:
-    """``--package-dir`` may be the package or its parent; without it, a folder above the URDF is the package."""
+    """What is given comes first; then the folders above, by the name in their manifest, then by their own; then ROS.
+
+    ``--package-dir`` may be the package or its parent.
+    """
+    above = (folder, *folder.parents)
     candidates = []
     for given in package_dirs:
         candidates.append(given / package / inside)
-        if given.name == package:
+        if package in (given.name, _declared_name(given)):
             candidates.append(given / inside)
-    for above in (folder, *folder.parents):
-        if above.name == package:
-            candidates.append(above / inside)
-        candidates.append(above / package / inside)
+    candidates += [place / inside for place in above if _declared_name(place) == package]
+    for place in above:
+        if place.name == package:
+            candidates.append(place / inside)
+        candidates.append(place / package / inside)
+    candidates += [place / inside for place in _ros_packages(package)]
     # Single exported robots keep the package's tree but not its name.
-    candidates += [place / inside for place in (*package_dirs, folder)]
-    return candidates
+    return candidates + [place / inside for place in (*package_dirs, folder)]
+
+
+def _ros_packages(package: str) -> list[Path]:
+    """Places of a package in the workspaces that the environment names."""
+    sources = [Path(place) for place in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if place]
+    installed = [Path(place) for place in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if place]
+    named = [place for place in sources if package in (place.name, _declared_name(place))]
+    return [*named, *(place / package for place in sources), *(place / "share" / package for place in installed)]
+
+
+@lru_cache(maxsize=1024)
+def _declared_name(folder: Path) -> str | None:
+    """Name of a package by its manifest; None where a folder has none."""
+    try:
+        with (folder / "package.xml").open("rb") as file:
+            found = _NAME.search(file.read(_MANIFEST_BYTES))
+    except OSError:
+        return None
+    return None if found is None else found[1].decode("utf-8", "replace")
 
 
 def _is_file(path: Path) -> bool:

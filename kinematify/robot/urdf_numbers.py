@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 
+_SELF_COLLISION = ("selfCollide", "self_collide")
+"""Elements by which Gazebo's extensions say whether a link collides with its own model."""
+
+
 def vector(element: _Element, attribute: str, default: Sequence[float] | None, where: str) -> FloatArray:
     """Return three finite numbers of an attribute, shape (3,).
 
@@ -184,3 +188,21 @@ class UrdfDocument:
 def _end(joint: _Element, tag: str) -> str:
     element = joint.find(tag)
     return "" if element is None else element.get("link") or ""
+
+
+def passing_links(robot: _Element) -> frozenset[str]:
+    """Return the links that the file declares not to collide with others of the model.
+
+    Gazebo's ``<selfCollide>`` says so, in a ``<gazebo reference="LINK">`` or inside the link; in a ``<gazebo>`` of the
+    model without a reference, for all links that do not say otherwise.
+    """
+    links = [name for link in robot.findall("link") if (name := link.get("name"))]
+    said: dict[str | None, bool] = {}
+    for gazebo in robot.iter("gazebo"):
+        parent = gazebo.getparent()
+        inside = parent is not None and parent.tag == "link"
+        name = parent.get("name") if inside and parent is not None else gazebo.get("reference")
+        for tag in _SELF_COLLISION:
+            for element in gazebo.iter(tag):
+                said[name] = (element.text or "").strip().lower() not in ("false", "0")
+    return frozenset(name for name in links if not said.get(name, said.get(None, True)))

@@ -44,6 +44,8 @@ class EngineEntry:
     """False: its integrator gains energy with its usual step, so energy is looked at with smaller ones."""
     stops_late: bool = False
     """True: a joint is stopped one step after it has passed its limit, and left where it stands then."""
+    contact_flag: str | None = None
+    """Of its loader: without it links of one file pass through each other; None: they collide by default."""
     prints_when_loaded: bool = False
     """True: it may be loaded only where what is printed goes to a file."""
 
@@ -63,6 +65,7 @@ _ENTRIES = (
         inflation=1e-3,
         keeps_energy=False,
         stops_late=True,
+        contact_flag="URDF_USE_SELF_COLLISION",
         prints_when_loaded=True,
     ),
     EngineEntry(name="drake", title="Drake", package="drake", extra="drake", family="KV9"),

@@ -2,26 +2,35 @@
 
 from __future__ import annotations
 
+import ctypes
+import os
+import re
+import tempfile
 import weakref
+from contextlib import suppress
+from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pybullet as bullet
 
+from kinematify.robot.urdf_numbers import passing_links
+from kinematify.robot.urdf_text import parse_description
 from kinematify.simulation.configurations import GRAVITY
+from kinematify.simulation.pybullet_world import text_of
 from kinematify.simulation.raw_model import (
+    MotorFile,
     Pushed,
     PushProgress,
     ReleaseRun,
     Reproductions,
     RestRun,
-    RunningFile,
     Unloadable,
     deepest_first,
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
@@ -36,7 +45,8 @@ def _without_contacts(lines: str) -> str:
 _LOAD = """import pybullet as p
 p.connect(p.DIRECT); p.setGravity(0, 0, -9.81); rest = {values}; push = 0.0
 body = p.loadURDF({path!r}, useFixedBase=True, flags=p.URDF_USE_SELF_COLLISION); \
-[p.resetJointState(body, k, q) for k, q in rest.items()]
+[p.resetJointState(body, k, q) for k, q in rest.items()]; \
+[p.setCollisionFilterPair(body, body, a, b, 0) for a, b in {silent}]
 """
 _OPEN = """import pybullet as p
 p.connect(p.DIRECT); body = p.loadURDF({path!r}, useFixedBase=True)
@@ -87,6 +97,10 @@ seen = [energy()] + [energy() for k in range({steps}) if not p.stepSimulation() 
 print("\\n", max(seen) - seen[0])
 """
 )
+_MARK = re.compile(r"b3(?:Warning|Error)\[[^\]]*\]:")
+"""Before each message that PyBullet prints."""
+_NO_FAULT = "No inertial data"
+"""Beginning of what it prints of many files that it loads."""
 _LOOK_STEPS = 8
 """Between two looks at the energy."""
 _TIME_STEP = 1.0 / 240.0
@@ -96,8 +110,13 @@ _MOTOR = 240.0
 """Of a joint that was pushed, afterwards [N or N m]: about what motors have when a file is loaded."""
 
 
-class PybulletFile(RunningFile):
-    """See `RunningFile`; contacts of links are those of `URDF_USE_SELF_COLLISION`."""
+class PybulletFile(MotorFile):
+    """See `kinematify.simulation.raw_model.RunningFile`.
+
+    Contacts of links are those of `URDF_USE_SELF_COLLISION`, but for links that fixed joints alone hold together, for
+    those of neighbours (as `URDF_MERGE_FIXED_LINKS` has it), and for links that the file declares not to collide with
+    their own model.
+    """
 
     code = Reproductions(
         joints=_JOINTS,
@@ -115,15 +134,17 @@ class PybulletFile(RunningFile):
             Unloadable: PyBullet does not open it.
         """
         del package_dirs
-        self._path, self._file, self._root, self.time_step = urdf, {"path": str(urdf)}, root, _TIME_STEP
-        world = _LoadedWorld(urdf, contacts=True)
+        self._path, self._root, self.time_step = urdf, root, _TIME_STEP
+        self._passing = passing_links(parse_description(urdf))
+        world = self._opened(contacts=True, seen=True)
         self._worlds = {True: world}
+        self._file = {"path": str(urdf), "silent": world.ignored_pairs}
         infos = [world.do(bullet.getJointInfo, k) for k in range(world.do(bullet.getNumJoints))]
-        self._links = {-1: root, **{k: info[12].decode() for k, info in enumerate(infos)}}
-        self._index = {info[1].decode(): k for k, info in enumerate(infos) if info[2] != bullet.JOINT_FIXED}
+        self._links = {-1: root, **{k: text_of(info[12]) for k, info in enumerate(infos)}}
+        self._index = {text_of(info[1]): k for k, info in enumerate(infos) if info[2] != bullet.JOINT_FIXED}
         self.joints = tuple(self._index)
         self.limits = {
-            info[1].decode(): (info[8], info[9]) if info[8] <= info[9] else (-np.inf, np.inf)
+            text_of(info[1]): (info[8], info[9]) if info[8] <= info[9] else (-np.inf, np.inf)
             for info in infos
             if info[2] != bullet.JOINT_FIXED
         }
@@ -134,11 +155,14 @@ class PybulletFile(RunningFile):
         """A world as it was after loading, with the joints at `values`; its motors too where that is asked for."""
         world = self._worlds.get(contacts)
         if world is None or (as_loaded and world.pushed):
-            world = self._worlds[contacts] = _LoadedWorld(self._path, contacts=contacts, seen=False)
+            world = self._worlds[contacts] = self._opened(contacts=contacts, seen=False)
         bullet.restoreState(world.state, physicsClientId=world.client)
         for name, k in self._index.items():
             world.do(bullet.resetJointState, k, values[name])
         return world
+
+    def _opened(self, *, contacts: bool, seen: bool) -> _LoadedWorld:
+        return _LoadedWorld(self._path, contacts=contacts, seen=seen, root=self._root, passing=self._passing)
 
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
         """See `RunningFile`."""
@@ -267,6 +291,21 @@ class PybulletFile(RunningFile):
         bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=world.client)
         return Pushed(farthest=progress.value, steps=step, overlaps=found)
 
+    def motor(self, joint: str, values: Mapping[str, float], target: float, seconds: float) -> float:
+        """See `MotorFile`; the motors of the other joints hold them, gravity is off."""
+        world, index = self._world(values, contacts=False), self._index[joint]
+        world.pushed = True
+        bullet.setGravity(0.0, 0.0, 0.0, physicsClientId=world.client)
+        for name, k in self._index.items():
+            wanted = target if name == joint else values[name]
+            world.do(bullet.setJointMotorControl2, k, bullet.POSITION_CONTROL, targetPosition=wanted)
+        sign, farthest = np.sign(target - values[joint]), values[joint]
+        for _ in range(round(seconds / self.time_step)):
+            bullet.stepSimulation(physicsClientId=world.client)
+            farthest = sign * max(sign * farthest, sign * world.do(bullet.getJointState, index)[0])
+        del self._worlds[False]  # its motors are others than those of the file as it is loaded
+        return float(sign * min(sign * farthest, sign * target))
+
     def _in_code(self, values: Mapping[str, float]) -> object:
         return {k: float(values[name]) for name, k in self._index.items()}
 
@@ -285,11 +324,40 @@ def _chain(above: Mapping[int, int], link: int) -> list[int]:
     return [] if link == -1 else [link, *_chain(above, above[link])]
 
 
+def _printed(load: Callable[[], object]) -> str:
+    """What PyBullet prints of a file while it refuses it; its exception does not say why."""
+    library, streams = ctypes.CDLL(None), (1, 2)
+    kept = [os.dup(stream) for stream in streams]
+    with tempfile.TemporaryFile() as file:
+        try:
+            for stream in streams:
+                os.dup2(file.fileno(), stream)
+            with suppress(bullet.error):
+                load()
+            library.fflush(None)
+        finally:
+            for stream, copy in zip(streams, kept, strict=True):
+                os.dup2(copy, stream)
+                os.close(copy)
+        file.seek(0)
+        said = _MARK.split(file.read().decode("utf-8", "replace"))
+    words = [" ".join(item.split()) for item in said]
+    return "; ".join(item for item in dict.fromkeys(words) if item and not item.startswith(_NO_FAULT))
+
+
 class _LoadedWorld:
     """A world with one file in it."""
 
-    def __init__(self, urdf: Path, *, contacts: bool, seen: bool = True) -> None:
-        """Load a file; `seen`: with its visual geometry, which takes nearly all of the time and moves nothing."""
+    def __init__(self, urdf: Path, *, contacts: bool, seen: bool, root: str, passing: frozenset[str]) -> None:
+        """Load a file.
+
+        Args:
+            urdf: The file.
+            contacts: Links collide with each other.
+            seen: With its visual geometry, which takes nearly all of the time and moves nothing.
+            root: Name of the first link.
+            passing: Links that collide with no other one.
+        """
         self.client, self.pushed = bullet.connect(bullet.DIRECT), False
         weakref.finalize(self, bullet.disconnect, physicsClientId=self.client)
         bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self.client)
@@ -298,8 +366,29 @@ class _LoadedWorld:
         try:
             self.body = bullet.loadURDF(str(urdf), useFixedBase=True, flags=flags, physicsClientId=self.client)
         except bullet.error as error:
-            raise Unloadable(str(error), _OPEN.format(path=str(urdf))) from error
+            printed = _printed(lambda: bullet.loadURDF(str(urdf), flags=flags, physicsClientId=self.client))
+            words = f"{error} It prints: {printed}" if printed else str(error)
+            raise Unloadable(words, _OPEN.format(path=str(urdf))) from error
+        self.ignored_pairs = self._silent_pairs(root, passing) if contacts else []
+        """Indices of two links each that do not collide."""
+        for first, second in self.ignored_pairs:
+            bullet.setCollisionFilterPair(self.body, self.body, first, second, 0, physicsClientId=self.client)
         self.state = bullet.saveState(physicsClientId=self.client)
+
+    def _silent_pairs(self, root: str, passing: frozenset[str]) -> list[tuple[int, int]]:
+        """Pairs that a fixed joint connects, that only one moving joint parts, or that pass by declaration."""
+        infos = [self.do(bullet.getJointInfo, k) for k in range(self.do(bullet.getNumJoints))]
+        names = {-1: root, **{k: text_of(info[12]) for k, info in enumerate(infos)}}
+        top = {-1: -1}
+        for k, info in enumerate(infos):  # parents come first
+            top[k] = top[info[16]] if info[2] == bullet.JOINT_FIXED else k
+        above = {k: top[infos[k][16]] if k >= 0 else None for k in set(top.values())}
+        solid = [k for k in top if self.do(bullet.getCollisionShapeData, k)]
+        return [
+            (a, b)
+            for a, b in combinations(solid, 2)
+            if top[a] == top[b] or top[a] == above[top[b]] or top[b] == above[top[a]] or {names[a], names[b]} & passing
+        ]
 
     def do(self, function: Any, *arguments: Any, **named: Any) -> Any:
         """Call a function of PyBullet for the body."""

@@ -225,6 +225,14 @@ class RunningFile(RawEngineModel):
         return [self._index_of(name) for name in push.moved]
 
 
+class MotorFile(RunningFile):
+    """A file in an engine that lets its links collide only where a flag asks for it, and gives joints motors."""
+
+    @abstractmethod
+    def motor(self, joint: str, values: Mapping[str, float], target: float, seconds: float) -> float:
+        """Drive a joint by its motor from `values` without flags; the value that is farthest on its way [rad or m]."""
+
+
 def velocity_probe(
     ratios: Mapping[str, float],
     way: tuple[float, float],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from pathlib import Path
 
 import numpy as np
@@ -155,6 +156,36 @@ def test_collision_geometry_stands_in_for_a_missing_visual(tmp_path: Path) -> No
     )
     assert [len(item.collisions) for item in robot.links] == [1, 0], "what is not shown is not read"
     assert [len(item.meshes) for item in robot.links] == [1, 1]
+
+
+@pytest.mark.parametrize("how", ["manifest above", "manifest of package-dir", "ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"])
+def test_a_package_is_found_by_its_manifest_and_by_the_environment(
+    tmp_path: Path, how: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A package that was cloned into a folder of another name."""
+    package = tmp_path / "deep" / ("share/my_robot" if how == "AMENT_PREFIX_PATH" else "clone-of-it")
+    (package / "meshes").mkdir(parents=True)
+    (package / "urdf").mkdir()
+    (package / "package.xml").write_text("<package format='2'>\n  <name>my_robot</name>\n</package>")
+    trimesh.creation.box().export(package / "meshes" / "m.stl")
+    inside = package / "urdf" if how == "manifest above" else tmp_path
+    if how == "ROS_PACKAGE_PATH":
+        monkeypatch.setenv(how, f"{tmp_path}/nowhere{os.pathsep}{package}")
+    elif how == "AMENT_PREFIX_PATH":
+        monkeypatch.setenv(how, str(tmp_path / "deep"))
+    path = urdf(inside, link("a", visual('<mesh filename="package://my_robot/meshes/m.stl"/>')))
+    dirs = [package] if how == "manifest of package-dir" else []
+    assert read_robot(path, package_dirs=dirs).links[0].has_geometry
+
+
+def test_a_manifest_goes_before_the_name_of_a_folder(tmp_path: Path) -> None:
+    package = tmp_path / "my_robot" / "clone"
+    package.mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>my_robot</name></package>")
+    trimesh.creation.box().export(package / "m.stl")
+    (tmp_path / "my_robot" / "m.stl").write_text("another mesh")
+    path = urdf(package, link("a", visual('<mesh filename="package://my_robot/m.stl"/>')))
+    assert read_robot(path).links[0].has_geometry
 
 
 @pytest.mark.parametrize("how", ["beside", "above", "package-dir parent", "package-dir itself"])

@@ -15,7 +15,7 @@ import pytest
 
 from kinematify.config.validation import load_settings
 from kinematify.simulation.engines import DEFAULT_ENGINES
-from kinematify.validation.as_loaded import across_engines, as_loaded_words, confirm_on_raw_model
+from kinematify.validation.as_loaded import across_engines, as_loaded_words, confirm_on_raw_model, with_refusals
 from kinematify.validation.as_loaded_context import AsLoadedContext
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
@@ -53,6 +53,22 @@ def collision(model: Model, name: str, *boxes: Box) -> Model:
     return model.with_part(name, collision=(*part.boxes, *boxes))
 
 
+def jamming() -> Model:
+    """A cabinet whose drawer has collision geometry in the way of the door."""
+    return collision(cabinet(), "drawer", Box(size=(0.02, 0.1, 0.1), at=(0.24, 0.25, 0.0)))
+
+
+def counts(result: FindingGroup) -> dict[str, float]:
+    """How many joints move in the file as it is loaded without flags."""
+    measured = result.results["KV804"].measured
+    return {name: measured[name] for name in ("joints", "right")}
+
+
+def moved_with_contacts(result: FindingGroup) -> float:
+    measured = result.results["KV804"].measured
+    return measured.get("with_contacts", measured["right"])
+
+
 def printed(code: str | None, line: int = -1) -> list[float]:
     """The numbers that the code of a report prints, run as it was copied."""
     assert code is not None
@@ -64,7 +80,7 @@ def printed(code: str | None, line: int = -1) -> list[float]:
 def test_a_good_cabinet_passes(tmp_path: Path, engine: str) -> None:
     result = told(cabinet(), tmp_path, engine)
     assert {check: r.findings for check, r in result.results.items() if r.status is not Status.PASS} == {}
-    assert result.results["KV804"].measured == {"joints": 2.0, "right": 2.0}
+    assert counts(result) == {"joints": 2.0, "right": 2.0}
 
 
 def test_pinocchio_reads_joints_limits_and_overlaps(tmp_path: Path) -> None:
@@ -109,14 +125,62 @@ def test_the_code_of_a_run_at_rest_repeats_it(tmp_path: Path, engine: str) -> No
 
 @each_engine
 def test_siblings_that_jam_are_named_in_both_engines(tmp_path: Path, engine: str) -> None:
-    before_the_door = Box(size=(0.02, 0.1, 0.1), at=(0.24, 0.25, 0.0))
-    result = told(collision(cabinet(), "drawer", before_the_door), tmp_path, engine)
+    result = told(jamming(), tmp_path, engine)
     (finding,) = (item for item in result.results["KV804"].findings if item.joint == "door_joint")
     assert set(finding.pair or ()) == {"drawer", "door"}
     (reached,) = printed(finding.reproduction)
     assert reached == pytest.approx(finding.value, abs=0.1)
     assert reached < 0.95 * 1.5
-    assert result.results["KV804"].measured["right"] == 1.0
+    assert moved_with_contacts(result) == 1.0
+
+
+def test_what_only_the_flag_for_contacts_shows_is_a_warning_and_plain_pybullet_moves_all(tmp_path: Path) -> None:
+    result = told(jamming(), tmp_path, "pybullet")
+    (finding,) = result.results["KV804"].findings
+    assert finding.severity is Severity.WARNING
+    assert "PyBullet with URDF_USE_SELF_COLLISION" in finding.message
+    assert result.results["KV804"].measured == {"joints": 2.0, "right": 2.0, "with_contacts": 1.0}
+    words = as_loaded_words(list(result.results.values())).splitlines()
+    assert words == [
+        "as loaded: PyBullet 2 of 2 joints move",
+        "with URDF_USE_SELF_COLLISION: PyBullet 1 of 2",
+    ]
+
+
+def test_a_pair_that_stops_a_joint_is_in_contact_at_the_value_that_is_named(tmp_path: Path) -> None:
+    context = AsLoadedContext(request=request_of(jamming(), tmp_path), engine="pybullet")
+    told_ = tell(partial(as_loaded.run, engine="pybullet"), context.request)
+    (finding,) = told_.results["KV804"].findings
+    assert finding.q is not None
+    overlaps = context.loaded.overlaps({**context.values, **finding.q})
+    assert finding.pair in [item.links for item in overlaps]
+
+
+def test_links_across_a_fixed_joint_do_not_jam_in_pybullet(tmp_path: Path) -> None:
+    """Cylinders of a leg are 2 mm in each other where a fixed link is between them and their joint."""
+    flange = Part(name="flange", parent="body", boxes=(), at=(0.0, 0.0, 0.1), mass=0.1)
+    body = Part(name="body", boxes=(Box(size=(0.1, 0.1, 0.104), at=(0.0, 0.0, 0.05)),))
+    thigh = Part(
+        name="thigh", parent="flange", kind="revolute", boxes=(Box(size=(0.1, 0.1, 0.2), at=(0.0, 0.0, 0.1)),),
+        axis=(0.0, 0.0, 1.0), limits=(-1.0, 1.0),
+    )  # fmt: skip
+    result = told(Model(parts=(body, flange, thigh)), tmp_path, "pybullet")
+    assert [check for check in ("KV802", "KV803", "KV804") if result.results[check].findings] == []
+    assert result.results["KV804"].measured == {"joints": 1.0, "right": 1.0, "with_contacts": 1.0}
+
+
+@pytest.mark.parametrize(
+    "declared",
+    [
+        '<gazebo reference="drawer"><selfCollide>false</selfCollide></gazebo>',
+        "<gazebo><self_collide>0</self_collide></gazebo>",
+    ],
+)
+def test_a_link_that_is_declared_not_to_collide_with_its_model_does_not(tmp_path: Path, declared: str) -> None:
+    request = request_of(jamming(), tmp_path)
+    request.urdf.write_text(request.urdf.read_text().replace("</robot>", f"{declared}</robot>"))
+    result = tell(partial(as_loaded.run, engine="pybullet"), request)
+    assert result.results["KV804"].findings == ()
 
 
 FOLLOWS = '<mimic joint="door_joint" multiplier="0.2"/>'
@@ -126,7 +190,7 @@ FOLLOWS = '<mimic joint="door_joint" multiplier="0.2"/>'
 def test_what_follows_a_joint_is_pushed_with_it(tmp_path: Path, engine: str) -> None:
     result = told(cabinet().with_part("drawer", extra=FOLLOWS), tmp_path, engine)
     assert {check: r.findings for check, r in result.results.items() if r.status is not Status.PASS} == {}
-    assert result.results["KV804"].measured == {"joints": 1.0, "right": 1.0}
+    assert counts(result) == {"joints": 1.0, "right": 1.0}
 
 
 @each_engine
@@ -135,6 +199,9 @@ def test_a_joint_jams_where_its_follower_does(tmp_path: Path, engine: str) -> No
     model = Model(parts=(*cabinet().with_part("drawer", extra=FOLLOWS).parts, post))
     unseen = Box(size=(0.02, 0.2, 0.4), at=(0.35, -0.155, 0.0))
     result = told(collision(model, "post", unseen), tmp_path, engine)
+    if engine == "pybullet":
+        assert result.results["KV804"].findings == (), "a fixed joint makes the post a neighbour of the drawer"
+        return
     (finding,) = result.results["KV804"].findings
     assert finding.joint == "door_joint"
     assert "drawer" in (finding.pair or ()), "MuJoCo takes the post for a piece of the body"
@@ -145,7 +212,7 @@ def test_a_joint_jams_where_its_follower_does(tmp_path: Path, engine: str) -> No
 @each_engine
 def test_a_button_of_a_millimetre_is_pushed_too(tmp_path: Path, engine: str) -> None:
     result = told(cabinet().with_part("drawer", limits=(0.0, 0.001)), tmp_path, engine)
-    assert result.results["KV804"].measured == {"joints": 2.0, "right": 2.0}
+    assert counts(result) == {"joints": 2.0, "right": 2.0}
 
 
 def test_a_drawer_that_is_thrown_out_is_seen_by_the_code_of_the_report(tmp_path: Path) -> None:
@@ -343,3 +410,44 @@ def test_the_verdict_says_what_moves_as_loaded(tmp_path: Path) -> None:
     assert report.verdict == "pass"
     assert report.as_loaded == "as loaded: MuJoCo 2 of 2 joints move, PyBullet 2 of 2, Pinocchio reads 2 of 2"
     assert report.as_json()["as_loaded"] == report.as_loaded
+
+
+def test_what_pybullet_prints_of_a_file_that_it_refuses_is_quoted(tmp_path: Path) -> None:
+    request = request_of(cabinet(), tmp_path)
+    request.urdf.write_text(
+        request.urdf.read_text().replace('<box size="0.02 0.3 0.4"/>', '<mesh filename="door.glb"/>')
+    )
+    (tmp_path / "door.glb").write_bytes(b"glTF")
+    (finding,) = tell(partial(as_loaded.run, engine="pybullet"), request).results["KV801"].findings
+    assert "invalid mesh filename extension '.glb'" in finding.message
+    assert "OBJ" in finding.remedy
+
+
+def test_only_an_inertia_for_which_an_engine_refuses_the_file_is_said_to_be_refused() -> None:
+    def noted(check: str, link: str, severity: Severity, engine: str | None = None) -> CheckResult:
+        finding = Finding(
+            check=check, severity=severity, blame=Blame.PHYSICS, message="It is off.", remedy="", link=link
+        )
+        return CheckResult(check=check, engine=engine, status=Status.PASS, findings=(finding,))
+
+    refused = noted("KV801", "camera", Severity.ERROR, "mujoco")
+    camera, foot, _ = with_refusals(
+        [noted("KV205", "camera", Severity.NOTE), noted("KV204", "foot", Severity.NOTE), refused]
+    )
+    assert (camera.status, camera.findings[0].severity) == (Status.FAIL, Severity.WARNING)
+    assert camera.findings[0].message == "It is off. MuJoCo refuses the file for it."
+    assert (foot.status, foot.findings[0].severity) == (Status.PASS, Severity.NOTE)
+
+
+def test_light_parts_that_pybullet_answers_wrongly_move_by_their_motor(tmp_path: Path) -> None:
+    """Motors of 0.1 kg with the inertia of a man: pushes are limited there, and nothing is wrong with the joint."""
+    rotor = Part(
+        name="rotor", parent="base", kind="revolute", boxes=(Box(size=(0.04, 0.04, 0.02)),), at=(0.0, 0.0, 0.1),
+        axis=(0.0, 0.0, 1.0), limits=(-3.14, 3.14), mass=0.1, inertia=(0.05, 0.05, 0.05),
+    )  # fmt: skip
+    arm = replace(
+        rotor, name="arm", parent="rotor", at=(0.0, 0.0, 0.1), axis=(0.0, 1.0, 0.0), inertia=(1e-7, 1e-7, 1e-7)
+    )
+    base = Part(name="base", boxes=(Box(size=(0.1, 0.1, 0.1)),))
+    measured = told(Model(parts=(base, rotor, arm)), tmp_path, "pybullet").results["KV804"].measured
+    assert measured["right"] == measured["joints"] == 2.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -309,3 +310,11 @@ def test_findings_reach_the_report(tmp_path: Path) -> None:
     assert (finding.check, finding.joint, dict(finding.q or {})) == ("KV346", "drawer_joint", {"drawer_joint": 0.0})
     (summary,) = [joint for joint in report.joints if joint.joint == "drawer_joint"]
     assert summary.kind == "prismatic"
+
+
+def test_a_remedy_names_the_axis_in_the_frame_of_its_joint(tmp_path: Path) -> None:
+    finding = findings(judged(turned(drawer(), "drawer", 20.0, (0.2, 0.0, 1.0)), tmp_path))[0]
+    written = re.search(r'<axis xyz="([^"]+)"/> in the joint drawer_joint', finding.remedy)
+    assert written is not None
+    axis = np.array(written[1].split(), dtype=float)
+    assert abs(axis @ joint_of(drawer(), "drawer").axis) > np.cos(np.radians(2.0))

@@ -134,6 +134,15 @@ def test_a_flat_collision_mesh_blames_physics(cupboard: Path) -> None:
     ]
 
 
+def test_a_sheet_that_is_seen_from_both_sides_is_not_inside_out(cupboard: Path) -> None:
+    mesh = trimesh.creation.icosphere()
+    mesh.invert()
+    twins = np.concatenate([mesh.faces, mesh.faces[:, ::-1]])
+    trimesh.Trimesh(mesh.vertices, twins, process=False).export(cupboard.parent / "body.obj")
+    _, results = check_model(cupboard)
+    assert [f.check for f in bad(results) if f.check == "KV156"] == []
+
+
 def test_a_collision_mesh_inside_out_is_found(cupboard: Path) -> None:
     mesh = trimesh.creation.icosphere()
     mesh.invert()

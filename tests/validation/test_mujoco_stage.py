@@ -298,8 +298,16 @@ def test_drop_that_does_not_end(tmp_path: Path) -> None:
     finding = told(cabinet(), tmp_path, drop_seconds=0.11).results["KV411"].findings[0]
     assert (finding.severity, finding.unit) == (Severity.NOTE, "m/s")
     check = OpenCheck(id="KV411", engine="mujoco")
-    find_drop(check, depth=0.02, speed=0.0, settings=load_settings().engines)
+    find_drop(check, depth=0.02, speed=0.0, size=0.5, settings=load_settings().engines)
     assert [f.severity for f in check.findings] == [Severity.WARNING]
+    find_drop(check, depth=0.02, speed=0.0, size=3.0, settings=load_settings().engines)
+    assert len(check.findings) == 1, "it is large"
+
+
+def test_nobody_sees_a_limit_that_gives_way_by_a_tenth_of_a_millimetre(tmp_path: Path) -> None:
+    results = told(cabinet().with_part("drawer", limits=(0.0, 0.002)), tmp_path).results
+    found = [item for check in ("KV404", "KV409") for item in results[check].findings if item.joint == "drawer_joint"]
+    assert found == []
 
 
 def test_model_without_joints_is_skipped_with_a_reason(tmp_path: Path) -> None:

@@ -214,7 +214,52 @@ def test_an_inertia_in_the_base_harms_less(good: Path) -> None:
 def test_the_remedy_for_an_inertia_is_right(good: Path) -> None:
     finding = counted(edited(good, "//link[@name='door']/inertial/inertia", ixx="-0.03"))[0]
     expected = 3.0 / 12.0 * (0.02**2 + 0.36**2)
-    assert f"ixx={expected:.3g}" in finding.remedy
+    assert f'<inertia ixx="{expected:.3g}"' in finding.remedy
+
+
+@pytest.mark.parametrize(
+    ("check", "attributes"),
+    [
+        ("KV204", {"ixx": "0", "iyy": "0", "izz": "0"}),
+        ("KV204", {"ixx": "-1e-9"}),
+        ("KV205", {"izz": "1e-3"}),
+    ],
+)
+def test_an_inertia_that_a_fixed_joint_makes_up_for_is_a_note(good: Path, check: str, attributes: dict) -> None:
+    urdf = edited(good, "//link[@name='knob']/inertial/inertia", **attributes)
+    assert not [finding for finding in counted(urdf) if finding.check == check]
+    (note,) = checked(urdf)[check].findings
+    assert (note.link, note.severity) == ("knob", Severity.NOTE)
+
+
+def test_fixed_links_without_a_sound_inertia_between_them_stay_an_error(good: Path) -> None:
+    edited(good, "//link[@name='knob']/inertial/inertia", ixx="0", iyy="0", izz="0")
+    edited(good, "//link[@name='knob']/inertial/mass", value="1e-9")
+    found = counted(edited(good, "//link[@name='drawer']/inertial/inertia", ixx="0", iyy="0", izz="0"))
+    assert {(item.check, item.link, item.severity) for item in found} >= {("KV204", "drawer", Severity.ERROR)}
+
+
+def test_no_claim_about_an_engine_stands_where_none_was_asked(good: Path) -> None:
+    edited(good, "//link[@name='door']/inertial/inertia", ixx="0", iyy="0", izz="0")
+    edited(good, "//link[@name='drawer']/inertial/inertia", izz="5")
+    found = [item for item in counted(good) if item.check in ("KV204", "KV205")]
+    assert len(found) == 2
+    assert not [item.message for item in found if "MuJoCo" in item.message]
+
+
+def test_a_marker_that_is_too_heavy_for_its_size_is_a_note(good: Path) -> None:
+    for box in ("visual", "collision"):
+        edited(good, f"//link[@name='door']/{box}/geometry/box", size="0.002 0.002 0.002")
+    assert Severity.ERROR not in {item.severity for item in checked(good)["KV206"].findings}
+    assert [item.severity for item in checked(good)["KV206"].findings] == [Severity.NOTE]
+
+
+def test_collision_geometry_beside_a_small_fixed_link_makes_no_file_fail(good: Path) -> None:
+    edited(good, "//link[@name='knob']/collision/origin", xyz="0 -0.04 0")
+    (finding,) = checked(good)["KV241"].findings
+    assert (finding.link, finding.severity) == ("knob", Severity.WARNING)
+    edited(good, "//link[@name='drawer']/collision/origin", xyz="0 -0.2 0")
+    assert Severity.ERROR in {item.severity for item in checked(good)["KV241"].findings if item.link == "drawer"}
 
 
 def test_rounding_in_an_inertia_is_a_note(good: Path) -> None:

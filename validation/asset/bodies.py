@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from kinematify.geometry.convex import enclosed_volume, outermost, thickened
-from kinematify.robot.robot import forward_kinematics, rigid_groups
+from kinematify.robot.robot import Inertial, forward_kinematics, rigid_groups
 from kinematify.validation.asset.loads import worst_loads
 
 if TYPE_CHECKING:
@@ -98,6 +98,25 @@ class Body:
     def mass(self) -> float:
         """Sum of the masses above zero [kg]."""
         return sum(link.inertial.mass for link in self.links if link.inertial is not None and link.inertial.mass > 0.0)
+
+    @cached_property
+    def fused(self) -> Inertial | None:
+        """Mass properties of all links together in the frame of the first, as engines fuse them; None without mass."""
+        if self.mass <= 0.0:
+            return None
+        weighed = [
+            (self.T_body_link[link.name], link.inertial)
+            for link in self.links
+            if link.inertial is not None and link.inertial.mass > 0.0
+        ]
+        centres = [T[:3, :3] @ inertial.center_of_mass + T[:3, 3] for T, inertial in weighed]
+        centre = np.sum([item.mass * at for (_, item), at in zip(weighed, centres, strict=True)], axis=0) / self.mass
+        tensor = np.zeros((3, 3))
+        for (T, inertial), at in zip(weighed, centres, strict=True):
+            arm = at - centre
+            tensor += T[:3, :3] @ inertial.tensor @ T[:3, :3].T
+            tensor += inertial.mass * (float(arm @ arm) * np.eye(3) - np.outer(arm, arm))
+        return Inertial(mass=self.mass, center_of_mass=centre, tensor=tensor)
 
     @cached_property
     def heaviest(self) -> Link:

@@ -33,8 +33,10 @@ class SurfaceQuality:
     """Edges with more than two triangles."""
     opposed_edges: int
     """Edges at which two triangles face opposite sides."""
+    twins: int
+    """Triangles that lie on another one and face the other side: sheets that are seen from both."""
     volume: float
-    """Signed volume, same unit cubed; negative where a closed mesh is inside out."""
+    """Signed volume without them, same unit cubed; negative where a closed mesh is inside out."""
 
     @property
     def closed(self) -> bool:
@@ -46,6 +48,7 @@ def surface_quality(mesh: RawMesh) -> SurfaceQuality:
     """Measure a mesh whose coordinates are finite."""
     vertices, faces = welded(mesh.vertices, mesh.faces, 0.0)
     open_edges, branched, opposed = _edges(faces, len(vertices))
+    single = _without_twins(faces)
     return SurfaceQuality(
         faces=len(mesh.faces),
         degenerate=len(mesh.faces) - len(faces),
@@ -54,7 +57,8 @@ def surface_quality(mesh: RawMesh) -> SurfaceQuality:
         open_edges=open_edges,
         branched_edges=branched,
         opposed_edges=opposed,
-        volume=_volume(vertices, faces),
+        twins=len(faces) - len(single),
+        volume=_volume(vertices, single),
     )
 
 
@@ -70,6 +74,21 @@ def _edges(faces: IntArray, count: int) -> tuple[int, int, int]:
     balance = np.add.reduceat(np.where(starts < ends, 1, -1)[order], first)
     opposed = (uses == 2) & (balance != 0)
     return int((uses == 1).sum()), int((uses > 2).sum()), int(opposed.sum())
+
+
+def _without_twins(faces: IntArray) -> IntArray:
+    """Faces less those that have the corners of another one in the other order, shape (k, 3)."""
+    if not len(faces):
+        return faces
+    corners = np.sort(faces, axis=1)
+    turned = np.argmin(faces, axis=1)
+    rows = np.arange(len(faces))
+    upward = faces[rows, (turned + 1) % 3] < faces[rows, (turned + 2) % 3]
+    _, group = np.unique(corners, axis=0, return_inverse=True)
+    group = group.ravel()
+    both = np.minimum(np.bincount(group, upward), np.bincount(group, ~upward))
+    single: IntArray = faces[both[group] == 0]
+    return single
 
 
 def _thickness(vertices: FloatArray) -> float:

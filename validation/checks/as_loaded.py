@@ -16,6 +16,8 @@ from kinematify.validation.checks.needs import late
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from kinematify.robot.mechanism import Travel
     from kinematify.simulation.raw_model import Overlap, RestRun
     from kinematify.validation.as_loaded_context import AsLoadedContext, VelocityProbe
@@ -104,7 +106,14 @@ def _remedy_of_loading(context: AsLoadedContext, message: str) -> str:
         )
     if context.engine == "mujoco" and "strippath" not in text and "error opening file" in message.lower():
         return 'Add <mujoco><compiler strippath="false"/></mujoco>: MuJoCo drops the folders of mesh files else.'
-    return f"Do what the message of {context.title} asks for."
+    if "balanceinertia" in message:
+        return (
+            "Compute the inertia of that link from its geometry (KV205), or let MuJoCo round it: "
+            '<mujoco><compiler balanceinertia="true"/></mujoco>.'
+        )
+    if "invalid mesh filename extension" in message:
+        return f"Export the meshes as OBJ, STL or DAE: {context.title} reads no other ones."
+    return f"Change what {context.title} names there."
 
 
 @check(
@@ -120,7 +129,7 @@ def _remedy_of_loading(context: AsLoadedContext, message: str) -> str:
 def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
     """In the untouched file at rest, no two links that the engine lets touch and that joints move against each other
     are in each other by more than as_loaded.overlap of the model's size, at least as_loaded.overlap_length. PyBullet is
-    asked with `URDF_USE_SELF_COLLISION`.
+    asked with `URDF_USE_SELF_COLLISION`, see KV804.
 
     Why it matters: Engines push such links apart: parts jump, jam, or tremble.
 
@@ -132,7 +141,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
         if overlap.depth > limit:
             result.find(
                 f"At rest {overlap.links[0]} and {overlap.links[1]} are {overlap.depth * 1e3:.3g} mm deep in each "
-                f"other as {context.title} loads the file.",
+                f"other as {context.how} loads the file.",
                 _PIECES.format(*overlap.links),
                 pair=overlap.links,
                 value=overlap.depth,
@@ -157,7 +166,8 @@ def stays(result: OpenCheck, context: AsLoadedContext) -> None:
     """For as_loaded.seconds under gravity nothing is done to the untouched file. No joint that would stay where it is
     without contacts is moved by them by more than as_loaded.still of its range (at least as_loaded.still_angle or
     as_loaded.still_length), none ends beyond its range by more, and all values stay numbers. What gravity moves may
-    move: an arm without servos sags. PyBullet is asked with `URDF_USE_SELF_COLLISION`, and its motors are as they are.
+    move: an arm without servos sags. PyBullet's motors are as they are; it is asked with `URDF_USE_SELF_COLLISION`, and
+    what plain `loadURDF` does not show is a warning, see KV804.
 
     Why it matters: A drawer that jumps out of its cabinet when a scene is loaded is of no use.
 
@@ -168,6 +178,7 @@ def stays(result: OpenCheck, context: AsLoadedContext) -> None:
         result.find(
             f"Left alone, the model comes apart in {context.title}: {complaint}.",
             "Give every moving link a plausible mass and inertia, and mend overlaps at rest first.",
+            severity=_at_most_warning(context, plainly=context.left_without_contacts.complaint is not None),
             reproduction=context.running.lines_of_rest(
                 context.travels[0].joint, context.values, context.settings.seconds
             ),
@@ -183,6 +194,18 @@ def _leaves(context: AsLoadedContext, travel: Travel) -> bool:
     return _thrown_by(context, travel) is not None or _beyond(context, travel) > context.still(travel)
 
 
+def _leaves_plainly(context: AsLoadedContext, travel: Travel) -> bool:
+    """The same of the file loaded without flags."""
+    if context.flag is None:
+        return _leaves(context, travel)
+    return _beyond(context, travel, context.left_without_contacts) > context.still(travel)
+
+
+def _at_most_warning(context: AsLoadedContext, *, plainly: bool) -> Severity | None:
+    """What an engine shows only with a flag that its users have to ask for is no error."""
+    return None if context.flag is None or plainly else Severity.WARNING
+
+
 def _thrown_by(context: AsLoadedContext, travel: Travel) -> Overlap | None:
     """Return the overlap at rest that moves a joint which stays where it is without contacts."""
 
@@ -193,9 +216,9 @@ def _thrown_by(context: AsLoadedContext, travel: Travel) -> Overlap | None:
     return context.between(travel, context.overlaps) if thrown else None
 
 
-def _beyond(context: AsLoadedContext, travel: Travel) -> float:
+def _beyond(context: AsLoadedContext, travel: Travel, run: RestRun | None = None) -> float:
     """How far beyond its range a joint ends that was left alone [rad or m]; 0 without limits."""
-    last = float(context.way(context.left_alone, travel)[-1])
+    last = float(context.way(run or context.left_alone, travel)[-1])
     return max(travel.lower - last, last - travel.upper) if travel.limited else 0.0
 
 
@@ -214,9 +237,9 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
         said = f"it ends {beyond:.3g} {travel.unit} beyond its range {travel.lower:.4g} to {travel.upper:.4g}"
         remedy = "Write masses that the limits can hold, and collision geometry that is clear of other links at rest."
     result.find(
-        f"Left alone for {context.settings.seconds:g} s in {context.title}, joint {travel.joint} does not stay: "
-        f"{said}.",
+        f"Left alone for {context.settings.seconds:g} s in {context.how}, joint {travel.joint} does not stay: {said}.",
         remedy,
+        severity=_at_most_warning(context, plainly=_leaves_plainly(context, travel)),
         joint=travel.joint,
         pair=None if overlap is None else overlap.links,
         q={travel.joint: farthest},
@@ -244,19 +267,35 @@ def moves(result: OpenCheck, context: AsLoadedContext) -> None:
     that is not known. Where another body ends the way, not a limit, as_loaded.touch_angle or as_loaded.touch_length
     may be missing, half of the way at most: engines let bodies touch before they meet. What does not get there
     without contacts either, or has no free way at all (KV31x), is a note; what gets over half of its way a warning.
-    PyBullet is asked with `URDF_USE_SELF_COLLISION`: without it links pass through each other.
+    Plain `loadURDF` of PyBullet lets links pass through each other, and the first line of the report counts what moves
+    so, pushed or by its own motor. It is asked with `URDF_USE_SELF_COLLISION` besides, but for neighbours across fixed
+    joints (as with `URDF_MERGE_FIXED_LINKS`) and links that the file declares not to collide with their model
+    (`<selfCollide>`): what only that flag shows is a warning at most, and the second line counts it.
 
     Why it matters: A drawer that jams in the simulator is of no use, whatever its surfaces would allow.
 
     Remedy: Write convex pieces as collision geometry of the links that are named, clear of each other along the motion.
     """
     short = [run for run in context.hands if not context.arrives(run, run.pushed.farthest)]
-    right = {run.travel.joint for run in context.hands} - {run.travel.joint for run in short}
-    right -= {travel.joint for travel in context.travels if context.left_alone.complaint or _leaves(context, travel)}
+    stuck = [run for run in short if not context.moves_plainly(run)]
+    left_plainly = context.left_alone if context.flag is None else context.left_without_contacts
     result.measured["joints"] = float(len(context.mechanism.travels))
-    result.measured["right"] = float(len(right))
+    result.measured["right"] = _moving(context, stuck, left_plainly.complaint, _leaves_plainly)
+    if context.flag is not None:
+        result.measured["with_contacts"] = _moving(context, short, context.left_alone.complaint, _leaves)
     for run in short:
         _find_short(result, context, run, jammed=_free_without_contacts(context, run))
+
+
+def _moving(
+    context: AsLoadedContext,
+    short: Sequence[VelocityProbe],
+    complaint: str | None,
+    leaves: Callable[[AsLoadedContext, Travel], bool],
+) -> float:
+    """How many joints a hand moves and nothing throws."""
+    right = {run.travel.joint for run in context.hands} - {run.travel.joint for run in short}
+    return float(len(right - {travel.joint for travel in context.travels if complaint or leaves(context, travel)}))
 
 
 def _free_without_contacts(context: AsLoadedContext, run: VelocityProbe) -> bool:
@@ -266,21 +305,21 @@ def _free_without_contacts(context: AsLoadedContext, run: VelocityProbe) -> bool
 
 def _find_short(result: OpenCheck, context: AsLoadedContext, run: VelocityProbe, *, jammed: bool) -> None:
     travel, push, stop = run.travel, run.push, run.pushed.farthest
-    overlap = context.between(travel, run.pushed.overlaps)
+    found = context.stopped_by(run) if jammed else None
+    pair = None if found is None else found[0].links
     unit = "N m" if travel.turns else "N"
     said = (
         f"Pushed with up to {push.force:.3g} {unit} from {travel.rest:.4g} towards {run.end:.4g} {travel.unit} in "
-        f"{context.title}, gravity off and the others held, joint {travel.joint} gets to {stop:.4g} {travel.unit}"
+        f"{context.how}, gravity off and the others held, joint {travel.joint} gets to {stop:.4g} {travel.unit}"
     )
+    severity = _severity(run) if jammed else Severity.NOTE
     result.find(
-        f"{said}: {_cause(overlap, jammed=jammed)}.",
-        _PIECES.format(*overlap.links)
-        if overlap is not None and jammed
-        else f"Check damping, friction, mass and limits of {travel.joint}.",
+        f"{said}: {_cause(found, run, jammed=jammed)}.",
+        f"Check damping, friction, mass and limits of {travel.joint}." if pair is None else _PIECES.format(*pair),
         joint=travel.joint,
-        pair=overlap.links if overlap is not None and jammed else None,
-        severity=_severity(run) if jammed else Severity.NOTE,
-        q={travel.joint: stop},
+        pair=pair,
+        severity=severity or _at_most_warning(context, plainly=False),
+        q={travel.joint: stop if found is None else found[1]},
         value=stop,
         limit=run.end,
         unit=travel.unit,
@@ -296,13 +335,14 @@ def _severity(run: VelocityProbe) -> Severity | None:
     return Severity.WARNING if abs(run.pushed.farthest - run.travel.rest) > 0.5 * way else None
 
 
-def _cause(overlap: Overlap | None, *, jammed: bool) -> str:
+def _cause(found: tuple[Overlap, float] | None, run: VelocityProbe, *, jammed: bool) -> str:
     if not jammed:
         return "contacts are not the reason, without them it gets no farther"
-    if overlap is None:
+    if found is None:
         return "without contacts it gets to the end"
-    first, second = overlap.links
-    return f"there {first} and {second} are {overlap.depth * 1e3:.3g} mm deep in each other"
+    (first, second), depth, value = found[0].links, found[0].depth, found[1]
+    where = "there" if value == run.pushed.farthest else f"at {value:.4g} {run.travel.unit}"
+    return f"{where} {first} and {second} are {depth * 1e3:.3g} mm deep in each other"
 
 
 @check(

@@ -87,8 +87,9 @@ def _stands_out(body: Body, name: str, felt: Room) -> float:
 )
 def displaced_collisions(result: OpenCheck, physics: Physics) -> None:
     """The bounding box of the collision geometry is not shifted against that of the visual one by more than `shift` of
-    its diagonal (`shift_same` if both have the same size; from `shift_wrong` on that is an error), and does not
-    reach `beyond` it. Coarse shapes and shapes of a part of the link are fine.
+    its diagonal (`shift_same` if both have the same size; from `shift_wrong` on that is an error, but for small links
+    that are fixed to a larger one), and does not reach `beyond` it. Coarse shapes and shapes of a part of the link are
+    fine.
 
     Why it matters: The model collides with what nobody sees, and is not stopped by what everybody sees.
 
@@ -98,10 +99,13 @@ def displaced_collisions(result: OpenCheck, physics: Physics) -> None:
         for link in body.links:
             seen, felt = physics.visual.get(link.name), physics.collision.get(link.name)
             if seen is not None and felt is not None and seen.diagonal > 0.0:
-                _displaced(result, link, seen, felt, physics.settings)
+                certain = link.name == body.called
+                _displaced(result, link, seen, felt, physics.settings, certain=certain)
 
 
-def _displaced(result: OpenCheck, link: Link, seen: Room, felt: Room, settings: PhysicsSettings) -> None:
+def _displaced(
+    result: OpenCheck, link: Link, seen: Room, felt: Room, settings: PhysicsSettings, *, certain: bool
+) -> None:
     shift = common_shift(seen, felt)
     moved = float(np.linalg.norm(shift)) / seen.diagonal
     same = np.abs((felt.high - felt.low) - (seen.high - seen.low)).max() < settings.same_size * seen.diagonal
@@ -119,7 +123,7 @@ def _displaced(result: OpenCheck, link: Link, seen: Room, felt: Room, settings: 
         f"Correct the <origin> of the <collision>; moving it by {_vector(-shift)} would do."
         if moved > settings.shift or same
         else "Check the scale and the <origin> of the <collision>.",
-        severity=Severity.ERROR if same and moved > settings.shift_wrong else Severity.WARNING,
+        severity=Severity.ERROR if certain and same and moved > settings.shift_wrong else Severity.WARNING,
         link=link.name,
         value=value * seen.diagonal,
         limit=limit * seen.diagonal,

@@ -9,10 +9,11 @@ import numpy as np
 
 from kinematify.simulation.contacts import stand_in_error, stand_in_reason
 from kinematify.validation.check import CauseScope, FeedbackRow, engine_check
+from kinematify.validation.checks.engine_rest import escape_limit
 from kinematify.validation.checks.follow import IN_ENGINES, ON_THE_WAY
 from kinematify.validation.checks.needs import late, not_driven, nothing_moves
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.geometry.formatting import SLIMMER, UNSEEN
+from kinematify.validation.geometry.formatting import BARELY, SLIMMER
 
 if TYPE_CHECKING:
     from kinematify.robot.mechanism import Travel
@@ -106,7 +107,7 @@ def little_penetration(result: OpenCheck, context: EngineContext) -> None:
 )
 def limits_hold(result: OpenCheck, context: EngineContext) -> None:
     """At its end, a joint whose servo pulls on past the limit (by engines.push of the range) gets no farther beyond it
-    than engines.escape of the range.
+    than engines.escape of the range, 0.1 deg and 1 mm, whichever is more.
 
     Why it matters: A door that is pushed through its stop ends up in its frame.
 
@@ -121,14 +122,15 @@ def limits_hold(result: OpenCheck, context: EngineContext) -> None:
         travel = context.travel(item)
         share = item.beyond / travel.range
         result.measured["farthest_of_range"] = max(0.0, share, result.measured.get("farthest_of_range", 0.0))
-        if share > context.settings.escape:
+        limit = escape_limit(travel, context.settings)
+        if item.beyond > limit:
             result.find(
                 f"Pushed on at its limit {item.drive.end:.4g} {travel.unit}, joint {travel.joint} gets "
                 f"{item.beyond:.3g} {travel.unit} beyond it, {share:.1%} of its range.",
                 "Give the part a plausible inertia, and limits that fit its motion.",
                 joint=travel.joint,
                 value=item.beyond,
-                limit=context.settings.escape * travel.range,
+                limit=limit,
                 unit=travel.unit,
             )
     _say_left(result, context)
@@ -170,7 +172,7 @@ def _find_blocked(result: OpenCheck, context: EngineContext, driven: Driven) -> 
         f"deeper into each other than at rest (at {values[deepest]:.4g} {travel.unit})"
     )
     if real and not seen:
-        why, remedy = f"{why}. {UNSEEN.rstrip('.')}", SLIMMER
+        why, remedy = f"{why}. {BARELY.rstrip('.')}", SLIMMER
     elif real:
         remedy = f"Correct axis, pivot or limit of {travel.joint} so that {first} and {second} stay clear."
     else:

@@ -16,11 +16,14 @@ from kinematify.validation.finding import Blame, Severity
 if TYPE_CHECKING:
     from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.mechanism import Travel
     from kinematify.validation.check import OpenCheck
     from kinematify.validation.engine_context import EngineContext
 
 _HARDLY = 0.02
 """Motion that is too small to say anything, fraction of the range."""
+_VISIBLE_ANGLE, _VISIBLE_LENGTH = np.radians(0.1), 1e-3
+"""Nobody sees less of a limit that gives way [rad and m]: stops of engines are springs."""
 FLOOR_OF_ENERGY = 1e-5
 """Growth that does not count, fraction of the energy of a fall of the whole model by its own size."""
 _TOLD_PAIRS = 8
@@ -78,7 +81,8 @@ def starts_without_contact(result: OpenCheck, context: EngineContext) -> None:
 )
 def holds_under_gravity(result: OpenCheck, context: EngineContext) -> None:
     """Joints held by position servos, none stronger than its declared effort, sag by no more than engines.sag of the
-    range. Without servos joints may fall, but none moves beyond its limits by more than engines.escape of its range.
+    range. Without servos joints may fall, but none moves beyond its limits by more than engines.escape of its range,
+    0.1 deg and 1 mm, whichever is more.
 
     PyBullet: PyBullet stops a joint one step after its limit and leaves it there; so much is not counted.
 
@@ -158,14 +162,15 @@ def step_is_small_enough(result: OpenCheck, context: EngineContext) -> None:
 )
 def settles_on_the_floor(result: OpenCheck, context: EngineContext) -> None:
     """Let go of engines.drop above a plane with its joints held, the model comes to rest within engines.drop_seconds
-    and sinks in by less than engines.sink.
+    and sinks in by less than engines.sink, that times its size in metres where it is larger than 1 m.
 
     Why it matters: An object that sinks, trembles or rolls away cannot be placed in a scene.
 
     Remedy: Give the parts that touch the floor closed collision geometry, and plausible masses.
     """
     dropped = context.dropped
-    find_drop(result, depth=dropped.depth, speed=dropped.speed, settings=context.settings)
+    size = context.physics.size
+    find_drop(result, depth=dropped.depth, speed=dropped.speed, size=size, settings=context.settings)
 
 
 def _find_overlaps(result: OpenCheck, context: EngineContext) -> None:
@@ -270,15 +275,21 @@ def _find_passive_escape(result: OpenCheck, context: EngineContext, released: Fl
         outside = np.maximum(travel.lower - released[:, leader], released[:, leader] - travel.upper)
         windows = np.lib.stride_tricks.sliding_window_view(outside, min(window, len(outside)))
         beyond = float(windows.min(axis=1).max())
-        if travel.limited and travel.range > 0.0 and beyond > context.settings.escape * travel.range:
+        limit = escape_limit(travel, context.settings)
+        if travel.limited and travel.range > 0.0 and beyond > limit:
             result.find(
                 f"Released, joint {travel.joint} falls {beyond:.3g} {travel.unit} beyond its limit.",
                 "Give the part a plausible mass and inertia, and limits that fit its motion.",
                 joint=travel.joint,
                 value=beyond,
-                limit=context.settings.escape * travel.range,
+                limit=limit,
                 unit=travel.unit,
             )
+
+
+def escape_limit(travel: Travel, settings: EngineSettings) -> float:
+    """How far beyond its limit a joint may get [rad or m]: a share of its range, and no less than what is visible."""
+    return max(settings.escape * travel.range, _VISIBLE_ANGLE if travel.turns else _VISIBLE_LENGTH)
 
 
 def find_growth(
@@ -336,22 +347,24 @@ def _find_difference_of_steps(result: OpenCheck, context: EngineContext, coarse:
             )
 
 
-def find_drop(result: OpenCheck, *, depth: float, speed: float, settings: EngineSettings) -> None:
+def find_drop(result: OpenCheck, *, depth: float, speed: float, size: float, settings: EngineSettings) -> None:
     """Add findings for a model that does not settle on the floor.
 
     Args:
         result: Open, of the engine.
         depth: Of its lowest point below the floor at the end [m].
         speed: Of its fastest link at the end [m/s].
+        size: Of the model [m].
         settings: Of the engines.
     """
+    limit = settings.sink * max(1.0, size)
     result.measured |= {"depth": max(0.0, depth), "speed": speed}
-    if depth > settings.sink:
+    if depth > limit:
         result.find(
             f"Dropped from {settings.drop * 100:.3g} cm, the model ends up {depth * 1e3:.3g} mm deep in the floor.",
             "Give the parts that touch the floor closed collision geometry, and plausible masses.",
             value=depth,
-            limit=settings.sink,
+            limit=limit,
             unit="m",
         )
     if speed > settings.rest_speed:

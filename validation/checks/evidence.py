@@ -139,7 +139,7 @@ def unknown_direction(result: OpenCheck, case: JointCase) -> None:
         case,
         f"The axis runs {line.angle:.1f} deg off every direction that {case.child} and {case.parent} show: "
         "their edges, faces, round surfaces and where they touch.",
-        _instead(case),
+        case.instead,
         severity=Severity.ERROR if certain else Severity.WARNING,
         value=line.angle,
         limit=settings.unknown_deg,
@@ -177,7 +177,7 @@ def unknown_place(result: OpenCheck, case: JointCase) -> None:
         case,
         f"The axis runs {far} beside every line along its direction that {case.child} and {case.parent} show "
         f"as a hinge ({case.child} is {size:.3g} m large).",
-        _instead(case),
+        case.instead,
         value=line.distance * size if np.isfinite(line.distance) else size,
         limit=case.farthest * size,
         unit="m",
@@ -215,7 +215,7 @@ def another_fits(result: OpenCheck, case: JointCase) -> None:
         case,
         f"Another joint of the same type explains the contact of {case.child} and {case.parent} clearly "
         f"better: its score leads by {deficit:.2g}.",
-        _instead(case),
+        case.instead,
         value=deficit,
         limit=case.usual_deficit,
     )
@@ -368,8 +368,8 @@ def leaves_guides(result: OpenCheck, case: JointCase) -> None:
 )
 def unusual_range(result: OpenCheck, case: JointCase) -> None:
     """No limited range is a whole turn, mostly to one side (evidence.whole_turn). Outside linkages, an upright panel
-    opens by no more than evidence.widest_door, a level one by no more than evidence.widest_lid, and a button
-    travels by no more than evidence.button_travel of its own length. Meshes do not hold designed stops, so this is
+    opens by no more than evidence.widest_door, a level one by no more than evidence.widest_lid; a button that travels
+    by more than evidence.button_travel of its own length is a note. Meshes do not hold designed stops, so this is
     experience.
 
     Why it matters: A robot that learns to open a door to twice its angle fails on the real one.
@@ -397,7 +397,7 @@ def unusual_range(result: OpenCheck, case: JointCase) -> None:
         return
     elif case.measures.slides:
         if case.small and abs(room.outward) > settings.button_outward:
-            _wide(result, case, "button", span, settings.button_travel * room.length)
+            _wide(result, case, "button", span / room.length, settings.button_travel)
     elif scene.panel and scene.upright:
         _wide(result, case, "door", float(np.degrees(span)), settings.widest_door)
     elif scene.panel and scene.flat:
@@ -411,15 +411,16 @@ def _turns_round(lower: float, upper: float, settings: EvidenceSettings) -> bool
 
 
 def _wide(result: OpenCheck, case: JointCase, name: str, span: float, limit: float) -> None:
-    """Tell a range [m or deg] that is wide for such a part although nothing stops it."""
-    unit = "m" if case.measures.slides else "deg"
+    """Tell a range [deg, or the length of the part] that is wide for such a part although nothing stops it."""
+    unit = None if case.measures.slides else "deg"
     if span > limit:
         _doubt(
             result,
             case,
-            f"{case.child} looks like a {name} and moves by {span:.3g} {unit} to one side; such parts hardly ever "
-            f"move by more than {limit:.3g} {unit}.",
+            f"{case.child} looks like a {name} and moves by {span:.3g} {unit or 'times its own length'} to one side; "
+            f"such parts hardly ever move by more than {limit:.3g}.",
             "Check the limit, and halve it if the range was doubled; suppress the finding if it is meant.",
+            severity=Severity.NOTE if case.measures.slides else Severity.WARNING,
             value=span,
             limit=limit,
             unit=unit,
@@ -457,7 +458,7 @@ def contact_opens(result: OpenCheck, case: JointCase) -> None:
     result.find(
         f"{case.child} lifts off {case.parent}: at {where} of {joint.source}, half of where they touch at rest is "
         f"{own.width:.3g} m or more farther apart. About the line that fits best it is {max(other.width, 0.0):.3g} m.",
-        _instead(case),
+        case.instead,
         joint=joint.source,
         pair=(case.parent, case.child),
         q={joint.source: value},
@@ -465,13 +466,6 @@ def contact_opens(result: OpenCheck, case: JointCase) -> None:
         limit=max(other.width, 0.0),
         unit="m",
     )
-
-
-def _instead(case: JointCase) -> str:
-    line = case.measures.line
-    axis = ", ".join(f"{value:.3f}" for value in line.best_axis)
-    where = "" if case.measures.slides else " through (" + ", ".join(f"{value:.3f}" for value in line.best_pivot) + ")"
-    return f"Best candidate in the world frame at rest: axis ({axis}){where}."
 
 
 def _doubt(

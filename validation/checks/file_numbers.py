@@ -132,8 +132,7 @@ def implausible_numbers(result: OpenCheck, urdf: Urdf) -> None:
     """No number is larger than `max_number` (a warning for effort, velocity, damping and friction), and no roll, pitch
     or yaw is more than one turn (a warning).
 
-    Why it matters: With 1e16 metres or radians all digits are lost and simulations end in NaN; angles above a turn
-    are degrees most of the time.
+    Why it matters: With 1e16 metres or radians all digits are lost; angles above a turn are degrees most of the time.
 
     Remedy: Write the true value in metres, radians and kilograms; use a continuous joint where there is no limit.
     """
@@ -164,7 +163,7 @@ def _huge(result: OpenCheck, field: _Field, value: float, limit: float) -> None:
     bound = field.attribute in ("lower", "upper")
     drive = field.attribute in _DRIVE
     result.find(
-        f"{field.called} is {value:g}; above {limit:g} engines lose all digits and simulations turn into NaN.",
+        f"{field.called} is {value:g}; above {limit:g} few digits are left for what counts.",
         (
             'Write type="continuous" where a hinge has no limit.'
             if bound

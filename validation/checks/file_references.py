@@ -46,14 +46,15 @@ def missing_files(result: OpenCheck, urdf: Urdf) -> None:
 
     Remedy: Put the file there, correct the path, or name the package's folder with --package-dir.
     """
-    for reference in _references(urdf):
-        if reference.path is None:
-            result.find(
-                reference.fault,
-                _remedy(reference.filename, urdf.folder),
-                link=reference.link,
-                line=reference.line,
-            )
+    # what a link shows and collides with is often one file
+    missing = {(item.link, item.filename): item for item in reversed([*_references(urdf)]) if item.path is None}
+    for reference in reversed(missing.values()):
+        result.find(
+            reference.fault,
+            _remedy(reference.filename, urdf.folder),
+            link=reference.link,
+            line=reference.line,
+        )
 
 
 def _remedy(filename: str, folder: Path) -> str:

@@ -33,28 +33,31 @@ _ROUNDING = 1e-9
     needs=(something_weighs,),
 )
 def tensors_not_positive(result: OpenCheck, physics: Physics) -> None:
-    """All principal moments of inertia are above zero. It is a warning for bodies that do not move, and where some
-    moments are zero and none is negative.
+    """All principal moments of inertia of a body are above zero, those of links that fixed joints hold together summed
+    up, as engines fuse them. It is a warning for bodies that do not move, and where some moments are zero and none is
+    negative; a link that has none while its body has is a note, a warning where an engine refuses the file for it.
 
-    Why it matters: MuJoCo refuses the model; PyBullet takes the inertia for zero and the simulation blows up.
+    Why it matters: Nothing turns without inertia: engines refuse such a body, or take it for what it is not.
 
     Remedy: Compute the tensor from the geometry; the finding names the values of a box of the same size.
     """
     for body, link, inertial in _weighed(physics):
-        low, _, high = np.linalg.eigvalsh(inertial.tensor)
-        if low > _ROUNDING * high and high > 0.0:
+        if _positive(inertial.tensor):
             continue
+        if body.fused is not None and _positive(body.fused.tensor):
+            _harmless(result, link, inertial, "is zero or not positive definite")
+            continue
+        low, _, high = np.linalg.eigvalsh(inertial.tensor)
         nothing = not np.any(inertial.tensor)
         # A rod without thickness has such moments: a slip, where negative ones are nonsense.
         flat = low >= -_ROUNDING * high and not nothing
         result.find(
             f"The inertia of the link {link.name} "
             + (
-                "is zero"
+                "is zero."
                 if nothing
-                else f"is not positive definite: its principal moments are {_moments(inertial)} kg m2"
-            )
-            + ("; MuJoCo refuses it, and PyBullet takes it for zero." if body.moves else "; no body has that."),
+                else f"is not positive definite: its principal moments are {_moments(inertial)} kg m2."
+            ),
             _better_tensor(body, link),
             severity=Severity.ERROR if body.moves and not flat else Severity.WARNING,
             link=link.name,
@@ -63,6 +66,22 @@ def tensors_not_positive(result: OpenCheck, physics: Physics) -> None:
             unit="kg m2",
             line=inertial.line,
         )
+
+
+def _positive(tensor: FloatArray) -> bool:
+    low, _, high = np.linalg.eigvalsh(tensor)
+    return bool(low > _ROUNDING * high and high > 0.0)
+
+
+def _harmless(result: OpenCheck, link: Link, inertial: Inertial, what: str) -> None:
+    """Say of a tensor that engines do not see which fuse the links of fixed joints."""
+    result.find(
+        f"The inertia of the link {link.name} {what}; fixed joints hold it to links that make up for it.",
+        "Nothing to do where it is a frame or a sensor; else compute it from the geometry.",
+        severity=Severity.NOTE,
+        link=link.name,
+        line=inertial.line,
+    )
 
 
 def _moments(inertial: Inertial) -> str:
@@ -78,8 +97,8 @@ def _better_tensor(body: Body, link: Link) -> str:
     x, y, z = (room.high - room.low) ** 2
     ixx, iyy, izz = mass / 12.0 * np.array([y + z, x + z, x + y])
     return (
-        f"Compute it from the geometry; a box of the same size has ixx={ixx:.3g}, iyy={iyy:.3g}, izz={izz:.3g} and no "
-        "products of inertia."
+        "Compute it from the geometry; that of a box of the same size is "
+        f'<inertia ixx="{ixx:.3g}" iyy="{iyy:.3g}" izz="{izz:.3g}" ixy="0" ixz="0" iyz="0"/>.'
     )
 
 
@@ -92,26 +111,28 @@ def _better_tensor(body: Body, link: Link) -> str:
     needs=(something_weighs,),
 )
 def moments_out_of_proportion(result: OpenCheck, physics: Physics) -> None:
-    """No principal moment is larger than the sum of the other two: an error above `moment_ratio` times the sum for
-    bodies that move, a note below `moment_rounding`, a warning otherwise.
+    """No principal moment of a body, its links fused, is larger than the sum of the other two: an error above
+    `moment_ratio` times the sum for bodies that move, a note below `moment_rounding`, a warning otherwise. A link that
+    has such moments while its body has not is a note, a warning where an engine refuses the untouched file for it.
 
-    Why it matters: No distribution of mass has such moments: MuJoCo refuses them, PyBullet takes the inertia for
-    zero.
+    Why it matters: No distribution of mass has such moments; engines balance them, refuse them or take them for zero.
 
     Remedy: Compute the tensor from the geometry, or write it with more digits.
     """
     settings = physics.settings
     for body, link, inertial in _weighed(physics):
         low, middle, high = np.linalg.eigvalsh(inertial.tensor)
-        if low <= _ROUNDING * high or high <= (low + middle) * (1.0 + _ROUNDING):
+        if low <= _ROUNDING * high or _proportionate(inertial.tensor):
+            continue
+        if body.fused is not None and _proportionate(body.fused.tensor):
+            _harmless(result, link, inertial, "can be that of no body")
             continue
         ratio = high / (low + middle)
         rounding = ratio < settings.moment_rounding
         certain = body.moves and ratio > settings.moment_ratio
         result.find(
             f"The principal moments {_moments(inertial)} kg m2 of the link {link.name} can be those of no "
-            f"body: the largest is {ratio:.4g} times the sum of the others. MuJoCo refuses that unless it may balance "
-            "them, PyBullet takes the inertia for zero.",
+            f"body: the largest is {ratio:.4g} times the sum of the others.",
             "Write the tensor with more digits." if rounding else _better_tensor(body, link),
             severity=Severity.ERROR if certain else Severity.NOTE if rounding else Severity.WARNING,
             link=link.name,
@@ -119,6 +140,11 @@ def moments_out_of_proportion(result: OpenCheck, physics: Physics) -> None:
             limit=1.0,
             line=inertial.line,
         )
+
+
+def _proportionate(tensor: FloatArray) -> bool:
+    low, middle, high = np.linalg.eigvalsh(tensor)
+    return bool(high <= (low + middle) * (1.0 + _ROUNDING))
 
 
 @check(

@@ -36,8 +36,8 @@ _ROUND_TOLERANCE = 0.3
 def implausible_ranges(result: OpenCheck, physics: Physics) -> None:
     """No hinge turns by more than `widest_turn` (a warning from `full_turn` on; a warning beyond `endless`, and a note
     at plus and minus 10 rad or a multiple of pi, where no limit was meant), unless both limits are round numbers of
-    degrees up to `widest_wrist`. No slide moves by more than `widest_slide` or `slide_sizes` times the size of the
-    model; beyond `slide_wrong` times it is an error.
+    degrees up to `widest_wrist`. No slide moves by more than `slide_sizes` times the size of the model, by
+    `widest_slide` where no geometry shows its size; beyond `slide_wrong` times it is an error.
 
     Why it matters: Degrees for radians and millimetres for metres load in every engine, and the joint then moves
     freely.
@@ -92,8 +92,8 @@ def _slide(result: OpenCheck, physics: Physics, joint: Joint) -> None:
     settings = physics.settings
     width = joint.upper - joint.lower
     size = physics.diagonal
-    beyond = size > 0.0 and width > settings.slide_sizes * size
-    if width <= settings.widest_slide and not beyond:
+    limit = settings.slide_sizes * size if size > 0.0 else settings.widest_slide
+    if width <= limit:
         return
     result.find(
         f"The slide {joint.name} moves by {width:g} m"
@@ -103,7 +103,7 @@ def _slide(result: OpenCheck, physics: Physics, joint: Joint) -> None:
         joint=joint.name,
         link=joint.child,
         value=width,
-        limit=min(settings.widest_slide, settings.slide_sizes * size) if size > 0.0 else settings.widest_slide,
+        limit=limit,
         unit="m",
         line=joint.line,
     )

@@ -27,7 +27,7 @@ def missing_masses(result: OpenCheck, physics: Physics) -> None:
     that is one finding.
 
     Why it matters: Without it PyBullet takes 1 kg, MuJoCo the mass of the hull, Pinocchio nothing: no two engines
-    move the model alike. MuJoCo refuses a body without mass and geometry.
+    move the model alike.
 
     Remedy: Add an <inertial> to the link; 100 to 1000 kg/m3 times its volume is a start.
     """
@@ -49,10 +49,11 @@ def missing_masses(result: OpenCheck, physics: Physics) -> None:
         frame = not body.rooms
         result.find(
             f"The link {body.called}, which the joint {body.joint} moves, has no <inertial>"
-            + (" and no geometry: MuJoCo refuses it." if frame else ": PyBullet gives it 1 kg, Pinocchio nothing."),
+            + (" and no geometry." if frame else ": PyBullet gives it 1 kg, Pinocchio nothing."),
             "Add a small mass and inertia, such as 0.001 kg and 1e-7 kg m2."
             if frame
             else f"Add an <inertial>{_suggested(body.room)}.",
+            joint=body.joint,
             link=body.called,
             line=physics.model.link_by_name[body.called].line,
         )
@@ -74,7 +75,7 @@ def masses_not_positive(result: OpenCheck, physics: Physics) -> None:
     """No mass is zero or negative. Zero is allowed for a frame that is fixed to something with a mass, and a note for a
     base that does not move and where others of its body have a mass, which may be all of it.
 
-    Why it matters: MuJoCo refuses such a body if it moves; PyBullet freezes it where it is.
+    Why it matters: Nothing without a mass can be moved by a force; PyBullet freezes it where it is.
 
     Remedy: Write the true mass in kilograms.
     """
@@ -96,7 +97,7 @@ def _not_positive(result: OpenCheck, body: Body, link: Link, inertial: Inertial)
     consequence = (
         "no engine can compute with that"
         if inertial.mass < 0.0
-        else "MuJoCo refuses it, and in PyBullet the link never moves"
+        else "a body that moves needs one, and in PyBullet the link never moves"
         if refused
         else "PyBullet takes it for scenery that never moves"
         if not body.moves
@@ -159,7 +160,8 @@ def implausible_masses(result: OpenCheck, physics: Physics) -> None:
 )
 def implausible_densities(result: OpenCheck, physics: Physics) -> None:
     """The mass of a body over the volume of its hull is not above `dense` (an error above `impossibly_dense`), and
-    over the volume inside its surfaces not below `light`.
+    over the volume inside its surfaces not below `light`. Of a body below `marker` of the model's size it is a note:
+    such shapes mark frames and sensors.
 
     Why it matters: The mass or the unit of the meshes is wrong, and with it every force.
 
@@ -172,10 +174,13 @@ def implausible_densities(result: OpenCheck, physics: Physics) -> None:
         if room is None or body.mass <= 0.0 or room.diagonal <= 0.0:
             continue
         heavy, light = body.mass / room.hull.volume, body.mass / _largest_volume(room)
+        marker = room.diagonal <= settings.marker * physics.diagonal
         if heavy > settings.dense:
-            _density(result, body, heavy, settings.dense, certain=heavy > settings.impossibly_dense)
+            certain = heavy > settings.impossibly_dense
+            severity = Severity.NOTE if marker else Severity.ERROR if certain else Severity.WARNING
+            _density(result, body, heavy, settings.dense, severity)
         elif light < settings.light:
-            _density(result, body, light, settings.light, certain=False)
+            _density(result, body, light, settings.light, Severity.NOTE if marker else Severity.WARNING)
 
 
 def _largest_volume(room: Room) -> float:
@@ -183,14 +188,14 @@ def _largest_volume(room: Room) -> float:
     return float(room.hull.volume) if room.solid is None else min(room.solid, float(room.hull.volume))
 
 
-def _density(result: OpenCheck, body: Body, density: float, limit: float, *, certain: bool) -> None:
+def _density(result: OpenCheck, body: Body, density: float, limit: float, severity: Severity) -> None:
     heavy = density > limit
     result.find(
         f"The link {body.heaviest.name} has {body.mass:.4g} kg in a volume that makes {density:.3g} kg/m3 of "
         f"it; {'gold has 19,300' if heavy else 'foam has 30'}, {limit:g} is the limit.",
         "Correct the mass, or the unit of the geometry: "
         + ("it is too heavy or too small." if heavy else "it is too light or too large."),
-        severity=Severity.ERROR if certain else Severity.WARNING,
+        severity=severity,
         link=body.heaviest.name,
         value=density,
         limit=limit,

@@ -191,8 +191,9 @@ def open_meshes(result: OpenCheck, look: MeshContext) -> None:
     blame=Blame.ASSET,
 )
 def inward_faces(result: OpenCheck, look: MeshContext) -> None:
-    """No closed collision mesh is inside out. Edges at which triangles face opposite sides, or with more than two
-    triangles, are counted in a note.
+    """No closed collision mesh is inside out; triangles with a twin that faces the other side make sheets that are seen
+    from both, and have no inside. Edges at which triangles face opposite sides, or with more than two triangles, are
+    counted in a note.
 
     Why it matters: A mesh that is inside out has a negative volume, which MuJoCo refuses; some viewers show it
     hollow.
@@ -203,6 +204,7 @@ def inward_faces(result: OpenCheck, look: MeshContext) -> None:
     result.measured["torn_meshes"] = len(torn)
     for file, quality in look.measured:
         solid = quality.closed and quality.thickness > look.settings.flat * quality.diagonal
+        solid &= quality.twins < quality.faces - quality.degenerate
         if solid and not quality.opposed_edges and quality.volume < 0.0:
             result.find(
                 f"The mesh {file.called} is inside out: its triangles face inward.",

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING
 from kinematify.validation.check import CauseScope, FeedbackRow, check
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.geometry.formatting import (
+    BARELY,
     SLIMMER,
+    UNFELT,
     UNSEEN,
     configuration,
     in_document_order,
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
     from kinematify.validation.geometry.look import JointMotion
 
 
+_CRIPPLED = 0.5
+"""No remedy leaves a joint less of its range."""
 _LIMBS = 2
 """Bodies with more joints between them stand on limbs: two parts of a cabinet have two."""
 
@@ -43,7 +47,8 @@ def through_parent(result: OpenCheck, motion: JointMotion) -> None:
     (geometry.tolerance) before geometry.early of the range is through, to both sides, says that axis, place or type is
     wrong; to the only permitted side, with the other one free, that the direction is. Above geometry.wrong it is an
     error, unless the joint has no limits (a whole turn is none), the two are in each other at rest, or only the
-    collision geometry meets and not what is visible.
+    collision geometry meets and not what is visible: that is a note where engines let the two pass by default, as they
+    do neighbours but for those of the base.
 
     Why it matters: The joint is stuck in every engine, or the part passes through the wall that carries it.
 
@@ -69,7 +74,7 @@ def through_parent(result: OpenCheck, motion: JointMotion) -> None:
                 "The axis or its place is wrong, or the type: move the joint's <origin> onto the hinge or guide and "
                 "align <axis> with it; if the part slides, or turns, write that type."
                 if motion.has_stops
-                else "Give the joint the limits that the contacts show; or correct its axis, place or type.",
+                else "Correct its axis, place or type, or the collision geometry of the two.",
                 severity=None if motion.has_stops else Severity.WARNING,  # without limits a file claims no free range
             )
             return
@@ -105,7 +110,8 @@ def into_others(result: OpenCheck, motion: JointMotion) -> None:
     Remedy: Correct the parent, or end the range before the contact.
     """
     sweep = motion.sweep
-    found = [m for side in sweep.sides for m in side.meetings if m.pair not in sweep.own and m.inside]
+    meetings = [m for side in sweep.sides for m in side.meetings if m.pair not in sweep.own and m.inside]
+    found = [meeting for meeting in meetings if motion.counts(meeting)]
     if not found:
         return
     folding = [meeting for meeting in found if _folds(motion, meeting)]
@@ -165,10 +171,10 @@ def _folds(motion: JointMotion, meeting: Meeting) -> bool:
 )
 def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
     """The range does not end beyond the place where the child meets its parent (by more than geometry.late of the
-    range): a warning, above geometry.wrong of depth an error, unless only the collision geometry meets, or the two are
-    in each other at rest. Where the joint has no limits (a whole turn is none) it is a warning, and a note after
-    geometry.early_turn. A rail may go through a solid carriage as it does at rest. A range below geometry.small_range
-    of the free travel is a note.
+    range): a warning, above geometry.wrong of depth an error, unless only the collision geometry meets (see KV310), or
+    the two are in each other at rest. Where the joint has no limits (a whole turn is none) it is a warning, and a note
+    after geometry.early_turn. A rail may go through a solid carriage, and a contact that is alike over half of the way
+    or more is no stop. A range below geometry.small_range of the free travel is a note.
 
     Why it matters: Controllers drive to the declared end; what they meet before it bends, breaks or explodes.
 
@@ -188,7 +194,7 @@ def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
             meeting,
             f"{motion.joint} is declared to go to {_value(motion, side.declared)}, but its child meets its parent at "
             f"{_value(motion, meeting.first)}: {_words(motion, meeting)}.",
-            f'Write {end}="{meeting.first:.4g}"; if the part should go farther, its axis or its place is wrong.'
+            _shorter(motion, end, meeting.first)
             if motion.has_stops
             else "Nothing to do where software limits the joint; else give it limits, or correct its axis.",
             severity=None if motion.has_stops else Severity.NOTE if motion.late(meeting) else Severity.WARNING,
@@ -276,11 +282,13 @@ def out_of_guide(result: OpenCheck, motion: JointMotion) -> None:
             if guide <= scene.settings.hover * scene.size or way <= scene.settings.guide * guide:
                 continue
             parent, child = motion.look.parent_and_child(connection, {motion.sweep.leader: side.declared})
+            end, held = "upper" if side.sign > 0 else "lower", travel.rest + side.sign * 0.8 * guide
             result.find(
                 f"{motion.joint} slides {child} by {length(way)}, but only {length(guide)} of it stand beside "
                 f"{parent} along the axis: at the end of its range it has left it.",
-                f'Write {"upper" if side.sign > 0 else "lower"}="{travel.rest + side.sign * 0.8 * guide:.4g}" '
-                "(four fifths of its guide), or correct <axis>.",
+                f"{_limit(motion, end, held)} (four fifths of its guide), or correct <axis>."
+                if 0.8 * guide > _CRIPPLED * travel.range
+                else "Check <axis> and <origin>, and whether the guide is modelled.",
                 joint=motion.joint,
                 pair=in_document_order(scene.model, parent, child),
                 q=configuration(scene, {motion.sweep.leader: side.declared}),
@@ -290,6 +298,22 @@ def out_of_guide(result: OpenCheck, motion: JointMotion) -> None:
             )
 
 
+def _limit(motion: JointMotion, end: str, value: float) -> str:
+    """The element to write, with one end of the range changed."""
+    joint = motion.scene.model.joint_by_name[motion.joint]
+    ends = {"lower": joint.lower, "upper": joint.upper, end: value}
+    more = {"effort": joint.effort, "velocity": joint.velocity}
+    given = [f'{name}="{number:.4g}"' for name, number in (ends | more).items() if number is not None]
+    return f"Write <limit {' '.join(given)}/> in the joint {motion.joint}"
+
+
+def _shorter(motion: JointMotion, end: str, value: float) -> str:
+    """What to do where a joint is stopped early: a limit there, unless hardly any range would be left."""
+    if motion.left < _CRIPPLED:
+        return "Correct the joint's axis or place, or the shapes of the two; a limit there would leave little range."
+    return f"{_limit(motion, end, value)}; if the part should go farther, its axis or its place is wrong."
+
+
 def _value(motion: JointMotion, value: float) -> str:
     return joint_value(value, turns=motion.sweep.travel.turns)
 
@@ -297,8 +321,10 @@ def _value(motion: JointMotion, value: float) -> str:
 def _words(motion: JointMotion, meeting: Meeting) -> str:
     """What meets, how deep and where."""
     first, second = motion.look.links_at(meeting.pair, {motion.sweep.leader: meeting.at})
-    deep = "go through each other by" if meeting.passed else "get into each other by"
-    return f"{first} and {second} {deep} {length(meeting.depth)} at {_value(motion, meeting.at)}"
+    place = _value(motion, meeting.at)
+    if meeting.passed:
+        return f"{first} and {second} go through each other on the way to {place}"
+    return f"{first} and {second} get into each other by {length(motion.penetration(meeting))} at {place}"
 
 
 def _meet(
@@ -314,16 +340,20 @@ def _meet(
     seen = meeting.depth if severity is Severity.NOTE else motion.seen(meeting)
     unseen = seen == 0.0
     buried = motion.look.allowance.at_rest(meeting.pair) > motion.look.allowance.tolerance(meeting.pair)
-    wrong = min(meeting.depth, seen) > motion.scene.settings.wrong * motion.scene.size and not buried
+    collides = motion.look.collides(meeting.pair)
+    wrong = min(meeting.depth, seen) > motion.scene.settings.wrong * motion.scene.size and not buried and collides
+    if unseen and not motion.look.felt_by_engines(meeting.pair):
+        severity = Severity.NOTE
+    said = UNSEEN if unseen and motion.look.clear(meeting.pair, {motion.sweep.leader: meeting.at}) else BARELY
     result.find(
-        f"{message} {UNSEEN}" if unseen else message,
+        f"{message} {said}" if unseen else message if collides else f"{message} {UNFELT}",
         SLIMMER if unseen else remedy,
         severity=severity or (Severity.ERROR if wrong else Severity.WARNING),
         blame=Blame.PHYSICS if unseen else None,
         joint=motion.joint,
         pair=motion.look.links_at(meeting.pair, {motion.sweep.leader: meeting.at}),
         q=configuration(motion.scene, {motion.sweep.leader: meeting.at}),
-        value=meeting.depth,
+        value=motion.penetration(meeting),
         limit=motion.look.allowance.tolerance(meeting.pair),
         unit="m",
     )

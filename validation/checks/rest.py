@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.validation.check import FeedbackRow, check
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.geometry.formatting import SLIMMER, UNSEEN, configuration, in_document_order, length
+from kinematify.validation.geometry.formatting import BARELY, SLIMMER, UNSEEN, configuration, in_document_order, length
 
 if TYPE_CHECKING:
     from kinematify.geometry.rest import AtRest, Reason
@@ -28,7 +28,7 @@ def strangers_overlap(result: OpenCheck, look: GeometryContext) -> None:
     """Of every pair of bodies that no joint joins (links held together by fixed joints are one body), the deepest
     point of one in the other is measured in the exact meshes: above geometry.rest_overlap of the model's size it is a
     warning, above geometry.wrong an error if the visible meshes overlap as much. A body inside another one counts as
-    overlap.
+    overlap; a body without collision geometry does not, for nothing pushes it.
 
     Why it matters: Engines push overlapping bodies apart in the first step, with whatever force it takes.
 
@@ -36,7 +36,7 @@ def strangers_overlap(result: OpenCheck, look: GeometryContext) -> None:
     """
     limit = look.scene.settings.rest_overlap * look.scene.size
     for rest in look.allowance.pairs.values():
-        if not rest.joined and rest.depth > limit:
+        if not rest.joined and rest.depth > limit and look.collides(rest.pair):
             _overlap(result, look, rest, limit, f"{_how(look, rest)} at rest, and no joint joins them.")
 
 
@@ -59,7 +59,7 @@ def neighbours_overlap(result: OpenCheck, look: GeometryContext) -> None:
     """
     for rest in look.allowance.pairs.values():
         limit = look.scene.settings.rest_joined * min(solid.size for solid in look.overlap.solids(rest.pair))
-        if rest.joined and rest.depth > limit:
+        if rest.joined and rest.depth > limit and look.collides(rest.pair):
             joint = look.scene.connection_of[rest.pair].joints[-1]
             message = f"{_how(look, rest)} at rest; the joint {joint} joins them."
             _overlap(result, look, rest, limit, message, joint=joint)
@@ -67,9 +67,10 @@ def neighbours_overlap(result: OpenCheck, look: GeometryContext) -> None:
 
 def _how(look: GeometryContext, rest: AtRest) -> str:
     first, second = look.links_at(rest.pair, {})
+    depth = min(rest.depth, look.thickness(rest.pair))
     if rest.contained:
-        return f"One of {first} and {second} is inside the other one, {length(rest.depth)} deep,"
-    return f"{first} and {second} overlap by {length(rest.depth)}"
+        return f"One of {first} and {second} is inside the other one, {length(depth)} deep,"
+    return f"{first} and {second} overlap by {length(depth)}"
 
 
 def _overlap(
@@ -78,8 +79,9 @@ def _overlap(
     seen = rest.depth if look.visible is None else look.visible.allowance.at_rest(rest.pair)
     unseen = seen <= limit
     wrong = joint is None and min(rest.depth, seen) > look.scene.settings.wrong * look.scene.size
+    said = UNSEEN if look.clear(rest.pair, {}) else BARELY
     result.find(
-        f"{message} {UNSEEN}" if unseen else message,
+        f"{message} {said}" if unseen else message,
         SLIMMER
         if unseen
         else "Correct the mesh or its <origin>, or cut the parts so that they only touch; the overlap is tolerated "
@@ -89,7 +91,7 @@ def _overlap(
         joint=joint,
         pair=look.links_at(rest.pair, {}),
         q=configuration(look.scene, {}),
-        value=rest.depth,
+        value=min(rest.depth, look.thickness(rest.pair)),
         limit=limit,
         unit="m",
     )
@@ -143,7 +145,7 @@ def hovering(result: OpenCheck, look: GeometryContext) -> None:
 def tolerated(result: OpenCheck, look: GeometryContext) -> None:
     """Nothing: it lists the pairs whose contact other checks do not count (joined and in contact at rest, in contact
     at rest, in contact in more than geometry.always of all configurations, fixed together), with the overlap that
-    each may reach, and the links that are judged by their visual geometry.
+    each may reach, and the links without collision geometry.
 
     Why it matters: A check that ignores pairs silently can be made to pass by ignoring more of them.
 
@@ -173,9 +175,9 @@ def tolerated(result: OpenCheck, look: GeometryContext) -> None:
         )
     if scene.stand_ins:
         result.find(
-            f"{len(scene.stand_ins)} links have no collision geometry; their visual geometry is judged instead: "
+            f"{len(scene.stand_ins)} links have no collision geometry: "
             + _listed(list(scene.stand_ins), scene.settings.listed)
-            + ".",
+            + ". They are held against others by what is visible only.",
             "Write <collision> elements; engines see nothing there.",
         )
     result.measured["bodies"] = len(scene.bodies)

@@ -16,6 +16,7 @@ from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.fit import fit_edge, score_line
 from kinematify.joints.choice.edges import edge_qualities
 from kinematify.joints.measure.pins import find_pins
+from kinematify.robot.robot import forward_kinematics, rest_configuration
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from kinematify.geometry.surface import PartSurface
     from kinematify.joints.bearings.line import Line
     from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
+    from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
 
 Pair = tuple[int, int]
@@ -41,6 +43,8 @@ class Bodies:
     """The declared joints between the bodies, world frame at rest."""
     links: tuple[str, ...]
     """First link with geometry of every body."""
+    joint_frames: Mapping[str, FloatArray]
+    """Frame of the axis of each joint, world frame at rest, shape (4, 4)."""
     tree: KinematicTree
     """Which body carries which, as the file says; body i is part i of the assembly."""
     surfaces: Sequence[PartSurface]
@@ -81,6 +85,7 @@ def read_bodies(robot: Robot, config: Config, *, seed: int) -> Bodies | None:
     if not any(link.has_geometry for link in robot.links):
         return None
     erased = erase(robot, shuffle=False)
+    poses = forward_kinematics(robot, rest_configuration(robot))
     if len(erased.parts) < 2 or -1 in (joint.parent for joint in erased.truth.joints):
         return None
     most = config.assembly.max_part_faces
@@ -98,6 +103,7 @@ def read_bodies(robot: Robot, config: Config, *, seed: int) -> Bodies | None:
         links=tuple(
             next(link for link in links if robot.link_by_name[link].has_geometry) for links in erased.truth.part_links
         ),
+        joint_frames={joint.name: poses[joint.parent] @ joint.T_parent_child for joint in robot.joints},
         tree=KinematicTree(parents=erased.truth.parents),
         surfaces=surfaces,
         graph=graph,

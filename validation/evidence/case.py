@@ -56,6 +56,19 @@ class JointCase:
         return panel and not self.measures.slides and not self.linkage
 
     @property
+    def instead(self) -> str:
+        """The axis to write for the line that fits best, and where that line runs, in the joint's own frame."""
+        joint, line = self.measures.joint.source, self.measures.line
+        T = self.bodies.joint_frames[joint]
+        axis = line.best_axis @ T[:3, :3]
+        remedy = f'The line that fits best has <axis xyz="{_written(axis)}"/> in the joint {joint}'
+        if self.measures.slides:
+            return f"{remedy}."
+        pivot = (line.best_pivot - T[:3, 3]) @ T[:3, :3]
+        foot = pivot - (pivot @ axis) * axis
+        return f"{remedy}, and runs through {_written(foot)} of the joint's frame."
+
+    @property
     def parent(self) -> str:
         """Name of the body that carries the joint."""
         return self.bodies.links[self.measures.joint.parent]
@@ -195,6 +208,11 @@ class Alternative:
     """A point on the axis, world frame at rest [m], shape (3,)."""
     score: float
     """By how much it leads over the declared joint."""
+
+
+def _written(vector: FloatArray) -> str:
+    """Numbers as a file has them."""
+    return " ".join(f"{value + 0.0:.4g}" for value in np.round(vector, 6))
 
 
 def better_joint(measures: JointMeasures, doubts: Collection[str]) -> Alternative | None:

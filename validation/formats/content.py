@@ -233,9 +233,12 @@ def reasons(report: ValidationReport, statuses: Collection[Status]) -> list[str]
     for check in report.checks:
         if check.status in statuses or check.unfinished:
             grouped.setdefault((check.status, check.reason or "no reason given"), []).append(check.check)
-    return [
-        f"{status.value} ({', '.join(dict.fromkeys(checks))}): {reason}" for (status, reason), checks in grouped.items()
-    ]
+    return [f"{status.value} ({_listed(checks)}): {reason}" for (status, reason), checks in grouped.items()]
+
+
+def _listed(checks: Sequence[str]) -> str:
+    """Ids of checks, or how many they are where nobody would read them."""
+    return ", ".join(dict.fromkeys(checks)) if len(checks) <= PLACES else f"{len(checks)} checks"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -274,7 +277,7 @@ def block_of(group: Sequence[FindingGroup]) -> FindingBlock:
         blames=f"(blames {first.blame.value})",
         facts="; ".join(fact for fact in _facts(first) if fact),
         message=first.message,
-        also=f"Also: {_others(group)}." if len(group) > 1 else "",
+        also=f"Also: {others}." if (others := _others(group)) else "",
         remedy=f"Remedy: {first.remedy}",
         follows=f"Follows from it: {follows}" if follows else "",
         consequences=consequences,
@@ -283,18 +286,20 @@ def block_of(group: Sequence[FindingGroup]) -> FindingBlock:
     )
 
 
-def blocks(told: Iterable[FindingGroup], *, together: int = 2) -> list[FindingBlock]:
+def blocks(told: Iterable[FindingGroup], *, together: int = 2, alike: bool = True) -> list[FindingBlock]:
     """Return a block for all findings that differ in names and numbers only, in the order of the first of each.
 
     Args:
         told: The findings.
         together: From so many on they share a block; fewer have one each.
+        alike: False: all of one check, engine and severity that have a place share a block, whatever their words.
     """
     grouped: dict[tuple[object, ...], list[FindingGroup]] = {}
     for item in told:
         finding = item.finding
         key = (finding.check, finding.engine, finding.severity, finding.blame, finding.suppressed)
-        grouped.setdefault((*key, _pattern(finding)), []).append(item)
+        words = _pattern(finding) if alike or not where(finding) else ""
+        grouped.setdefault((*key, words), []).append(item)
     apart = ([group] if len(group) >= together else [[item] for item in group] for group in grouped.values())
     return [block_of(group) for groups in apart for group in groups]
 

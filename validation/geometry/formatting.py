@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 
 UNSEEN = "Only the collision geometry does so; the visible surfaces stay clear."
+BARELY = "Only the collision geometry does so that deep; the visible surfaces do not get so far into each other."
+UNFELT = "What is visible does so; one of the two has no collision geometry, and no engine stops them."
 SLIMMER = "Make the collision geometry of the two links follow the visible one more closely; the joint may be right."
 
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from kinematify.geometry.scene import Pair, Scene
     from kinematify.geometry.sweep import JointSweep, Sweeper
     from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import Shape
 
 _THICKNESS = 1e-4  # of the model's size: no hull of a plane
 
@@ -122,9 +123,14 @@ class HullView:
     def _seen_by_engines(self, pair: Pair) -> bool:
         """Engines leave out contacts of parent and child, except with a base that is fixed to the world.
 
-        Of a body that the file declares concave they collide the surface, those that heed it.
+        What has no collision geometry meets nothing. Of a body that the file declares concave they collide the surface,
+        those that follow it.
         """
-        links = [name for index in pair for name in self._scene.bodies[index].links]
-        if any(shape.concave for name in links for shape in self._scene.model.link_by_name[name].collisions):
+        shapes = [self._collisions(index) for index in pair]
+        if not all(shapes) or any(shape.concave for some in shapes for shape in some):
             return False
         return pair not in self._scene.connection_of or pair[0] == 0
+
+    def _collisions(self, body: int) -> list[Shape]:
+        links = self._scene.model.link_by_name
+        return [shape for name in self._scene.bodies[body].links for shape in links[name].collisions]

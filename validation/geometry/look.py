@@ -14,7 +14,7 @@ import numpy as np
 
 from kinematify.geometry.overlap import OverlapQueries, boxes_meet
 from kinematify.geometry.rest import DepthAllowance, Reason
-from kinematify.geometry.scene import read_scene, relative, simplified, transformed, visible_shapes
+from kinematify.geometry.scene import inverse, read_scene, relative, simplified, transformed, visible_shapes
 from kinematify.geometry.sweep import Sweeper
 from kinematify.geometry.together import joint_pairs, looked_at, random_rows
 from kinematify.robot.joint_type import JointType
@@ -32,6 +32,10 @@ if TYPE_CHECKING:
     from kinematify.geometry.together import JointPair, JudgedConfigurations
     from kinematify.robot.arrays import FloatArray
 
+_ALIKE = 0.8
+"""Share of the points in contact that stay the same where one part slides along another one."""
+_ALONG = 9
+"""Places on the way at which a contact is looked at again."""
 _NEARLY = 0.01
 """What ranges of +-3.14 leave out of half a turn [rad]."""
 
@@ -71,6 +75,41 @@ class GeometryContext:
         scene = read_scene(self.scene.model, self.scene.settings, visible_shapes)
         same = [body.group for body in scene.bodies] == [body.group for body in self.scene.bodies]
         return GeometryContext(scene, compare_visible=False) if same else None
+
+    @cached_property
+    def bare(self) -> frozenset[int]:
+        """Bodies without collision geometry in a model that has some: they are judged by what is visible of them."""
+        links = self.scene.model.link_by_name
+        solid = [any(links[name].collisions for name in body.links) for body in self.scene.bodies]
+        return frozenset(index for index, collides in enumerate(solid) if not collides) if any(solid) else frozenset()
+
+    def collides(self, pair: Pair) -> bool:
+        """Whether both bodies have collision geometry, or no body of the model has any."""
+        return not self.bare & set(pair)
+
+    def felt_by_engines(self, pair: Pair) -> bool:
+        """Whether engines collide two bodies by default: neighbours pass each other, but for those of the base."""
+        return pair not in self.scene.connection_of or self.scene.bodies[pair[0]].group == 0
+
+    def thickness(self, pair: Pair) -> float:
+        """Of the thinner of two bodies [m]: no penetration is deeper."""
+        return min(_thickness(solid) for solid in self.overlap.solids(pair))
+
+    def clear(self, pair: Pair, values: Mapping[int, float]) -> bool:
+        """Whether the visible surfaces of two bodies do not meet, both being visible.
+
+        Args:
+            pair: The bodies.
+            values: Leaders that are not at rest [rad or m].
+        """
+        visible, links = self.visible, self.scene.model.link_by_name
+        if visible is None or not all(any(links[n].visuals for n in self.scene.bodies[k].links) for k in pair):
+            return False
+        row = self.scene.mechanism.rest.copy()
+        row[list(values)] = list(values.values())
+        T = relative(visible.scene.poses(row[None]), pair)
+        inside = visible.overlap.may_contain(pair, T)[0] and visible.overlap.depth(pair, T)[0] > 0.0
+        return not (inside or visible.overlap.collide(pair, T)[0])
 
     def sweep(self, leader: int) -> JointSweep:
         """Sweep of one joint."""
@@ -208,6 +247,13 @@ def allowed_pairs(scene: Scene, allowance: DepthAllowance, random: JudgedConfigu
     return reasons
 
 
+def _thickness(solid: Solid) -> float:
+    """Extent of a solid along its thinnest direction [m]: of its box, or of its points where they are askew in it."""
+    centred = solid.points - solid.points.mean(axis=0)
+    thinnest = np.linalg.eigh(centred.T @ centred)[1][:, 0]
+    return min(float((solid.high - solid.low).min()), float(np.ptp(centred @ thinnest)))
+
+
 def _runs_through_box(solid: Solid, point: FloatArray, axis: FloatArray) -> bool:
     """Whether a line runs through the box of a solid, body frame."""
     slope = np.where(axis == 0.0, 1e-12, axis)
@@ -258,13 +304,69 @@ class JointMotion:
 
     @cached_property
     def blocked(self) -> dict[float, Meeting]:
-        """For each side the first own meeting, if one gets too deep within the declared range."""
+        """For each side the first own meeting, if one gets too deep within the declared range and stops the joint."""
         firsts = {side.sign: self.own_first(side) for side in self.sweep.sides}
         return {sign: meeting for sign, meeting in firsts.items() if meeting is not None and meeting.inside}
 
     def own_first(self, side: SweepSide) -> Meeting | None:
         """Where the child first meets its parent on a side, within the declared range or beyond."""
-        return next((meeting for meeting in side.meetings if meeting.pair in self.sweep.own), None)
+        return next((m for m in side.meetings if m.pair in self.sweep.own and self.counts(m)), None)
+
+    def counts(self, meeting: Meeting) -> bool:
+        """Whether a meeting counts: a contact that is alike all along is no stop, and what does not collide is seen.
+
+        Where the file gives a body no collision geometry, its visible surfaces must meet the other's visible ones.
+        """
+        if not meeting.inside:
+            return self.look.collides(meeting.pair)
+        return (self.look.collides(meeting.pair) or self.seen(meeting) > 0.0) and not self._alike[
+            meeting.pair, meeting.at
+        ]
+
+    @cached_property
+    def _alike(self) -> dict[tuple[Pair, float], bool]:
+        """For each meeting within the declared range, keyed by its pair and place, whether it is alike all along."""
+        return {
+            (meeting.pair, meeting.at): self._is_alike(meeting, side)
+            for side in self.sweep.sides
+            for meeting in side.meetings
+            if meeting.inside
+        }
+
+    def _is_alike(self, meeting: Meeting, side: SweepSide) -> bool:
+        """Whether the same points of what moves are in the other body from soon after the onset to the declared end.
+
+        A carriage on a rail is so; what a stop meets gets deeper, and what goes through a wall gets there with others.
+        """
+        travel, pair = self.sweep.travel, meeting.pair
+        if abs(side.declared - meeting.first) < 0.5 * abs(side.declared - travel.rest):
+            return False
+        rows = self.look.sweeper.rows(self.sweep.leader, np.linspace(meeting.first, side.declared, _ALONG)[1:])
+        T = relative(self.scene.poses(rows), pair)
+        fixed, moving = self.look.overlap.solids(pair)
+        if not self.scene.mechanism.moved[self.sweep.leader][self.scene.bodies[pair[1]].group]:
+            fixed, moving, T = moving, fixed, inverse(T)
+        if not len(fixed.shells.closed):
+            return False
+        points = moving.points @ T[:, :3, :3].transpose(0, 2, 1) + T[:, None, :3, 3]
+        within = fixed.inside(points.reshape(-1, 3)).reshape(points.shape[:2]) > 0.0
+        always, ever = within.all(axis=0), within.any(axis=0)
+        return bool(always.any() and always.sum() >= _ALIKE * ever.sum())
+
+    def penetration(self, meeting: Meeting) -> float:
+        """How deep two bodies are in each other [m]: never more than the thinner one, nor than a slide has moved."""
+        deep = min(meeting.depth, self.look.thickness(meeting.pair))
+        moved = abs(meeting.at - meeting.first)
+        return deep if self.sweep.travel.turns or moved == 0.0 else min(deep, moved)
+
+    @property
+    def left(self) -> float:
+        """Share of the declared range that is free around rest."""
+        low, high = self.sweep.travel.lower, self.sweep.travel.upper
+        firsts = [meeting.first for meeting in self.blocked.values()]
+        low = max([low, *(value for value in firsts if value <= self.sweep.travel.rest)])
+        high = min([high, *(value for value in firsts if value >= self.sweep.travel.rest)])
+        return max(high - low, 0.0) / self.sweep.travel.range if self.sweep.travel.range else 0.0
 
     def free_way(self, side: SweepSide) -> float:
         """How far the child goes to a side before it meets its parent [rad or m]."""

@@ -23,7 +23,8 @@ AT_REST, IN_MOTION, TOGETHER = checks_of("KV30"), checks_of("KV31", "KV32"), che
 
 def run(request: StageRequest, recorder: Recorder) -> None:
     """Look at the model at rest and in motion; see `kinematify.validation.stage`."""
-    from kinematify.geometry.scene import read_scene
+    from kinematify.geometry.overlap import OverlapQueries
+    from kinematify.geometry.scene import colliding_shapes, read_scene
     from kinematify.simulation.configurations import write_poses
     from kinematify.validation.engine_results import EXACT
     from kinematify.validation.geometry.exact_contacts import exact_contacts
@@ -33,7 +34,8 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     every = (*AT_REST, *IN_MOTION, *TOGETHER)
     if not recorder.wants(*(entry.id for entry in every)):
         return
-    scene = read_scene(model_of(request), request.settings.geometry)
+    model = model_of(request)
+    scene = read_scene(model, request.settings.geometry, colliding_shapes)
     if len(scene.bodies) < 2:
         recorder.skip(every, "fewer than two bodies have geometry")
         return
@@ -51,7 +53,10 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     for entry in TOGETHER:
         recorder.run(entry, look)
     if recorder.wants("KV604") and look.in_time():
-        write_poses(request.work, EXACT, exact_contacts(scene, look.overlap, request.settings))
+        # The engines are given copies in which links without collision geometry collide by their visual one.
+        as_prepared = read_scene(model, request.settings.geometry) if scene.stand_ins else scene
+        overlap = OverlapQueries(as_prepared) if scene.stand_ins else look.overlap
+        write_poses(request.work, EXACT, exact_contacts(as_prepared, overlap, request.settings))
 
 
 def _tell_motion(entry: Check, look: GeometryContext, recorder: Recorder) -> None:

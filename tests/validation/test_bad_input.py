@@ -1,0 +1,95 @@
+"""What published files have that nobody expects: judged or refused in a clear sentence, never a crash."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import trimesh
+
+from kinematify.cli.verdict import describe
+from kinematify.validation.finding import Status
+from kinematify.validation.run import validate
+
+LIMIT = '<limit lower="0" upper="0.05" effort="10" velocity="1"/>'
+BOX = '<box size="0.1 0.1 0.1"/>'
+INERTIAL = '<inertial><mass value="1"/><inertia ixx="2e-3" iyy="2e-3" izz="2e-3" ixy="0" ixz="0" iyz="0"/></inertial>'
+
+
+def robot(*, limit: str = LIMIT, shape: str = BOX, base: str = "base", part: str = "part") -> str:
+    """A block that slides on another one."""
+
+    def link(name: str, shape: str) -> str:
+        shapes = "".join(f"<{tag}><geometry>{shape}</geometry></{tag}>" for tag in ("visual", "collision"))
+        return f'<link name="{name}">{INERTIAL}{shapes}</link>\n'
+
+    return (
+        f'<?xml version="1.0" encoding="utf-8"?>\n<robot name="r">\n{link(base, BOX)}{link(part, shape)}'
+        f'<joint name="slide" type="prismatic">\n<parent link="{base}"/><child link="{part}"/>'
+        f'<origin xyz="0 0 0.1"/><axis xyz="1 0 0"/>{limit}</joint>\n</robot>\n'
+    )
+
+
+def chain(links: int) -> str:
+    bodies = "".join(f'<link name="l{k}">{INERTIAL}</link>\n' for k in range(links))
+    joints = "".join(
+        f'<joint name="j{k}" type="revolute"><parent link="l{k}"/><child link="l{k + 1}"/><axis xyz="0 0 1"/>'
+        f"{LIMIT}</joint>\n"
+        for k in range(links - 1)
+    )
+    return f'<robot name="r">\n{bodies}{joints}</robot>'
+
+
+def mesh(name: str) -> str:
+    return f'<mesh filename="{name}"/>'
+
+
+CASES = {
+    "two limits": (robot(limit=LIMIT + LIMIT.replace("0.05", "0.04")), "KV105", "has 2 <limit> elements"),
+    "no velocity": (robot(limit=LIMIT.replace('velocity="1"', 'velocity="0"')), "KV223", "velocity=0"),
+    "a path of Windows": (robot(shape=mesh("C:\\meshes\\part.stl")), "KV141", "part.stl"),
+    "a mesh without faces": (robot(shape=mesh("points.obj")), "KV150", "no triangle"),
+    "2,000 links": (chain(2000), "KV103", "2000 links"),
+    "a package that is nowhere": (robot(shape=mesh("package://gone/part.stl")), "KV141", "package://gone/part.stl"),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_what_is_odd_is_told_in_one_sentence_at_its_line(case: str, tmp_path: Path) -> None:
+    text, check, words = CASES[case]
+    (tmp_path / "points.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n")
+    path = tmp_path / "model.urdf"
+    path.write_text(text, encoding="utf-8")
+    report = validate(path, engines=(), workers=1)
+    (finding,) = [item for item in report.findings if item.check == check and words in item.message]
+    assert finding.line is not None or check == "KV103"
+    assert not [item.reason for item in report.checks if "Error" in (item.reason or "")], "no check fell over"
+    assert len(describe(report).splitlines()) <= 30
+
+
+def test_checks_that_a_missing_mesh_blocks_are_counted_in_a_line(tmp_path: Path) -> None:
+    path = tmp_path / "model.urdf"
+    path.write_text(robot(shape=mesh("gone.obj")))
+    report = validate(path, workers=1)
+    blocked = sum(item.status is Status.BLOCKED for item in report.checks)
+    (line,) = [line for line in describe(report).splitlines() if line.startswith("  blocked (")]
+    assert line.startswith(f"  blocked ({blocked} checks): ")
+
+
+def test_names_and_meshes_in_any_script_are_kept(tmp_path: Path) -> None:
+    trimesh.creation.box((0.1, 0.1, 0.1)).export(tmp_path / "würfel.obj")
+    path = tmp_path / "möbel.urdf"
+    path.write_text(robot(base="gehäuse", part="抽屉", shape=mesh("würfel.obj")), encoding="utf-8")
+    report = validate(path, engines=("pybullet",), selected=("KV8*", "KV801", "KV804", "KV201"), workers=1)
+    assert report.verdict == "pass"
+    assert "PyBullet 1 of 1 joints move" in report.as_loaded
+
+
+def test_findings_of_geometry_have_the_line_of_their_joint_or_link(tmp_path: Path) -> None:
+    path = tmp_path / "model.urdf"
+    path.write_text(robot().replace('xyz="0 0 0.1"', 'xyz="0 0 0.4"'))
+    report = validate(path, engines=(), selected=("KV303", "KV301"), workers=1)
+    (finding,) = [item for item in report.findings if item.check == "KV303"]
+    lines = path.read_text().splitlines()
+    assert finding.line is not None
+    assert 'joint name="slide"' in lines[finding.line - 1]
