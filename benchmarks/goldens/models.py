@@ -76,7 +76,8 @@ class Generated:
 
 def _of_sets(chosen: dict[str, tuple[str, ...]]) -> tuple[dict[str, BenchObject], dict[str, str]]:
     """Objects of data sets by set and name, all where none is named, and why a set is absent."""
-    found, absent = {}, {}
+    found: dict[str, BenchObject] = {}
+    absent: dict[str, str] = {}
     for data, names in chosen.items():
         try:
             objects = find_objects(data)
