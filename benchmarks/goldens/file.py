@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import platform
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -18,7 +18,7 @@ from kinematify.versions import package_versions
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-FORMAT = 1
+FORMAT: Final = 1
 """Raised where goldens of an earlier version of this command cannot be compared, whatever the package does."""
 _PACKAGES = (
     "click", "coacd", "drake", "embreex", "gymnasium", "libigl", "libpinocchio", "lxml", "manifold3d", "mujoco",
