@@ -54,7 +54,7 @@ from benchmarks.fit.trees import (
     write_scorer,
 )
 from kinematify import __version__
-from kinematify.evaluation.record import table
+from kinematify.evaluation.record import git_commit, table
 from kinematify.joints.choice.edges import EDGE_WEIGHTS
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, WEIGHTS
 
@@ -133,6 +133,7 @@ def fit_and_judge(
         "kinematify": __version__,
         "lightgbm": _version(),
         "date": datetime.now(UTC).date().isoformat(),
+        "commit": git_commit()[0],
         **drawn,
         "objects": len({(example.origin, example.object) for example in fitted}),
         "joints": len(fitted),
@@ -298,13 +299,14 @@ def as_markdown(report: dict[str, Any]) -> str:
     facts = report["provenance"]
     introduction = (
         f"Fitted to {facts['joints']} joints of {facts['objects']} objects by `kinematify fit` (seed {facts['seed']}, "
-        f"LightGBM {facts['lightgbm']}, {facts['date']}). The true tree is given. Left out by category: trees whose "
+        f"LightGBM {facts['lightgbm']}). The true tree is given. Left out by category: trees whose "
         "fit had no object and no family of the category; by source: none of the same data set, package or "
         "generator. Shipped weights: what ships, which has seen what it was fitted to. Errors: no right joint was "
         "proposed; type; direction given the type; line beside the right one, which counts as right in the columns "
         "before."
     )
-    blocks = ["# The choice of joints", introduction, _choice_table(report["sets"])]
+    made = f"- date: {facts['date']}, commit {facts['commit']}"
+    blocks = ["# The choice of joints", made, introduction, _choice_table(report["sets"])]
     found = report["calibration"]
     if found:
         pairs = zip(found["confidence"], found["right"], strict=True)

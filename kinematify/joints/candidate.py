@@ -59,7 +59,7 @@ class JointEstimate:
     upper: float
     """Upper limit [rad if it turns, m if it slides]; 0 for fixed, +inf for continuous."""
     confidence: float
-    """Between 0 and 1; how likely parent, type and axis are right (`results/calibration.md`)."""
+    """Between 0 and 1; how likely parent, type and axis are right (calibration: `results/choice.md`)."""
     alternatives: tuple[JointCandidate, ...] = ()
     """Every candidate that was kept, best first, the chosen one included."""
     evidence: Mapping[str, float] = field(default_factory=dict)
