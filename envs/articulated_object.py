@@ -18,12 +18,12 @@ from kinematify.config.validation import load_settings
 from kinematify.envs.bundled import DEFAULT, FAMILY_PREFIX, PREFIX, find_bundled, write_bundled
 from kinematify.envs.settings import load_settings as load_env_settings
 from kinematify.errors import InputError
-from kinematify.formats.fix import fix_urdf
 from kinematify.geometry.scene import read_scene, transformed
 from kinematify.manipulation.grasp import moved_bodies, search_grasps
 from kinematify.model.collision import collides_as_it_is
 from kinematify.model.masses import prepared_inertials
 from kinematify.model.output import MODEL_FILE
+from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rigid_groups
 
@@ -188,14 +188,20 @@ def _read(source: str, folder: Path) -> ArticulatedObject:
 def loadable(urdf: Path, folder: Path) -> Path:
     """Return a file that engines load as it stands: the given one where its pieces are convex and its links weigh.
 
-    Others are mended into the folder, as `kinematify fix` does.
+    Others are written into the folder as `kinematify fix --all` does, with friction and damping for joints without.
     """
-    robot, settings = read_robot(urdf), load_settings()
+    robot, settings, config = read_robot(urdf), load_settings(), load_config()
     inertials = prepared_inertials(robot, settings.prepare)
     weighed = not any(inertials[link.name].mass_added for link in robot.links if link.has_geometry)
     if weighed and collides_as_it_is(robot):
         return urdf
-    return fix_urdf(urdf, folder / f"{urdf.stem}_fixed.urdf", load_config(), settings).path
+    editor = UrdfEditor(urdf, folder / f"{urdf.stem}_fixed.urdf")
+    solid = [link.name for link in robot.links if link.has_geometry]
+    editor.carve(robot, frozenset(solid), config, settings)
+    editor.weigh(robot, solid, settings.prepare)
+    weighed_links = tuple(replace(link, inertial=inertials[link.name]) for link in robot.links)
+    editor.rub(replace(robot, links=weighed_links), config.dynamics)
+    return editor.write()
 
 
 def urdf_of(source: str) -> Path:

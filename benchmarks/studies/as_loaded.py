@@ -33,7 +33,6 @@ from kinematify.evaluation.datasets import CONDITIONS, find_objects
 from kinematify.evaluation.job import erased_item, shown_parts
 from kinematify.evaluation.metrics import score_blueprint
 from kinematify.evaluation.record import grouped, table
-from kinematify.formats.fix import fix_urdf
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
@@ -43,6 +42,7 @@ from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.pipeline import infer
 from kinematify.pipeline.generate import true_model
+from kinematify.refinement.fix import fix_urdf
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.checks import checks_of
 from kinematify.validation.finding import Severity, Status

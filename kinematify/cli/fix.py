@@ -1,39 +1,114 @@
-"""`kinematify fix`: a URDF that engines simulate as they read it."""
+"""`kinematify fix`: what `validate` finds in a URDF, repaired where the repair is certain."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
+from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.options import examples, package_dirs_option
+from kinematify.cli.progress import progress_reporter
+
+if TYPE_CHECKING:
+    from kinematify.refinement.fix import Fix, Look
 
 
 @click.command(
     "fix",
-    short_help="URDF -> the same URDF with collision geometry that leaves its joints free.",
+    short_help="URDF -> the same URDF, repaired where validate finds something.",
     epilog=examples(
         "kinematify fix robot.urdf -o robot_fixed.urdf",
         "kinematify fix cabinet/model.urdf -o cabinet/fixed.urdf --package-dir packages",
+        "kinematify fix door.urdf -o out/door.urdf --kinematics",
+        "kinematify fix robot.urdf -o fixed.urdf --json - > changes.json",
     ),
 )
 @click.argument("model", type=click.Path(path_type=Path))
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), metavar="FILE", help="File to write.")
+@click.option(
+    "--all",
+    "everything",
+    is_flag=True,
+    help="Give every link collision pieces, and a mass where it has no usable one, with a finding or without.",
+)
+@click.option(
+    "--kinematics",
+    is_flag=True,
+    help="Change joints too: swapped limits, limits beyond a contact, a zero axis, an axis or place that the parts "
+    "show. Each change is shown as a diff.",
+)
 @package_dirs_option
-def command(*, model: Path, out: Path, package_dirs: tuple[Path, ...]) -> None:
-    """Write the URDF MODEL again so that engines can simulate it as it is loaded.
+@json_option
+def command(
+    *,
+    model: Path,
+    out: Path,
+    everything: bool,
+    kinematics: bool,
+    package_dirs: tuple[Path, ...],
+    json_to: str | None,
+) -> int:
+    """Write the URDF MODEL again, with what `validate` finds in it repaired as far as the repair is certain.
 
-    Collision geometry becomes boxes and convex pieces, carved by the motion of every joint with a clearance; links
-    without a usable mass get that of their geometry, and joints without friction and damping get both. Nothing else
-    changes; comments and order stay. Where the surfaces themselves block a joint, the pieces do too, and it is said.
+    Links that jam or overlap by their collision geometry alone get boxes and convex pieces, carved by the motion;
+    a mass or inertia that no engine can use becomes that of the geometry; of repeated elements the first stays. Mesh
+    paths hold from the folder of the new file, in MuJoCo and PyBullet. Nothing else changes: no friction, no damping,
+    no mass where there was none, no link or joint without a finding; comments and order stay. What is not repaired is
+    listed with the reason.
+
+    The result is validated and loaded raw again. Ends with 0, with 1 if an error stays or an engine that opens MODEL
+    does not open the result, with 2 if MODEL cannot be used.
     """
+    from kinematify.validation.isolation import load_imports
+
+    load_imports()  # before anything loads NumPy
     from kinematify.config import load_config
     from kinematify.config.validation import load_settings
-    from kinematify.formats.fix import fix_urdf
+    from kinematify.refinement.fix import fix_urdf
 
-    done = fix_urdf(model, out, load_config(), load_settings(), package_dirs=package_dirs)
+    with progress_reporter() as progress:
+        done = fix_urdf(
+            model,
+            out,
+            load_config(),
+            load_settings(),
+            package_dirs=package_dirs,
+            everything=everything,
+            kinematics=kinematics,
+            progress=progress,
+        )
+    if json_to is not None:
+        write_answer(done.as_json(), json_to)
+    if json_to != "-":
+        _say(done)
+    return done.exit_status
+
+
+def _say(done: Fix) -> None:
     click.echo(f"Wrote {done.path}")
-    for sentence in done.changes:
+    for sentence in done.changes or (() if done.diffs else ("nothing is changed",)):
         click.echo(f"  {sentence}")
+    for diff in done.diffs:
+        click.echo(f"  {diff.title}")
+        click.echo("\n".join(f"    {line}" for line in diff.lines.splitlines()))
     for sentence in done.left:
-        click.echo(f"  left: {sentence}")
+        click.echo(f"  {sentence}")
+    click.echo(f"before: {_verdict(done.before)}")
+    click.echo(f"after:  {_verdict(done.after)}")
+    for engine, (was, now) in done.fewer.items():
+        click.echo(f"{engine}: fewer joints move in the result than before, {now} instead of {was}")
+    for engine in done.lost:
+        click.echo(f"{engine} opens {done.path.name} no more: {done.after.refusals[engine]}")
+
+
+def _verdict(look: Look) -> str:
+    from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
+
+    opened = [
+        f"{ENGINES[name].title} {'does not open it' if name in look.refusals else 'opens it'}"
+        for name in DEFAULT_ENGINES
+    ]
+    found = f"{look.report.verdict.upper()}, errors {look.errors}, warnings {look.warnings}"
+    return f"{found}; {', '.join(opened)}" + (f"; {look.report.as_loaded}" if look.report.as_loaded else "")

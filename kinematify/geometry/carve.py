@@ -181,6 +181,7 @@ def carved(
     clearance: float,
     thinnest: float,
     most: int,
+    kept: frozenset[int] = frozenset(),
 ) -> Carved:
     """Cut pieces back until no sweep brings two of them nearer than the clearance where the bodies are free to move.
 
@@ -193,6 +194,7 @@ def carved(
         clearance: Distance that is kept between what moves and what does not [m].
         thinnest: What would be left thinner than this is dropped [m].
         most: Pieces of a body at most; those are dropped that stand for least of its surface.
+        kept: Bodies that stay as they are: only what meets them is cut.
     """
     alive = [_marked(index, *of_body) for index, of_body in enumerate(zip(bodies, surfaces, strict=True))]
     volumes = [sum(item.piece.volume for item in group) for group in alive]
@@ -204,10 +206,10 @@ def carved(
     jams: list[tuple[int, int, int]] = []
     for number, sweep in enumerate(sweeps):
         free = partial(free_end, number)
-        clearing = _Clearing(alive, volumes, extents, sweep, free, clearance=clearance, thinnest=thinnest)
+        clearing = _Clearing(alive, volumes, extents, sweep, free, clearance=clearance, thinnest=thinnest, kept=kept)
         jams += [(number, one, other) for one, other in clearing.run()]
-    for group, volume, surface in zip(alive, volumes, surfaces, strict=True):
-        while len(group) > most:
+    for body, (group, volume, surface) in enumerate(zip(alive, volumes, surfaces, strict=True)):
+        while body not in kept and len(group) > most:
             group.remove(min(group, key=partial(_Polytope.share, volume=volume, marks=len(surface))))
     left = [sum(item.piece.volume for item in group) for group in alive]
     return Carved(
@@ -242,8 +244,10 @@ class _Clearing:
         *,
         clearance: float,
         thinnest: float,
+        kept: frozenset[int],
     ) -> None:
-        """Keep the pieces of all bodies, which are cut in place, and volumes and extents of bodies."""
+        """Keep the pieces of all bodies, which are cut in place but for those kept, and volumes and extents."""
+        self._kept = kept
         self._alive, self._volumes, self._extents, self._thinnest = alive, volumes, extents, thinnest
         self._free_end, self._clearance = cache(free_end), clearance
         self._moving = [item for body in sorted(sweep.moved) for item in alive[body]]
@@ -254,7 +258,8 @@ class _Clearing:
     def run(self) -> list[tuple[int, int]]:
         """Cut until the sweep is free; return the pairs of bodies that still meet."""
         jams = []
-        pairs = self._path.near(self._moving, self._resting)
+        near = self._path.near(self._moving, self._resting)
+        pairs = [pair for pair in near if not self._kept.issuperset(item.body for item in pair)]
         while pairs:
             one, other = pairs.pop()
             if one in self._rest_of or other in self._rest_of:
@@ -289,6 +294,8 @@ class _Clearing:
         """The piece that loses less of its body, and its parts; None if either body would have nothing left."""
         options = []
         for piece, obstacle in ((moving, resting), (resting, moving)):
+            if piece.body in self._kept:
+                continue
             parts = self._around(piece, obstacle, steps, backwards=piece is moving)
             if not parts and len(self._alive[piece.body]) == 1:
                 continue
@@ -309,6 +316,8 @@ class _Clearing:
         for piece, obstacle in sorted(
             ((moving, resting), (resting, moving)), key=lambda pair: float(pair[0].piece.volume)
         ):
+            if piece.body in self._kept:
+                continue
             parts = self._around(piece, obstacle, steps, backwards=piece is moving, remnant=True)
             if parts:
                 return piece, parts

@@ -110,9 +110,14 @@ class FittedCollision:
 
 
 def fit_collision(
-    robot: Robot, config: CollisionConfig, decomposition: PrepareSettings, geometry: GeometrySettings
+    robot: Robot,
+    config: CollisionConfig,
+    decomposition: PrepareSettings,
+    geometry: GeometrySettings,
+    *,
+    only: frozenset[str] | None = None,
 ) -> FittedCollision:
-    """Replace the collision geometry of every link, or its visual geometry, by boxes, cylinders and convex pieces.
+    """Replace the collision geometry of links, or their visual geometry, by boxes, cylinders and convex pieces.
 
     Joints are swept one by one, over their limits and a little beyond, because engines' limits are soft; the others
     rest. What no sweep meets stays: primitives are the same ones. Where the surfaces themselves block a motion, the
@@ -123,28 +128,37 @@ def fit_collision(
         config: Clearance and slack, and how finely surfaces are taken apart.
         decomposition: The rest of how they are.
         geometry: When surfaces block a motion.
+        only: Links that get pieces, carved clear of what the others collide with now; all if absent.
 
     Returns:
         The robot with pieces in the link frames; meshes among them name files in ``meshes/`` that are not written yet.
     """
     given, robot = robot, _thinned(robot)
     finer = {name: getattr(config, name) for name in ("link_gap", "model_gap", "cuts", "cuts_per_link")}
-    pieces = decomposed(robot, decomposition.model_copy(update=finer))
+    kept = frozenset(i for i, link in enumerate(robot.links) if only is not None and link.name not in only)
+    pieces = decomposed(robot, decomposition.model_copy(update=finer), only=only)
     poses = forward_kinematics(robot, rest_configuration(robot))
-    bodies = [_in_world(_few(pieces[link.name], config), poses[link.name]) for link in robot.links]
+    bodies = [
+        _as_it_is(link, poses[link.name]) if i in kept else _in_world(_few(pieces[link.name], config), poses[link.name])
+        for i, link in enumerate(robot.links)
+    ]
     clearance = min(config.clearance, config.clearance_share * _size(bodies))
     exact = _ExactSweeps(robot, geometry, config.forced_share)
     result = carved(
         bodies,
-        [_marks(link, poses[link.name]) for link in robot.links],
+        [np.empty((0, 3)) if i in kept else _marks(link, poses[link.name]) for i, link in enumerate(robot.links)],
         _sweeps(robot, poses, config),
         exact.free_end,
         clearance=clearance,
         thinnest=config.thinnest_share * clearance,
         most=config.most_carved,
+        kept=kept,
     )
     links, facts = [], []
     for index, link in enumerate(robot.links):
+        if index in kept:
+            links.append(given.links[index])
+            continue
         uncut = dict(zip(map(id, bodies[index]), pieces[link.name].primitives, strict=False))
         T_link_world = np.asarray(np.linalg.inv(poses[link.name]), dtype=np.float64)
         fitted = [fitted_shape(_moved(piece, T_link_world), _ROUND * clearance) for piece in result.pieces[index]]
@@ -290,6 +304,12 @@ def _in_world(pieces: Pieces, T_world_link: FloatArray) -> list[ConvexPiece]:
     """All pieces of a link in the world frame, primitives first."""
     primitives = [enclosing_piece(shape.mesh.vertices, directions=_CORNERS) for shape in pieces.primitives]
     return [_moved(piece, T_world_link) for piece in (*primitives, *pieces.convex)]
+
+
+def _as_it_is(link: Link, T_world_link: FloatArray) -> list[ConvexPiece]:
+    """What engines collide of a link that stays as it is: primitives and hulls, in the world frame."""
+    points = [shape.mesh.vertices for shape in link.collisions if len(shape.mesh.faces)]
+    return [_moved(convex_piece(item, thickness=_THINNEST, directions=_CORNERS), T_world_link) for item in points]
 
 
 def _named(shapes: Sequence[Shape], link: str, index: int) -> tuple[Shape, ...]:

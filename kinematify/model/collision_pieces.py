@@ -88,17 +88,18 @@ class _Component:
         return self.gap <= self.tolerance
 
 
-def decomposed(model: Robot, settings: PrepareSettings) -> dict[str, Pieces]:
-    """Return the collision geometry of every link, or the visual one where it declares none.
+def decomposed(model: Robot, settings: PrepareSettings, *, only: frozenset[str] | None = None) -> dict[str, Pieces]:
+    """Return the collision geometry of links, or the visual one where they declare none.
 
     Args:
         model: The model; hollows that are small beside it are filled.
         settings: Tolerances and how many cuts.
+        only: Links that are asked for; all if absent.
     """
-    size = _diagonal(model)
+    size, asked = _diagonal(model), [link for link in model.links if only is None or link.name in only]
     components = [
         component
-        for link in model.links
+        for link in asked
         for shape in shapes_of(link)
         if shape.kind not in _KEPT
         for component in _components(link, shape.mesh, size, settings)
@@ -107,7 +108,7 @@ def decomposed(model: Robot, settings: PrepareSettings) -> dict[str, Pieces]:
     pieces = dict(zip(map(id, concave), _cut(concave, len(model.links), settings), strict=True))
     return {
         link.name: _pieces(link, [(item, pieces.get(id(item))) for item in components if item.link == link.name])
-        for link in model.links
+        for link in asked
     }
 
 

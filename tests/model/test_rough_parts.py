@@ -12,14 +12,14 @@ from trimesh.creation import box
 
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
-from kinematify.formats.fix import fix_urdf
+from kinematify.refinement.draft import ObjectBuilder
 from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from kinematify.formats.fix import Fix
+    from kinematify.model.collision import FittedCollision
 
 LIMIT = 0.2
 WALLS = {  # a case that is open in front: extents and middle of each board
@@ -85,9 +85,12 @@ def write(folder: Path, moving: trimesh.Trimesh, *boards: trimesh.Trimesh) -> Pa
     return path
 
 
-def mended(folder: Path, moving: trimesh.Trimesh, *boards: trimesh.Trimesh) -> Fix:
-    (folder / "out").mkdir()
-    return fix_urdf(write(folder, moving, *boards), folder / "out" / "fixed.urdf", load_config(), load_settings())
+def carved(folder: Path, moving: trimesh.Trimesh, *boards: trimesh.Trimesh) -> tuple[Path, FittedCollision]:
+    """The file with collision pieces, and what is known of them."""
+    path = write(folder, moving, *boards)
+    draft, robot = ObjectBuilder(path, folder / "out" / "fixed.urdf"), read_robot(path)
+    fitted = draft.carve(robot, frozenset(robot.link_by_name), load_config(), load_settings())
+    return draft.write(), fitted
 
 
 def reached(urdf: Path) -> tuple[float, float]:
@@ -110,11 +113,10 @@ def fine() -> trimesh.Trimesh:
 
 
 def test_a_surface_of_too_many_triangles_is_thinned_out_and_told(tmp_path: Path) -> None:
-    fixed = mended(tmp_path, fine())
-    (told,) = (sentence for sentence in fixed.left if sentence.startswith("slider: "))
-    assert "mm off" in told
-    assert reached(fixed.path)[1] < -0.95 * LIMIT
-    slider = read_robot(fixed.path).link_by_name["slider"]
+    path, fitted = carved(tmp_path, fine())
+    assert [item.link for item in fitted.links if item.thinned > 0.0] == ["slider"]
+    assert reached(path)[1] < -0.95 * LIMIT
+    slider = read_robot(path).link_by_name["slider"]
     low, high = (
         end(np.concatenate([shape.mesh.vertices for shape in slider.collisions]), axis=0) for end in (np.min, np.max)
     )
@@ -123,25 +125,37 @@ def test_a_surface_of_too_many_triangles_is_thinned_out_and_told(tmp_path: Path)
 
 @pytest.mark.parametrize("build", [drawer, opened, inverted, crossing, sheet, tiny])
 def test_rough_parts_collide_and_slide_in_plain_mujoco(build: Callable[[], trimesh.Trimesh], tmp_path: Path) -> None:
-    fixed = mended(tmp_path, build())
-    model = mujoco.MjModel.from_xml_path(str(fixed.path))
+    path, _ = carved(tmp_path, build())
+    model = mujoco.MjModel.from_xml_path(str(path))
     assert (np.bincount(model.geom_bodyid, minlength=model.nbody) > 0).all(), "no link without collision geometry"
-    deep, value = reached(fixed.path)
+    deep, value = reached(path)
     assert deep < 1e-3
     assert value < -0.95 * LIMIT
 
 
 def test_what_has_to_pass_through_another_is_told_and_left(tmp_path: Path) -> None:
     front = board((0.36, 0.02, 0.26), (0.0, -0.3, 0.15))
-    fixed = mended(tmp_path, drawer(), front)
-    (told,) = (sentence for sentence in fixed.left if "case" in sentence and "slider" in sentence)
-    assert "mm" in told
-    model = mujoco.MjModel.from_xml_path(str(fixed.path))
+    path, fitted = carved(tmp_path, drawer(), front)
+    (blocked,) = fitted.blocked
+    assert set(blocked.links) == {"case", "slider"}
+    model = mujoco.MjModel.from_xml_path(str(path))
     assert (np.bincount(model.geom_bodyid, minlength=model.nbody) > 0).all()
 
 
 def test_what_stands_inside_of_another_keeps_its_pieces(tmp_path: Path) -> None:
-    fixed = mended(tmp_path, board((0.1, 0.1, 0.01), (0.0, 0.0, 0.01)))  # in the middle of the bottom
-    model = mujoco.MjModel.from_xml_path(str(fixed.path))
+    path, _ = carved(tmp_path, board((0.1, 0.1, 0.01), (0.0, 0.0, 0.01)))  # in the middle of the bottom
+    model = mujoco.MjModel.from_xml_path(str(path))
     assert (np.bincount(model.geom_bodyid, minlength=model.nbody) > 0).all()
-    assert fixed.changes
+    assert all(link.collisions for link in read_robot(path).links)
+
+
+def test_a_link_that_is_not_asked_for_stays_and_the_other_is_carved_clear_of_it(tmp_path: Path) -> None:
+    path = write(tmp_path, drawer())
+    draft, robot = ObjectBuilder(path, tmp_path / "out" / "fixed.urdf"), read_robot(path)
+    draft.carve(robot, frozenset({"case"}), load_config(), load_settings())
+    fixed = draft.write()
+    slider = read_robot(fixed).link_by_name["slider"]
+    assert [shape.file.resolve() for shape in slider.collisions if shape.file] == [tmp_path / "slider.stl"]
+    deep, value = reached(fixed)
+    assert deep < 1e-3
+    assert value < -0.95 * LIMIT

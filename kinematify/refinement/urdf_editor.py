@@ -1,0 +1,334 @@
+"""A URDF that is edited in place: what no method is asked to change stays, comments and order included."""
+
+from __future__ import annotations
+
+import copy
+import difflib
+import os
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from lxml import etree
+
+from kinematify.errors import DescriptionError, OutputError
+from kinematify.model.collision import fit_collision
+from kinematify.model.dynamics import with_dynamics
+from kinematify.model.masses import prepared_inertials
+from kinematify.robot.mesh_paths import find_mesh
+from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
+from kinematify.robot.robot import Inertial, Robot
+from kinematify.robot.urdf_text import parse_description, read_text, with_plain_declaration
+from kinematify.robot.write import numbers, robot_element
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator, Sequence
+
+    from lxml.etree import _Element
+
+    from kinematify.config import Config, DynamicsConfig
+    from kinematify.config.validation import PrepareSettings, ValidationSettings
+    from kinematify.model.collision import FittedCollision
+    from kinematify.robot.robot import Link, LinkMesh
+
+_FILES = ("mesh", "texture")
+"""Elements whose ``filename`` names a file."""
+_PLACED = ("visual", "collision", "inertial")
+"""Children of a link that have an ``<origin>``."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Diff:
+    """One change of an element."""
+
+    title: str
+    """What was changed, one sentence."""
+    lines: str
+    """Unified diff of the element as XML."""
+
+
+class UrdfEditor:
+    """The document, and the files that are to be written with it."""
+
+    def __init__(self, model: Path, out: Path, package_dirs: Sequence[Path] = ()) -> None:
+        """Read the document.
+
+        Args:
+            model: The URDF; it is not changed.
+            out: File to write; its collision meshes get a folder beside it.
+            package_dirs: Folders in which ``package://`` names are looked up.
+
+        Raises:
+            DescriptionError: `model` is no URDF that can be parsed.
+            OutputError: `out` is `model`.
+        """
+        if out.resolve() == model.resolve():
+            raise OutputError(f"{out} is the model itself, which stays as it is. Give another file with -o.")
+        parse_description(model)
+        parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
+        self.root = etree.fromstring(with_plain_declaration(read_text(model).text), parser)
+        self._changes: list[str] = []
+        self._path_changes: list[str] = []
+        self.diffs: list[Diff] = []
+        self._model, self.out, self._package_dirs = model, out, tuple(package_dirs)
+        self._folder = Path(f"{out.stem}_collision")
+        self._pieces: dict[str, dict[str, LinkMesh]] = {}
+        self._written: set[str] = set()
+
+    @property
+    def changes(self) -> tuple[str, ...]:
+        """What is other than in the given file, one sentence each; paths as they were written last."""
+        return (*self._changes, *self._path_changes)
+
+    def say(self, sentence: str) -> None:
+        """Keep what was changed in an element that `link` or `joint` returned."""
+        self._changes.append(sentence)
+
+    def link(self, name: str) -> _Element:
+        """Element of a link."""
+        return next(element for element in self.root.iterchildren("link") if element.get("name") == name)
+
+    def joint(self, name: str) -> _Element:
+        """Element of a joint."""
+        return next(element for element in self.root.iterchildren("joint") if element.get("name") == name)
+
+    def saved(self) -> _Element:
+        """A copy of the document as it is now."""
+        return copy.deepcopy(self.root.getroottree()).getroot()
+
+    def restore(self, saved: _Element) -> None:
+        """Go back to what `saved` returned."""
+        self.root = saved
+
+    @contextmanager
+    def diffed(self, title: str, *elements: _Element) -> Iterator[None]:
+        """Keep what is changed inside in elements as a unified diff."""
+        before = [copy.deepcopy(element) for element in elements]
+        yield
+        lines = []
+        for old, new in zip(before, elements, strict=True):
+            name = f"{new.tag} {new.get('name')}"
+            lines += list(
+                difflib.unified_diff(xml_of(old).splitlines(), xml_of(new).splitlines(), name, name, lineterm="", n=1)
+            )
+        self.diffs.append(Diff(title=title, lines="\n".join(lines)))
+
+    def carve(
+        self, robot: Robot, links: frozenset[str], config: Config, settings: ValidationSettings
+    ) -> FittedCollision:
+        """Give links collision pieces that leave the joints free; the others keep what they have.
+
+        Args:
+            robot: What the document says; pieces are made of its collision shapes, of visual ones where a link has no
+                others.
+            links: Names.
+            config: Clearance.
+            settings: How surfaces are taken apart, and when they block a motion.
+
+        Returns:
+            The pieces, with what could not be made free.
+        """
+        fitted = fit_collision(robot, config.collision, settings.prepare, settings.geometry, only=links)
+        before = robot.link_by_name
+        for link in fitted.robot.links:
+            if link.name not in links or not link.collisions or _same(link, before[link.name]):
+                continue
+            element = self.link(link.name)
+            had = len(element.findall("collision"))
+            meshes = [shape for shape in link.collisions if shape.kind == "mesh" and shape.file is not None]
+            self._pieces[link.name] = {shape.file.name: shape.mesh for shape in meshes if shape.file is not None}
+            shapes = tuple(
+                shape if shape.file is None else replace(shape, file=self._folder / shape.file.name)
+                for shape in link.collisions
+            )
+            _replaced(element, "collision", _written(replace(link, collisions=shapes)).findall("collision"))
+            self._changes.append(
+                f"{link.name}: {_counted(len(shapes), 'collision piece')} instead of "
+                f"{_counted(had, 'shape') if had else 'the visual geometry'}"
+            )
+        return fitted
+
+    def weigh(self, robot: Robot, links: Collection[str], settings: PrepareSettings) -> list[str]:
+        """Write mass and inertia of the geometry for links whose own ones no engine can use.
+
+        Returns:
+            Names of the links that got them.
+        """
+        made = prepared_inertials(robot, settings)
+        done = [name for name in links if made[name].mass_added or made[name].inertia_added]
+        for name in done:
+            given = made[name]
+            plain = Inertial(mass=given.mass, center_of_mass=given.center_of_mass, tensor=given.tensor)
+            link = replace(robot.link_by_name[name], inertial=plain, collisions=())
+            _replaced(self.link(name), "inertial", _written(link).findall("inertial"), at_front=True)
+            what = f"mass and inertia of its geometry, {given.mass:.3g} kg" if given.mass_added else "a sound inertia"
+            self._changes.append(f"{name}: {what}")
+        return done
+
+    def center(self, robot: Robot, name: str, settings: PrepareSettings) -> None:
+        """Move the centre of mass of a link to that of its geometry, if it has any."""
+        link, inertial = robot.link_by_name[name], self.link(name).find("inertial")
+        if inertial is None or not link.has_geometry:
+            return
+        alone = Robot(name=name, links=(replace(link, inertial=None),), joints=())
+        center = prepared_inertials(alone, settings)[name].center_of_mass
+        _origin(inertial).set("xyz", numbers(center))
+        self._changes.append(
+            f"{name}: centre of mass at {' '.join(f'{value:.4g}' for value in center)}, in its geometry"
+        )
+
+    def rub(self, robot: Robot, config: DynamicsConfig) -> None:
+        """Write friction and damping for joints that have none."""
+        moved = with_dynamics(robot, config, measured=True)
+        for before, after in zip(robot.joints, moved.joints, strict=True):
+            if after.damping != before.damping or after.friction != before.friction:
+                values = {"damping": repr(after.damping), "friction": repr(after.friction)}
+                _replaced(self.joint(after.name), "dynamics", [etree.Element("dynamics", values)])
+                self._changes.append(f"{after.name}: damping {after.damping:g}, friction {after.friction:g}")
+
+    def hung_on(self, joint: str) -> list[_Element]:
+        """Elements that hold poses in the frame of a joint's child: the link, and the joints below it."""
+        child = self.joint(joint).find("child")
+        name = "" if child is None else child.get("link", "")
+        below = [item for item in self.root.iterchildren("joint") if _link_at(item, "parent") == name]
+        return [self.link(name), *below]
+
+    def shift(self, joint: str, in_parent: Sequence[float], in_child: Sequence[float]) -> None:
+        """Move the frame of a joint, and leave all that its child has where it is.
+
+        Args:
+            joint: Its name.
+            in_parent: The way [m] in the frame of the parent, shape (3,).
+            in_child: The same in the frame of the child.
+        """
+        back = [-value for value in in_child]
+        link, *below = self.hung_on(joint)
+        _move(_origin(self.joint(joint)), in_parent)
+        for element in (*(part for part in link if part.tag in _PLACED), *below):
+            _move(_origin(element), back)
+
+    def write(self) -> Path:
+        """Write the document, with paths that hold from its folder, and its meshes.
+
+        Raises:
+            OutputError: It cannot be written.
+        """
+        folder = self.out.parent / self._folder
+        pieces = {name: mesh for of_link in self._pieces.values() for name, mesh in of_link.items()}
+        document = self.saved()
+        self._settle_paths(document)
+        try:
+            self.out.parent.mkdir(parents=True, exist_ok=True)
+            for name in self._written - set(pieces):
+                (folder / name).unlink(missing_ok=True)
+            for name, mesh in pieces.items():
+                folder.mkdir(exist_ok=True)
+                write_obj(folder / name, mesh.vertices, mesh.faces, OBJ_DIGITS)
+            self._written = set(pieces)
+            document.getroottree().write(str(self.out), xml_declaration=True, encoding="utf-8")
+        except OSError as error:
+            raise OutputError(
+                f"{self.out} cannot be written ({error.strerror or error}). Give another place with -o."
+            ) from error
+        return self.out
+
+    def _settle_paths(self, document: _Element) -> None:
+        """Let paths of files mean the same from the new folder, for engines that know no packages.
+
+        Pieces have names beside the new file, and MuJoCo looks for all meshes in ``meshdir``, so that goes.
+        """
+        self._path_changes = []
+        before, after = self._model.parent.resolve(), self.out.parent.resolve()
+        files = [element for tag in _FILES for element in document.iter(tag) if element.get("filename")]
+        named = [element.get("filename", "") for element in files]
+        if before == after and not self._pieces and not any("://" in name for name in named):
+            return
+        compilers = list(document.iterfind("mujoco/compiler"))
+        folders = [before / (item.get("meshdir") or item.get("assetdir") or "") for item in compilers]
+        own = {(self._folder / name).as_posix() for of_link in self._pieces.values() for name in of_link}
+        rewritten = []
+        for element, name in zip(files, named, strict=True):
+            written = name if name in own else self._path(name, (before, *folders), after)
+            if written != name:
+                element.set("filename", written)
+                rewritten.append(name)
+        for compiler in compilers:
+            for attribute in ("meshdir", "assetdir"):
+                if attribute in compiler.attrib:
+                    del compiler.attrib[attribute]
+                    self._path_changes.append(f"mujoco compiler: no {attribute}, since paths are relative to the file")
+            if compiler.get("strippath") == "true":
+                compiler.set("strippath", "false")
+                self._path_changes.append('mujoco compiler: strippath="false", since paths are relative to the file')
+        if rewritten:
+            count = len(set(rewritten))
+            self._path_changes.append(
+                f"paths of {_counted(count, 'file')} are relative to {self.out.name}, such as {rewritten[0]}"
+            )
+
+    def _path(self, name: str, folders: Sequence[Path], after: Path) -> str:
+        """What to write for a file; what is absolute, or found nowhere, stays."""
+        if Path(name).is_absolute():
+            return name
+        for folder in folders:
+            try:
+                found = find_mesh(name, folder, self._package_dirs, "the file")
+            except DescriptionError:
+                continue
+            if "://" not in name and folder == after:
+                return name
+            return Path(os.path.relpath(found.resolve(), after)).as_posix()
+        return name
+
+
+def _same(link: Link, before: Link) -> bool:
+    """Whether a link kept its primitives."""
+    return [id(shape) for shape in link.collisions] == [id(shape) for shape in before.collisions]
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def _written(link: Link) -> _Element:
+    return robot_element(Robot(name=link.name, links=(replace(link, visuals=()),), joints=()))[0]
+
+
+def xml_of(element: _Element) -> str:
+    """An element as it is written in its file, without what stands around it."""
+    alone = copy.deepcopy(element)
+    etree.cleanup_namespaces(alone)
+    return etree.tostring(alone, encoding="unicode", with_tail=False)
+
+
+def _origin(element: _Element) -> _Element:
+    """Its <origin>, made where there is none."""
+    found = element.find("origin")
+    if found is None:
+        found = etree.Element("origin", xyz="0 0 0", rpy="0 0 0")
+        found.tail = element.text
+        element.insert(0, found)
+    return found
+
+
+def _link_at(joint: _Element, end: str) -> str | None:
+    found = joint.find(end)
+    return None if found is None else found.get("link")
+
+
+def _move(origin: _Element, by: Sequence[float]) -> None:
+    given = [float(value) for value in (origin.get("xyz") or "0 0 0").split()]
+    origin.set("xyz", " ".join(f"{value + shift:.9g}" for value, shift in zip(given, by, strict=True)))
+
+
+def _replaced(parent: _Element, tag: str, elements: Sequence[_Element], *, at_front: bool = False) -> None:
+    """Put elements in the place of those of the same tag, else at the end or the front."""
+    old = parent.findall(tag)
+    place = parent.index(old[0]) if old else 0 if at_front else len(parent)
+    for element in old:
+        parent.remove(element)
+    for number, element in enumerate(elements):
+        etree.indent(element, space="  ", level=2)
+        element.tail = "\n    "
+        parent.insert(place + number, element)
