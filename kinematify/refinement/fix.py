@@ -40,7 +40,7 @@ _ROUNDS = 3
 _CARVED = ("KV301", "KV302", "KV310", "KV311", "KV312", "KV332", "KV403", "KV405", "KV503", "KV505", "KV802", "KV804")
 """Findings about collision geometry, if they blame physics and name two links."""
 _BESIDE = "KV241"
-"""Collision geometry stands beside what is seen."""
+"""Collision geometry is beside what is seen."""
 _MASSLESS = "KV201"
 """A body that moves has no mass: engines differ in what they take, and a guess may be worse than theirs."""
 _WEIGHED = ("KV202", "KV204", "KV205")
@@ -54,7 +54,7 @@ _ONCE = {
     "visual": ("origin", "material"),
     "collision": ("origin",),
 }
-"""What stands once in an element."""
+"""What an element has once."""
 _KINEMATICS = ("KV134", "KV137", "KV310", "KV312", "KV320", "KV340", "KV349")
 """Findings that `JointEdits` looks at."""
 
@@ -84,7 +84,7 @@ class Look:
         return {check.engine: int(check.measured["right"]) for check in found if check.engine is not None}
 
     def _count(self, severity: Severity) -> int:
-        found = [told.finding for told in self.report.told]
+        found = [group.finding for group in self.report.told]
         return sum(item.severity is severity and item.suppressed is None for item in found)
 
     def as_json(self) -> dict[str, Any]:
@@ -217,7 +217,7 @@ class _Repairs:
         everything: bool,
         joints: JointEdits | None,
     ) -> None:
-        self._draft, self._config, self._settings = editor, config, settings
+        self._editor, self._config, self._settings = editor, config, settings
         self._everything = everything
         self._given: dict[str, Link] = {}
         self._carved: frozenset[str] = frozenset()
@@ -227,7 +227,7 @@ class _Repairs:
 
     def apply(self, report: ValidationReport, path: Path, package_dirs: Sequence[Path]) -> bool:
         """Repair what a report finds in the editor as it was written to `path`; False if there is nothing to do."""
-        editor = self._draft
+        editor = self._editor
         done = len(editor.changes) + len(editor.diffs)
         found = [finding for finding in report.counted if finding.severity is not Severity.NOTE]
         for element in self._repeated(found):
@@ -247,19 +247,19 @@ class _Repairs:
         for finding in found:
             if finding.check == _REPEATED:
                 if finding.joint is not None:
-                    yield self._draft.joint(finding.joint)
+                    yield self._editor.joint(finding.joint)
                 elif finding.link is not None:
-                    yield from self._draft.link(finding.link).iter("link", "inertial", "visual", "collision")
+                    yield from self._editor.link(finding.link).iter("link", "inertial", "visual", "collision")
 
     def _weigh(self, robot: Robot, found: Sequence[Finding]) -> None:
         prepare = self._settings.prepare
         solid = {link.name for link in robot.links if link.has_geometry}
         names = solid if self._everything else _to_weigh(found)
         new = [link.name for link in robot.links if link.name in names - self._weighed]
-        self._weighed |= set(self._draft.weigh(robot, new, prepare))
+        self._weighed |= set(self._editor.weigh(robot, new, prepare))
         off = {item.link for item in found if item.check == _CENTER and item.severity is Severity.ERROR and item.link}
         for name in sorted(off - self._weighed):
-            self._draft.center(robot, name, prepare)
+            self._editor.center(robot, name, prepare)
         self._weighed |= off
 
     def _carve(self, robot: Robot, found: Sequence[Finding]) -> None:
@@ -271,7 +271,7 @@ class _Repairs:
         if names != self._carved:
             self._carved = names
             links = tuple(self._given[link.name] if link.name in names else link for link in robot.links)
-            carved = self._draft.carve(replace(robot, links=links), names, self._config, self._settings)
+            carved = self._editor.carve(replace(robot, links=links), names, self._config, self._settings)
             self.remarks = [
                 f"{item.link}: its surface has so many triangles that its pieces follow a grid, "
                 f"{item.thinned * 1e3:.2g} mm off at most"
@@ -329,9 +329,9 @@ def _keep_first(editor: UrdfEditor, element: _Element) -> None:
 def _left(after: Look, repairs: _Repairs, *, kinematics: bool) -> list[str]:
     """Findings of the result, those of one check together, each with the reason why it stays."""
     stays = [
-        told.finding
-        for told in after.report.told
-        if told.finding.severity is not Severity.NOTE and told.finding.suppressed is None
+        group.finding
+        for group in after.report.told
+        if group.finding.severity is not Severity.NOTE and group.finding.suppressed is None
     ]
     said = []
     for (check, severity, engine), group in groupby(stays, lambda item: (item.check, item.severity, item.engine)):

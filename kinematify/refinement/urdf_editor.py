@@ -296,7 +296,7 @@ def _written(link: Link) -> _Element:
 
 
 def xml_of(element: _Element) -> str:
-    """An element as it is written in its file, without what stands around it."""
+    """An element as it is written in its file, without what is around it."""
     alone = copy.deepcopy(element)
     etree.cleanup_namespaces(alone)
     return etree.tostring(alone, encoding="unicode", with_tail=False)
