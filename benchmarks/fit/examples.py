@@ -166,7 +166,7 @@ def examples_of(
                 alike=next((number for number, group in enumerate(alike) if edge in group), -1),
                 broken=broken,
                 sides={} if broken else _sides(weighed.scene, joints[0]),
-                is_continuous=_goes_round(joints[0]),
+                is_continuous=_is_continuous(joints[0]),
             )
         )
     return found
@@ -180,7 +180,7 @@ def _sides(scene: JointScene, joint: TrueJoint) -> Values:
     return measure_sides(scene, opens * joint.axis, joint.pivot)
 
 
-def _goes_round(joint: TrueJoint) -> bool | None:
+def _is_continuous(joint: TrueJoint) -> bool | None:
     """See `Example.is_continuous`."""
     return joint.upper - joint.lower > _WHOLE_TURN if joint.kind.turns else None
 
@@ -230,7 +230,7 @@ def write_examples(path: Path, examples: Sequence[Example]) -> None:
                 "size": example.size,
                 "groups": example.groups,
                 "alike": example.alike,
-                "goes_round": example.is_continuous,
+                "is_continuous": example.is_continuous,
                 "sources": example.hypotheses.sources,
                 "names": names,
                 "side_names": sorted(example.sides),

@@ -142,7 +142,7 @@ def test_what_a_killed_process_left_of_a_corpus_is_cleared_away_and_some_objects
     (tmp_path / ".bottle_000.123" / "model.urdf").write_text("<robot")
     write_corpus(tmp_path, 1, seed=1, progress=lambda name, done: None)
     assert not list(tmp_path.glob(".*"))
-    shares = [_entry(k, 1)["open"] for k in range(400)]
+    shares = [_entry(k, 1, composed=False)["open"] for k in range(400)]
     assert 0.15 < np.mean(np.array(shares) > 0.0) < 0.35
     assert max(shares) <= 0.6
 
