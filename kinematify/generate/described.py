@@ -142,6 +142,8 @@ class ObjectDescription(Spoken, BlueprintDescription):
             ),
             material=self.parts[0].material,
             part_words=self.part_words,
+            motions=self.motions,
+            holds_already=self.holds_already,
             build=self._build,
         )
 
@@ -258,6 +260,8 @@ class SteppedDescription(Spoken):
             ),
             material="plastic",
             part_words=self.part_words,
+            motions=self.motions,
+            holds_already=self.holds_already,
             build=self._build,
         )
 
@@ -292,6 +296,8 @@ class SteppedDescription(Spoken):
         solids = {part.name: part.solid({}) for part in built.parts}
         joints = [replace(joint.joint(), value=joint.value) for joint in built.joints]
         _put_together(solids, {part.name: part for part in built.parts}, joints, values, workshop)
+        for loop in built.loops:
+            workshop.closes(*loop.parts, loop.pivot)
 
 
 def _put_together(

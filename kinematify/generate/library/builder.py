@@ -86,6 +86,7 @@ class ObjectBuilder:
         self.name, self.style, self.rng = name, style, rng
         self._parts: dict[str, dict[str, Any]] = {}
         self._joints: list[dict[str, Any]] = []
+        self._loops: list[dict[str, Any]] = []
 
     # ---- draws -----------------------------------------------------------------------------------------------------
 
@@ -170,6 +171,10 @@ class ObjectBuilder:
         joint = next(joint for joint in self._joints if joint["child"] == child)
         joint |= {"value": 0.0, "mimic": {"leader": leader, "multiplier": multiplier}}
 
+    def close(self, child: str, parent: str, pivot: Point) -> None:
+        """Let two parts share a pin besides the joints of the tree."""
+        self._loops.append({"parts": [parent, child], "pivot": list(map(float, pivot))})
+
     def _join(
         self,
         kind: str,
@@ -195,7 +200,8 @@ class ObjectBuilder:
 
     def description(self) -> dict[str, Any]:
         """The object as a blueprint file says it."""
-        return {"name": self.name, "category": self.name, "parts": list(self._parts.values()), "joints": self._joints}
+        return {"name": self.name, "category": self.name, "parts": list(self._parts.values()), "joints": self._joints,
+            "loops": self._loops}
 
 
 def spread(count: int, low: float, high: float) -> Sequence[float]:

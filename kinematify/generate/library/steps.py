@@ -1,7 +1,7 @@
 """Objects that a file writes down step by step: what is drawn where, by how much it varies, and how it moves.
 
-A step is a mapping with one verb: `part`, `cut` and `bore` draw shapes; `hinge`, `spin`, `slide`, `fix` and `follow`
-join parts; every function of `mechanisms` and `panels` is a verb, too; `let`, `for` and `when` compute, repeat and
+A step is a mapping with one verb: `part`, `cut` and `bore` draw shapes; `hinge`, `spin`, `slide`, `fix`, `follow`
+and `close` join parts; every function of `mechanisms` and `panels` is a verb, too; `let`, `for` and `when` compute, repeat and
 choose. Values are formulas; names of parts and materials are texts with formulas in braces.
 
 ```yaml
@@ -37,7 +37,7 @@ Step = dict[str, Any]
 _MOST_ROUNDS = 500
 """Of one loop."""
 _TEXTS = ("parent", "material", "color", "leader", "child", "names")
-_CORE = ("part", "cut", "bore", "hinge", "spin", "slide", "fix", "follow")
+_CORE = ("part", "cut", "bore", "hinge", "spin", "slide", "fix", "follow", "close")
 
 
 def _public(module: Any) -> dict[str, Callable[..., Any]]:

@@ -43,6 +43,10 @@ class Family:
     """What is usual of those that are called by one of the words, where a sentence says nothing else."""
     part_words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """How people call its parts, besides the names that they have without their numbers."""
+    motions: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Name of a part without its number -> words for how it moves that hold already: ``drop-down``, ``folds``."""
+    holds_already: tuple[str, ...] = ()
+    """Other words that are true of it as it is."""
 
     @property
     def all_parameters(self) -> tuple[Parameter, ...]:
