@@ -48,8 +48,8 @@ def load(path: str | Path, *, package_dirs: Sequence[str | Path] = ()) -> Loaded
 class LoadedModel:
     """The robot of a file: poses, meshes, a viewer, and models of MuJoCo and Pinocchio.
 
-    A configuration maps joint names to values [rad or m]. The name of a link selects the joint above it. Joints that are
-    not named are at zero; mimic joints follow their leader.
+    A configuration maps joint names to values [rad or m]. The name of a link selects the joint above it. Joints that
+    are not named are at zero; mimic joints follow their leader.
     """
 
     def __init__(self, urdf: Path, package_dirs: tuple[Path, ...]) -> None:
@@ -170,8 +170,8 @@ class LoadedModel:
         inside = joint.lower - slack <= value <= joint.upper + slack
         if joint.leads and not joint.endless and not inside:
             raise InputError(
-                f"The joint {joint.name} moves from {joint.lower:g} to {joint.upper:g} {unit}; {value:g} {unit} lies outside. "
-                "Give a value within the limits, or change them in the file."
+                f"The joint {joint.name} moves from {joint.lower:g} to {joint.upper:g} {unit}; {value:g} {unit} lies "
+                "outside. Give a value within the limits, or change them in the file."
             )
         return float(value)
 
