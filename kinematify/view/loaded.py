@@ -161,19 +161,19 @@ class LoadedModel:
             )
         return {name: self._within(self.robot.joint_by_name[name], value) for name, value in named.items()}
 
-    def _within(self, joint: Joint, value: float) -> float:
+    def _within(self, joint: Joint, value: object) -> float:
         """`value` as a number within the limits of `joint`."""
         unit = "rad" if joint.kind.turns else "m"
-        if isinstance(value, bool) or not isinstance(value, Real) or not np.isfinite(value):
+        if isinstance(value, bool) or not isinstance(value, Real) or not np.isfinite(number := float(value)):
             raise InputError(f"The value of the joint {joint.name} is {value!r}; give a finite number in {unit}.")
         slack = _SLACK * max(1.0, abs(joint.lower), abs(joint.upper))
-        inside = joint.lower - slack <= value <= joint.upper + slack
+        inside = joint.lower - slack <= number <= joint.upper + slack
         if joint.leads and not joint.endless and not inside:
             raise InputError(
-                f"The joint {joint.name} moves from {joint.lower:g} to {joint.upper:g} {unit}; {value:g} {unit} lies "
+                f"The joint {joint.name} moves from {joint.lower:g} to {joint.upper:g} {unit}; {number:g} {unit} lies "
                 "outside. Give a value within the limits, or change them in the file."
             )
-        return float(value)
+        return number
 
 
 def _colored(trimesh: Any, mesh: Any) -> Any:
