@@ -283,7 +283,6 @@ class AsLoadedContext:
         """What is visible in motion; it takes long, so that only joints that fall short are looked at."""
         from kinematify.geometry.scene import read_scene, visible_shapes  # noqa: PLC0415 - for what falls short only
         from kinematify.geometry.sweep import Sweeper  # noqa: PLC0415
-
         from kinematify.validation.left_model import model_of  # noqa: PLC0415
 
         return Sweeper.of(read_scene(model_of(self.request), self.request.settings.geometry, visible_shapes))
