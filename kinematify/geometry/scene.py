@@ -298,8 +298,8 @@ def _solid(
     vertices = np.concatenate([vertices for vertices, _ in shapes])
     faces = np.concatenate([faces + start for (_, faces), start in zip(shapes, starts, strict=False)])
     made_of = blake2b(repr((unit, len(vertices))).encode())
-    made_of.update(np.ascontiguousarray(vertices))
-    made_of.update(np.ascontiguousarray(faces))
+    made_of.update(vertices.tobytes())
+    made_of.update(faces.tobytes())
     key = made_of.digest()
     if key not in known:
         known[key] = Solid(vertices, faces, unit=unit, hole=settings.hole, points=settings.points)
