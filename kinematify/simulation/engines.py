@@ -12,7 +12,6 @@ from kinematify.versions import package_versions
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
-    from types import ModuleType
 
     from kinematify.config.validation import EngineSettings
     from kinematify.simulation.engine import Engine
@@ -24,8 +23,7 @@ class EngineEntry:
     """What is known of an engine without loading it."""
 
     name: str
-    """As users write it; ``kinematify.simulation.NAME_engine`` holds a function ``open_engine(settings, log)``, and
-    ``NAME_file`` a class of `kinematify.simulation.raw_model.RawEngineModel`, `RunningFile` if it runs."""
+    """As users write it; ``kinematify.simulation.NAME_engine`` holds the class ``NameEngine``, an `Engine`."""
     title: str
     """As it is written in messages."""
     package: str
@@ -49,9 +47,10 @@ class EngineEntry:
     prints_when_loaded: bool = False
     """True: it may be loaded only where what is printed goes to a file."""
 
-    def module(self, what: str) -> str:
-        """Name of its module for an ``engine`` or a ``file``."""
-        return f"kinematify.simulation.{self.name}_{what}"
+    @property
+    def module(self) -> str:
+        """Name of its module."""
+        return f"kinematify.simulation.{self.name}_engine"
 
 
 _ENTRIES = (
@@ -104,7 +103,7 @@ def open_engine(name: str, settings: EngineSettings, log: Path) -> Engine:
     Raises:
         EnvironmentFault: It is not installed.
     """
-    return cast("Engine", _module(name, "engine").open_engine(settings, log))
+    return _class_of(name)(settings, log)
 
 
 def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> RawEngineModel:
@@ -120,13 +119,13 @@ def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = (
         EnvironmentFault: The engine is not installed.
         Unloadable: The engine does not open the file.
     """
-    opened = getattr(_module(name, "file"), f"{name.capitalize()}File")
-    return cast("RawEngineModel", opened(urdf, root, package_dirs))
+    return _class_of(name).load_raw(urdf, root, package_dirs)
 
 
-def _module(name: str, what: str) -> ModuleType:
-    """A module of an engine; its library is imported here, one in a process."""
+def _class_of(name: str) -> type[Engine]:
+    """The class of an engine; its library is imported here, one in a process."""
     try:
-        return importlib.import_module(ENGINES[name].module(what))
+        module = importlib.import_module(ENGINES[name].module)
     except ImportError as error:
         raise EnvironmentFault(_missing(ENGINES[name], str(error))) from error
+    return cast("type[Engine]", getattr(module, f"{name.capitalize()}Engine"))

@@ -18,23 +18,14 @@ from kinematify.robot.urdf_numbers import passing_links
 from kinematify.robot.urdf_text import parse_description
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.pybullet_world import text_of
-from kinematify.simulation.raw_model import (
-    MotorFile,
-    Pushed,
-    PushProgress,
-    ReleaseRun,
-    Reproductions,
-    RestRun,
-    Unloadable,
-    deepest_first,
-)
+from kinematify.simulation.raw_model import MotorFile, Reproductions, Unloadable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.raw_model import Overlap, Push
+    from kinematify.simulation.raw_model import Push
 
 
 def _without_contacts(lines: str) -> str:
@@ -101,8 +92,6 @@ _MARK = re.compile(r"b3(?:Warning|Error)\[[^\]]*\]:")
 """Before each message that PyBullet prints."""
 _NO_FAULT = "No inertial data"
 """Beginning of what it prints of many files that it loads."""
-_LOOK_STEPS = 8
-"""Between two looks at the energy."""
 _TIME_STEP = 1.0 / 240.0
 _FASTEST = 100.0
 """Speed that Bullet lets no joint exceed [rad/s or m/s]."""
@@ -111,7 +100,7 @@ _MOTOR = 240.0
 
 
 class PybulletFile(MotorFile):
-    """See `kinematify.simulation.raw_model.RunningFile`.
+    """See `RunningFile`: a file as `loadURDF` loads it, its base fixed, its motors as they are.
 
     Contacts of links are those of `URDF_USE_SELF_COLLISION`, but for links that fixed joints alone hold together, for
     those of neighbours (as `URDF_MERGE_FIXED_LINKS` has it), and for links that the file declares not to collide with
@@ -124,24 +113,26 @@ class PybulletFile(MotorFile):
         rest=_REST,
         push=_PUSH,
         push_alone=_without_contacts(_PUSH),
-        release=_RELEASE.replace("{looks}", f"{_LOOK_STEPS}"),
+        release=_RELEASE.replace("{looks}", "8"),
     )
 
-    def __init__(self, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> None:
-        """Load it; PyBullet looks for packages by itself.
+    look_steps = 8
+
+    def __init__(self, urdf: Path, root: str) -> None:
+        """Load it.
 
         Raises:
             Unloadable: PyBullet does not open it.
         """
-        del package_dirs
         self._path, self._root, self.time_step = urdf, root, _TIME_STEP
         self._passing = passing_links(parse_description(urdf))
         world = self._opened(contacts=True, seen=True)
-        self._worlds = {True: world}
+        self._now, self._worlds = world, {True: world}
         self._file = {"path": str(urdf), "silent": world.ignored_pairs}
         infos = [world.do(bullet.getJointInfo, k) for k in range(world.do(bullet.getNumJoints))]
         self._links = {-1: root, **{k: text_of(info[12]) for k, info in enumerate(infos)}}
         self._index = {text_of(info[1]): k for k, info in enumerate(infos) if info[2] != bullet.JOINT_FIXED}
+        self._places = list(self._index.values())
         self.joints = tuple(self._index)
         self.limits = {
             text_of(info[1]): (info[8], info[9]) if info[8] <= info[9] else (-np.inf, np.inf)
@@ -151,62 +142,65 @@ class PybulletFile(MotorFile):
         above = {k: info[16] for k, info in enumerate(infos)}
         self._below = {k: [link for link in above if k in _chain(above, link)] for k in self._index.values()}
 
-    def _world(self, values: Mapping[str, float], *, contacts: bool, as_loaded: bool = False) -> _LoadedWorld:
-        """A world as it was after loading, with the joints at `values`; its motors too where that is asked for."""
+    def begin(
+        self,
+        values: Mapping[str, float],
+        speeds: Mapping[str, float] | None = None,
+        *,
+        contacts: bool,
+        gravity: bool = True,
+        released: Sequence[int] | None = None,
+    ) -> None:
+        """See `RunningFile`: the world as it was after loading; motors of joints that were released are put back."""
         world = self._worlds.get(contacts)
-        if world is None or (as_loaded and world.pushed):
-            world = self._worlds[contacts] = self._opened(contacts=contacts, seen=False)
+        if world is None or (released is None and world.pushed):
+            world = self._opened(contacts=contacts, seen=False)
+        self._now = self._worlds[contacts] = world
         bullet.restoreState(world.state, physicsClientId=world.client)
         for name, k in self._index.items():
-            world.do(bullet.resetJointState, k, values[name])
-        return world
+            world.do(bullet.resetJointState, k, values[name], 0.0 if speeds is None else speeds[name])
+        bullet.setGravity(0.0, 0.0, -GRAVITY if gravity else 0.0, physicsClientId=world.client)
+        freed = [self._places[number] for number in released or ()]
+        for k in world.freed - set(freed):
+            world.do(bullet.setJointMotorControl2, k, bullet.VELOCITY_CONTROL, force=_MOTOR)
+        for k in freed:
+            world.do(bullet.setJointMotorControl2, k, bullet.VELOCITY_CONTROL, force=0)
+        world.freed, world.pushed = set(freed), world.pushed or bool(freed)
 
     def _opened(self, *, contacts: bool, seen: bool) -> _LoadedWorld:
         return _LoadedWorld(self._path, contacts=contacts, seen=seen, root=self._root, passing=self._passing)
 
-    def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
+    def steps(self, count: int, every: int = 1) -> Iterator[int]:
         """See `RunningFile`."""
-        world = self._world(values, contacts=True)
-        return self._overlaps(world)
+        for done in range(1, count + 1):
+            bullet.stepSimulation(physicsClientId=self._now.client)
+            if done % every == 0:
+                yield done
 
-    def _overlaps(self, world: _LoadedWorld) -> tuple[Overlap, ...]:
+    def state(self) -> tuple[FloatArray, FloatArray]:
+        """See `RunningFile`."""
+        states = self._now.do(bullet.getJointStates, self._places)
+        return np.array([state[0] for state in states]), np.array([state[1] for state in states])
+
+    def set_state(self, q: FloatArray, v: FloatArray) -> None:
+        """See `RunningFile`."""
+        self._now.do(bullet.resetJointStatesMultiDof, self._places, q[:, None].tolist(), v[:, None].tolist())
+
+    def apply(self, joint: int, force: float) -> None:
+        """See `RunningFile`."""
+        self._now.do(bullet.setJointMotorControl2, self._places[joint], bullet.TORQUE_CONTROL, force=force)
+
+    def touching(self) -> Iterator[tuple[str, str, float]]:
+        """See `RunningFile`."""
+        world = self._now
         bullet.performCollisionDetection(physicsClientId=world.client)
-        depths: dict[tuple[str, str], float] = {}
         for contact in world.do(bullet.getContactPoints, world.body):
             first, second = sorted(contact[3:5])
-            pair = (self._links[first], self._links[second])
-            depths[pair] = max(depths.get(pair, 0.0), -contact[8])
-        return deepest_first(depths)
+            yield self._links[first], self._links[second], -contact[8]
 
-    def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> RestRun:
-        """See `RunningFile`."""
-        world = self._world(values, contacts=contacts, as_loaded=True)
-        seen = np.empty((round(seconds / self.time_step), len(self.joints)))
-        for row in seen:
-            bullet.stepSimulation(physicsClientId=world.client)
-            row[:] = [state[0] for state in world.do(bullet.getJointStates, list(self._index.values()))]
-        finite = bool(np.isfinite(seen).all())
-        return RestRun(values=seen, complaint=None if finite else "the values of joints are no numbers any more")
-
-    def release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> ReleaseRun:
-        """See `RunningFile`."""
-        world = self._world(values, contacts=False)
-        world.pushed = True
-        for name, k in self._index.items():
-            world.do(bullet.resetJointState, k, values[name], speeds[name])
-            world.do(bullet.setJointMotorControl2, k, bullet.VELOCITY_CONTROL, force=0)
-        seen = [self._energy(world)]
-        for step in range(1, round(seconds / self.time_step) + 1):
-            bullet.stepSimulation(physicsClientId=world.client)
-            if step % _LOOK_STEPS == 0:
-                seen.append(self._energy(world))
-                if not np.isfinite(seen[-1]).all():
-                    return ReleaseRun(energy=np.array(seen[:-1]), complaint="the energy is no number any more")
-        return ReleaseRun(energy=np.array(seen), complaint=None)
-
-    def _energy(self, world: _LoadedWorld) -> tuple[float, float]:
-        """Potential and kinetic [J] of all links but the base."""
-        links = [link for link in self._links if link != -1]
+    def energy(self) -> tuple[float, float]:
+        """See `RunningFile`; of all links but the base."""
+        world, links = self._now, [link for link in self._links if link != -1]
         states = world.do(bullet.getLinkStates, links, computeLinkVelocity=True, computeForwardKinematics=True)
         potential = kinetic = 0.0
         for link, state in zip(links, states, strict=True):
@@ -218,8 +212,8 @@ class PybulletFile(MotorFile):
 
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
         """See `RunningFile`; the motors of the others hold them within a step."""
-        world = self._world(values, contacts=True)
-        return np.array([self._inertia(world, k) for k in self._index.values()])
+        self.begin(values, contacts=True, released=())
+        return np.array([self._inertia(self._now, k) for k in self._places])
 
     def _inertia(self, world: _LoadedWorld, joint: int) -> float:
         """Of what hangs on a joint; PyBullet's own mass matrix fails where a tensor is unsymmetric by 1e-13."""
@@ -244,65 +238,26 @@ class PybulletFile(MotorFile):
         Bullet lets no joint be faster than 100 rad/s within a step either, before motors hold the others: a joint that
         is light where those give way is thrown back by more.
         """
-        world, torques = self._world(values, contacts=False), 1e-2 * self.inertias(values)
-        bullet.setGravity(0.0, 0.0, 0.0, physicsClientId=world.client)
-        for k in self._index.values():
-            world.do(bullet.setJointMotorControl2, k, bullet.VELOCITY_CONTROL, force=0)
-        speeds = []
-        for k, torque in zip(self._index.values(), torques.tolist(), strict=True):
-            for name, place in self._index.items():
-                world.do(bullet.resetJointState, place, values[name])
-            world.do(bullet.setJointMotorControl2, k, bullet.TORQUE_CONTROL, force=torque)
-            bullet.stepSimulation(physicsClientId=world.client)
-            speeds.append(abs(world.do(bullet.getJointState, k)[1]))
+        torques, speeds = 1e-2 * self.inertias(values), []
+        self.begin(values, contacts=False, gravity=False, released=range(len(self._places)))
+        for joint, torque in enumerate(torques.tolist()):
+            for k, value in zip(self._places, self.row(values).tolist(), strict=True):
+                self._now.do(bullet.resetJointState, k, value)
+            self.apply(joint, torque)
+            bullet.stepSimulation(physicsClientId=self._now.client)
+            speeds.append(abs(float(self.state()[1][joint])))
         del self._worlds[False]
         return 0.5 * _FASTEST * torques / np.maximum(speeds, 1e-12)
 
-    def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
-        """See `RunningFile`."""
-        world, joint, places = (
-            self._world(values, contacts=contacts),
-            self._index[push.joint],
-            list(self._index.values()),
-        )
-        rest = np.array([values[name] for name in self.joints])
-        moved = [self.joints.index(name) for name in push.moved]
-        ratios, weights = np.array(push.ratios), np.array(push.weights)
-        world.pushed = True
-        bullet.setGravity(0.0, 0.0, 0.0, physicsClientId=world.client)
-        for k in moved:
-            world.do(bullet.setJointMotorControl2, places[k], bullet.VELOCITY_CONTROL, force=0)
-        progress = PushProgress(start=values[push.joint], push=push, time_step=self.time_step)
-        step, speed = 0, 0.0
-        q, v = rest.copy(), np.zeros_like(rest)
-        for step in range(1, push.steps + 1):
-            world.do(bullet.setJointMotorControl2, joint, bullet.TORQUE_CONTROL, force=progress.force(speed))
-            bullet.stepSimulation(physicsClientId=world.client)
-            states = world.do(bullet.getJointStates, places)
-            way = sum(w * (states[k][0] - rest[k]) for k, w in zip(moved, weights, strict=True))
-            speed = sum(w * states[k][1] for k, w in zip(moved, weights, strict=True))
-            q[moved], v[moved] = rest[moved] + ratios * way, ratios * speed
-            world.do(bullet.resetJointStatesMultiDof, places, q[:, None].tolist(), v[:, None].tolist())
-            if not progress.goes_on(float(q[moved[0]]), step):
-                break
-        found = self._overlaps(world)
-        for k in moved:
-            world.do(bullet.setJointMotorControl2, places[k], bullet.VELOCITY_CONTROL, force=_MOTOR)
-        bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=world.client)
-        return Pushed(farthest=progress.value, steps=step, overlaps=found)
-
     def motor(self, joint: str, values: Mapping[str, float], target: float, seconds: float) -> float:
         """See `MotorFile`; the motors of the other joints hold them, gravity is off."""
-        world, index = self._world(values, contacts=False), self._index[joint]
-        world.pushed = True
-        bullet.setGravity(0.0, 0.0, 0.0, physicsClientId=world.client)
+        self.begin(values, contacts=False, gravity=False, released=())
         for name, k in self._index.items():
             wanted = target if name == joint else values[name]
-            world.do(bullet.setJointMotorControl2, k, bullet.POSITION_CONTROL, targetPosition=wanted)
-        sign, farthest = np.sign(target - values[joint]), values[joint]
-        for _ in range(round(seconds / self.time_step)):
-            bullet.stepSimulation(physicsClientId=world.client)
-            farthest = sign * max(sign * farthest, sign * world.do(bullet.getJointState, index)[0])
+            self._now.do(bullet.setJointMotorControl2, k, bullet.POSITION_CONTROL, targetPosition=wanted)
+        sign, farthest, index = np.sign(target - values[joint]), values[joint], self._index[joint]
+        for _ in self.steps(self._steps(seconds)):
+            farthest = sign * max(sign * farthest, sign * self._now.do(bullet.getJointState, index)[0])
         del self._worlds[False]  # its motors are others than those of the file as it is loaded
         return float(sign * min(sign * farthest, sign * target))
 
@@ -359,6 +314,8 @@ class _LoadedWorld:
             passing: Links that collide with no other one.
         """
         self.client, self.pushed = bullet.connect(bullet.DIRECT), False
+        self.freed: set[int] = set()
+        """Joints without motors now; `pushed`: some were so once."""
         weakref.finalize(self, bullet.disconnect, physicsClientId=self.client)
         bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self.client)
         flags = bullet.URDF_USE_SELF_COLLISION if contacts else 0
