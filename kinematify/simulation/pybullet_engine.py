@@ -63,7 +63,7 @@ class PybulletEngine:
             said = self._printed() or [str(refusal)]
             raise Refused(" ".join(said[-3:])[:400].rstrip(".")) from refusal
         masses = free.masses()
-        free.disconnect()
+        free.client.disconnect()
         return PybulletModel(engine=self, prepared=prepared, looking=fixed, masses=masses)
 
     def messages(self) -> list[str]:
@@ -219,11 +219,11 @@ class PybulletSimulation:
     def release(self, seconds: float, *, fine: bool = False) -> FreeRun:
         """Let the model go."""
         world, finer = self._free_world, FINER if fine else 1
-        bullet.setPhysicsEngineParameter(fixedTimeStep=self.step / finer, physicsClientId=world.client)
+        world.client.setPhysicsEngineParameter(fixedTimeStep=self.step / finer)
         run, count = _Run(self.model, world), finer * count_steps(seconds, self.step)
         world.release(ideal=True)
         result = free_run(run, run.steps(count), count, every=finer)
-        bullet.setPhysicsEngineParameter(fixedTimeStep=self.step, physicsClientId=world.client)
+        world.client.setPhysicsEngineParameter(fixedTimeStep=self.step)
         return result
 
     def drive(self, drives: Sequence[Drive]) -> list[DriveRun]:
@@ -252,17 +252,17 @@ class PybulletSimulation:
         run = _Run(self.model, body)
         run.hold(np.inf)
         height = _lowest(body) - settings.drop
-        shape = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=client)
-        floor = bullet.createMultiBody(0.0, shape, basePosition=[0.0, 0.0, height], physicsClientId=client)
+        shape = client.createCollisionShape(bullet.GEOM_PLANE)
+        floor = client.createMultiBody(0.0, shape, basePosition=[0.0, 0.0, height])
         count = count_steps(settings.drop_seconds, self.step)
         margins = {index: float(body.margin[link]) for link, index in enumerate(body.link.tolist())}
 
         def depth() -> float:
-            near = bullet.getClosestPoints(body.body, floor, 1e-3, physicsClientId=client)
+            near = client.getClosestPoints(body.body, floor, 1e-3)
             return max((-point[8] - margins[point[3]] for point in near), default=-1e-3)
 
         dropped = drop_run(run, run.steps(count), count, self.step, places=lambda: _centres(body), depth=depth)
-        body.disconnect()
+        client.disconnect()
         return dropped
 
 
@@ -291,7 +291,7 @@ class _Run:
         for step in range(count):
             if orders is not None:
                 self.command(*next(told))
-            bullet.stepSimulation(physicsClientId=self._world.client)
+            self._world.client.stepSimulation()
             self._q, self._v, self.torques = self._world.state()
             if not np.isfinite([self._q, self._v]).all():
                 self.failure = ("a value is not finite",)
@@ -333,7 +333,7 @@ class _Run:
 
     def command(self, column: int, target: float, speed: float, force: float) -> None:
         """Command one of `LeaderMechanism.joints`."""
-        bullet.setJointMotorControl2(
+        self._world.client.setJointMotorControl2(
             self._world.body,
             self._world.indices[column],
             bullet.POSITION_CONTROL,
@@ -342,7 +342,6 @@ class _Run:
             force=force,
             positionGain=_POSITION_GAIN,
             velocityGain=1.0,
-            physicsClientId=self._world.client,
         )
 
 
@@ -363,14 +362,14 @@ def _link_transforms(loaded: PybulletBody, states: list[list[tuple[tuple[float, 
 def _lowest(world: PybulletBody) -> float:
     """Height of the lowest point of all collision shapes [m]; the boxes around them are a little too large."""
     heights: list[float] = [
-        bullet.getAABB(world.body, index, physicsClientId=world.client)[0][2]
+        world.client.getAABB(world.body, index)[0][2]
         for index in world.link.tolist()
-        if bullet.getCollisionShapeData(world.body, index, physicsClientId=world.client)
+        if world.client.getCollisionShapeData(world.body, index)
     ]
     return min(heights)
 
 
 def _centres(world: PybulletBody) -> FloatArray:
     """Centres of mass of all links, shape (L, 3)."""
-    base, _ = bullet.getBasePositionAndOrientation(world.body, physicsClientId=world.client)
+    base, _ = world.client.getBasePositionAndOrientation(world.body)
     return np.array([base, *(state[0] for state in world.link_states())])

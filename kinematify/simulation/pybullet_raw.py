@@ -6,10 +6,9 @@ import ctypes
 import os
 import re
 import tempfile
-import weakref
 from contextlib import suppress
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pybullet as bullet
@@ -17,7 +16,7 @@ import pybullet as bullet
 from kinematify.robot.urdf_numbers import passing_links
 from kinematify.robot.urdf_text import parse_description
 from kinematify.simulation.configurations import GRAVITY
-from kinematify.simulation.pybullet_world import text_of
+from kinematify.simulation.pybullet_world import Client, text_of
 from kinematify.simulation.raw_model import MotorFile, Reproductions, Unloadable
 
 if TYPE_CHECKING:
@@ -129,7 +128,7 @@ class PybulletFile(MotorFile):
         world = self._opened(contacts=True, seen=True)
         self._now, self._worlds = world, {True: world}
         self._file = {"path": str(urdf), "silent": world.ignored_pairs}
-        infos = [world.do(bullet.getJointInfo, k) for k in range(world.do(bullet.getNumJoints))]
+        infos = [world.client.getJointInfo(world.body, k) for k in range(world.client.getNumJoints(world.body))]
         self._links = {-1: root, **{k: text_of(info[12]) for k, info in enumerate(infos)}}
         self._index = {text_of(info[1]): k for k, info in enumerate(infos) if info[2] != bullet.JOINT_FIXED}
         self._places = list(self._index.values())
@@ -156,15 +155,15 @@ class PybulletFile(MotorFile):
         if world is None or (released is None and world.pushed):
             world = self._opened(contacts=contacts, seen=False)
         self._now = self._worlds[contacts] = world
-        bullet.restoreState(world.state, physicsClientId=world.client)
+        world.client.restoreState(world.state)
         for name, k in self._index.items():
-            world.do(bullet.resetJointState, k, values[name], 0.0 if speeds is None else speeds[name])
-        bullet.setGravity(0.0, 0.0, -GRAVITY if gravity else 0.0, physicsClientId=world.client)
+            world.client.resetJointState(world.body, k, values[name], 0.0 if speeds is None else speeds[name])
+        world.client.setGravity(0.0, 0.0, -GRAVITY if gravity else 0.0)
         freed = [self._places[number] for number in released or ()]
         for k in world.freed - set(freed):
-            world.do(bullet.setJointMotorControl2, k, bullet.VELOCITY_CONTROL, force=_MOTOR)
+            world.client.setJointMotorControl2(world.body, k, bullet.VELOCITY_CONTROL, force=_MOTOR)
         for k in freed:
-            world.do(bullet.setJointMotorControl2, k, bullet.VELOCITY_CONTROL, force=0)
+            world.client.setJointMotorControl2(world.body, k, bullet.VELOCITY_CONTROL, force=0)
         world.freed, world.pushed = set(freed), world.pushed or bool(freed)
 
     def _opened(self, *, contacts: bool, seen: bool) -> _LoadedWorld:
@@ -173,38 +172,40 @@ class PybulletFile(MotorFile):
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
         """See `RunningFile`."""
         for done in range(1, count + 1):
-            bullet.stepSimulation(physicsClientId=self._now.client)
+            self._now.client.stepSimulation()
             if done % every == 0:
                 yield done
 
     def state(self) -> tuple[FloatArray, FloatArray]:
         """See `RunningFile`."""
-        states = self._now.do(bullet.getJointStates, self._places)
+        states = self._now.client.getJointStates(self._now.body, self._places)
         return np.array([state[0] for state in states]), np.array([state[1] for state in states])
 
     def set_state(self, q: FloatArray, v: FloatArray) -> None:
         """See `RunningFile`."""
-        self._now.do(bullet.resetJointStatesMultiDof, self._places, q[:, None].tolist(), v[:, None].tolist())
+        self._now.client.resetJointStatesMultiDof(
+            self._now.body, self._places, q[:, None].tolist(), v[:, None].tolist()
+        )
 
     def apply(self, joint: int, force: float) -> None:
         """See `RunningFile`."""
-        self._now.do(bullet.setJointMotorControl2, self._places[joint], bullet.TORQUE_CONTROL, force=force)
+        self._now.client.setJointMotorControl2(self._now.body, self._places[joint], bullet.TORQUE_CONTROL, force=force)
 
     def touching(self) -> Iterator[tuple[str, str, float]]:
         """See `RunningFile`."""
         world = self._now
-        bullet.performCollisionDetection(physicsClientId=world.client)
-        for contact in world.do(bullet.getContactPoints, world.body):
+        world.client.performCollisionDetection()
+        for contact in world.client.getContactPoints(world.body, world.body):
             first, second = sorted(contact[3:5])
             yield self._links[first], self._links[second], -contact[8]
 
     def energy(self) -> tuple[float, float]:
         """See `RunningFile`; of all links but the base."""
         world, links = self._now, [link for link in self._links if link != -1]
-        states = world.do(bullet.getLinkStates, links, computeLinkVelocity=True, computeForwardKinematics=True)
+        states = world.client.getLinkStates(world.body, links, computeLinkVelocity=True, computeForwardKinematics=True)
         potential = kinetic = 0.0
         for link, state in zip(links, states, strict=True):
-            mass, _, tensor, *_ = world.do(bullet.getDynamicsInfo, link)
+            mass, _, tensor, *_ = world.client.getDynamicsInfo(world.body, link)
             turning = np.reshape(bullet.getMatrixFromQuaternion(state[1]), (3, 3)).T @ state[7]
             potential += GRAVITY * mass * state[0][2]
             kinetic += 0.5 * (mass * np.dot(state[6], state[6]) + np.dot(tensor, turning**2))
@@ -217,13 +218,13 @@ class PybulletFile(MotorFile):
 
     def _inertia(self, world: _LoadedWorld, joint: int) -> float:
         """Of what hangs on a joint; PyBullet's own mass matrix fails where a tensor is unsymmetric by 1e-13."""
-        info = world.do(bullet.getJointInfo, joint)
-        frame = world.do(bullet.getLinkState, joint, computeForwardKinematics=True)
+        info = world.client.getJointInfo(world.body, joint)
+        frame = world.client.getLinkState(world.body, joint, computeForwardKinematics=True)
         axis = np.array(bullet.rotateVector(frame[5], info[13]))
         total = 0.0
         for link in self._below[joint]:
-            mass, _, tensor, *_ = world.do(bullet.getDynamicsInfo, link)
-            centre, turned, *_ = world.do(bullet.getLinkState, link, computeForwardKinematics=True)
+            mass, _, tensor, *_ = world.client.getDynamicsInfo(world.body, link)
+            centre, turned, *_ = world.client.getLinkState(world.body, link, computeForwardKinematics=True)
             if info[2] == bullet.JOINT_PRISMATIC:
                 total += mass
                 continue
@@ -242,9 +243,9 @@ class PybulletFile(MotorFile):
         self.begin(values, contacts=False, gravity=False, released=range(len(self._places)))
         for joint, torque in enumerate(torques.tolist()):
             for k, value in zip(self._places, self.row(values).tolist(), strict=True):
-                self._now.do(bullet.resetJointState, k, value)
+                self._now.client.resetJointState(self._now.body, k, value)
             self.apply(joint, torque)
-            bullet.stepSimulation(physicsClientId=self._now.client)
+            self._now.client.stepSimulation()
             speeds.append(abs(float(self.state()[1][joint])))
         del self._worlds[False]
         return 0.5 * _FASTEST * torques / np.maximum(speeds, 1e-12)
@@ -254,10 +255,10 @@ class PybulletFile(MotorFile):
         self.begin(values, contacts=False, gravity=False, released=())
         for name, k in self._index.items():
             wanted = target if name == joint else values[name]
-            self._now.do(bullet.setJointMotorControl2, k, bullet.POSITION_CONTROL, targetPosition=wanted)
+            self._now.client.setJointMotorControl2(self._now.body, k, bullet.POSITION_CONTROL, targetPosition=wanted)
         sign, farthest, index = np.sign(target - values[joint]), values[joint], self._index[joint]
         for _ in self.steps(self._steps(seconds)):
-            farthest = sign * max(sign * farthest, sign * self._now.do(bullet.getJointState, index)[0])
+            farthest = sign * max(sign * farthest, sign * self._now.client.getJointState(self._now.body, index)[0])
         del self._worlds[False]  # its motors are others than those of the file as it is loaded
         return float(sign * min(sign * farthest, sign * target))
 
@@ -313,40 +314,35 @@ class _LoadedWorld:
             root: Name of the first link.
             passing: Links that collide with no other one.
         """
-        self.client, self.pushed = bullet.connect(bullet.DIRECT), False
+        self.client, self.pushed = Client(), False
         self.freed: set[int] = set()
         """Joints without motors now; `pushed`: some were so once."""
-        weakref.finalize(self, bullet.disconnect, physicsClientId=self.client)
-        bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self.client)
+        self.client.setGravity(0.0, 0.0, -GRAVITY)
         flags = bullet.URDF_USE_SELF_COLLISION if contacts else 0
         flags |= 0 if seen else bullet.URDF_IGNORE_VISUAL_SHAPES
         try:
-            self.body = bullet.loadURDF(str(urdf), useFixedBase=True, flags=flags, physicsClientId=self.client)
+            self.body = self.client.loadURDF(str(urdf), useFixedBase=True, flags=flags)
         except bullet.error as error:
-            printed = _printed(lambda: bullet.loadURDF(str(urdf), flags=flags, physicsClientId=self.client))
+            printed = _printed(lambda: self.client.loadURDF(str(urdf), flags=flags))
             words = f"{error} It prints: {printed}" if printed else str(error)
             raise Unloadable(words, _OPEN.format(path=str(urdf))) from error
         self.ignored_pairs = self._silent_pairs(root, passing) if contacts else []
         """Indices of two links each that do not collide."""
         for first, second in self.ignored_pairs:
-            bullet.setCollisionFilterPair(self.body, self.body, first, second, 0, physicsClientId=self.client)
-        self.state = bullet.saveState(physicsClientId=self.client)
+            self.client.setCollisionFilterPair(self.body, self.body, first, second, 0)
+        self.state = self.client.saveState()
 
     def _silent_pairs(self, root: str, passing: frozenset[str]) -> list[tuple[int, int]]:
         """Pairs that a fixed joint connects, that only one moving joint parts, or that pass by declaration."""
-        infos = [self.do(bullet.getJointInfo, k) for k in range(self.do(bullet.getNumJoints))]
+        infos = [self.client.getJointInfo(self.body, k) for k in range(self.client.getNumJoints(self.body))]
         names = {-1: root, **{k: text_of(info[12]) for k, info in enumerate(infos)}}
         top = {-1: -1}
         for k, info in enumerate(infos):  # parents come first
             top[k] = top[info[16]] if info[2] == bullet.JOINT_FIXED else k
         above = {k: top[infos[k][16]] if k >= 0 else None for k in set(top.values())}
-        solid = [k for k in top if self.do(bullet.getCollisionShapeData, k)]
+        solid = [k for k in top if self.client.getCollisionShapeData(self.body, k)]
         return [
             (a, b)
             for a, b in combinations(solid, 2)
             if top[a] == top[b] or top[a] == above[top[b]] or top[b] == above[top[a]] or {names[a], names[b]} & passing
         ]
-
-    def do(self, function: Any, *arguments: Any, **named: Any) -> Any:
-        """Call a function of PyBullet for the body."""
-        return function(self.body, *arguments, **named, physicsClientId=self.client)
