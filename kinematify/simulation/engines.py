@@ -44,6 +44,9 @@ class EngineEntry:
     """True: a joint is stopped one step after it has passed its limit, and left where it stands then."""
     contact_flag: str | None = None
     """Of its loader: without it links of one file pass through each other; None: they collide by default."""
+    holds: tuple[str, ...] = ()
+    """What may connect a hand with a part (values of `kinematify.manipulation.request.Hold`) where plans are executed
+    in it, by ``manipulation/execute_NAME.py``; there environments run too, by ``envs/NAME_worlds.py``."""
     prints_when_loaded: bool = False
     """True: it may be loaded only where what is printed goes to a file."""
 
@@ -54,7 +57,7 @@ class EngineEntry:
 
 
 _ENTRIES = (
-    EngineEntry(name="mujoco", title="MuJoCo", package="mujoco", family="KV4"),
+    EngineEntry(name="mujoco", title="MuJoCo", package="mujoco", family="KV4", holds=("weld", "contact")),
     EngineEntry(
         name="pybullet",
         title="PyBullet",
@@ -65,6 +68,7 @@ _ENTRIES = (
         keeps_energy=False,
         stops_late=True,
         contact_flag="URDF_USE_SELF_COLLISION",
+        holds=("weld",),  # its hulls slip out of fingers that hold by friction
         prints_when_loaded=True,
     ),
     EngineEntry(name="drake", title="Drake", package="drake", extra="drake", family="KV9"),
@@ -74,6 +78,11 @@ ENGINES = {entry.name: entry for entry in _ENTRIES}
 """Keyed by name."""
 DEFAULT_ENGINES = tuple(name for name, engine in ENGINES.items() if engine.extra is None)
 """Engines that every installation has; FCL and the exact geometry are always there."""
+
+
+def engines_that_hold(hold: str) -> tuple[str, ...]:
+    """Names of the engines that execute plans with a hand that holds so (`EngineEntry.holds`)."""
+    return tuple(name for name, engine in ENGINES.items() if hold in engine.holds)
 
 
 def require_engine(name: str) -> None:
