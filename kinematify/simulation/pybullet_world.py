@@ -119,7 +119,7 @@ class PybulletBody:
 
     def state(self) -> tuple[list[float], list[float], list[float]]:
         """Return values, speeds and motor torques of all joints."""
-        states = self.client.getJointStates(self.body, self.indices)
+        states = self.client.getJointStates(self.body, self.indices) or ()
         return [s[0] for s in states], [s[1] for s in states], [s[3] for s in states]
 
     def link_states(self) -> list[tuple[tuple[float, ...], ...]]:
