@@ -38,6 +38,7 @@ SETS = {
     "heldout_4": "sixty more of people who walk in, committed before the parser was opened again, tried after",
     "heldout_5": "sixty more of people who walk in, committed after that was mended and before they were tried",
     "heldout_6": "sixty more of people who walk in, committed before more objects were added, tried after",
+    "heldout_7": "sixty written by somebody without sight of the library, committed before anything was added",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }
@@ -76,7 +77,7 @@ def broken_expectations(expected: Mapping[str, Any], made: Blueprint, closed: Bl
         made: The object.
         closed: The same with all its joints at their zero.
     """
-    if "refuse" in expected:
+    if "refuse" in expected or expected.get("impossible"):
         return ["built, though nobody can"]
     found = []
     for key, wanted in expected.items():

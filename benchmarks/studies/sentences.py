@@ -75,6 +75,8 @@ def outcome(item: Mapping[str, Any]) -> Record:
         made = request.build()
     except InputError as error:
         said = str(error)
+        if item.get("impossible"):
+            return {"text": item["text"], "came": RIGHT, "why": said}
         if "refuse" not in item:
             return {"text": item["text"], "came": REFUSED, "why": said}
         missing = [word for word in item["refuse"] if word.lower() not in said.lower()]
