@@ -114,9 +114,16 @@ def is_listed(broken: str, listed: str, expected: Mapping[str, Any]) -> bool:
         about |= {"open", "opened", "degrees", "half", "closed", "down", "up", "out"}
     if re.match(r"(width|height|depth|range)", broken):
         about |= {"travel", "stroke", "m", "cm", "mm", "inch", "wide", "tall", "high", "long", "deep", "metre"}
-    if re.match(r"\d+ (\w+ )?joints", broken):
-        return bool(words)
+    noun = broken.split(":", maxsplit=1)[0].rsplit(maxsplit=1)[-1]
+    unsaid = broken.startswith(tuple(_OF_PARTS)) and not set(_CALLED.get(noun, (noun,))) & _words_of(expected["text"])
+    if unsaid or re.match(r"\d+ [a-z ]*joints", broken):
+        return bool(words)  # an adjective implies them: a double oven has two doors
     return bool(about & words)
+
+
+def _words_of(text: str) -> set[str]:
+    words = re.findall(r"[a-z]+", text.lower())
+    return {*words, *(word.removesuffix("s") for word in words)}
 
 
 # ---- what is expected of the whole ---------------------------------------------------------------------------------
@@ -171,7 +178,7 @@ def _beyond(closed: Blueprint, one: str, other: str, axis: int, sign: float) -> 
         [sign * part.bounds.mean(axis=0)[axis] for part in closed.parts if part.name.startswith(stem)]
         for stem in (one, other)
     ]
-    return bool(min(places[0]) > max(places[1]))
+    return all(places) and bool(min(places[0]) > max(places[1]))
 
 
 def _open(made: Blueprint, closed: Blueprint, wanted: float) -> list[str]:

@@ -179,7 +179,7 @@ def _buildable(reading: ParseState) -> Blueprint:
                 del reading.values[unsaid[-1]]  # who names a shelf may want doors, too
                 continue
             if not reading.said or reading.values[next(reversed(reading.said))] == 0:
-                raise
+                raise InputError(f"{error} The text says {', '.join(map(repr, reading.said.values()))}.") from error
             reading.drop(next(reversed(reading.said)), str(error).split(". ", maxsplit=1)[0])
 
 
