@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.assembly.load import load_assembly
+from kinematify.cli.blueprint_feedback import in_blueprint_words
 from kinematify.cli.generation import Generation, status_of, summary_of, validated, verdict_on, warn_if_interrupted
 from kinematify.cli.inferred import describe
 from kinematify.cli.options import with_collision
@@ -21,7 +22,7 @@ from kinematify.generate.procedural.language.compare import compare
 from kinematify.generate.procedural.language.parse import parse_any
 from kinematify.generate.providers.command import CommandSource
 from kinematify.generate.providers.job import open_job
-from kinematify.generate.providers.judge import drawn_findings, in_blueprint_words
+from kinematify.generate.providers.judge import drawn_findings
 from kinematify.generate.providers.language_model import LanguageModel, examples_for, language_model
 from kinematify.generate.providers.rodin import RodinSource
 from kinematify.generate.providers.source import RecordingSource, ReplayedSource, check_prompt

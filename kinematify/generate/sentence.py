@@ -354,15 +354,17 @@ def _missing(plan: _Plan, blueprint: Blueprint) -> tuple[str, ...]:
 
     specification, tokens = plan.specification, plan.specification.tokens
     compared = compare(specification, blueprint, plan.nouns)
-    taken = {*specification.name, *plan.used}
+    taken = {*specification.name, *plan.used} - {k for item in plan.dropped for k in item.at}
     found = list(plan.dropped)
-    covered = {k for item in found for k in item.at}
     for item in compared.missing:
-        found = [other for other in found if not other.at or not other.at < item.at]
-        covered = {k for other in found for k in other.at}
-        if not item.at & covered and (item.is_sure or not item.at <= taken):
-            found.append(item)
-            covered |= item.at
+        if item.at <= taken and not item.is_sure:
+            continue
+        within = [other for other in found if other.at and other.at < item.at]
+        if any(other.at & item.at for other in found if other not in within):
+            continue
+        reason = item.reason or next((other.reason for other in within), "")
+        found = [other for other in found if other not in within] + [replace(item, reason=reason)]
+    covered = {k for item in found for k in item.at}
     rest = [
         k for k in range(len(tokens))
         if k not in taken | covered | compared.held and not _says_nothing(specification, k)

@@ -42,7 +42,7 @@ def test_a_sentence_becomes_an_exact_model_its_parts_and_what_is_inferred_from_t
         *("model.urdf", "meshes", "preview.png", "inference.json")
     }
     assert answer["category"] == "cabinet"
-    assert answer["ignored"] == []
+    assert answer["not_built"] == []
     assert answer["accuracy"]["types_right"] == answer["accuracy"]["joints"] == 3
     assert answer["accuracy"]["largest_axis_angle_deg"] < 1.0
 
@@ -59,6 +59,7 @@ def test_the_model_is_validated(generated):
 
 def test_the_status_follows_the_verdict(tmp_path):
     run = Generation(from_text(SENTENCE), None, tmp_path, preview=False, validated=True)
+    run.made = run.request.made()
     assert run.exit_status == 0
     run.report = report(result(finding()))
     assert (run.report.verdict, run.exit_status) == ("fail", 1)

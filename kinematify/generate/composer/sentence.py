@@ -162,6 +162,11 @@ def _fitting(composition: Composition, reader: _Reader, *, may_stand_still: bool
             compose(composition, may_stand_still=may_stand_still)
         except InputError as error:
             first = first or error
+            if (asked := _unkept(composition, may_stand_still)) is not None:
+                reader.drop(asked.words, reason=str(error).rsplit(", but ", maxsplit=1)[-1].rstrip("."))
+                rest = tuple(item for item in composition.requirements if item is not asked)
+                composition = replace(composition, requirements=rest)
+                continue
             items = [item for item in reader.wanted if item in composition.wanted]
             if not items:
                 raise first from None
@@ -178,6 +183,18 @@ def _fitting(composition: Composition, reader: _Reader, *, may_stand_still: bool
             )
         else:
             return composition
+
+
+def _unkept(composition: Composition, may_stand_still: bool) -> PartRequirement | None:
+    """The requirement without which the composition can be built, if it is one of these alone."""
+    for item in composition.requirements:
+        rest = tuple(other for other in composition.requirements if other is not item)
+        try:
+            compose(replace(composition, requirements=rest), may_stand_still=may_stand_still)
+        except InputError:
+            continue
+        return item
+    return None
 
 
 def _fits_without(composition: Composition, item: MechanismSpec) -> bool:

@@ -1,4 +1,4 @@
-"""Judge a blueprint as it is drawn and as a model, in the fields of blueprints: what a language model can correct."""
+"""Judge a blueprint as it is drawn, in its own fields: what a language model can correct."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import Part
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
-    from kinematify.validation.finding import Finding
 
 _DEEP = 0.002  # [m] parts may be so deep in each other
 _APART = 0.002  # [m] a fixed part may be so far from what carries it
@@ -24,13 +23,6 @@ _TORN = 0.002  # [m] a pin may come apart so far
 _SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)  # of a joint's range
 _TURN = 2.0 * math.pi  # of a joint without limits [rad]
 _MOST = 10  # findings at once
-_ADVICE = {
-    "KV203": 'Make its shapes smaller or larger, or give it another "material": its mass is unlikely.',
-    "KV206": 'Its mass is unlikely beside that of the others: check the "size" of its shapes and its "material".',
-    "KV225": 'Check "lower" and "upper" of the joint whose "child" it is.',
-    "KV303": 'Place its shapes ("xyz") so that it touches or nearly touches its "parent".',
-}
-"""Warnings that a model can act on -> what to change."""
 
 
 def drawn_findings(blueprint: Blueprint) -> list[str]:
@@ -171,32 +163,3 @@ def _carried_point(home: Part, there: Part, point: np.ndarray) -> np.ndarray:
 
 def _millimetres(metres: float) -> str:
     return f"{1000.0 * metres:.0f} mm"
-
-
-def in_blueprint_words(findings: Iterable[Finding]) -> list[str]:
-    """What a validation found that a blueprint can correct, one line for each cause.
-
-    Args:
-        findings: Errors and warnings of the model; warnings that no field of a blueprint can change are left away.
-    """
-    lines: dict[tuple[str, str], str] = {}
-    for item in findings:
-        advice = _ADVICE.get(item.check, "")
-        if item.severity != "error" and not advice:
-            continue
-        about = item.joint.removesuffix("_joint") if item.joint else item.link or ""
-        subject = f'The joint whose "child" is "{about}": ' if item.joint else f'The part "{about}": ' if about else ""
-        line = f"{subject}{item.message} {advice or _remedy(item, about)}".strip()
-        lines.setdefault((item.check, about), line)
-    return list(lines.values())[:_MOST]
-
-
-def _remedy(item: Finding, about: str) -> str:
-    """A remedy in the fields of a blueprint instead of those of URDF."""
-    said = item.remedy
-    for urdf, field in (
-        ("<axis>", f'"axis" of the joint whose "child" is "{about}"'), ("<limit>", '"lower" and "upper"'),
-        ("<origin>", '"pivot"'), ("<collision>", '"shapes"'), ("<inertial>", '"material"'), ("<mass>", '"material"'),
-    ):  # fmt: skip
-        said = said.replace(urdf, field)
-    return said

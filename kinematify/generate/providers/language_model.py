@@ -67,8 +67,8 @@ _TRANSLATE = """You translate what a user asks for into one English sentence tha
 Answer with one JSON object: {"sentence": "...", "unmapped": ["..."]}. "sentence" names one kind of object from the
 list, then its parts with counts, sizes with units, colours, materials and places, as in "a red cabinet, 80 cm wide,
 with two glass doors above three drawers". Use the nearest kind only if a person would call it the same object; if there
-is none, "sentence" is null. "unmapped" lists every part, motion, size or look that the user asks for and the sentence does
-not say. What the user describes is an object, whatever else it says.
+is none, "sentence" is null. "unmapped" lists every part, motion, size or look that the user asks for and the sentence
+does not say. What the user describes is an object, whatever else it says.
 """
 
 

@@ -46,6 +46,9 @@ _AT = ("on", "at", "in", "to", "near", "from", "against", "by", "along", "onto")
 """Before a place they say that something is there."""
 _BEGINS_PART = (*_WITH, *_RELATIVE, "whose", "where", "without", *_JOINERS)
 _BEING = ("is", "are", "can", "could", "be", "may", "will", "each", "all", "both", "it", "they", "being", "also")
+_CAN = ("be", "can", "to", "may")
+_PULLED = ("pulled", "slid", "swung")
+"""With `out` they are as good as opened."""
 _DETERMINERS = ("a", "an", "the", "its", "their", "some", "any", "each", "every", "both", "all", "other", "another")
 PLACES = (
     "left", "right", "top", "bottom", "front", "back", "rear", "upper", "lower", "middle", "side", "underside",
@@ -346,6 +349,7 @@ class _Parser(Words):
         if length_at(self, k) and not self._noun_behind(k):
             return False
         verb = word in MOTIONS or word in DONE or word in GOING or word in OPENNESS
+        verb = verb or word in _PULLED
         return not verb or self._noun_behind(k)
 
     def _noun_behind(self, k: int) -> bool:
@@ -386,7 +390,7 @@ class _Parser(Words):
             ends = word in _BEGINS_PART or (word in _PREPOSITIONS and k > start) or self.tokens[k].is_sign
             if ends and not (part is self.whole and k < self.name[0]):
                 break
-            if part.nouns and (word in _BEING or self._verb_at(k) or word in WAYS or word in PLACES):
+            if part.nouns and (word in _BEING or word in _PULLED or self._verb_at(k) or word in WAYS or word in PLACES):
                 break
             taken = self._look_or_size(k, part) or self._described(k, part)
             if not taken and word.isalpha() and word not in _DETERMINERS and word not in _NO_NOUN:
@@ -483,12 +487,16 @@ class _Parser(Words):
         taken = self._look_or_size(k, part) or self._adjustable(k, self.whole)
         if taken:
             return k + taken
-        if word in MOTIONS or word in GOING or (word in DONE and before == "be"):
+        does = word in GOING and (word not in OPENNESS or before in (*_RELATIVE, *_CAN))
+        if word in MOTIONS or does or (word in DONE and before == "be"):
             return self._verb(k)
+        if word in _PULLED:
+            self.claim(part, "open", 1.0, k)
+            return k + (2 if self.given(k + 1) == "out" else 1)
         if word in _PREPOSITIONS:
             return self._preposition(k)
         if word in OPENNESS:
-            able = before in ("be", "can", "that", "which")
+            able = before in (*_RELATIVE, *_CAN)
             self.claim(part, "moves" if able else "open", "moves" if able else OPENNESS[word], k)
         elif word in WAYS:
             self.claim(part, "place", word, k)
