@@ -364,7 +364,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
 def world_class(engine: str, kind: str) -> Any:
     """The class of an engine's worlds with a ``Hand`` or an ``Arm``; PyBullet takes a second to load."""
-    module = importlib.import_module(f"kinematify.envs.{engine}_worlds")
+    module = importlib.import_module(f"{__package__}.{engine}_worlds")  # the full name would mean all of the package
     return getattr(module, f"{engine.capitalize()}{kind}")
 
 

@@ -15,11 +15,11 @@ import pytest
 
 from kinematify.config.validation import load_settings
 from kinematify.simulation.engines import DEFAULT_ENGINES
-from kinematify.validation.as_loaded import across_engines, as_loaded_words, confirm_on_raw_model, with_refusals
 from kinematify.validation.as_loaded_context import AsLoadedContext
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.run import validate
+from kinematify.validation.run.as_loaded import across_engines, as_loaded_words, confirm_on_raw_model, with_refusals
 from kinematify.validation.stage import StageRequest
 from kinematify.validation.stages import as_loaded
 from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, tell

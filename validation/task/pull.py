@@ -25,7 +25,7 @@ from kinematify.manipulation.robot import robot_of
 from kinematify.manipulation.sizes import sizing, write_scaled
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import ENGINES
-from kinematify.validation.checks import CHECKS
+from kinematify.validation.check import REGISTRY
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
@@ -225,7 +225,7 @@ class PullTask:
             Failure.JAMS: f"{plan.joint} jams at {plan.free:.0%} of its range, whoever pulls: {plan.words}.",
         }
         assert plan.failure is not None
-        message, blame, severity, remedy = messages[plan.failure], None, None, CHECKS[result.id].remedy
+        message, blame, severity, remedy = messages[plan.failure], None, None, REGISTRY[result.id].remedy
         if plan.failure is Failure.NO_WAY:
             severity = Severity.NOTE
         elif suspect is not None:
@@ -289,7 +289,7 @@ class PullTask:
                 result.find(
                     f"The plan for {joint} fails in {ENGINES[execution.engine].title}, {_HOLD[execution.hold]}: "
                     f"{execution.reason}.",
-                    CHECKS[result.id].remedy,
+                    REGISTRY[result.id].remedy,
                     joint=joint,
                     value=execution.share,
                     limit=self.settings.execution.opened,
