@@ -80,7 +80,8 @@ _RELEASE = (
     _LOAD
     + _SET
     + """put(rest, np.array({speeds})); mass, centre, tensor = (getattr(model, "body_" + name).numpy() \
-for name in ("mass", "com", "inertia")); turn = lambda pose: np.reshape(warp.quat_to_matrix(warp.quat(*pose[3:])), (3, 3))
+for name in ("mass", "com", "inertia")); turn = lambda pose: \
+np.reshape(warp.quat_to_matrix(warp.quat(*pose[3:])), (3, 3))
 energy = lambda: sum(9.81 * m * (p[2] + (turn(p) @ c)[2]) + 0.5 * m * u[:3] @ u[:3] + 0.5 * u[3:] @ turn(p) @ i @ \
 turn(p).T @ u[3:] for p, u, m, c, i in zip(now.body_q.numpy(), now.body_qd.numpy(), mass, centre, tensor))
 seen = [energy()] + [energy() for k in range({steps}) if step(False) is None and k % 8 == 7]
