@@ -7,7 +7,6 @@ import sys
 import time
 from dataclasses import replace
 from functools import partial
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -25,10 +24,7 @@ from kinematify.validation.stages import as_loaded
 from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, tell
 
 ENGINES = ("mujoco", "pybullet")
-NO_DRAKE = pytest.mark.skipif(
-    find_spec("pydrake") is None, reason="Drake is not installed: pip install 'kinematify[drake]'"
-)
-each_engine = pytest.mark.parametrize("engine", [*ENGINES, pytest.param("drake", marks=NO_DRAKE)])
+each_engine = pytest.mark.parametrize("engine", [*ENGINES, "drake"])
 WALL = Box(size=(0.02, 0.64, 0.4), at=(0.35, 0.0, 0.0))
 """In front of the cabinet: the drawer gets 135 mm far, the door hits it too."""
 

@@ -24,6 +24,7 @@ from kinematify.manipulation.request import Failure, Hold
 from kinematify.manipulation.robot import robot_of
 from kinematify.manipulation.sizes import sizing, write_scaled
 from kinematify.robot.read import read_robot
+from kinematify.simulation.engines import ENGINES
 from kinematify.validation.check import REGISTRY
 from kinematify.validation.finding import Blame, Severity
 
@@ -42,7 +43,6 @@ OBJECT_FILE = "object.urdf"
 LEEWAY = 20.0
 """Before the deadline no more work is begun, so that what is known can be told [s]."""
 _FILM_SECONDS = 15.0  # a film is begun only with so much time left [s]
-_ENGINE = {"mujoco": "MuJoCo", "pybullet": "PyBullet"}
 _HOLD = {Hold.WELD: "with the hand welded to the part", Hold.CONTACT: "with fingers that hold by friction"}
 
 
@@ -287,7 +287,7 @@ class PullTask:
             result.measured[f"{joint} depth"] = execution.depth
             if not execution.success:
                 result.find(
-                    f"The plan for {joint} fails in {_ENGINE[execution.engine]}, {_HOLD[execution.hold]}: "
+                    f"The plan for {joint} fails in {ENGINES[execution.engine].title}, {_HOLD[execution.hold]}: "
                     f"{execution.reason}.",
                     REGISTRY[result.id].remedy,
                     joint=joint,
