@@ -167,7 +167,7 @@ def test_the_categories_and_their_parameters_are_listed(capsys):
     assert "caster" in " ".join(stated["mechanisms"])
     assert run(["generate", "--list"]) == 0
     assert "serial_arm" in capsys.readouterr().out
-    assert run(["generate", "--list", "--category", "wardrobe"]) == 0
+    assert run(["generate", "--list", "--category", "cabinet"]) == 0
     assert "0.1 to 5 m" in capsys.readouterr().out
 
 
