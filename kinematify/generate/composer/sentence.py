@@ -164,7 +164,7 @@ def _fitting(composition: Composition, reader: _Reader, *, may_stand_still: bool
             first = first or error
             if (asked := _unkept(composition, may_stand_still)) is not None:
                 reader.drop(asked.words, reason=str(error).rsplit(", but ", maxsplit=1)[-1].rstrip("."))
-                rest = tuple(item for item in composition.requirements if item is not asked)
+                kept = tuple(item for item in composition.requirements if item is not asked)
                 composition = replace(composition, requirements=rest)
                 continue
             items = [item for item in reader.wanted if item in composition.wanted]
