@@ -165,7 +165,7 @@ def _fitting(composition: Composition, reader: _Reader, *, may_stand_still: bool
             if (asked := _unkept(composition, may_stand_still)) is not None:
                 reader.drop(asked.words, reason=str(error).rsplit(", but ", maxsplit=1)[-1].rstrip("."))
                 kept = tuple(item for item in composition.requirements if item is not asked)
-                composition = replace(composition, requirements=rest)
+                composition = replace(composition, requirements=kept)
                 continue
             items = [item for item in reader.wanted if item in composition.wanted]
             if not items:
