@@ -200,8 +200,13 @@ class ObjectBuilder:
 
     def description(self) -> dict[str, Any]:
         """The object as a blueprint file says it."""
-        return {"name": self.name, "category": self.name, "parts": list(self._parts.values()), "joints": self._joints,
-            "loops": self._loops}
+        return {
+            "name": self.name,
+            "category": self.name,
+            "parts": list(self._parts.values()),
+            "joints": self._joints,
+            "loops": self._loops,
+        }
 
 
 def spread(count: int, low: float, high: float) -> Sequence[float]:

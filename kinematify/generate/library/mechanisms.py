@@ -118,7 +118,7 @@ def leaf(
     across = np.abs(np.asarray(hinge))
     wide = float((high - low) @ across)
     gap = d.gap(float(min(wide, (high - low) @ along)))
-    low, high = low + gap * (along + across), high - gap * (along + across)
+    low, high = low + gap * (along + across) + gap * out, high - gap * (along + across) + gap * out
     thick = float((high - low) @ np.abs(out))
     d.part(name, box(low, high), material=material)
     middle = 0.5 * (low + high)

@@ -1,8 +1,8 @@
 """Objects that a file writes down step by step: what is drawn where, by how much it varies, and how it moves.
 
-A step is a mapping with one verb: `part`, `cut` and `bore` draw shapes; `hinge`, `spin`, `slide`, `fix`, `follow`
-and `close` join parts; every function of `mechanisms` and `panels` is a verb, too; `let`, `for` and `when` compute, repeat and
-choose. Values are formulas; names of parts and materials are texts with formulas in braces.
+A step is a mapping with one verb: `part`, `cut` and `bore` draw shapes; `hinge`, `spin`, `slide`, `fix`, `follow` and
+`close` join parts; every function of `mechanisms` and `panels` is a verb, too; `let`, `for` and `when` compute, repeat
+and choose. Values are formulas; names of parts and materials are texts with formulas in braces.
 
 ```yaml
 steps:
