@@ -176,7 +176,7 @@ def sheet_of_faces(vertices: FloatArray, faces: IntArray) -> IntArray:
     earliest = np.repeat(starts, counts)[later]
     one, other = sheet[face[np.concatenate([later - 1, earliest])]], sheet[face[np.concatenate([later, later])]]
     lengths = np.tile(lengths_of(vertices[ends[order][later, 0]] - vertices[ends[order][later, 1]]), 2)
-    joined_to = _small_ones_joined(one, other, lengths, np.bincount(sheet, areas))
+    joined_to = _small_ones_joined(one, other, lengths, np.bincount(sheet, areas).astype(np.float64))
     return np.asarray(joined_to[sheet][same.reshape(-1)], dtype=np.int64)
 
 

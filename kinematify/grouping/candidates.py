@@ -200,8 +200,8 @@ def _place(inside: BoolArray, grid: Lattice, areas: FloatArray) -> dict[str, flo
 
 def _slides(member: BoolArray, grid: Lattice) -> dict[str, FloatArray]:
     """What each candidate meets when it moves along each axis, as shares of its cells; columns of shape (c,)."""
-    inside = member.astype(np.float32)
-    size = inside @ grid.sizes.astype(np.float32)
+    inside = member.astype(np.float64)
+    size = inside @ grid.sizes
     met = np.array([[((inside @ of) * (1.0 - inside)).sum(axis=1) / size for of in reach] for reach in grid.met])
     seen = inside @ grid.seen / size[:, None]
     rows = np.arange(len(member))
@@ -220,7 +220,7 @@ def _slides(member: BoolArray, grid: Lattice) -> dict[str, FloatArray]:
             f"up_{name}": met[r, 0],
             f"down_{name}": met[r, 1],
             **{f"side_{k + 1}_{name}": around[k] for k in range(4)},
-            f"free_{name}": (met[r] < FREE).sum(axis=0).astype(np.float32),
+            f"free_{name}": (met[r] < FREE).sum(axis=0).astype(np.float64),
         }
     return columns
 
@@ -265,7 +265,7 @@ class _Turns:
         hits = np.maximum.accumulate(np.maximum(met, 0.0).reshape(3, 4, 2, len(_ANGLES)), axis=3)
         # The second bit of an edge is its height where it is level.
         groups = {"upright": hits[2], "lower": hits[:2, :2], "upper": hits[:2, 2:]}
-        columns = {}
+        columns: dict[str, float] = {}
         for name, values in groups.items():
             group = values.reshape(8, -1)
             columns |= {f"{name}_{angle}": float(group[:, k].min()) for k, angle in enumerate(_NAMES)}
@@ -280,7 +280,7 @@ class _Turns:
             np.linspace(self.starts[k], self.starts[k + 1] - 1, count).astype(int)
             for k, count in zip(members, shares, strict=True)
         ]
-        return self.points[np.concatenate(rows)]
+        return np.asarray(self.points[np.concatenate(rows)])
 
     def _spins(self, points: FloatArray, inside: BoolArray, outside: BoolArray, rest: float) -> dict[str, float]:
         """Whether it looks the same after a turn about its middle, and what it meets."""

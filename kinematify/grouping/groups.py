@@ -197,7 +197,7 @@ def crumb_owners(parts: Sequence[Part], size: float) -> IntArray:
         return np.full(len(parts), int(diagonals.argmax()))
     low = np.array([parts[k].bounds[0] for k in large])
     high = np.array([parts[k].bounds[1] for k in large])
-    for k in np.flatnonzero(diagonals < size):
+    for k in np.flatnonzero(diagonals < size).tolist():
         middle = parts[k].bounds.mean(axis=0)
         gaps = np.linalg.norm(np.maximum(np.maximum(low - middle, middle - high), 0.0), axis=1)
         near = np.flatnonzero(gaps <= gaps.min() + size)

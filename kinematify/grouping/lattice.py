@@ -88,7 +88,7 @@ class Lattice:
         row = np.repeat(np.arange(len(cells)), number)
         place = np.repeat(first - np.cumsum(number) + number, number) + np.arange(len(row))
         keys = pieces[row] * self.count + pieces[place]
-        met = np.bincount(keys, minlength=self.count**2).reshape(self.count, self.count).astype(np.float32)
+        met: FloatArray = np.bincount(keys, minlength=self.count**2).reshape(self.count, self.count).astype(np.float64)
         np.fill_diagonal(met, 0.0)
         return met
 
@@ -103,7 +103,7 @@ class Lattice:
 
         Shape (3, 6, count, count); moved piece, then the piece that it meets.
         """
-        found = np.zeros((len(REACHES), len(DIRECTIONS), self.count, self.count), dtype=np.float32)
+        found = np.zeros((len(REACHES), len(DIRECTIONS), self.count, self.count))
         for r, reach in enumerate(REACHES):
             for k in range(len(DIRECTIONS)):
                 for steps in reach:
