@@ -224,7 +224,7 @@ def _understood(request: Requested) -> str:
     if request.unused:
         lines.append(f"Of no effect on shape or motion: {', '.join(request.unused)}.")
     if request.ignored:
-        lines.append(f"Not understood, and left out: {', '.join(request.ignored)}.")
+        lines.append(f"Not understood and not built: {', '.join(request.ignored)}.")
     return "\n".join(lines)
 
 

@@ -318,7 +318,7 @@ def test_what_is_not_understood_is_named(sentence, words):
         ("a control panel with two drawers", "needs room behind it"),
         ("a cabinet with two cantilever trays", "needs an open top"),
         ("a toolbox with two cantilever trays and a lid", "needs the top for itself"),
-        ("a table with a folding leg", "stands high without it"),
+        ("a table with a folding leg", "is tall without it"),
         ("a frame with a caster", "no place for a caster"),
         ("a column with an arm and a turntable on top", "turntable"),
         ("a cart, 20 cm tall, with nine drawers", "no room for 9 drawers"),

@@ -35,7 +35,7 @@ _NAMED = 16  # digits of the digest that name an exchange
 _FENCED = re.compile(r"```(?:json)?\s*(.*?)```", re.DOTALL)
 _SHOWN = 300  # characters of an answer that is no blueprint
 _TASK = """You design articulated objects. Answer with one JSON object that fits the schema below, and nothing else.
-Metres and radians, world frame, z up, front towards -y, everything where it stands closed. Each moving part is a part
+Metres and radians, world frame, z up, front towards -y, everything in its closed position. Each moving part is a part
 of its own, joined to what carries it; what does not move belongs to the base. Parts that move past each other need a
 gap of about a millimetre: cut a bore for a pin and a bay for a drawer with "subtract". The axis of a hinge runs through
 its pivot; positive motion opens (right hand rule, or along the axis); limits end before anything collides.
