@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from kinematify.pipeline.record import write_inference
     from kinematify.refinement.loop import Refinement, refine
     from kinematify.validation.finding import Finding
-    from kinematify.validation.report import ValidationReport
     from kinematify.validation.run import validate
+    from kinematify.validation.run.report import ValidationReport
     from kinematify.view.loaded import LoadedModel, load
 
 __version__ = "0.1.0"
@@ -65,7 +65,7 @@ _HOMES = {
     "LoadedModel": "kinematify.view.loaded",
     "Part": "kinematify.assembly.part",
     "Refinement": "kinematify.refinement",
-    "ValidationReport": "kinematify.validation.report",
+    "ValidationReport": "kinematify.validation.run.report",
     "export": "kinematify.formats.export",
     "infer": "kinematify.pipeline",
     "load": "kinematify.view.loaded",

@@ -131,7 +131,7 @@ def describe_refinement(inference: Inference) -> str:
     record = inference.refinement
     if record is None:
         return ""
-    from kinematify.validation.inferred import ROUND_HEADINGS, round_rows, round_words
+    from kinematify.validation.run.inferred import ROUND_HEADINGS, round_rows, round_words
 
     table = format_table(ROUND_HEADINGS, round_rows(record)) if record["rounds"] else ""
     return "\n".join(line for line in (table, *round_words(record)) if line)

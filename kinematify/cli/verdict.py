@@ -28,16 +28,16 @@ from kinematify.validation.formats.content import (
     title,
     where,
 )
-from kinematify.validation.outcome import Unusable, counted_words, severity_counts, status_counts
+from kinematify.validation.run.outcome import Unusable, counted_words, severity_counts, status_counts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from kinematify.validation.causes import FindingGroup
     from kinematify.validation.finding import Finding
     from kinematify.validation.formats.content import FindingBlock, Table
-    from kinematify.validation.outcome import Outcome
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.causes import FindingGroup
+    from kinematify.validation.run.outcome import Outcome
+    from kinematify.validation.run.report import ValidationReport
     from kinematify.validation.suppression import Suppression
 
 MANY = 3

@@ -23,7 +23,7 @@ from kinematify.refinement.plan import PlanChange
 from kinematify.refinement.simulate import TIERS
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.failure_rates import GEOMETRY, tier_of
-from kinematify.validation.feedback import feedback_from
+from kinematify.validation.run.feedback import feedback_from
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from kinematify.refinement.candidates import CandidateJoints
     from kinematify.refinement.plan import Plan
     from kinematify.refinement.simulate import DearTiers, Simulator
-    from kinematify.validation.feedback import Feedback, RangeSignal
+    from kinematify.validation.run.feedback import Feedback, RangeSignal
 
 _SAME_WAY = np.cos(np.radians(10.0))  # as `kinematify bench` tells wrong axes from right ones
 

@@ -20,9 +20,9 @@ from kinematify.cli.app import run
 from kinematify.errors import InputError
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity
-from kinematify.validation.plan import keys
-from kinematify.validation.report import ValidationReport
-from kinematify.validation.suppression_file import load_suppressions
+from kinematify.validation.run.plan import keys
+from kinematify.validation.run.report import ValidationReport
+from kinematify.validation.run.suppression_file import load_suppressions
 from tests.reports import add_checks, finding, full_report, report, result
 
 USUAL = [check for check in CHECKS.values() if not check.id.startswith(("KV7", "KV9"))]

@@ -7,7 +7,6 @@ import sys
 import time
 from dataclasses import replace
 from functools import partial
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -15,20 +14,17 @@ import pytest
 
 from kinematify.config.validation import load_settings
 from kinematify.simulation.engines import DEFAULT_ENGINES
-from kinematify.validation.as_loaded import across_engines, as_loaded_words, confirm_on_raw_model, with_refusals
 from kinematify.validation.as_loaded_context import AsLoadedContext
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.run import validate
+from kinematify.validation.run.as_loaded import across_engines, as_loaded_words, confirm_on_raw_model, with_refusals
 from kinematify.validation.stage import StageRequest
 from kinematify.validation.stages import as_loaded
 from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, tell
 
 ENGINES = ("mujoco", "pybullet")
-NO_DRAKE = pytest.mark.skipif(
-    find_spec("pydrake") is None, reason="Drake is not installed: pip install 'kinematify[drake]'"
-)
-each_engine = pytest.mark.parametrize("engine", [*ENGINES, pytest.param("drake", marks=NO_DRAKE)])
+each_engine = pytest.mark.parametrize("engine", [*ENGINES, "drake"])
 WALL = Box(size=(0.02, 0.64, 0.4), at=(0.35, 0.0, 0.0))
 """In front of the cabinet: the drawer gets 135 mm far, the door hits it too."""
 

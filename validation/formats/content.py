@@ -15,15 +15,15 @@ from kinematify.errors import ExitStatus
 from kinematify.validation.check import FAMILIES
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Finding, Severity, Status
-from kinematify.validation.inferred import ROUND_HEADINGS, round_rows
-from kinematify.validation.outcome import counted_words, severity_counts, status_counts
+from kinematify.validation.run.inferred import ROUND_HEADINGS, round_rows
+from kinematify.validation.run.outcome import counted_words, severity_counts, status_counts
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
-    from kinematify.validation.causes import FindingGroup
     from kinematify.validation.finding import CheckResult
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.causes import FindingGroup
+    from kinematify.validation.run.report import ValidationReport
     from kinematify.validation.summary import JointSummary
 
 SHOWN_JOINTS = 4

@@ -14,7 +14,7 @@ from kinematify.validation.formats.html_frame import text
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.report import ValidationReport
     from kinematify.validation.summary import JointCurve, JointSummary
 
 _LINES = {"first": "solid line", "second": "dashed line", "third": "dotted line"}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import ExitStatus
 from kinematify.validation.finding import Severity, Status
-from kinematify.validation.report import SCHEMA, ValidationReport
+from kinematify.validation.run.report import SCHEMA, ValidationReport
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -12,7 +12,7 @@ import numpy as np
 from kinematify.errors import DescriptionError
 from kinematify.robot.read import read_robot
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.outcome import counted_words
+from kinematify.validation.run.outcome import counted_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -7,16 +7,16 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import ExitStatus
-from kinematify.validation.as_loaded import as_loaded_words
-from kinematify.validation.causes import group_by_cause
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
+from kinematify.validation.run.as_loaded import as_loaded_words
+from kinematify.validation.run.causes import group_by_cause
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.validation.causes import FindingGroup
     from kinematify.validation.finding import CheckResult, Finding
+    from kinematify.validation.run.causes import FindingGroup
     from kinematify.validation.summary import JointCurve, JointSummary, PairTable
 
 SCHEMA = 1

@@ -33,12 +33,12 @@ def block(middle: Point, size: Point) -> Shape:
     return box(np.subtract(middle, half), np.add(middle, half))
 
 
-def rod(radius: float, start: Point, end: Point) -> Shape:
+def cylinder(radius: float, start: Point, end: Point) -> Shape:
     """A cylinder between two points."""
     return {"kind": "cylinder", "radius": radius, **_along(start, end)}
 
 
-def capsule(radius: float, start: Point, end: Point) -> Shape:
+def rod(radius: float, start: Point, end: Point) -> Shape:
     """A rod with round ends."""
     return {"kind": "capsule", "radius": radius, **_along(start, end)}
 
@@ -53,14 +53,14 @@ def tube(radius: float, inner_radius: float, start: Point, end: Point) -> Shape:
     return {"kind": "tube", "radius": radius, "inner_radius": inner_radius, **_along(start, end)}
 
 
-def ring(radius: float, wire_radius: float, middle: Point, normal: Point) -> Shape:
+def torus(radius: float, wire_radius: float, middle: Point, normal: Point) -> Shape:
     """A ring of round wire."""
     placed = _along(middle, np.add(middle, normal))
     del placed["length"]
     return {"kind": "torus", "radius": radius, "wire_radius": wire_radius, **placed, "xyz": list(map(float, middle))}
 
 
-def ball(radius: float, middle: Point) -> Shape:
+def sphere(radius: float, middle: Point) -> Shape:
     """A ball."""
     return {"kind": "sphere", "radius": radius, "xyz": list(map(float, middle))}
 
@@ -91,6 +91,12 @@ def prism(outline: Sequence[tuple[float, float]], middle: Point, length: float, 
 def lathe(outline: Sequence[tuple[float, float]], foot: Point) -> Shape:
     """A polygon of radius and height turned about the upright line through `foot`."""
     return {"kind": "lathe", "outline": list(outline), "xyz": list(map(float, foot))}
+
+
+def stick(square: bool, along: Point, foot: Point, radius: float, start: float, end: float) -> Shape:
+    """A beam or a cylinder on a line, between two distances from its foot [m]."""
+    a, b = (np.add(foot, distance * np.asarray(along)) for distance in (start, end))
+    return beam(2.0 * radius, 2.0 * radius, a, b) if square else cylinder(radius, a, b)
 
 
 def scaled(size: float) -> Callable[[float, float, float], FloatArray]:

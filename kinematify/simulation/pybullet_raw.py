@@ -6,10 +6,9 @@ import ctypes
 import os
 import re
 import tempfile
-import weakref
 from contextlib import suppress
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pybullet as bullet
@@ -17,24 +16,15 @@ import pybullet as bullet
 from kinematify.robot.urdf_numbers import passing_links
 from kinematify.robot.urdf_text import parse_description
 from kinematify.simulation.configurations import GRAVITY
-from kinematify.simulation.pybullet_world import text_of
-from kinematify.simulation.raw_model import (
-    MotorFile,
-    Pushed,
-    PushProgress,
-    ReleaseRun,
-    Reproductions,
-    RestRun,
-    Unloadable,
-    deepest_first,
-)
+from kinematify.simulation.pybullet_world import Client, text_of
+from kinematify.simulation.raw_model import MotorFile, Reproductions, Unloadable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.raw_model import Overlap, Push
+    from kinematify.simulation.raw_model import Push
 
 
 def _without_contacts(lines: str) -> str:
@@ -101,8 +91,6 @@ _MARK = re.compile(r"b3(?:Warning|Error)\[[^\]]*\]:")
 """Before each message that PyBullet prints."""
 _NO_FAULT = "No inertial data"
 """Beginning of what it prints of many files that it loads."""
-_LOOK_STEPS = 8
-"""Between two looks at the energy."""
 _TIME_STEP = 1.0 / 240.0
 _FASTEST = 100.0
 """Speed that Bullet lets no joint exceed [rad/s or m/s]."""
@@ -111,7 +99,7 @@ _MOTOR = 240.0
 
 
 class PybulletFile(MotorFile):
-    """See `kinematify.simulation.raw_model.RunningFile`.
+    """See `RunningFile`: a file as `loadURDF` loads it, its base fixed, its motors as they are.
 
     Contacts of links are those of `URDF_USE_SELF_COLLISION`, but for links that fixed joints alone hold together, for
     those of neighbours (as `URDF_MERGE_FIXED_LINKS` has it), and for links that the file declares not to collide with
@@ -124,24 +112,26 @@ class PybulletFile(MotorFile):
         rest=_REST,
         push=_PUSH,
         push_alone=_without_contacts(_PUSH),
-        release=_RELEASE.replace("{looks}", f"{_LOOK_STEPS}"),
+        release=_RELEASE.replace("{looks}", "8"),
     )
 
-    def __init__(self, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> None:
-        """Load it; PyBullet looks for packages by itself.
+    look_steps = 8
+
+    def __init__(self, urdf: Path, root: str) -> None:
+        """Load it.
 
         Raises:
             Unloadable: PyBullet does not open it.
         """
-        del package_dirs
         self._path, self._root, self.time_step = urdf, root, _TIME_STEP
         self._passing = passing_links(parse_description(urdf))
         world = self._opened(contacts=True, seen=True)
-        self._worlds = {True: world}
+        self._now, self._worlds = world, {True: world}
         self._file = {"path": str(urdf), "silent": world.ignored_pairs}
-        infos = [world.do(bullet.getJointInfo, k) for k in range(world.do(bullet.getNumJoints))]
+        infos = [world.client.getJointInfo(world.body, k) for k in range(world.client.getNumJoints(world.body))]
         self._links = {-1: root, **{k: text_of(info[12]) for k, info in enumerate(infos)}}
         self._index = {text_of(info[1]): k for k, info in enumerate(infos) if info[2] != bullet.JOINT_FIXED}
+        self._places = list(self._index.values())
         self.joints = tuple(self._index)
         self.limits = {
             text_of(info[1]): (info[8], info[9]) if info[8] <= info[9] else (-np.inf, np.inf)
@@ -151,66 +141,71 @@ class PybulletFile(MotorFile):
         above = {k: info[16] for k, info in enumerate(infos)}
         self._below = {k: [link for link in above if k in _chain(above, link)] for k in self._index.values()}
 
-    def _world(self, values: Mapping[str, float], *, contacts: bool, as_loaded: bool = False) -> _LoadedWorld:
-        """A world as it was after loading, with the joints at `values`; its motors too where that is asked for."""
+    def begin(
+        self,
+        values: Mapping[str, float],
+        speeds: Mapping[str, float] | None = None,
+        *,
+        contacts: bool,
+        gravity: bool = True,
+        released: Sequence[int] | None = None,
+    ) -> None:
+        """See `RunningFile`: the world as it was after loading; motors of joints that were released are put back."""
         world = self._worlds.get(contacts)
-        if world is None or (as_loaded and world.pushed):
-            world = self._worlds[contacts] = self._opened(contacts=contacts, seen=False)
-        bullet.restoreState(world.state, physicsClientId=world.client)
+        if world is None or (released is None and world.pushed):
+            world = self._opened(contacts=contacts, seen=False)
+        self._now = self._worlds[contacts] = world
+        world.client.restoreState(world.state)
         for name, k in self._index.items():
-            world.do(bullet.resetJointState, k, values[name])
-        return world
+            world.client.resetJointState(world.body, k, values[name], 0.0 if speeds is None else speeds[name])
+        world.client.setGravity(0.0, 0.0, -GRAVITY if gravity else 0.0)
+        freed = [self._places[number] for number in released or ()]
+        for k in world.freed - set(freed):
+            world.client.setJointMotorControl2(world.body, k, bullet.VELOCITY_CONTROL, force=_MOTOR)
+        for k in freed:
+            world.client.setJointMotorControl2(world.body, k, bullet.VELOCITY_CONTROL, force=0)
+        world.freed, world.pushed = set(freed), world.pushed or bool(freed)
 
     def _opened(self, *, contacts: bool, seen: bool) -> _LoadedWorld:
         return _LoadedWorld(self._path, contacts=contacts, seen=seen, root=self._root, passing=self._passing)
 
-    def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
+    def steps(self, count: int, every: int = 1) -> Iterator[int]:
         """See `RunningFile`."""
-        world = self._world(values, contacts=True)
-        return self._overlaps(world)
+        for done in range(1, count + 1):
+            self._now.client.stepSimulation()
+            if done % every == 0:
+                yield done
 
-    def _overlaps(self, world: _LoadedWorld) -> tuple[Overlap, ...]:
-        bullet.performCollisionDetection(physicsClientId=world.client)
-        depths: dict[tuple[str, str], float] = {}
-        for contact in world.do(bullet.getContactPoints, world.body):
+    def state(self) -> tuple[FloatArray, FloatArray]:
+        """See `RunningFile`."""
+        states = self._now.client.getJointStates(self._now.body, self._places)
+        return np.array([state[0] for state in states]), np.array([state[1] for state in states])
+
+    def set_state(self, q: FloatArray, v: FloatArray) -> None:
+        """See `RunningFile`."""
+        self._now.client.resetJointStatesMultiDof(
+            self._now.body, self._places, q[:, None].tolist(), v[:, None].tolist()
+        )
+
+    def apply(self, joint: int, force: float) -> None:
+        """See `RunningFile`."""
+        self._now.client.setJointMotorControl2(self._now.body, self._places[joint], bullet.TORQUE_CONTROL, force=force)
+
+    def touching(self) -> Iterator[tuple[str, str, float]]:
+        """See `RunningFile`."""
+        world = self._now
+        world.client.performCollisionDetection()
+        for contact in world.client.getContactPoints(world.body, world.body):
             first, second = sorted(contact[3:5])
-            pair = (self._links[first], self._links[second])
-            depths[pair] = max(depths.get(pair, 0.0), -contact[8])
-        return deepest_first(depths)
+            yield self._links[first], self._links[second], -contact[8]
 
-    def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> RestRun:
-        """See `RunningFile`."""
-        world = self._world(values, contacts=contacts, as_loaded=True)
-        seen = np.empty((round(seconds / self.time_step), len(self.joints)))
-        for row in seen:
-            bullet.stepSimulation(physicsClientId=world.client)
-            row[:] = [state[0] for state in world.do(bullet.getJointStates, list(self._index.values()))]
-        finite = bool(np.isfinite(seen).all())
-        return RestRun(values=seen, complaint=None if finite else "the values of joints are no numbers any more")
-
-    def release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> ReleaseRun:
-        """See `RunningFile`."""
-        world = self._world(values, contacts=False)
-        world.pushed = True
-        for name, k in self._index.items():
-            world.do(bullet.resetJointState, k, values[name], speeds[name])
-            world.do(bullet.setJointMotorControl2, k, bullet.VELOCITY_CONTROL, force=0)
-        seen = [self._energy(world)]
-        for step in range(1, round(seconds / self.time_step) + 1):
-            bullet.stepSimulation(physicsClientId=world.client)
-            if step % _LOOK_STEPS == 0:
-                seen.append(self._energy(world))
-                if not np.isfinite(seen[-1]).all():
-                    return ReleaseRun(energy=np.array(seen[:-1]), complaint="the energy is no number any more")
-        return ReleaseRun(energy=np.array(seen), complaint=None)
-
-    def _energy(self, world: _LoadedWorld) -> tuple[float, float]:
-        """Potential and kinetic [J] of all links but the base."""
-        links = [link for link in self._links if link != -1]
-        states = world.do(bullet.getLinkStates, links, computeLinkVelocity=True, computeForwardKinematics=True)
+    def energy(self) -> tuple[float, float]:
+        """See `RunningFile`; of all links but the base."""
+        world, links = self._now, [link for link in self._links if link != -1]
+        states = world.client.getLinkStates(world.body, links, computeLinkVelocity=True, computeForwardKinematics=True)
         potential = kinetic = 0.0
         for link, state in zip(links, states, strict=True):
-            mass, _, tensor, *_ = world.do(bullet.getDynamicsInfo, link)
+            mass, _, tensor, *_ = world.client.getDynamicsInfo(world.body, link)
             turning = np.reshape(bullet.getMatrixFromQuaternion(state[1]), (3, 3)).T @ state[7]
             potential += GRAVITY * mass * state[0][2]
             kinetic += 0.5 * (mass * np.dot(state[6], state[6]) + np.dot(tensor, turning**2))
@@ -218,18 +213,18 @@ class PybulletFile(MotorFile):
 
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
         """See `RunningFile`; the motors of the others hold them within a step."""
-        world = self._world(values, contacts=True)
-        return np.array([self._inertia(world, k) for k in self._index.values()])
+        self.begin(values, contacts=True, released=())
+        return np.array([self._inertia(self._now, k) for k in self._places])
 
     def _inertia(self, world: _LoadedWorld, joint: int) -> float:
         """Of what hangs on a joint; PyBullet's own mass matrix fails where a tensor is unsymmetric by 1e-13."""
-        info = world.do(bullet.getJointInfo, joint)
-        frame = world.do(bullet.getLinkState, joint, computeForwardKinematics=True)
+        info = world.client.getJointInfo(world.body, joint)
+        frame = world.client.getLinkState(world.body, joint, computeForwardKinematics=True)
         axis = np.array(bullet.rotateVector(frame[5], info[13]))
         total = 0.0
         for link in self._below[joint]:
-            mass, _, tensor, *_ = world.do(bullet.getDynamicsInfo, link)
-            centre, turned, *_ = world.do(bullet.getLinkState, link, computeForwardKinematics=True)
+            mass, _, tensor, *_ = world.client.getDynamicsInfo(world.body, link)
+            centre, turned, *_ = world.client.getLinkState(world.body, link, computeForwardKinematics=True)
             if info[2] == bullet.JOINT_PRISMATIC:
                 total += mass
                 continue
@@ -244,65 +239,26 @@ class PybulletFile(MotorFile):
         Bullet lets no joint be faster than 100 rad/s within a step either, before motors hold the others: a joint that
         is light where those give way is thrown back by more.
         """
-        world, torques = self._world(values, contacts=False), 1e-2 * self.inertias(values)
-        bullet.setGravity(0.0, 0.0, 0.0, physicsClientId=world.client)
-        for k in self._index.values():
-            world.do(bullet.setJointMotorControl2, k, bullet.VELOCITY_CONTROL, force=0)
-        speeds = []
-        for k, torque in zip(self._index.values(), torques.tolist(), strict=True):
-            for name, place in self._index.items():
-                world.do(bullet.resetJointState, place, values[name])
-            world.do(bullet.setJointMotorControl2, k, bullet.TORQUE_CONTROL, force=torque)
-            bullet.stepSimulation(physicsClientId=world.client)
-            speeds.append(abs(world.do(bullet.getJointState, k)[1]))
+        torques, speeds = 1e-2 * self.inertias(values), []
+        self.begin(values, contacts=False, gravity=False, released=range(len(self._places)))
+        for joint, torque in enumerate(torques.tolist()):
+            for k, value in zip(self._places, self.row(values).tolist(), strict=True):
+                self._now.client.resetJointState(self._now.body, k, value)
+            self.apply(joint, torque)
+            self._now.client.stepSimulation()
+            speeds.append(abs(float(self.state()[1][joint])))
         del self._worlds[False]
         return 0.5 * _FASTEST * torques / np.maximum(speeds, 1e-12)
 
-    def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
-        """See `RunningFile`."""
-        world, joint, places = (
-            self._world(values, contacts=contacts),
-            self._index[push.joint],
-            list(self._index.values()),
-        )
-        rest = np.array([values[name] for name in self.joints])
-        moved = [self.joints.index(name) for name in push.moved]
-        ratios, weights = np.array(push.ratios), np.array(push.weights)
-        world.pushed = True
-        bullet.setGravity(0.0, 0.0, 0.0, physicsClientId=world.client)
-        for k in moved:
-            world.do(bullet.setJointMotorControl2, places[k], bullet.VELOCITY_CONTROL, force=0)
-        progress = PushProgress(start=values[push.joint], push=push, time_step=self.time_step)
-        step, speed = 0, 0.0
-        q, v = rest.copy(), np.zeros_like(rest)
-        for step in range(1, push.steps + 1):
-            world.do(bullet.setJointMotorControl2, joint, bullet.TORQUE_CONTROL, force=progress.force(speed))
-            bullet.stepSimulation(physicsClientId=world.client)
-            states = world.do(bullet.getJointStates, places)
-            way = sum(w * (states[k][0] - rest[k]) for k, w in zip(moved, weights, strict=True))
-            speed = sum(w * states[k][1] for k, w in zip(moved, weights, strict=True))
-            q[moved], v[moved] = rest[moved] + ratios * way, ratios * speed
-            world.do(bullet.resetJointStatesMultiDof, places, q[:, None].tolist(), v[:, None].tolist())
-            if not progress.goes_on(float(q[moved[0]]), step):
-                break
-        found = self._overlaps(world)
-        for k in moved:
-            world.do(bullet.setJointMotorControl2, places[k], bullet.VELOCITY_CONTROL, force=_MOTOR)
-        bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=world.client)
-        return Pushed(farthest=progress.value, steps=step, overlaps=found)
-
     def motor(self, joint: str, values: Mapping[str, float], target: float, seconds: float) -> float:
         """See `MotorFile`; the motors of the other joints hold them, gravity is off."""
-        world, index = self._world(values, contacts=False), self._index[joint]
-        world.pushed = True
-        bullet.setGravity(0.0, 0.0, 0.0, physicsClientId=world.client)
+        self.begin(values, contacts=False, gravity=False, released=())
         for name, k in self._index.items():
             wanted = target if name == joint else values[name]
-            world.do(bullet.setJointMotorControl2, k, bullet.POSITION_CONTROL, targetPosition=wanted)
-        sign, farthest = np.sign(target - values[joint]), values[joint]
-        for _ in range(round(seconds / self.time_step)):
-            bullet.stepSimulation(physicsClientId=world.client)
-            farthest = sign * max(sign * farthest, sign * world.do(bullet.getJointState, index)[0])
+            self._now.client.setJointMotorControl2(self._now.body, k, bullet.POSITION_CONTROL, targetPosition=wanted)
+        sign, farthest, index = np.sign(target - values[joint]), values[joint], self._index[joint]
+        for _ in self.steps(self._steps(seconds)):
+            farthest = sign * max(sign * farthest, sign * self._now.client.getJointState(self._now.body, index)[0])
         del self._worlds[False]  # its motors are others than those of the file as it is loaded
         return float(sign * min(sign * farthest, sign * target))
 
@@ -358,38 +314,35 @@ class _LoadedWorld:
             root: Name of the first link.
             passing: Links that collide with no other one.
         """
-        self.client, self.pushed = bullet.connect(bullet.DIRECT), False
-        weakref.finalize(self, bullet.disconnect, physicsClientId=self.client)
-        bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self.client)
+        self.client, self.pushed = Client(), False
+        self.freed: set[int] = set()
+        """Joints without motors now; `pushed`: some were so once."""
+        self.client.setGravity(0.0, 0.0, -GRAVITY)
         flags = bullet.URDF_USE_SELF_COLLISION if contacts else 0
         flags |= 0 if seen else bullet.URDF_IGNORE_VISUAL_SHAPES
         try:
-            self.body = bullet.loadURDF(str(urdf), useFixedBase=True, flags=flags, physicsClientId=self.client)
+            self.body = self.client.loadURDF(str(urdf), useFixedBase=True, flags=flags)
         except bullet.error as error:
-            printed = _printed(lambda: bullet.loadURDF(str(urdf), flags=flags, physicsClientId=self.client))
+            printed = _printed(lambda: self.client.loadURDF(str(urdf), flags=flags))
             words = f"{error} It prints: {printed}" if printed else str(error)
             raise Unloadable(words, _OPEN.format(path=str(urdf))) from error
         self.ignored_pairs = self._silent_pairs(root, passing) if contacts else []
         """Indices of two links each that do not collide."""
         for first, second in self.ignored_pairs:
-            bullet.setCollisionFilterPair(self.body, self.body, first, second, 0, physicsClientId=self.client)
-        self.state = bullet.saveState(physicsClientId=self.client)
+            self.client.setCollisionFilterPair(self.body, self.body, first, second, 0)
+        self.state = self.client.saveState()
 
     def _silent_pairs(self, root: str, passing: frozenset[str]) -> list[tuple[int, int]]:
         """Pairs that a fixed joint connects, that only one moving joint parts, or that pass by declaration."""
-        infos = [self.do(bullet.getJointInfo, k) for k in range(self.do(bullet.getNumJoints))]
+        infos = [self.client.getJointInfo(self.body, k) for k in range(self.client.getNumJoints(self.body))]
         names = {-1: root, **{k: text_of(info[12]) for k, info in enumerate(infos)}}
         top = {-1: -1}
         for k, info in enumerate(infos):  # parents come first
             top[k] = top[info[16]] if info[2] == bullet.JOINT_FIXED else k
         above = {k: top[infos[k][16]] if k >= 0 else None for k in set(top.values())}
-        solid = [k for k in top if self.do(bullet.getCollisionShapeData, k)]
+        solid = [k for k in top if self.client.getCollisionShapeData(self.body, k)]
         return [
             (a, b)
             for a, b in combinations(solid, 2)
             if top[a] == top[b] or top[a] == above[top[b]] or top[b] == above[top[a]] or {names[a], names[b]} & passing
         ]
-
-    def do(self, function: Any, *arguments: Any, **named: Any) -> Any:
-        """Call a function of PyBullet for the body."""
-        return function(self.body, *arguments, **named, physicsClientId=self.client)

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.generate.blueprint_file import described_blueprint
-from kinematify.robot.joint_type import JointType
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from benchmarks.recipes.shapes import Point, Shape
-    from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.generate.library.shapes import Point, Shape
 
 _ROUND = {"cylinder", "capsule", "cone", "tube", "torus", "lathe"}
 
@@ -86,40 +81,40 @@ CAREFUL = ModelingStyle(
 class ObjectBuilder:
     """Collects parts and joints; world frame, z up, metres; front is -y unless a recipe has none."""
 
-    def __init__(self, name: str, hand: ModelingStyle, rng: np.random.Generator) -> None:
+    def __init__(self, name: str, style: ModelingStyle, rng: np.random.Generator | None = None) -> None:
         """Begin an object."""
-        self.name, self.hand, self.rng = name, hand, rng
+        self.name, self.style, self.rng = name, style, rng
         self._parts: dict[str, dict[str, Any]] = {}
         self._joints: list[dict[str, Any]] = []
 
     # ---- draws -----------------------------------------------------------------------------------------------------
 
-    def u(self, low: float, high: float) -> float:
-        """A number."""
-        return float(self.rng.uniform(low, high))
+    def draw(self, low: float, high: float) -> float:
+        """A number; the middle where nothing is drawn."""
+        return 0.5 * (low + high) if self.rng is None else float(self.rng.uniform(low, high))
 
-    def n(self, low: int, high: int) -> int:
-        """A count, both ends included."""
-        return int(self.rng.integers(low, high + 1))
+    def count(self, low: int, high: int) -> int:
+        """A count, both ends included; the middle where nothing is drawn."""
+        return (low + high) // 2 if self.rng is None else int(self.rng.integers(low, high + 1))
 
     def maybe(self, share: float = 0.5) -> bool:
-        """True in a share of the cases."""
-        return bool(self.rng.random() < share)
+        """True in a share of the cases; true where nothing is drawn and that share is half at least."""
+        return share >= 0.5 if self.rng is None else bool(self.rng.random() < share)
 
     def pick(self, *options: Any) -> Any:
-        """One of them."""
-        return options[int(self.rng.integers(len(options)))]
+        """One of them; the first where nothing is drawn."""
+        return options[0 if self.rng is None else int(self.rng.integers(len(options)))]
 
     def gap(self, size: float) -> float:
         """Clearance about something of a size [m]."""
-        return min(self.hand.gap, 0.03 * size)
+        return min(self.style.gap, 0.03 * size)
 
     # ---- parts -----------------------------------------------------------------------------------------------------
 
-    def part(self, name: str, *shapes: Shape, material: str = "plastic") -> str:
+    def part(self, name: str, *shapes: Shape, material: str = "plastic", color: str | None = None) -> str:
         """Add a part, or shapes to a part that is there; returns its name."""
         if name not in self._parts:
-            self._parts[name] = {"name": name, "shapes": [], "subtract": [], "material": material}
+            self._parts[name] = {"name": name, "shapes": [], "subtract": [], "material": material, "color": color}
         self._parts[name]["shapes"] += [self._handmade(shape) for shape in shapes]
         return name
 
@@ -129,12 +124,12 @@ class ObjectBuilder:
 
     def bore(self, name: str, *shapes: Shape) -> None:
         """Take shapes away where this hand makes holes."""
-        if self.hand.has_bore:
+        if self.style.has_bore:
             self.cut(name, *shapes)
 
     def _handmade(self, shape: Shape) -> Shape:
         if shape["kind"] in _ROUND:
-            return {"sides": self.hand.sides, **shape}
+            return {"sides": self.style.sides, **shape}
         return shape
 
     # ---- joints ----------------------------------------------------------------------------------------------------
@@ -148,11 +143,11 @@ class ObjectBuilder:
         upper: float,
         lower: float = 0.0,
         *,
-        initial_opening: bool = True,
+        ajar: bool = True,
         rest: float = 0.0,
     ) -> None:
-        """Let a part turn within limits [rad]; `rest` is where it stands unless it is drawn ajar."""
-        self._join("revolute", child, parent, axis, pivot, lower, upper, initial_opening, rest)
+        """Let a part turn within limits [rad]; `rest` is where it stands unless it is drawn `ajar`, which it may be."""
+        self._join("revolute", child, parent, axis, pivot, lower, upper, ajar, rest)
 
     def spin(self, child: str, parent: str, axis: Point, pivot: Point) -> None:
         """Let a part turn without end."""
@@ -161,10 +156,10 @@ class ObjectBuilder:
         )
 
     def slide(
-        self, child: str, parent: str, axis: Point, upper: float, lower: float = 0.0, *, initial_opening: bool = True
+        self, child: str, parent: str, axis: Point, upper: float, lower: float = 0.0, *, ajar: bool = True
     ) -> None:
         """Let a part slide within limits [m]."""
-        self._join("prismatic", child, parent, axis, (0.0, 0.0, 0.0), lower, upper, initial_opening)
+        self._join("prismatic", child, parent, axis, (0.0, 0.0, 0.0), lower, upper, ajar)
 
     def fix(self, child: str, parent: str) -> None:
         """A part of its own that does not move."""
@@ -184,10 +179,14 @@ class ObjectBuilder:
         pivot: Point,
         lower: float,
         upper: float,
-        initial_opening: bool,
+        ajar: bool,
         rest: float = 0.0,
     ) -> None:
-        value = self.hand.initial_opening * upper * self.u(0.3, 1.0) if initial_opening and self.maybe(0.7) else rest
+        value = (
+            self.style.initial_opening * upper * self.draw(0.3, 1.0)
+            if ajar and self.style.initial_opening and self.maybe(0.7)
+            else rest
+        )
         placed = {"axis": list(map(float, axis)), "pivot": list(map(float, pivot))}
         limits = {"lower": float(lower), "upper": float(upper), "value": value}
         self._joints.append({"type": kind, "child": child, "parent": parent, **placed, **limits})
@@ -197,26 +196,6 @@ class ObjectBuilder:
     def description(self) -> dict[str, Any]:
         """The object as a blueprint file says it."""
         return {"name": self.name, "category": self.name, "parts": list(self._parts.values()), "joints": self._joints}
-
-    def blueprint(self) -> Blueprint:
-        """The object, turned about z by quarters and mirrored at random: no side is the front of everything."""
-        built = described_blueprint(self.description(), source=f"recipe {self.name}")
-        quarters, mirrored = self.n(0, 3), self.maybe()
-        turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-        placed: FloatArray = np.linalg.matrix_power(turn, quarters) @ np.diag([-1.0 if mirrored else 1.0, 1.0, 1.0])
-        parts = tuple(
-            replace(part, vertices=part.vertices @ placed.T, faces=part.faces[:, ::-1] if mirrored else part.faces)
-            for part in built.parts
-        )
-        joints = tuple(_seen(joint, placed, mirrored) for joint in built.joints)
-        return replace(built, parts=parts, joints=joints)
-
-
-def _seen(joint: BlueprintJoint, placed: FloatArray, mirrored: bool) -> BlueprintJoint:
-    axis = placed @ joint.axis
-    # In a mirror, what turns to the left turns to the right.
-    turned_round = mirrored and joint.kind is not JointType.PRISMATIC
-    return replace(joint, axis=-axis if turned_round else axis, pivot=placed @ joint.pivot)
 
 
 def spread(count: int, low: float, high: float) -> Sequence[float]:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.report import ValidationReport
 
 _KEYS = ("check", "where", "reason")
 _HEAD = "# Findings that do not count. Mend the model where one is right; where it is not, write why as its reason.\n"

@@ -18,16 +18,16 @@ from kinematify.errors import DescriptionError
 from kinematify.manipulation.request import PriorFinding
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine
-from kinematify.validation.as_loaded import across_engines, confirm_on_raw_model, with_refusals
-from kinematify.validation.causes import with_causes
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status, not_finished
-from kinematify.validation.inferred import inferred_beside, with_next_best
 from kinematify.validation.isolation import load_imports, run_stages
 from kinematify.validation.lines import with_lines
-from kinematify.validation.opinions import evidence_before_blame
-from kinematify.validation.plan import (
+from kinematify.validation.run.as_loaded import across_engines, confirm_on_raw_model, with_refusals
+from kinematify.validation.run.causes import with_causes
+from kinematify.validation.run.inferred import inferred_beside, with_next_best
+from kinematify.validation.run.opinions import evidence_before_blame
+from kinematify.validation.run.plan import (
     agreement_stage,
     as_loaded_stages,
     asset_stage,
@@ -36,9 +36,9 @@ from kinematify.validation.plan import (
     needed,
     task_stage,
 )
-from kinematify.validation.precheck.document import precheck
-from kinematify.validation.report import ValidationReport
+from kinematify.validation.run.report import ValidationReport
 from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.stages.precheck import precheck
 from kinematify.validation.summary import JointCurve, JointSummary, PairTable
 from kinematify.validation.suppression import suppress
 
@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Robot
     from kinematify.validation.check import Check
     from kinematify.validation.isolation import Stage, StageEnd
-    from kinematify.validation.plan import CheckKey
+    from kinematify.validation.run.plan import CheckKey
     from kinematify.validation.summary import Summary
     from kinematify.validation.suppression import Suppression
 

@@ -58,7 +58,7 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
                 checks=checks,
                 after=("prepare",),
                 imports=("kinematify.validation.engine_context",),
-                library=_library(ENGINES[name], "engine"),
+                library=_library(ENGINES[name]),
             )
         )
     return stages
@@ -72,16 +72,16 @@ def as_loaded_stages(chosen: Sequence[str]) -> list[Stage]:
             run=partial(as_loaded.run, engine=name),
             checks=tuple(key for key in keys(checks_of("KV8")) if key[1] == name),
             imports=("kinematify.validation.as_loaded_context",),
-            library=_library(ENGINES[name], "file"),
+            library=_library(ENGINES[name]),
         )
         for name in chosen
         if any(name in check.engines for check in checks_of("KV8"))
     ]
 
 
-def _library(engine: EngineEntry, what: str) -> str | None:
+def _library(engine: EngineEntry) -> str | None:
     """What can be loaded once for all stages of an engine; none that may be missing."""
-    return None if engine.prints_when_loaded or engine.extra else engine.module(what)
+    return None if engine.prints_when_loaded or engine.extra else engine.module
 
 
 def agreement_stage() -> Stage:

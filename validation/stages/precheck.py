@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from kinematify.robot.urdf_text import read_text
 from kinematify.validation.checks import CHECKS, checks_of
+from kinematify.validation.document import Urdf
 from kinematify.validation.finding import Status
-from kinematify.validation.precheck.urdf import Urdf
 
 if TYPE_CHECKING:
     from kinematify.validation.check import Check, OpenCheck
