@@ -23,7 +23,7 @@ TIERS = ("geometry", "engines", "task")
 
 @click.command(
     "refine",
-    short_help="Simulate an inferred model and choose again what its failures blame.",
+    short_help="Simulate an inferred model and choose the joints that fail again.",
     epilog=examples(
         "kinematify refine out",
         "kinematify refine out --tier engines --rounds 5",

@@ -53,7 +53,7 @@ def _doubtful_base(assembly: Assembly, trees: Sequence[KinematicTree], doubt: fl
         return []
     others = " or ".join(assembly.names[part] for part in dict.fromkeys(rivals))
     taken = assembly.names[best.root]
-    said = f"Which part stands still is not clear: {taken} was taken, {others} would do nearly as well. "
+    said = f"The base link is not certain: {taken} was chosen, {others} scored nearly as well. "
     return [said + "Give --base to choose."]
 
 

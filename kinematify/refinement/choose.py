@@ -213,8 +213,8 @@ class Chooser:
         share = self.config.least_kept if signal.lost else self.config.least_travel
         if new.upper - new.lower < share * (old.upper - old.lower):
             self.refused.append(
-                f"{signal.child}: {signal.check} asked for a range of {ranged(new)} in place of {ranged(old)}, too "
-                "little of it to be told from hiding the failure"
+                f"{signal.child}: {signal.check} asked for a range of {ranged(new)} in place of {ranged(old)}; a cut "
+                "that large could hide the failure instead of fixing it"
             )
             return plan, None
         change = PlanChange(

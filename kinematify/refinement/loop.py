@@ -189,7 +189,7 @@ class _Loop:
                     self.ended = f"the time was used up before {self.tier} could be simulated"
                 else:
                     self.ended = (
-                        "nothing was left to choose again" if done.feedback else "nothing failed that it can mend"
+                        "nothing was left to choose again" if done.feedback else "nothing failed that it can fix"
                     )
                 return
             if plan.signature in seen:
