@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     CheckFunction = Callable[["OpenCheck", Any], None]
     Need = Callable[[Any], str | None]
 
-ENGINE_FAMILIES = {name: engine.family for name, engine in ENGINES.items() if engine.runs}
+ENGINE_FAMILIES = {name: engine.family for name, engine in ENGINES.items() if engine.runs and engine.prepared}
 """Family of each engine that the same checks run in."""
 FAMILIES = dict(
     sorted(

@@ -31,9 +31,11 @@ class EngineEntry:
     extra: str | None = None
     """Extra of Kinematify that installs it; None: every installation has it."""
     family: str
-    """First characters of the ids of its checks."""
+    """First characters of the ids of its checks of the prepared model."""
     runs: bool = True
     """False: it only computes; it sees no contacts and never runs."""
+    prepared: bool = True
+    """False: it loads raw files only, and has no checks but KV8xx."""
     most_joints: int | None = None
     """Larger models are not given to it."""
     inflation: float = 0.0
@@ -73,6 +75,7 @@ _ENTRIES = (
     ),
     EngineEntry(name="drake", title="Drake", package="drake", extra="drake", family="KV9"),
     EngineEntry(name="pinocchio", title="Pinocchio", package="pin", family="KV6", runs=False),
+    EngineEntry(name="newton", title="Newton", package="newton", extra="newton", family="", prepared=False),
 )
 ENGINES = {entry.name: entry for entry in _ENTRIES}
 """Keyed by name."""

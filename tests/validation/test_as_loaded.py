@@ -7,6 +7,7 @@ import sys
 import time
 from dataclasses import replace
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -77,6 +78,17 @@ def test_a_good_cabinet_passes(tmp_path: Path, engine: str) -> None:
     result = told(cabinet(), tmp_path, engine)
     assert {check: r.findings for check, r in result.results.items() if r.status is not Status.PASS} == {}
     assert counts(result) == {"joints": 2.0, "right": 2.0}
+
+
+@pytest.mark.skipif(find_spec("newton") is None, reason="Newton is not installed: pip install 'kinematify[newton]'")
+def test_newton_loads_moves_and_rests_what_others_do(tmp_path: Path) -> None:
+    result = told(jamming(), tmp_path, "newton")
+    assert counts(result) == {"joints": 2.0, "right": 1.0}
+    (finding,) = (item for item in result.results["KV804"].findings if item.severity is Severity.ERROR)
+    assert (finding.joint, set(finding.pair or ())) == ("door_joint", {"drawer", "door"})
+    assert printed(finding.reproduction) == pytest.approx([finding.value], abs=1e-4)
+    passed = {check for check, item in result.results.items() if item.status is Status.PASS}
+    assert {"KV801", "KV803", "KV805", "KV806"} <= passed
 
 
 def test_pinocchio_reads_joints_limits_and_overlaps(tmp_path: Path) -> None:

@@ -49,7 +49,7 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
             imports=tuple(f"kinematify.validation.evidence.{name}" for name in ("bodies", "case", "measure", "pins")),
         ),
     ]
-    for name in chosen:
+    for name in (name for name in chosen if ENGINES[name].prepared):
         checks = tuple(key for key in keys(CHECKS.values()) if key[1] == name and not key[0].startswith(("KV7", "KV8")))
         stages.append(
             Stage(
