@@ -11,7 +11,7 @@ from pxr import Gf, Usd, UsdGeom, UsdPhysics
 from kinematify.config import load_config
 from kinematify.errors import DescriptionError
 from kinematify.formats.export import export
-from kinematify.generate.request import from_text
+from kinematify.generate.sentence import from_text
 from kinematify.pipeline.generate import write_blueprint
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
