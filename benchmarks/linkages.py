@@ -13,7 +13,7 @@ import numpy as np
 
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull
 from kinematify.generate.procedural.workshop import Workshop
-from kinematify.generate.request import from_text
+from kinematify.generate.sentence import from_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
