@@ -13,7 +13,7 @@ from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import COMMON, build
 from kinematify.generate.procedural.parameter import PARAMETER_HEADINGS, parameter_rows
-from kinematify.generate.request import from_text
+from kinematify.generate.sentence import from_text
 from kinematify.model.preview import draw_pair, draw_steps
 from kinematify.model.scene import moving_joints
 from kinematify.pipeline.generate import true_model

@@ -12,7 +12,7 @@ from kinematify.generate.composer.sentence import told
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.request import from_text
+from kinematify.generate.sentence import from_text
 
 if TYPE_CHECKING:
     from benchmarks.goldens.values import Values
