@@ -219,7 +219,7 @@ def _table(table: Table, empty: str = "") -> str:
 
 def _next_best(report: ValidationReport) -> str:
     table = _table(next_best_table(report))
-    more = f"kinematify refine {Path(report.model).parent} simulates them and chooses again."
+    more = f"kinematify refine {Path(report.model).parent} -o OUT simulates them and chooses again."
     return f"{table}\n{more}" if table else ""
 
 
