@@ -87,9 +87,9 @@ def sentence_values(name: str) -> dict[str, Values]:
     for item in load_sentences(name):
         text = item["text"]
         try:
-            made = from_text(text).made()
-            exact[text], structure = blueprint_values(made.blueprint)
-            portable[text] = {"parse": made.facts, "built": structure}
+            built = from_text(text).made()
+            exact[text], structure = blueprint_values(built.blueprint)
+            portable[text] = {"parse": built.facts, "built": structure}
         except InputError as error:
             portable[text] = {"refused": str(error)}
     return made(exact=exact, portable=portable)
