@@ -204,7 +204,7 @@ def _consequences(findings: Sequence[Finding]) -> list[str]:
 
 def _heading(block: FindingBlock) -> str:
     severity = click.style(block.severity.value, fg=_SEVERITY_COLORS[block.severity], bold=True)
-    return f"{severity} {block.title} {block.blames}"
+    return f"{severity} {block.title} {block.cause}"
 
 
 def _code(text: str) -> list[str]:

@@ -145,7 +145,7 @@ def test_everything_is_told_when_it_is_asked_for(
     for part in (
         "joint hinge_1; at hinge_1 0.5; 5 mm, limit 1 mm; line 7",
         "Remedy: Turn the axis of hinge_1.",
-        "blames physics",
+        "cause: physics",
         "Suppressed, does not count: the seal is soft",
         "skipped (KV396): it does not apply",
         "blocked (KV496): no mesh",
