@@ -20,6 +20,7 @@ from kinematify.errors import InputError
 from kinematify.geometry.surface import part_surfaces
 from kinematify.grouping.groups import Grouping, group_pieces
 from kinematify.joints.bearings.fit import fit_bearings
+from kinematify.pipeline.heading import heading_of, turned, with_heading
 from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.pieces import inference_of_pieces, piece_standing_for
 from kinematify.pipeline.stages import choose_joints, find_trees, with_doubt_of_parents
@@ -101,6 +102,10 @@ def infer(
         return replace(found, grouping=assembly, timings=seconds, warnings=(*assembly.told, *found.warnings))
     if base is not None and base not in assembly.names:
         raise InputError(f"There is no part {base} to be the base link. The parts are {', '.join(assembly.names)}.")
+    angle = heading_of(assembly) if graph is None and config.joints.method == "geometry" else 0.0
+    if angle != 0.0:
+        square = infer(turned(assembly, -angle), config=config, base=base, progress=progress)
+        return with_heading(square, assembly, angle)
     with clock.stage("contacts", 0.0):
         surfaces = part_surfaces(assembly, config=config.surface)
         cuts = find_cuts(assembly, surfaces, config.seam) if graph is None and config.seam.join else {}

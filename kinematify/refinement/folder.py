@@ -116,9 +116,9 @@ def read_record(folder: Path) -> dict[str, Any]:
     path = folder / RECORD_FILE
     if not path.is_file():
         raise InputError(
-            f"There is no {RECORD_FILE} in {folder}, so that nothing is known of how its model was chosen. Give a "
-            "folder of `kinematify infer`, or inferred/ of `kinematify generate --infer`; a URDF from elsewhere can be "
-            "inferred anew with `kinematify infer MODEL.urdf -o FOLDER --refine 3`."
+            f"There is no {RECORD_FILE} in {folder}, so the alternatives of its model are unknown. Give a "
+            "folder of `kinematify infer`, or inferred/ of `kinematify generate --infer`; infer a URDF from elsewhere "
+            "with `kinematify infer MODEL.urdf -o FOLDER --refine 3`."
         )
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
@@ -138,13 +138,22 @@ def read_record(folder: Path) -> dict[str, Any]:
     return record
 
 
-def write_refined(inference: Inference, folder: Path, *, preview: bool) -> None:
-    """Put a refined model in the place of the one that it was made from; what else lies in the folder stays.
+def write_refined(
+    inference: Inference, folder: Path, out: Path | None = None, *, overwrite: bool = True, preview: bool
+) -> None:
+    """Write a refined model with what else lies in the folder of the earlier one, but no report about that one.
 
-    Reports about the earlier model go. The folder changes as a whole or not at all.
+    The folder that is written changes as a whole or not at all.
+
+    Args:
+        inference: The refined one.
+        folder: Where the earlier model is.
+        out: Folder to make, neither within `folder` nor around it; `folder` itself if None.
+        overwrite: Replace `out` if it is a model folder.
+        preview: Draw a picture.
 
     Raises:
-        OutputError: It cannot be written.
+        OutputError: `out` exists and must not be replaced, or cannot be written.
     """
 
     def write(staging: Path) -> None:
@@ -154,7 +163,7 @@ def write_refined(inference: Inference, folder: Path, *, preview: bool) -> None:
                 copy(entry, staging / entry.name)
         write_inference_files(inference, staging, preview=preview)
 
-    write_model_folder(folder, write, overwrite=True)
+    write_model_folder(folder if out is None else out, write, overwrite=overwrite)
 
 
 def _check_untouched(folder: Path, record: dict[str, Any]) -> None:
@@ -165,7 +174,7 @@ def _check_untouched(folder: Path, record: dict[str, Any]) -> None:
         more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
         raise InputError(
             f"The file {folder / changed[0]}{more} was changed or removed since the model was inferred, and refining "
-            f"would lose that. Infer the changed parts anew (`kinematify infer {folder / MODEL_FILE} -o NEW --refine "
+            f"would lose that. Infer the changed parts again (`kinematify infer {folder / MODEL_FILE} -o NEW --refine "
             "3`), or put the file back."
         )
 

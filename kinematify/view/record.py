@@ -76,6 +76,8 @@ class Shown:
     """Confidence below which they are."""
     chains: tuple[DrawnChain, ...] = ()
     """Where chains of joints close."""
+    parents: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """What each part but the base could hang on: the parts that it touches first, then all others."""
 
 
 def _dashed(start: FloatArray, end: FloatArray) -> FloatArray:
@@ -102,7 +104,11 @@ def shown_with(scene: ViewScene, path: Path) -> Shown:
             alternatives=_alternatives_of(record),
             doubtful=tuple(map(str, record.get("doubtful", ()))),
             doubtful_below=float(record.get("doubtful_below", 0.0)),
-            chains=tuple(_chain(item, scene.robot) for item in record.get("closed_chains", ())),
+            chains=(
+                *declared_chains(scene.robot),
+                *(_chain(item, scene.robot) for item in record.get("closed_chains", ()) if not item.get("loop")),
+            ),
+            parents=_possible_parents(record),
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise _no_record(path, error) from error
@@ -128,6 +134,15 @@ def _no_record(path: Path, error: Exception) -> InputError:
         f"{path} is no record of an inference ({type(error).__name__}: {error}). Run `kinematify infer` again, or "
         "view the model from another folder."
     )
+
+
+def _possible_parents(record: dict[str, Any]) -> dict[str, tuple[str, ...]]:
+    names = [item["name"] for item in record["parts"]]
+    touching = {frozenset((item["a"], item["b"])) for item in record["contacts"]}
+    return {
+        child: tuple(sorted((name for name in names if name != child), key=lambda name: {child, name} not in touching))
+        for child in (joint["child"] for joint in record["joints"])
+    }
 
 
 def _alternatives_of(record: dict[str, Any]) -> dict[tuple[str, str], tuple[JointAlternative, ...]]:
@@ -169,13 +184,13 @@ def _chain(item: dict[str, Any], robot: Robot) -> DrawnChain:
 
 
 def declared_chains(robot: Robot) -> tuple[DrawnChain, ...]:
-    """Return the chains that a URDF closes itself, by a `loop_joint`."""
+    """Return the chains that a URDF closes itself, by a loop joint."""
     return tuple(
         DrawnChain(
             links=loop.links,
             points=loop.points,
             axis=np.zeros(3),
-            told=f"{loop.links[0]} and {loop.links[1]} share a point; the loop_joint {loop.name} closes the chain.",
+            told=f"{loop.links[0]} and {loop.links[1]} share a point; the loop joint {loop.name} closes the chain.",
         )
         for loop in robot.loops
     )

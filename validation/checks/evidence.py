@@ -1,9 +1,9 @@
 """KV340 to KV349: does the geometry of two links explain the joint between them?
 
-KV341 to KV346 are opinions, for people build doors that no rule has seen: they count only beside an error of fact about
-the same joint, and are one note per joint else (`kinematify.validation.opinions`). One cause, one finding: a joint with
-the wrong parent is judged no further, and where several joints in series share one contact only what holds for each of
-them is.
+KV341 to KV346 are opinions, for people build doors that no rule has seen: they count only beside an error of fact
+about the same joint, and are one note per joint else (`kinematify.validation.run.opinions`). One cause, one finding:
+a joint with the wrong parent is judged no further, and where several joints in series share one contact only what
+holds for each of them is.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def hangs_elsewhere(result: OpenCheck, case: JointCase) -> None:
     if not case.hangs_elsewhere or found.best is None:
         return
     other = case.bodies.links[found.best]
-    remedy = f"Make {other} the parent, or mend the pose or the meshes of {case.child} and {case.parent}."
+    remedy = f"Make {other} the parent, or fix the pose or the meshes of {case.child} and {case.parent}."
     if not found.touches:
         apart = found.gap * case.bodies.diagonal
         _doubt(

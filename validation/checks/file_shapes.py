@@ -9,8 +9,8 @@ from lxml import etree
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
 from kinematify.validation.checks.file_numbers import finite_numbers
+from kinematify.validation.document import blame_of, shown
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.precheck.urdf import blame_of, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.validation.check import OpenCheck
-    from kinematify.validation.precheck.urdf import Urdf
+    from kinematify.validation.document import Urdf
 
 _SIZES = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length"), "capsule": ("radius", "length")}
 _KNOWN = ("mesh", *_SIZES)
@@ -33,7 +33,7 @@ _KNOWN = ("mesh", *_SIZES)
 )
 def bad_sizes(result: OpenCheck, urdf: Urdf) -> None:
     """Every length of a box, sphere, cylinder or capsule is above zero. A length of zero is a warning: such a shape
-    stands for none, and all other checks leave it out.
+    counts as none, and all other checks leave it out.
 
     Why it matters: PyBullet accepts a negative size and collides with something else than the picture shows. MuJoCo
     refuses a size of zero.

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
+from kinematify.validation.document import shown
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.precheck.urdf import shown
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
     from kinematify.robot.urdf_numbers import JointElement
     from kinematify.validation.check import OpenCheck
-    from kinematify.validation.precheck.urdf import Urdf
+    from kinematify.validation.document import Urdf
 
 _SHOWN = 8
 
 
 @check("KV120", title="There are links", fails="There is no link", severity=Severity.ERROR, blame=Blame.ASSET)
 def no_links(result: OpenCheck, urdf: Urdf) -> None:
-    """At least one <link> stands in the <robot>.
+    """The <robot> has at least one <link>.
 
     Why it matters: An empty model proves nothing.
 

@@ -26,16 +26,16 @@ from kinematify.validation.formats.content import (
 )
 from kinematify.validation.formats.html_frame import badge, page, table, text
 from kinematify.validation.formats.html_motion import curves, show_button, viewer
-from kinematify.validation.inferred import round_words
-from kinematify.validation.outcome import Unusable, severity_counts
+from kinematify.validation.run.inferred import round_words
+from kinematify.validation.run.outcome import Unusable, severity_counts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.validation.finding import Finding
     from kinematify.validation.formats.content import FindingBlock
-    from kinematify.validation.outcome import Outcome
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.outcome import Outcome
+    from kinematify.validation.run.report import ValidationReport
     from kinematify.validation.summary import PairSummary, PairTable
 
 _COUNTS = ("", "", "number", "number", "number", "number", "number")
@@ -207,7 +207,7 @@ def _finding(block: FindingBlock, anchor: str, button: str) -> str:
     return (
         f'<div id="{anchor}" class="finding {severity}{" suppressed" if block.suppressed else ""}" '
         f'data-severity="{severity}" data-blame="{finding.blame.value}">'
-        f'<p><strong>{severity} <a href="#check-{finding.check}">{text(block.title)}</a></strong> {block.blames} '
+        f'<p><strong>{severity} <a href="#check-{finding.check}">{text(block.title)}</a></strong> {block.cause} '
         f'<a class="faint" href="#{anchor}" aria-label="Link to this finding">#</a></p>'
         + (f'<p class="faint">{text(block.facts)}</p>' if block.facts else "")
         + f"<p>{text(block.message)}</p><p>{text(block.remedy)}</p>"
