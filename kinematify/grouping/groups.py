@@ -192,15 +192,15 @@ def crumb_owners(parts: Sequence[Part], size: float) -> IntArray:
     """
     owner = np.arange(len(parts))
     diagonals = np.array([part.diagonal for part in parts])
-    large = np.flatnonzero(diagonals >= size)
-    if not len(large):
+    large = np.flatnonzero(diagonals >= size).tolist()
+    if not large:
         return np.full(len(parts), int(diagonals.argmax()))
     low = np.array([parts[k].bounds[0] for k in large])
     high = np.array([parts[k].bounds[1] for k in large])
     for k in np.flatnonzero(diagonals < size).tolist():
         middle = parts[k].bounds.mean(axis=0)
         gaps = np.linalg.norm(np.maximum(np.maximum(low - middle, middle - high), 0.0), axis=1)
-        near = np.flatnonzero(gaps <= gaps.min() + size)
+        near = np.flatnonzero(gaps <= gaps.min() + size).tolist()
         reach = [float(np.linalg.norm(parts[large[n]].vertices - middle, axis=1).min()) for n in near]
         owner[k] = large[near[int(np.argmin(reach))]]
     return owner
