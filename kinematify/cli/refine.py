@@ -78,8 +78,9 @@ def command(
 
     FOLDER is a folder that `kinematify infer` or `generate` has made. Every joint is moved through its range by exact
     geometry; what it runs into, leaves, or cannot reach speaks against its axis, its type, its range or its parent.
-    Near-best candidates of the blamed joints are simulated too, and the evidence of shape and simulation is added up.
-    No collision is ever switched off, no range is cut to hide a failure, and nothing is fixed without evidence.
+    Near-best candidates of the joints that caused failures are simulated too, and the evidence of shape and
+    simulation is added up. No collision is ever switched off, no range is cut to hide a failure, and nothing is fixed
+    without evidence.
 
     The best round is written to OUT: fewest errors, then fewest warnings, then most evidence; the model as it was wins
     every tie. inference.json keeps all rounds. OUT also gets the other files of FOLDER, but no report about the earlier
