@@ -25,11 +25,12 @@ from kinematify.config.joints import (
     RockersConfig,
     SweepConfig,
 )
-from kinematify.config.output import CollisionConfig, DynamicsConfig, ModelConfig, PreviewConfig
+from kinematify.config.output import CollisionConfig, DynamicsConfig, LinkageConfig, ModelConfig, PreviewConfig
 from kinematify.config.services import RodinConfig, ServiceConfig, SourcesConfig, VisionConfig
 from kinematify.config.shapes import (
     AssemblyConfig,
     ContactConfig,
+    GroupingConfig,
     NeuralSdfConfig,
     SdfConfig,
     SeamConfig,
@@ -57,10 +58,12 @@ __all__ = [
     "FramesConfig",
     "FrontCuesConfig",
     "GateConfig",
+    "GroupingConfig",
     "JointsConfig",
     "JournalConfig",
     "KindConfig",
     "LimitsConfig",
+    "LinkageConfig",
     "ModelConfig",
     "NeuralSdfConfig",
     "PanelsConfig",
@@ -97,11 +100,13 @@ class Config(StageConfig):
     assembly: AssemblyConfig = section()
     surface: SurfaceConfig = section()
     contact: ContactConfig = section()
+    grouping: GroupingConfig = section()
     seam: SeamConfig = section()
     bearing: BearingConfig = section()
     model: ModelConfig = section()
     collision: CollisionConfig = section()
     dynamics: DynamicsConfig = section()
+    linkages: LinkageConfig = section()
     preview: PreviewConfig = section()
     joints: JointsConfig = section()
     topology: TopologyConfig = section()
