@@ -119,6 +119,8 @@ class Inference:
     """Rounds of simulation and choosing again (`kinematify.refine`), as JSON values; None where there were none."""
     hints: tuple[str, ...] = ()
     """What the user said of joints, as it is typed behind ``--hint``; in force already."""
+    vision: Mapping[str, Any] | None = None
+    """Answers of a vision-language model about joints (`kinematify.vision`), as JSON values; None if none was asked."""
     provenance: Mapping[str, Any] | None = None
     """Who made the parts, from what (`kinematify.generate.providers`), as JSON values; None where that is not known."""
 

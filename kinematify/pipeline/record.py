@@ -116,6 +116,7 @@ def inference_record(inference: Inference) -> dict[str, Any]:
         "closed_chains": [_closed_chain(chain) for chain in inference.closed_chains],
         "hints": list(inference.hints),
         "refinement": inference.refinement,
+        **({} if inference.vision is None else {"vision": inference.vision}),
         "provenance": inference.provenance,
         "seconds": dict(inference.timings),
         "peak_mb": inference.peak_mb,
