@@ -5,9 +5,11 @@ direction by more than 5 deg, or line by more than 5 % of the object's diagonal)
 that it spoils, congruent parts that follow an answer included. Only the questions that `--vlm` asks by default are
 counted, unless a row says *all answers*. Recorded answers were given to the pictures and the text of the question
 alone. Objects are split into halves by a hash of their names; what a voter's record says is measured on one half and
-used on the other (*held-out*), or on all (*in-sample*). A simulated voter is right in a stated share of its answers and
+used on the other (*held-out*), on questions about generated objects (*known objects*, as `kinematify infer` does), or on all answers
+(*in-sample*). A simulated voter is right in a stated share of its answers and
 takes any other choice else; its record is ten simulated questions about known objects, as `kinematify infer` asks them
-once for each model. The older form of question asked for type, direction and side in words; where these name motions
+once for each model. Answers with a confidence below `vision.least_confidence` count as unsure; that bound was chosen
+with all recorded answers in sight, and so were the other settings of the prior. The older form of question asked for type, direction and side in words; where these name motions
 among the options, they count as a choice of all of them.
 """
 
@@ -88,7 +90,8 @@ def measure(options: VoterOptions, work: Work) -> Measured:
                 own = json.dumps(by_object.get(item.name, []), sort_keys=True)
                 asked[f"{name}, {item.name}"] = AskedObject(item=item, set=name, answers=own)
     records = [row for found in work.each(judged_object, asked, timeout=900.0).values() for row in found["joints"]]
-    screened = [answer for answer in recorded if answer["object"] == "screening"]
+    least = load_config().vision.least_confidence
+    screened = [answer for answer in recorded if answer["object"] == "screening" and answer["confidence"] >= least]
     return records, {"screening": [sum(answer["right"] for answer in screened), len(screened)]}
 
 
@@ -217,6 +220,8 @@ def _choice(
         named = [said_in_words(answer["answer"], option, part) for option in options]
         return (named, [False, False]) if any(named) else None
     choice = str(answer["choice"])
+    if answer["confidence"] < config.least_confidence:
+        return None
     if choice in ("fixed", "none of these"):
         return [False] * len(options), [choice == "fixed", choice != "fixed"]
     if not choice.isdecimal():
@@ -269,15 +274,15 @@ def report(found: Report[Record]) -> list[str]:
         line
         for form, label in ((_PICKS, "numbered motions"), (_WORDS, "words"))
         for everything in (False, True)
-        for line in _recorded_rows(rows, form, label, config, everything=everything)
+        for line in _recorded_rows(rows, form, label, config, found.summary["screening"], everything=everything)
     ]
     options = VoterOptions.model_validate(found.header.configuration)
     simulated = [_simulated_row(name, share, rows, options) for name, share in VOTERS.items()]
     right, known = found.summary["screening"]
     objects = {row["object"] for row in rows}
     said = (
-        f"{len(objects)} objects, {len(rows)} joints, {len(wrong)} wrong, of which {offers} have the right motion among "
-        f"the options; {len(asked)} questions ({len(asked) / max(len(objects), 1):.1f} an object). The strong model "
+        f"{len(objects)} objects, {len(rows)} joints, {len(wrong)} wrong, of which {offers} have the right motion "
+        f"among the options; {len(asked)} questions ({len(asked) / max(len(objects), 1):.1f} an object). The strong model "
         f"answered {right} of {known} questions about known objects rightly."
     )
     sets = [(name, str(counts[name, True]), str(counts[name, False])) for name in dict.fromkeys(r["set"] for r in rows)]
@@ -304,29 +309,31 @@ def half_of(name: str) -> int:
 
 
 def _recorded_rows(
-    rows: Sequence[Record], form: str, label: str, config: VisionConfig, *, everything: bool
+    rows: Sequence[Record], form: str, label: str, config: VisionConfig, screening: Sequence[int], *, everything: bool
 ) -> list[tuple[str, ...]]:
-    """Held-out and in-sample figures of one form of question."""
+    """Figures of one form of question: with the record of the other half, of known objects, and of all answers."""
     told = [row for row in rows if row["answers"][form] is not None and (everything or row["source"] is not None)]
     if not told:
         return []
     label = f"{label}, all answers" if everything else label
     halves = {half: _record_of([row for row in rows if half_of(row["object"]) == half], form) for half in (0, 1)}
     whole = VoterRecord(right=sum(h.right for h in halves.values()), asked=sum(h.asked for h in halves.values()))
+    known = VoterRecord(right=screening[0], asked=screening[1])
+    records = {
+        "held-out": (halves[1], halves[0]),  # of an object of half 0 and of half 1
+        "known objects": (known, known),
+        "in-sample": (whole, whole),
+    }
     found = []
-    for title in ("held-out", "in-sample"):
-        heldout = title == "held-out"
+    for title, record_of in records.items():
         chosen = {
             _key(row): _after(
-                row,
-                row["answers"][form]["named"],
-                (halves[1 - half_of(row["object"])] if heldout else whole).reliability(config),
+                row, row["answers"][form]["named"], record_of[half_of(row["object"])].reliability(config)
             )
             for row in told
         }
-        shown = [halves[0], halves[1]] if heldout else [whole]
-        record = " / ".join(f"{item.right} of {item.asked}" for item in shown)
-        found.append(_counted(f"{label}, {title}", record, rows, chosen))
+        shown = " / ".join(dict.fromkeys(f"{item.right} of {item.asked}" for item in record_of))
+        found.append(_counted(f"{label}, {title}", shown, rows, chosen))
     return found
 
 

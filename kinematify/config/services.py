@@ -99,6 +99,8 @@ class VisionConfig(ServiceConfig):
     """Of the pictures [deg]; small angles are nearly orthographic."""
     least_pixels: int = 400
     """A part that cannot be shown with so many pixels is not asked about."""
+    least_confidence: float = 0.7  # of recorded answers 6 of 14 below it are right, 55 of 57 above
+    """Answers of which the voter itself is less sure count as unsure."""
     reliability: float = 0.9
     """No voter counts as right more often than this, whatever its record says (results/voters.md)."""
     caution: float = 0.1  # ten answers of ten count as 81 %, three of ten as 17 %

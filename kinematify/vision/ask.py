@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from kinematify.refinement.candidates import CandidateJoints
 from kinematify.vision.client import read_kept, write_kept
 from kinematify.vision.pictures import joint_question
-from kinematify.vision.question import UNSURE
 from kinematify.vision.votes import VoterRecord, answered_motions, choose_again, to_ask, with_types
 
 if TYPE_CHECKING:
@@ -105,7 +104,8 @@ def with_types_first(inference: Inference, oracle: JointOracle) -> tuple[Inferen
     drawn = {place: joint_question(inference, place, None) for place in range(len(inference.joints))}
     asked = {place: question for place, question in drawn.items() if question is not None}
     answers = dict(zip(asked, oracle.ask(list(asked.values())), strict=True))
-    types = {place: answer.choice for place, answer in answers.items() if answer.choice != UNSURE}
+    least = inference.config.vision.least_confidence
+    types = {place: answer.choice for place, answer in answers.items() if answer.counts(least)}
     names = _children(inference)
     chosen, results = with_types(inference, types, answers)
     voting = Voting(
@@ -135,7 +135,8 @@ def voter_record(oracle: ChatOracle, known: Callable[[], Iterable[KnownQuestion]
         return VoterRecord(right=kept["right"], asked=kept["asked"])
     questions = list(known())
     answers = oracle.ask([question for question, _ in questions])
-    told = [(answer, right) for answer, (_, right) in zip(answers, questions, strict=True) if answer.choice != UNSURE]
+    pairs = zip(answers, questions, strict=True)
+    told = [(answer, right) for answer, (_, right) in pairs if answer.counts(oracle.config.least_confidence)]
     record = VoterRecord(right=sum(answer.choice in right for answer, right in told), asked=len(told))
     if not oracle.fault:
         write_kept(oracle.record_path, {"right": record.right, "asked": record.asked})

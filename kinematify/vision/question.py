@@ -94,7 +94,7 @@ class Answer:
     choice: str = UNSURE
     """One of `JointQuestion.choices`."""
     confidence: float = 0.0
-    """What the voter says of itself, in [0, 1]; it is recorded, and not believed."""
+    """What the voter says of itself, in [0, 1]; a low one makes the answer count as unsure."""
     reason: str = ""
     fault: str = ""
     """Why there is no usable answer, where there is none; the choice is then `UNSURE`."""
@@ -105,6 +105,10 @@ class Answer:
     def option(self) -> int | None:
         """Place of the option that was chosen, from 0; None if none was."""
         return int(self.choice) - 1 if self.choice.isdecimal() else None
+
+    def counts(self, least: float) -> bool:
+        """Whether it is an answer at all, and its voter at least this sure."""
+        return self.choice != UNSURE and self.confidence >= least
 
 
 class JointOracle(Protocol):

@@ -156,8 +156,9 @@ def choose_again(
         joint, part = joints[place], inference.assembly.parts[joints[place].child]
         options = offered(joint, part, config) if source != place or place not in shown else tuple(shown[place])
         named = np.zeros(len(options) + 2, dtype=bool)
-        named[-2:] = answer.choice == FIXED, answer.choice == NONE
-        if answer.option is not None:
+        if answer.counts(config.least_confidence):
+            named[-2:] = answer.choice == FIXED, answer.choice == NONE
+        if answer.option is not None and answer.counts(config.least_confidence):
             named[:-2] = _named(inference, source, place, shown[source][answer.option], options)
         found = posterior(prior(joint, options, config), named, reliability)
         joints[place] = _decided(joint, options, found, maker, tree)
@@ -173,9 +174,9 @@ def choose_again(
 
 def _spread(inference: Inference, answers: Mapping[int, Answer], shown: Shown) -> dict[int, tuple[int, Answer]]:
     """Which answer speaks of each joint, and about which joint it was given; twins that disagree count as unsure."""
-    found = {place: (place, answer) for place, answer in answers.items()}
+    found, least = {place: (place, answer) for place, answer in answers.items()}, inference.config.vision.least_confidence
     for group in groups(inference):
-        told = [place for place in group if place in answers and answers[place].choice != UNSURE]
+        told = [place for place in group if place in answers and answers[place].counts(least)]
         if any(not _agree(inference, told[0], other, answers, shown) for other in told[1:]):
             fault = "congruent parts were answered differently"
             found |= {place: (place, replace(answers[place], choice=UNSURE, fault=fault)) for place in told}

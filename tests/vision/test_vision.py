@@ -112,16 +112,20 @@ class Says:
     name, at_once = "a test", 2
 
     def __init__(self, picks: Callable[[JointCandidate], bool] | str) -> None:
-        self.picks, self.seen = picks, list[JointQuestion]()
+        self.picks, self.seen, self.confidence = picks, list[JointQuestion](), 0.9
 
     def ask(self, questions: Sequence[JointQuestion]) -> list[Answer]:
         self.seen += questions
-        return [Answer(choice=self._choice(question), confidence=0.9, reason="so it is") for question in questions]
+        return [Answer(choice=self._choice(question), confidence=self.confidence, reason="so it is") for question in questions]
 
     def _choice(self, question: JointQuestion) -> str:
         if isinstance(self.picks, str):
             return self.picks
         return next((str(n) for n, item in enumerate(question.options, 1) if self.picks(item)), UNSURE)
+
+
+def sure(number: int) -> Answer:
+    return Answer(choice=str(number), confidence=0.9)
 
 
 def other_motion(inference: Inference) -> JointCandidate:
@@ -201,7 +205,10 @@ def test_slides_fixed_joints_and_none_of_these_count(doubtful: Inference) -> Non
 
 
 def test_a_voter_at_chance_and_an_abstention_change_nothing(doubtful: Inference) -> None:
-    for oracle, record in ((Says(lambda item: is_like(item, other_motion(doubtful))), CHANCE), (Says(UNSURE), STRONG)):
+    unsure = Says(FIXED)
+    unsure.confidence = VISION.least_confidence - 0.1
+    picks = Says(lambda item: is_like(item, other_motion(doubtful)))
+    for oracle, record in ((picks, CHANCE), (Says(UNSURE), STRONG), (unsure, STRONG)):
         after, voting = with_votes(doubtful, oracle, record)
         assert after.joints[0].confidence == pytest.approx(doubtful.joints[0].confidence)
         assert not voting.results[0].changed
@@ -221,7 +228,7 @@ def test_congruent_parts_that_are_answered_differently_count_as_unsure(twins: In
     shown = {k: offered(joint, twins.assembly.parts[joint.child], VISION) for k, joint in enumerate(twins.joints)}
     turn = next(n for n, item in enumerate(shown[0], 1) if item.kind.turns)
     slide = next(n for n, item in enumerate(shown[1], 1) if not item.kind.turns)
-    after, results = choose_again(twins, {0: Answer(choice=str(turn)), 1: Answer(choice=str(slide))}, shown, 0.9)
+    after, results = choose_again(twins, {0: sure(turn), 1: sure(slide)}, shown, 0.9)
     assert [result.answer.choice for result in results] == [UNSURE, UNSURE]
     assert "answered differently" in results[0].answer.fault
     assert [joint.kind for joint in after.joints] == [joint.kind for joint in twins.joints]
@@ -473,11 +480,11 @@ def test_command_line_reports_answers_and_writes_what_geometry_says_without_any(
     assert record["vision"]["joints"][0]["choice"] == "1"
     assert record["vision"]["record"] == {"right": 10, "asked": 10}
     server.scripts = [400]
-    (tmp_path / "out" / "model.urdf").unlink()
     monkeypatch.setenv("KINEMATIFY_VLM_MODEL", "refuses")
     assert infer_box(tmp_path, "--vlm", server.url, "--vlm-first") == 3
     assert "refuses the request" in capsys.readouterr().out
-    assert (tmp_path / "out" / "model.urdf").is_file()
+    record = json.loads((tmp_path / "out" / "inference.json").read_text(encoding="utf-8"))
+    assert record["vision"]["joints"][0]["choice"] == UNSURE
     assert infer_box(tmp_path, "--vlm", "nonsense") == 2
     assert infer_box(tmp_path, "--vlm", server.url, "--ask") == 2
 
