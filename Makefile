@@ -28,7 +28,7 @@ help:
 	@echo "make test     run the tests (ARGS=... for pytest)"
 	@echo "make check    lint, types and the tests of the packages that differ from BASE=main; for every change"
 	@echo "make lint     ruff: rules and format"
-	@echo "make format   let ruff mend what it can"
+	@echo "make format   let ruff fix what it can"
 	@echo "make types    mypy --strict"
 	@echo "make bench    accuracy table beside the paper's (DATA=FOLDER or pip)"
 	@echo "make docs     all pages with a search, and the reference of Python, in out/site/"
@@ -91,6 +91,7 @@ bench: setup
 docs: setup
 	@rm -rf out/pages && mkdir -p out/pages
 	@cp -r README.md CONTRIBUTING.md CHANGELOG.md CITATION.cff LICENSE docs results configs examples out/pages/
+	@printf 'search:\n  boost: 0.2\n' > out/pages/results/.meta.yml
 	NO_MKDOCS_2_WARNING=1 $(IN_VENV) mkdocs build --quiet --strict
 	@echo "Look at  out/site/index.html"
 

@@ -20,12 +20,14 @@ from kinematify.envs.settings import load_settings as load_env_settings
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene, transformed
 from kinematify.manipulation.grasp import moved_bodies, search_grasps
+from kinematify.manipulation.request import Hold
 from kinematify.model.collision import collides_as_it_is
 from kinematify.model.masses import prepared_inertials
 from kinematify.model.output import MODEL_FILE
 from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rigid_groups
+from kinematify.simulation.engines import engines_that_hold
 
 if TYPE_CHECKING:
     from kinematify.envs.settings import HandSettings
@@ -35,7 +37,7 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Robot
 
 AUTO = "auto"
-ENGINES = ("mujoco", "pybullet")
+ENGINES = engines_that_hold(Hold.WELD)
 """In which environments run."""
 _PLINTH = 0.4  # objects whose parts swing below them stand so much higher [m]
 _WAY_SAMPLES = 33

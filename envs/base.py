@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -359,6 +360,12 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         """Free the engine, OpenGL and the window."""
         self._close_pictures()
         self._world.close()
+
+
+def world_class(engine: str, kind: str) -> Any:
+    """The class of an engine's worlds with a ``Hand`` or an ``Arm``; PyBullet takes a second to load."""
+    module = importlib.import_module(f"{__package__}.{engine}_worlds")  # the full name would mean all of the package
+    return getattr(module, f"{engine.capitalize()}{kind}")
 
 
 def one_of(name: str, value: object, choices: Sequence[object]) -> None:

@@ -11,7 +11,7 @@ from gymnasium.spaces import Box
 from gymnasium.utils import EzPickle
 
 from kinematify.envs.articulated_object import AUTO, shared_target
-from kinematify.envs.base import OpeningEnv, made, one_of
+from kinematify.envs.base import OpeningEnv, made, one_of, world_class
 from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
 from kinematify.envs.mujoco_worlds import ROBOT, MujocoArm
 from kinematify.envs.picture import Piece
@@ -169,11 +169,7 @@ class DrawerPullEnv(OpeningEnv):
         return _held_at(found, self.plan)
 
     def _make_world(self) -> None:
-        kind: type[MujocoArm | PybulletArm] = MujocoArm
-        if self.engine == "pybullet":
-            from kinematify.envs.pybullet_worlds import PybulletArm  # noqa: PLC0415 - it takes a second to load
-
-            kind = PybulletArm
+        kind = world_class(self.engine, "Arm")
         self._world = kind(self.articulated_object, self.target, self.robot, self.plan, self.settings)
 
     def _place(self, leaders: FloatArray) -> float:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import weakref
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pybullet
 
 from kinematify.robot.transforms import quaternion_of
+from kinematify.simulation.pybullet_world import Client
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -33,14 +33,11 @@ class LowResRenderer:
     def __init__(self, pieces: Sequence[Piece], view: View, settings: PictureSettings) -> None:
         """Put the pieces into a world of their own, which is never simulated."""
         self._pieces = tuple(pieces)
-        self._client = pybullet.connect(pybullet.DIRECT)
-        self._free = weakref.finalize(self, pybullet.disconnect, self._client)
+        self._client = Client()
         self._bodies = [self._body(piece) for piece in self._pieces]
         size = _FLOOR_SIZE * view.radius
-        floor = pybullet.createVisualShape(
-            pybullet.GEOM_BOX, halfExtents=[size, size, 1e-3], rgbaColor=_FLOOR, physicsClientId=self._client
-        )
-        pybullet.createMultiBody(0, -1, floor, basePosition=[0.0, 0.0, -1e-3], physicsClientId=self._client)
+        floor = self._client.createVisualShape(pybullet.GEOM_BOX, halfExtents=[size, size, 1e-3], rgbaColor=_FLOOR)
+        self._client.createMultiBody(0, -1, floor, basePosition=[0.0, 0.0, -1e-3])
         distance = settings.distance * view.radius
         self._view = pybullet.computeViewMatrixFromYawPitchRoll(
             view.center.tolist(), distance, np.degrees(view.azimuth) + 90.0, -np.degrees(settings.elevation), 0.0, 2
@@ -51,14 +48,13 @@ class LowResRenderer:
         corners = piece.vertices[piece.faces]  # one per face: shared ones would round off the edges
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-        shape = pybullet.createVisualShape(
+        shape = self._client.createVisualShape(
             pybullet.GEOM_MESH,
             vertices=corners.reshape(-1, 3).tolist(),
             indices=list(range(3 * len(corners))),
             normals=np.repeat(normals, 3, axis=0).tolist(),
-            physicsClientId=self._client,
         )
-        return int(pybullet.createMultiBody(0, -1, shape, physicsClientId=self._client))
+        return int(self._client.createMultiBody(0, -1, shape))
 
     def draw(
         self, poses: Mapping[str, FloatArray], tint: Mapping[str, FloatArray], size: tuple[int, int]
@@ -73,21 +69,20 @@ class LowResRenderer:
         for piece, body in zip(self._pieces, self._bodies, strict=True):
             T = poses[piece.link]
             turn = quaternion_of(T[:3, :3], real_last=True)
-            pybullet.resetBasePositionAndOrientation(body, T[:3, 3], turn, physicsClientId=self._client)
+            self._client.resetBasePositionAndOrientation(body, T[:3, 3], turn)
             color = np.clip(piece.color + tint.get(piece.link, 0.0), 0.0, 1.0)
-            pybullet.changeVisualShape(body, -1, rgbaColor=[*color.tolist(), 1.0], physicsClientId=self._client)
+            self._client.changeVisualShape(body, -1, rgbaColor=[*color.tolist(), 1.0])
         height, width = size
-        found = pybullet.getCameraImage(
+        found = self._client.getCameraImage(
             width,
             height,
             self._view,
             pybullet.computeProjectionMatrixFOV(self._field, width / height, self._near, self._far),
             lightDirection=_LIGHT,
             renderer=pybullet.ER_TINY_RENDERER,
-            physicsClientId=self._client,
         )
         return np.ascontiguousarray(np.reshape(np.asarray(found[2], dtype=np.uint8), (height, width, 4))[..., :3])
 
     def close(self) -> None:
         """Free the world."""
-        self._free()
+        self._client.disconnect()

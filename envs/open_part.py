@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium.spaces import Box
 from gymnasium.utils import EzPickle
 
-from kinematify.envs.base import OpeningEnv, made, one_of
+from kinematify.envs.base import OpeningEnv, made, one_of, world_class
 from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
 from kinematify.envs.mujoco_worlds import FORCE, POSITION, MujocoHand
 from kinematify.errors import InputError
@@ -157,11 +157,7 @@ class OpenPartEnv(OpeningEnv):
         self.bounds = hand_bounds(self.goal)
 
     def _make_world(self) -> None:
-        kind: type[MujocoHand | PybulletHand] = MujocoHand
-        if self.engine == "pybullet":
-            from kinematify.envs.pybullet_worlds import PybulletHand  # noqa: PLC0415 - it takes a second to load
-
-            kind = PybulletHand
+        kind = world_class(self.engine, "Hand")
         self._world = kind(self.articulated_object, self.target, self.control, self.settings)
 
     def _place(self, leaders: FloatArray) -> float:

@@ -48,10 +48,9 @@ class PybulletObject:
         mechanism = articulated_object.scene.mechanism
         self._loaded = load(mechanism, articulated_object.loaded, step=settings.time.step)
         self.client, self.body = self._loaded.client, self._loaded.body
-        bullet.setPhysicsEngineParameter(
-            numSolverIterations=settings.time.solver_iterations, deterministicOverlappingPairs=1,
-            physicsClientId=self.client,
-        )  # fmt: skip
+        self.client.setPhysicsEngineParameter(
+            numSolverIterations=settings.time.solver_iterations, deterministicOverlappingPairs=1
+        )
         place = {name: k for k, name in enumerate(mechanism.links)}
         apart = overlapping_links(articulated_object.scene)
         self._loaded.act([(place[first], place[second]) for first, second in apart], on=False)
@@ -62,7 +61,7 @@ class PybulletObject:
         self._followers = [k for k in range(len(names)) if k not in self._leaders]
         self._link = int(self._loaded.link[mechanism.links.index(target.link)])
         self._axis = articulated_object.declared.joint_by_name[target.joint].axis
-        self._T_base = pose_of(*bullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client))
+        self._T_base = pose_of(*self.client.getBasePositionAndOrientation(self.body))
         self._links = {index: self._info(index) for index in self._loaded.link.tolist()}
         self._T_usual = self._T_root = T_world_root
         self._saved: int | None = None
@@ -74,7 +73,7 @@ class PybulletObject:
 
     def _info(self, index: int) -> tuple[float, list[float], float]:
         """Mass [kg], principal moments [kg m^2] and friction of a link."""
-        info = bullet.getDynamicsInfo(self.body, index, physicsClientId=self.client)
+        info = self.client.getDynamicsInfo(self.body, index)
         return float(info[0]), list(info[2]), float(info[1])
 
     def apply(self, drawn: Draw) -> None:
@@ -83,31 +82,26 @@ class PybulletObject:
         for number, index in enumerate(self._loaded.link.tolist()):
             mass, moments, friction = self._links[index]
             factor = float(drawn.mass[number])
-            bullet.changeDynamics(
-                body, index, lateralFriction=drawn.surface * friction, linearDamping=0.0, angularDamping=0.0,
-                physicsClientId=client,
-            )  # fmt: skip
+            client.changeDynamics(
+                body, index, lateralFriction=drawn.surface * friction, linearDamping=0.0, angularDamping=0.0
+            )
             if index != _BASE:  # a base that is given a mass is no longer fixed
-                bullet.changeDynamics(
-                    body, index, mass=factor * mass, localInertiaDiagonal=[factor * m for m in moments],
-                    physicsClientId=client,
-                )  # fmt: skip
+                client.changeDynamics(
+                    body, index, mass=factor * mass, localInertiaDiagonal=[factor * m for m in moments]
+                )
         damping, friction_of = drawn.damping * self._dynamics.damping, drawn.friction * self._dynamics.friction
         for k, index in enumerate(self._indices):
-            bullet.changeDynamics(body, index, jointDamping=float(damping[k]), physicsClientId=client)
+            client.changeDynamics(body, index, jointDamping=float(damping[k]))
             if k not in self._followers:
                 # A motor that wants no speed and is as strong as the friction is friction.
-                bullet.setJointMotorControl2(
-                    body, index, bullet.VELOCITY_CONTROL, targetVelocity=0.0, force=float(friction_of[k]),
-                    physicsClientId=client,
-                )  # fmt: skip
+                client.setJointMotorControl2(
+                    body, index, bullet.VELOCITY_CONTROL, targetVelocity=0.0, force=float(friction_of[k])
+                )
         self._T_root = drawn.T_root @ self._T_usual
         T = self._T_root @ self._T_base
-        bullet.resetBasePositionAndOrientation(
-            body, T[:3, 3].tolist(), quaternion_of(T[:3, :3], real_last=True), physicsClientId=client
-        )
+        client.resetBasePositionAndOrientation(body, T[:3, 3].tolist(), quaternion_of(T[:3, :3], real_last=True))
         if self._saved is not None:
-            bullet.removeState(self._saved, physicsClientId=client)
+            client.removeState(self._saved)
         self._saved = None
 
     def place(self, leaders: FloatArray) -> None:
@@ -119,29 +113,30 @@ class PybulletObject:
                 ]
             )
             self._loaded.find_contacts_anew()
-            self._saved = bullet.saveState(physicsClientId=self.client)
-        bullet.restoreState(self._saved, physicsClientId=self.client)
+            self._saved = self.client.saveState()
+        self.client.restoreState(self._saved)
         self._loaded.place(self.articulated_object.scene.mechanism.all_values(leaders[None])[0])
         self.look()
-        bullet.performCollisionDetection(physicsClientId=self.client)
+        self.client.performCollisionDetection()
 
     def follow(self) -> None:
         """Let joints that mimic others follow them."""
         if not self._followers:
             return
-        states = bullet.getJointStates(self.body, self._leader_indices, physicsClientId=self.client)
+        states = self.client.getJointStates(self.body, self._leader_indices)
         values = self.articulated_object.scene.mechanism.all_values(np.array([[state[0] for state in states]]))[0]
         for k in self._followers:
-            bullet.setJointMotorControl2(
-                self.body, self._indices[k], bullet.POSITION_CONTROL, targetPosition=float(values[k]),
-                force=_FOLLOWER_FORCE, physicsClientId=self.client,
-            )  # fmt: skip
+            self.client.setJointMotorControl2(
+                self.body,
+                self._indices[k],
+                bullet.POSITION_CONTROL,
+                targetPosition=float(values[k]),
+                force=_FOLLOWER_FORCE,
+            )
 
     def push(self, force: FloatArray, place: FloatArray) -> None:
         """Apply a force of the world [N] at a place of the world [m] to the part, in the next step only."""
-        bullet.applyExternalForce(
-            self.body, self._link, force.tolist(), place.tolist(), bullet.WORLD_FRAME, physicsClientId=self.client
-        )
+        self.client.applyExternalForce(self.body, self._link, force.tolist(), place.tolist(), bullet.WORLD_FRAME)
 
     def hold_motion(self) -> tuple[FloatArray, FloatArray]:
         """Place [m] and velocity [m/s] of the hold, shape (3,) each."""
@@ -155,8 +150,8 @@ class PybulletObject:
         return self._at_hold(self._link_state())
 
     def _link_state(self) -> tuple[tuple[float, ...], ...]:
-        state: tuple[tuple[float, ...], ...] = bullet.getLinkState(
-            self.body, self._link, computeLinkVelocity=1, computeForwardKinematics=1, physicsClientId=self.client
+        state: tuple[tuple[float, ...], ...] = self.client.getLinkState(
+            self.body, self._link, computeLinkVelocity=1, computeForwardKinematics=1
         )
         return state
 
@@ -165,7 +160,7 @@ class PybulletObject:
 
     def look(self) -> None:
         """Take the state of now for `reading`."""
-        states = bullet.getJointStates(self.body, self._leader_indices, physicsClientId=self.client)
+        states = self.client.getJointStates(self.body, self._leader_indices)
         state = self._link_state()
         T = pose_of(state[4], state[5])
         self._reading = ObjectState(
@@ -182,14 +177,14 @@ class PybulletObject:
 
     def depth(self) -> float:
         """Deepest contact among pairs that collide [m]."""
-        points = bullet.getContactPoints(self.body, self.body, physicsClientId=self.client)
+        points = self.client.getContactPoints(self.body, self.body)
         link_of, margin = self._loaded.link_of, self._loaded.margin
         depths = [-p[8] - float(margin[link_of[p[3]]] + margin[link_of[p[4]]]) for p in points]
         return max(0.0, *depths) if depths else 0.0
 
     def close(self) -> None:
         """Free the world."""
-        self._loaded.disconnect()
+        self.client.disconnect()
 
     def link_poses(self) -> Mapping[str, FloatArray]:
         """World poses of the links, shape (4, 4) each."""
@@ -267,7 +262,7 @@ class PybulletHand(PybulletWorld):
             hold, velocity = self.object.hold_motion()
             self.object.push(self._force(action, hold, velocity), hold)
             self.object.follow()
-            bullet.stepSimulation(physicsClientId=self.client)
+            self.client.stepSimulation()
         self.object.look()
 
     def _force(self, action: FloatArray, hold: FloatArray, velocity: FloatArray) -> FloatArray:
@@ -318,34 +313,31 @@ class PybulletArm(PybulletWorld):
         driven = (*names.arm_joints, *names.finger_joints)
         self._joints = [joints[name] for name in driven]
         for index in loaded.link.tolist():
-            bullet.changeDynamics(self.body, index, lateralFriction=settings.robot.friction, physicsClientId=client)
+            client.changeDynamics(self.body, index, lateralFriction=settings.robot.friction)
         rest = rest_configuration(self._robot.mechanism.robot)
         for name, index in joints.items():
             if name not in driven:
-                bullet.resetJointState(self.body, index, rest.get(name, 0.0), physicsClientId=client)
-                bullet.setJointMotorControl2(
-                    self.body, index, bullet.POSITION_CONTROL, targetPosition=rest.get(name, 0.0), force=_STRONG,
-                    physicsClientId=client,
-                )  # fmt: skip
+                client.resetJointState(self.body, index, rest.get(name, 0.0))
+                client.setJointMotorControl2(
+                    self.body, index, bullet.POSITION_CONTROL, targetPosition=rest.get(name, 0.0), force=_STRONG
+                )
         self._lay_floor()
 
     def _lay_floor(self) -> None:
         """The robot meets the floor, the object stands on it."""
-        shape = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=self.client)
-        floor = bullet.createMultiBody(0.0, shape, physicsClientId=self.client)
+        shape = self.client.createCollisionShape(bullet.GEOM_PLANE)
+        floor = self.client.createMultiBody(0.0, shape)
         for name in self._articulated_object.scene.mechanism.links:
-            bullet.setCollisionFilterPair(
-                floor, self.object.body, _BASE, self.object.link_index(name), 0, physicsClientId=self.client
-            )
+            self.client.setCollisionFilterPair(floor, self.object.body, _BASE, self.object.link_index(name), 0)
 
     def place(self, leaders: FloatArray, arm: FloatArray) -> float:
         """Set the object's joints and those of the arm, fingers apart, and stop all."""
         self.object.place(leaders)
         self._wanted = np.concatenate([arm, self._robot.finger_values(1.0)])
         for index, value in zip(self._joints, self._wanted.tolist(), strict=True):
-            bullet.resetJointState(self.body, index, value, physicsClientId=self.client)
+            self.client.resetJointState(self.body, index, value)
         self._drive(self._wanted)
-        bullet.performCollisionDetection(physicsClientId=self.client)
+        self.client.performCollisionDetection()
         return self.depth()
 
     def act(self, arm: FloatArray, fingers: FloatArray) -> None:
@@ -354,20 +346,25 @@ class PybulletArm(PybulletWorld):
         for step in range(1, self._substeps + 1):
             self._drive(before + step / self._substeps * (wanted - before))
             self.object.follow()
-            bullet.stepSimulation(physicsClientId=self.client)
+            self.client.stepSimulation()
         self._wanted = wanted
         self.object.look()
 
     def _drive(self, values: FloatArray) -> None:
         count = len(self._joints)
-        bullet.setJointMotorControlArray(
-            self.body, self._joints, bullet.POSITION_CONTROL, targetPositions=values.tolist(), forces=self._forces,
-            positionGains=[_GAIN] * count, velocityGains=[1.0] * count, physicsClientId=self.client,
-        )  # fmt: skip
+        self.client.setJointMotorControlArray(
+            self.body,
+            self._joints,
+            bullet.POSITION_CONTROL,
+            targetPositions=values.tolist(),
+            forces=self._forces,
+            positionGains=[_GAIN] * count,
+            velocityGains=[1.0] * count,
+        )
 
     def joints(self) -> tuple[FloatArray, FloatArray]:
         """Values and speeds of the arm's joints and then of the fingers'."""
-        states = bullet.getJointStates(self.body, self._joints, physicsClientId=self.client)
+        states = self.client.getJointStates(self.body, self._joints)
         return np.array([state[0] for state in states]), np.array([state[1] for state in states])
 
     def tool(self) -> FloatArray:
@@ -378,14 +375,14 @@ class PybulletArm(PybulletWorld):
         """Force of each finger on the part [N], shape (fingers,)."""
         forces = np.zeros((len(self._robot.finger_links), 3))
         rows = {self._loaded.index_of(link): row for row, link in enumerate(self._robot.finger_links)}
-        for point in bullet.getContactPoints(self.body, self.object.body, physicsClientId=self.client) or ():
+        for point in self.client.getContactPoints(self.body, self.object.body) or ():
             if point[3] in rows and point[4] in self._held:
                 forces[rows[point[3]]] += point[9] * np.array(point[7])
         return np.asarray(np.linalg.norm(forces, axis=1))
 
     def depth(self) -> float:
         """Deepest contact of the object with itself or the robot [m]."""
-        points = bullet.getContactPoints(self.body, self.object.body, physicsClientId=self.client)
+        points = self.client.getContactPoints(self.body, self.object.body)
         return max([super().depth(), *(float(-point[8]) - _MARGIN for point in points or ())])
 
     def stable(self) -> bool:

@@ -141,8 +141,8 @@ def _planned(articulated_object: ArticulatedObject, joint: str, robot: EnvRobot)
     if plan.place is None or plan.reach is None or plan.pull is None or plan.opened is None:
         raise InputError(
             f"The robot cannot open {joint} of the model {articulated_object.source}: {plan.words} (kinematify "
-            "validate --task pull tells more). Give another joint, or make kinematify/OpenPart-v0, which needs no "
-            "robot."
+            "validate --task pull shows the reasons). Give another joint, or make kinematify/OpenPart-v0, which needs "
+            "no robot."
         )
     grasp = plan.place.grasp
     return {

@@ -44,7 +44,7 @@ def require_valid(articulated_object: ArticulatedObject, engine: str, *, allow_i
         more = f" and {len(errors) - _SHOWN} more" if len(errors) > _SHOWN else ""
         raise InputError(
             f"The model {articulated_object.source} does not pass kinematify validate: "
-            f"{' '.join(errors[:_SHOWN])}{more} Mend it "
+            f"{' '.join(errors[:_SHOWN])}{more} Fix it "
             "(kinematify validate shows all findings with remedies), or pass allow_invalid=True to train on it anyway."
         )
     return verdict

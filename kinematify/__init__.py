@@ -1,6 +1,22 @@
 """Kinematify: a shape goes in, a mechanism that works in simulation comes out.
 
-The public names below load on first use, so that `import kinematify` loads no engine and no torch.
+From the meshes of an object to a model, and from a model to a verdict:
+
+    parts = kinematify.load_assembly("examples/cabinet")     # a folder, GLB, OBJ, ZIP ...: one mesh per rigid part
+    inference = kinematify.infer(parts)                      # the tree and the joints, with all alternatives
+    kinematify.write_inference(inference, "out/example")     # model.urdf, meshes, inference.json, preview.png
+    report = kinematify.validate("out/example/model.urdf")   # MuJoCo, PyBullet, Pinocchio, FCL: verdict and findings
+    kinematify.refine(inference)                             # simulate, use what failed, choose again
+    kinematify.export("out/example/model.urdf", "mjcf", "out/example.xml")
+
+A model of a file, with its poses, meshes and a viewer:
+
+    robot = kinematify.load("out/example")
+    robot.joints, robot.pose({"drawer_left": 0.2}), robot.show()
+
+`kinematify.load_config("default")` returns all settings; every error derives from `kinematify.KinematifyError`.
+Gymnasium environments are in `kinematify.envs`. The names below load on first use, so that `import kinematify` loads no
+engine and no torch.
 """
 
 from __future__ import annotations
@@ -23,8 +39,8 @@ if TYPE_CHECKING:
     from kinematify.pipeline.record import write_inference
     from kinematify.refinement.loop import Refinement, refine
     from kinematify.validation.finding import Finding
-    from kinematify.validation.report import ValidationReport
     from kinematify.validation.run import validate
+    from kinematify.validation.run.report import ValidationReport
     from kinematify.view.loaded import LoadedModel, load
 
 __version__ = "0.1.0"
@@ -65,7 +81,7 @@ _HOMES = {
     "LoadedModel": "kinematify.view.loaded",
     "Part": "kinematify.assembly.part",
     "Refinement": "kinematify.refinement",
-    "ValidationReport": "kinematify.validation.report",
+    "ValidationReport": "kinematify.validation.run.report",
     "export": "kinematify.formats.export",
     "infer": "kinematify.pipeline",
     "load": "kinematify.view.loaded",

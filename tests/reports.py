@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from kinematify.validation.check import Check
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
-from kinematify.validation.report import ValidationReport
+from kinematify.validation.run.report import ValidationReport
 from kinematify.validation.summary import JointSummary
 
 if TYPE_CHECKING:

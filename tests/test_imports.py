@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 import kinematify
 from kinematify.cli.app import COMMANDS
 from kinematify.robot.mesh_file import read_meshes
+from tests.places import ROOT
 
 HEAVY = {
     "torch", "mujoco", "pybullet", "pinocchio", "coal", "fcl", "igl", "ompl", "trimesh", "scipy", "numpy", "pydantic",
@@ -95,3 +97,10 @@ def test_a_binary_stl_is_read_without_trimesh(tmp_path: Path) -> None:
     assert mesh.faces.tolist() == [[0, 1, 2], [3, 4, 5]]
     imports = "from pathlib import Path; from kinematify.robot.mesh_file import read_meshes"
     assert "trimesh" not in loaded_after(f"{imports}; read_meshes(Path({str(path)!r}))")
+
+
+def test_every_public_name_is_in_the_reference() -> None:
+    import kinematify
+
+    documented = re.findall(r"^::: kinematify\.(\w+)$", (ROOT / "docs" / "api.md").read_text(), flags=re.MULTILINE)
+    assert sorted(documented) == sorted(set(kinematify.__all__) - {"__version__"})

@@ -283,9 +283,9 @@ class AsLoadedContext:
         """What is visible in motion; it takes long, so that only joints that fall short are looked at."""
         from kinematify.geometry.scene import read_scene, visible_shapes  # noqa: PLC0415 - for what falls short only
         from kinematify.geometry.sweep import Sweeper  # noqa: PLC0415
+        from kinematify.validation.left_model import model_of  # noqa: PLC0415
 
-        robot = read_robot(self.request.urdf, package_dirs=self.request.package_dirs)
-        return Sweeper.of(read_scene(robot, self.request.settings.geometry, visible_shapes))
+        return Sweeper.of(read_scene(model_of(self.request), self.request.settings.geometry, visible_shapes))
 
     def _seen_end(self, travel: Travel, end: float) -> float:
         """Value up to which what is visible does not block the way to an end [rad or m]."""

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     CheckFunction = Callable[["OpenCheck", Any], None]
     Need = Callable[[Any], str | None]
 
-ENGINE_FAMILIES = {name: engine.family for name, engine in ENGINES.items() if engine.runs}
+ENGINE_FAMILIES = {name: engine.family for name, engine in ENGINES.items() if engine.runs and engine.prepared}
 """Family of each engine that the same checks run in."""
 FAMILIES = dict(
     sorted(
@@ -59,7 +59,7 @@ _NOT_OURS = ("KV1", "KV2", "KV6", "KV8")
 
 
 class FeedbackRow(StrEnum):
-    """What `kinematify refine` makes of a finding, a row of the table in `validation/feedback.py`."""
+    """What `kinematify refine` makes of a finding, a row of the table in `validation/run/feedback.py`."""
 
     ALLOWED = "an allowance with its reason: the overlap is as given, no axis is to blame"
     INTO_PARENT = "against this line, this type and this parent; if one side is free, it is the opening one"

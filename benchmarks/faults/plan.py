@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from benchmarks.faults.fault import BaseModel, Fault, PlantedFault
     from kinematify.robot.robot import Joint, Link, Robot
     from kinematify.validation.finding import Finding
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.report import ValidationReport
 
 FAULTS: tuple[Fault, ...] = KINEMATIC_FAULTS + FILE_DEFECTS
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kinematify.generate.described import library
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -109,11 +111,15 @@ ALIKE: Mapping[str, tuple[str, ...]] = {
     "well": ("well_with_windlass",),
     "window": ("casement_window", "sash_window", "house_shutters", "pane_window", "plain_sliding_window"),
 }
-"""Category -> recipes and families that are of it under other names; all others are what they are called."""
+"""Category -> kinds of the library that are of it under other names; all others are what they are called."""
 
 _OF_NAME = {name: category for category, names in ALIKE.items() for name in names}
 
 
 def category_of(example: Example | TreeExample) -> str:
     """The word that real objects of the same kind carry."""
-    return _OF_NAME.get(example.category, example.category)
+    name = example.category
+    if name in _OF_NAME or name not in library():
+        return _OF_NAME.get(name, name)
+    kind = library()[name].like or name
+    return _OF_NAME.get(kind, kind)

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from benchmarks.fit.composed import compose
+from benchmarks.fit.drawn import DRAWN, drawn_object
 from benchmarks.fit.edges import read_tree_examples, tree_example, write_tree_examples
 from benchmarks.fit.examples import content_key, examples_of, read_examples, write_examples
 from benchmarks.fit.fragmentation import with_pieces_broken_off
 from benchmarks.fit.modelling import WAYS, augment
-from benchmarks.recipes import OBJECTS, drawn_object
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
@@ -69,9 +69,9 @@ class CorpusSource:
 
 
 def generated_sources(rounds: int, composed: int) -> list[CorpusSource]:
-    """`rounds` objects of every family and recipe, each modelled in another way, and `composed` random mechanisms."""
-    named = [(FAMILY if name in FAMILIES else DESCRIBED, name) for name in sorted(known_families())]
-    named += [(PROGRAMMED, name) for name in sorted(OBJECTS)]
+    """`rounds` objects of every kind, each modelled in another way, and `composed` random mechanisms."""
+    origins = dict.fromkeys(FAMILIES, FAMILY) | dict.fromkeys(DRAWN, PROGRAMMED)
+    named = [(origins.get(name, DESCRIBED), name) for name in sorted(known_families())]
     found = [CorpusSource(origin=origin, name=name, number=n) for n in range(rounds) for origin, name in named]
     return found + [CorpusSource(origin=COMPOSED, name="composed", number=n) for n in range(composed)]
 
@@ -92,7 +92,7 @@ def real_sources(folder: Path) -> list[CorpusSource]:
 
 
 def broken_sources(sources: Sequence[CorpusSource]) -> list[CorpusSource]:
-    """Of every real object, and of two of every recipe, the same with pieces broken off."""
+    """Of every real object, and of two of every object in steps, the same with pieces broken off."""
     return [
         replace(source, broken=True)
         for source in sources
@@ -101,7 +101,7 @@ def broken_sources(sources: Sequence[CorpusSource]) -> list[CorpusSource]:
 
 
 def tree_sources(sources: Sequence[CorpusSource]) -> list[CorpusSource]:
-    """Those whose contacts the edges of the tree are fitted to: whole ones, and two of every family and recipe."""
+    """Those whose contacts the edges of the tree are fitted to: whole ones, and two of every kind."""
     return [
         source
         for source in sources

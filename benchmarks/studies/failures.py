@@ -43,8 +43,8 @@ from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import TIERS, DearTiers, Simulator
 from kinematify.validation import failure_rates
 from kinematify.validation.failure_rates import CLASSES, GEOMETRY, RIGHT, FailureRates, tier_of
-from kinematify.validation.feedback import only_collision_meets
 from kinematify.validation.finding import Severity
+from kinematify.validation.run.feedback import only_collision_meets
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

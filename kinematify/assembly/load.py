@@ -295,7 +295,7 @@ def _up_warnings(assembly: Assembly) -> tuple[str, ...]:
     size = float(np.linalg.norm(high - low))
     # The file's z is -y now, and its y is z.
     if abs(high[1]) < _ON_GROUND * size and low[2] < -_BELOW_GROUND * size:
-        looks = "it stands on z = 0 and reaches below y = 0"
+        looks = "its lowest point is at z = 0 and it reaches below y = 0"
     elif _foot(points, 1, high[1]) > _STANDS and _foot(points, 2, low[2]) < _LIES:
         looks = "it has a broad foot at its lowest z, and next to none at its lowest y"
     else:

@@ -24,8 +24,8 @@ from kinematify.pipeline.record import write_inference_files
 from kinematify.processes.pool import sentence
 from kinematify.refinement.loop import refine
 from kinematify.robot.joint_type import JointType
-from kinematify.validation.outcome import as_json_text
 from kinematify.validation.run import validate
+from kinematify.validation.run.outcome import as_json_text
 
 if TYPE_CHECKING:
     from kinematify.batch.source import Source

@@ -160,7 +160,7 @@ class Manifest:
         except OSError as error:
             raise OutputError(
                 f"The output {file.parent} cannot be written: {error.strerror or error}. Give another folder with -o, "
-                "or mend its permissions."
+                "or change its permissions."
             ) from error
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -68,8 +68,8 @@ _SHOWN = 10
     metavar="GB",
     help="Address space of a worker.",
 )
-@click.option("--resume", is_flag=True, help="Go on with the run in the output: what has ended is left.")
-@click.option("--retry", is_flag=True, help="With --resume, convert anew what gave no model, whatever the reason.")
+@click.option("--resume", is_flag=True, help="Continue the run in the output and skip finished objects.")
+@click.option("--retry", is_flag=True, help="With --resume, convert again every object that gave no model.")
 @click.option("--shard", metavar="I/N", help="Only share I of N of the objects, for runs side by side.")
 @click.option(
     "--up",

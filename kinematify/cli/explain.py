@@ -22,7 +22,7 @@ _WIDTH = 100
 
 @click.command(
     "explain",
-    short_help="What a check of `validate` verifies, why, and how to mend it.",
+    short_help="What a check of `validate` verifies, why, and how to fix what it finds.",
     epilog=examples(
         "kinematify explain KV301",
         "kinematify explain kv301 kv401 --json -",
@@ -126,14 +126,14 @@ def _cell(text: str) -> str:
 
 def _as_table(checks: Sequence[Check]) -> str:
     rows = [(check.id, check.severity.value, check.blame.value, _engines(check), check.title) for check in checks]
-    return format_table(("id", "severity", "blames", "engines", "check"), sorted(rows))
+    return format_table(("id", "severity", "cause", "engines", "check"), sorted(rows))
 
 
 def _describe(check: Check) -> str:
     from kinematify.validation.check import FAMILIES
 
     family = f"{check.id[:3]}xx, {FAMILIES[check.id[:3]]}"
-    facts = f"severity {check.severity.value}, blames {check.blame.value}, engines {_engines(check)}"
+    facts = f"severity {check.severity.value}, cause {check.blame.value}, engines {_engines(check)}"
     texts = (
         ("Family", f"{family}; {facts}"),
         ("Verifies", check.verifies),

@@ -15,7 +15,7 @@ from kinematify.cli.progress import progress_reporter
 
 @click.command(
     "fit",
-    short_help="Fit the choice of joints, and judge it on what was left out.",
+    short_help="Retrain the joint selection and evaluate it on held-out categories.",
     epilog=examples(
         "kinematify fit -o fitted",
         "kinematify fit models/everyday models/robots --rounds 8 --composed 400 -o fitted",

@@ -24,9 +24,9 @@ from kinematify.simulation.engines import DEFAULT_ENGINES
 from kinematify.validation.finding import Severity
 from kinematify.validation.formats.picture import scene_of
 from kinematify.validation.isolation import start_server
-from kinematify.validation.outcome import severity_counts
-from kinematify.validation.plan import as_loaded_stages, asset_stage, later_stages
 from kinematify.validation.run import validate
+from kinematify.validation.run.outcome import severity_counts
+from kinematify.validation.run.plan import as_loaded_stages, asset_stage, later_stages
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline import Inference
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.report import ValidationReport
 
 
 class Requested(Protocol):

@@ -67,9 +67,10 @@ _LONGEST = 86400.0
     "--hint",
     "hints",
     multiple=True,
-    metavar="PART=TYPE|PART:axis=x|PART:pivot=X,Y,Z|PART:limits=A,B",
+    metavar="PART=TYPE|PART:fixed|PART:axis=x|PART:pivot=X,Y,Z|PART:range=A..B|PART:parent=LINK|PART:twin=PART",
     help="What you know of a joint: its type, the direction of its axis (or X,Y,Z), a point that a hinge goes through "
-    "[m], its limits [rad or m]. It decides. Several may be given.",
+    "[m], its range [rad or m, or 0..90deg, 0..300mm], what the part hangs on, the part whose joint it mirrors or "
+    "repeats. It decides. Several may be given.",
 )
 @click.option(
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."

@@ -58,7 +58,7 @@ def load_as_loaded() -> None:
     """Load what `as_loaded` needs, in a process that is asked for it later."""
     from kinematify.simulation.engines import DEFAULT_ENGINES
     from kinematify.validation.isolation import load_imports
-    from kinematify.validation.plan import as_loaded_stages, asset_stage, later_stages, needed
+    from kinematify.validation.run.plan import as_loaded_stages, asset_stage, later_stages, needed
 
     later = needed(later_stages(DEFAULT_ENGINES), _as_loaded_checks())
     load_imports([asset_stage(), *later, *as_loaded_stages(DEFAULT_ENGINES)])

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from kinematify.generate.providers.language_model import Written
     from kinematify.generate.providers.source import Generated, PartSource
     from kinematify.pipeline import Inference
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.report import ValidationReport
 
 _MADE, _INFERRED, _WRITTEN = 0.6, 0.8, 0.85  # shares of the time at which these are done
 JOB_SUFFIX = ".job"

@@ -23,7 +23,7 @@ TIERS = ("geometry", "engines", "task")
 
 @click.command(
     "refine",
-    short_help="Simulate an inferred model and choose again what its failures blame.",
+    short_help="Simulate an inferred model and choose the joints that fail again.",
     epilog=examples(
         "kinematify refine out",
         "kinematify refine out --tier engines --rounds 5",
@@ -131,7 +131,7 @@ def describe_refinement(inference: Inference) -> str:
     record = inference.refinement
     if record is None:
         return ""
-    from kinematify.validation.inferred import ROUND_HEADINGS, round_rows, round_words
+    from kinematify.validation.run.inferred import ROUND_HEADINGS, round_rows, round_words
 
     table = format_table(ROUND_HEADINGS, round_rows(record)) if record["rounds"] else ""
     return "\n".join(line for line in (table, *round_words(record)) if line)

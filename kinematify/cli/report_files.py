@@ -14,7 +14,7 @@ from kinematify.errors import OutputError
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.validation.outcome import Outcome
+    from kinematify.validation.run.outcome import Outcome
     from kinematify.validation.suppression import Suppression
 
 
@@ -86,8 +86,8 @@ class ReportFiles:
         from kinematify.validation.formats.html import as_html
         from kinematify.validation.formats.junit import as_junit
         from kinematify.validation.formats.sarif import as_sarif
-        from kinematify.validation.outcome import Unusable, as_json_text
-        from kinematify.validation.suppression_file import suggested_suppressions, suppressions_text
+        from kinematify.validation.run.outcome import Unusable, as_json_text
+        from kinematify.validation.run.suppression_file import suggested_suppressions, suppressions_text
 
         texts = {}
         if self.json:

@@ -148,7 +148,7 @@ def command(
     from kinematify.cli.task_options import TaskOptions
     from kinematify.cli.validation_run import ValidationRun
     from kinematify.validation.models import find_models
-    from kinematify.validation.suppression_file import load_suppressions
+    from kinematify.validation.run.suppression_file import load_suppressions
 
     files = ReportFiles(json=json_to, junit=junit, sarif=sarif, html=html, accept=suggest_accept)
     files.check()
@@ -201,7 +201,7 @@ def _matching(patterns: str) -> frozenset[str]:
     from fnmatch import fnmatchcase
 
     from kinematify.validation.checks import CHECKS
-    from kinematify.validation.suppression_file import known_pattern
+    from kinematify.validation.run.suppression_file import known_pattern
 
     known = [known_pattern(word) for word in patterns.split(",")]
     return frozenset(check for check in CHECKS if any(fnmatchcase(check, pattern) for pattern in known))

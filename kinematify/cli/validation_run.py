@@ -10,9 +10,9 @@ import click
 from kinematify.cli.verdict import describe, describe_all, describe_unused, say
 from kinematify.errors import ExitStatus, InputError
 from kinematify.validation.finding import Severity
-from kinematify.validation.outcome import Unusable
 from kinematify.validation.run import validate
-from kinematify.validation.suppression_file import unused_suppressions
+from kinematify.validation.run.outcome import Unusable
+from kinematify.validation.run.suppression_file import unused_suppressions
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings
     from kinematify.manipulation.request import TaskRequest
     from kinematify.validation.formats.picture import Drawing
-    from kinematify.validation.outcome import Outcome
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.outcome import Outcome
+    from kinematify.validation.run.report import ValidationReport
     from kinematify.validation.suppression import Suppression
 
 PICTURES_AT_MOST = 12

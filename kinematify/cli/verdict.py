@@ -28,16 +28,16 @@ from kinematify.validation.formats.content import (
     title,
     where,
 )
-from kinematify.validation.outcome import Unusable, counted_words, severity_counts, status_counts
+from kinematify.validation.run.outcome import Unusable, counted_words, severity_counts, status_counts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from kinematify.validation.causes import FindingGroup
     from kinematify.validation.finding import Finding
     from kinematify.validation.formats.content import FindingBlock, Table
-    from kinematify.validation.outcome import Outcome
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.causes import FindingGroup
+    from kinematify.validation.run.outcome import Outcome
+    from kinematify.validation.run.report import ValidationReport
     from kinematify.validation.suppression import Suppression
 
 MANY = 3
@@ -45,9 +45,9 @@ MANY = 3
 _COLORS = {"pass": "green", "warn": "yellow", "fail": "red", "unusable": "red"}
 _SEVERITY_COLORS = {Severity.ERROR: "red", Severity.WARNING: "yellow", Severity.NOTE: "blue"}
 _WIDEST = 120
-_SCREEN = 30
+_SCREEN = 20
 """Lines of a report that nobody has to scroll for."""
-_LONGEST = 120
+_LONGEST = 60
 """Lines of a report unless everything is asked for."""
 _CALL = re.compile(r"(?:mujoco\.MjModel\.from_xml_path|p\.loadURDF)\([^()]*\)")
 """How plain code loads a file."""
@@ -82,20 +82,27 @@ def _full(report: ValidationReport) -> list[str]:
 def _short(report: ValidationReport) -> list[str]:
     """Errors and warnings with their remedies.
 
-    Where they fill more than a screen, warnings are told without; what is beyond the longest report is counted.
+    Where they fill more than a screen, warnings are a line each without remedies, and those of one check in several
+    engines share it; so do errors where the report is too long still. What is beyond the longest report is counted.
     """
     told = [item for item in report.told if item.finding.suppressed is None]
-    shown = blocks((item for item in told if item.finding.severity is not Severity.NOTE), alike=False)
+    errors, warnings = ([t for t in told if t.finding.severity is s] for s in (Severity.ERROR, Severity.WARNING))
     head = [_first_lines(report), _reasons(report, Status.BLOCKED)]
-    foot = [_next_best(report), _notes(told), _more(report)]
-    texts = [_short_text(block) for block in shown]
-    if _height([*head, *texts, *foot]) > _SCREEN:
-        texts = [_short_text(block) if block.severity is Severity.ERROR else _line(block, 0) for block in shown]
-    most = len(texts)
-    while most and _height([*head, *texts[:most], *foot]) > _LONGEST:
-        most -= 1
-    left = sum(len(block.findings) for block in shown[most:])
-    return [*head, *texts[:most], f"{counted_words(left, 'more finding')}: --all tells them." if left else "", *foot]
+    foot = [_next_best(report), "\n".join(text for text in (_notes(told), _more(report)) if text)]
+    paragraphs = [*map(_short_text, blocks(errors, alike=False))]
+    full = [*head, *paragraphs, *map(_short_text, blocks(warnings, alike=False)), *foot]
+    if _height(full) <= _SCREEN:
+        return full
+    listed = blocks(warnings, alike=False, by_engine=False)
+    if _height([*head, *paragraphs, *map(_line, listed), *foot]) > _LONGEST:
+        paragraphs, listed = [], [*blocks(errors, alike=False, by_engine=False), *listed]
+    lines = [_line(block, 0) for block in listed]
+    shown = len(lines)
+    while shown and _height([*head, *paragraphs, "\n".join(lines[:shown]), *foot]) > _LONGEST - 2:
+        shown -= 1
+    left = sum(len(block.findings) for block in listed[shown:])
+    lines[shown:] = [f"{counted_words(left, 'more finding')}: --all lists them."] if left else []
+    return [*head, *paragraphs, "\n".join(lines), *foot]
 
 
 def _height(blocks: Sequence[str]) -> int:
@@ -112,13 +119,9 @@ def _notes(told: Sequence[FindingGroup]) -> str:
 
 def _more(report: ValidationReport) -> str:
     """What the whole report has besides."""
-    code = ", plain code that shows what engines do" if any(item.reproduction for item in report.findings) else ""
     told = [item.finding for item in report.told if item.finding.suppressed is None]
     worst = next((found.check for severity in Severity for found in told if found.severity is severity), "KV301")
-    return _wrapped(
-        f"--all tells everything: notes, each place and number, what follows from what{code}, the joints, the checks "
-        f"that did not run. kinematify explain {worst} tells what a check looks at."
-    )
+    return f"--all: notes, places, consequences, code, joints, checks. kinematify explain {worst}: what it checks."
 
 
 def describe_all(outcomes: Sequence[Outcome]) -> str:

@@ -35,7 +35,7 @@ _SHOWN_TITLE = 60
     multiple=True,
     metavar="NAME",
     shell_complete=complete_joints,
-    help="Joint that stands at the --q behind it.",
+    help="Joint to move to the value of the --q that follows it.",
 )
 @click.option("--q", "values", multiple=True, type=float, metavar="VALUE", help="Its value [rad or m].")
 @package_dirs_option

@@ -1,16 +1,19 @@
-"""Objects that files describe: each file in `objects/` is a blueprint with words for it, read as a family."""
+"""Objects that files describe, read as families: a file in `objects/` holds one blueprint, or many written in steps."""
 
 from __future__ import annotations
 
 import math
+import re
+import textwrap
 from dataclasses import replace
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from kinematify.errors import InputError
 from kinematify.generate.blueprint_file import (
     MIRRORS,
     BlueprintDescription,
@@ -19,14 +22,19 @@ from kinematify.generate.blueprint_file import (
     Vector,
     parents_first,
 )
+from kinematify.generate.library.builder import CAREFUL, ModelingStyle, ObjectBuilder
+from kinematify.generate.library.steps import Step, run_steps
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, read_table
+from kinematify.generate.procedural.parameter import Parameter, choice, counted, parse_table
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
+    from manifold3d import Manifold
+
+    from kinematify.generate.blueprint_file import PartDescription
     from kinematify.generate.procedural.blueprint import BlueprintJoint
     from kinematify.generate.procedural.family import Values
     from kinematify.generate.procedural.workshop import Workshop
@@ -76,8 +84,10 @@ class CountDescription(BaseModel):
     """How people call what is counted, besides the name of the count."""
 
 
-class ObjectDescription(BlueprintDescription):
-    """A blueprint that sentences may ask for; its first part is the base link."""
+class Spoken(BaseModel):
+    """How an object is asked for."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
     title: str
     """A few words for lists."""
@@ -87,6 +97,17 @@ class ObjectDescription(BlueprintDescription):
     """How people call its parts, besides their names."""
     details: dict[str, int] = Field({})
     """Word for what belongs to a part -> how many of it there are."""
+    motions: dict[str, tuple[str, ...]] = Field({})
+    """Name of a part without its number -> words for how it moves that hold already: ``drop-down``, ``folds``."""
+    holds_already: tuple[str, ...] = ()
+    """Other words that are true of it as it is: ``adjustable height``, ``two-door``."""
+    like: str = ""
+    """The kind that it is another way to build; empty where it is a kind of its own."""
+
+
+class ObjectDescription(Spoken, BlueprintDescription):
+    """A blueprint that sentences may ask for; its first part is the base link."""
+
     counts: dict[str, CountDescription] = Field({})
     """Word for what repeats -> how often it may; named where a shape or a copy is repeated."""
     copies: tuple[CopyDescription, ...] = ()
@@ -141,15 +162,155 @@ class ObjectDescription(BlueprintDescription):
                     solid, joint = given[name]
                     looks[names[name]], solids[names[name]] = looks[name], solid.transform(transform)
                     joints[names[name]] = _joint_elsewhere(joint, names, transform)
-        base = self.parts[0].name
-        for name, solid in solids.items():
-            look = looks[name]
-            own = isinstance(look.color, str) and not (name == base and values.choice("color"))
-            workshop.body(
-                name, solid, material=None if name == base else look.material, color=str(look.color) if own else None
-            )
-        for joint in parents_first(list(joints.values())):
-            workshop.hang(joint, values.number("open"))
+        _put_together(solids, looks, list(joints.values()), values, workshop)
+
+
+_MODELING: dict[str, dict[str, Any]] = {
+    "careful": {},
+    "gaps": {"gap": 0.005},
+    "touching": {"gap": 0.0},
+    "solid": {"has_bore": False, "hollow": False, "gap": 0.0},
+    "overlapping": {"has_bore": False, "max_penetration": 0.3, "gap": 0.0},
+}
+"""How an object in steps is modelled -> what differs from the careful way, in which everything moves freely."""
+_Range = tuple[float, float]
+
+
+class ParameterDescription(BaseModel):
+    """What may be asked of an object in steps; ``[0.2, 0.4]`` is short for a range."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    range: _Range | None = None
+    """What can be built, and what a seed draws from; whole numbers make it a count."""
+    default: float | None = None
+    """The middle if absent."""
+    unit: Literal["m", "rad", ""] = "m"
+    yes: float | None = None
+    """It is a choice of yes and no, yes in this share of the draws."""
+    choices: tuple[str, ...] = ()
+    """It is a choice of these; the first is the default."""
+    words: tuple[str, ...] = ()
+    """How people call it, besides its name."""
+    help: str = "As the object has it."
+    whole: bool = False
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_a_range(cls, given: Any) -> Any:
+        said = {"range": given} if isinstance(given, list) else dict(given)
+        bounds = said.get("range")
+        return said | {"whole": True} if bounds and all(isinstance(end, int) for end in bounds) else said
+
+    def parameter(self, name: str) -> Parameter:
+        """As a family has it."""
+        if self.range is None:
+            options = self.choices or (("yes", "no") if self.yes is None or self.yes >= 0.5 else ("no", "yes"))
+            return replace(choice(name, options, self.help), words=self.words)
+        low, high = self.range
+        middle = float(f"{0.5 * (low + high):.3g}") if self.default is None else self.default
+        return Parameter(
+            name=name,
+            default=int(middle) if self.whole else middle,
+            unit="" if self.whole else self.unit,
+            bounds=self.range,
+            usual=self.range,
+            help=self.help,
+            words=self.words,
+        )
+
+    def drawn(self, builder: ObjectBuilder) -> float | int | str:
+        """A value for one more object of a corpus."""
+        if self.range is not None:
+            low, high = self.range
+            return builder.count(int(low), int(high)) if self.whole else builder.draw(low, high)
+        return str(builder.pick(*self.choices)) if self.choices else "yes" if builder.maybe(self.yes or 0.5) else "no"
+
+
+class SteppedDescription(Spoken):
+    """An object that a file writes down in steps, with parameters; see `kinematify.generate.library.steps`."""
+
+    name: Name
+    about: str = ""
+    """One sentence for readers of the file."""
+    parameters: dict[Name, ParameterDescription] = Field({})
+    written_steps: str
+    """YAML, which is only read once the object is built."""
+
+    @cached_property
+    def steps(self) -> tuple[Step, ...]:
+        """How it is built."""
+        return tuple(parse_table(self.written_steps))
+
+    def family(self) -> Family:
+        """The object as a family with its parameters."""
+        return Family(
+            name=self.name,
+            title=self.title,
+            words=self.words,
+            parameters=(
+                *(said.parameter(name) for name, said in self.parameters.items()),
+                *(
+                    counted(f"{word}s", count, (count, count), "Belongs to it.", words=word)
+                    for word, count in self.details.items()
+                ),
+                choice("modeling", tuple(_MODELING), "How it is modelled.", drawn=False),
+            ),
+            material="plastic",
+            part_words=self.part_words,
+            build=self._build,
+        )
+
+    def description(self, style: ModelingStyle, rng: np.random.Generator) -> dict[str, Any]:
+        """A blueprint of it with everything drawn, as a file holds one.
+
+        Raises:
+            InputError: A step cannot be carried out with what was drawn.
+        """
+        builder = ObjectBuilder(self.name, style, rng)
+        return self._described(builder, {name: said.drawn(builder) for name, said in self.parameters.items()})
+
+    def _described(self, builder: ObjectBuilder, values: Mapping[str, Any]) -> dict[str, Any]:
+        switched = {name: value == "yes" if value in ("yes", "no") else value for name, value in values.items()}
+        try:
+            run_steps(self.steps, builder, switched)
+        except ValueError as error:
+            raise InputError(f"The object {self.name} cannot be built: {error}.") from error
+        return builder.description()
+
+    def _build(self, values: Values, workshop: Workshop) -> None:
+        style = replace(CAREFUL, gap=values.number("clearance"), **_MODELING[values.choice("modeling")])
+        builder = ObjectBuilder(self.name, style, values.rng if values.drawn else None)
+        said = self._described(builder, {name: values.value(name) for name in self.parameters})
+        try:
+            built = BlueprintDescription.model_validate(said)
+        except ValidationError as error:
+            reason = error.errors(include_url=False)[0]
+            raise InputError(
+                f"The {self.title} cannot be built so: {reason['msg']} at {'.'.join(map(str, reason['loc']))}."
+            ) from error
+        solids = {part.name: part.solid({}) for part in built.parts}
+        joints = [replace(joint.joint(), value=joint.value) for joint in built.joints]
+        _put_together(solids, {part.name: part for part in built.parts}, joints, values, workshop)
+
+
+def _put_together(
+    solids: Mapping[str, Manifold],
+    looks: Mapping[str, PartDescription],
+    joints: Sequence[BlueprintJoint],
+    values: Values,
+    workshop: Workshop,
+) -> None:
+    """Add parts and joints to a workshop; a joint whose `value` is not zero stands there unless it is to be open."""
+    base = next(iter(solids))
+    for name, solid in solids.items():
+        look = looks[name]
+        asked = (values.choice("material"), values.choice("color")) if name == base else ("", "")
+        color = look.color if isinstance(look.color, str) else None
+        workshop.body(name, solid, material=None if asked[0] else look.material, color=asked[1] or color)
+    for joint in parents_first(joints):
+        share = joint.value / joint.upper if joint.value else 0.0
+        workshop.hang(replace(joint, value=0.0), values.number("open") or share)
 
 
 def _carried(name: str, joints: Mapping[str, BlueprintJoint]) -> list[str]:
@@ -181,8 +342,28 @@ def _joint_elsewhere(joint: BlueprintJoint, names: Mapping[str, str], transform:
 
 
 @cache
+def library() -> Mapping[str, ObjectDescription | SteppedDescription]:
+    """Every object that a file describes, keyed by name: one blueprint a file, or a mapping of objects in steps."""
+    found: dict[str, ObjectDescription | SteppedDescription] = {}
+    for file in sorted(_FOLDER.glob("*.yaml")):
+        text = file.read_text(encoding="utf-8")
+        if "\nparts:\n" in text:
+            described = ObjectDescription.model_validate(parse_table(text))
+            found[described.category] = described
+        else:
+            found |= {item.name: item for item in _in_steps(text)}
+    return found
+
+
+def _in_steps(text: str) -> Iterator[SteppedDescription]:
+    """Objects of a file of objects; their steps come last and stay text, since they are most of it."""
+    for chunk in re.split(r"^(?=\w+:$)", text, flags=re.MULTILINE):
+        head, _, steps = chunk.partition("\n  steps:\n")
+        for name, said in (parse_table(head) or {}).items():
+            yield SteppedDescription.model_validate({"name": name, **said, "written_steps": textwrap.dedent(steps)})
+
+
+@cache
 def known_families() -> Mapping[str, Family]:
     """All families: those that programs build, then those that files describe."""
-    files = sorted(_FOLDER.glob("*.yaml"))
-    described = (ObjectDescription.model_validate(read_table(file)) for file in files)
-    return {**FAMILIES, **{item.category: item.family() for item in described}}
+    return {**FAMILIES, **{name: item.family() for name, item in library().items()}}

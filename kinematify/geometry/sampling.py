@@ -67,7 +67,7 @@ def sample_surface(part: Part, count: int, seed: int) -> SurfaceSamples:
     if count < 1:
         raise ValueError(f"A surface sample needs count >= 1, got {count}.")
     if not part.area > 0.0:
-        raise AssemblyError(f"Part {part.name} has no surface area to sample; set it aside or mend its mesh.")
+        raise AssemblyError(f"Part {part.name} has no surface area to sample; remove it or fix its mesh.")
     corners = part.vertices[part.faces]
     faces, barycentric = place_samples(corners, part.face_areas, curve_order(corners, part.face_areas), count, seed)
     return SurfaceSamples(

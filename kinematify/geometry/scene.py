@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from hashlib import blake2b
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -69,6 +70,8 @@ class Scene:
     """Length of one unit of all FCL trees [m]."""
     stand_ins: tuple[str, ...]
     """Links without collision geometry, which are judged by their visual geometry."""
+    solids: dict[bytes, Solid] = field(default_factory=dict)
+    """Solids by what they are made of: other scenes of the model take those that are the same, with their trees."""
 
     @property
     def travels(self) -> tuple[Travel, ...]:
@@ -219,6 +222,7 @@ def read_scene(
     shapes_of: Callable[[Link], tuple[Shape, ...]] = judged_shapes,
     *,
     by_link: bool = False,
+    solids: dict[bytes, Solid] | None = None,
 ) -> Scene:
     """Gather the geometry of the bodies; nothing is measured yet.
 
@@ -228,7 +232,9 @@ def read_scene(
         shapes_of: Which shapes of a link count; a body without any is judged by all that it has.
         by_link: Links that fixed joints hold together are bodies of their own, in the frame of the link nearest the
             root.
+        solids: `Scene.solids` of another scene with the same settings; added to.
     """
+    solids = {} if solids is None else solids
     parts = [
         (index, links, _shapes(model, links, shapes_of) or _shapes(model, links, judged_shapes))
         for index, group in enumerate(rigid_groups(model))
@@ -248,7 +254,7 @@ def read_scene(
                 name=next(name for name in links if model.link_by_name[name].has_geometry),
                 links=tuple(links),
                 group=index,
-                solid=_solid(shapes, unit, settings),
+                solid=_solid(shapes, unit, settings, solids),
                 shapes=tuple(vertices[np.unique(faces)] for vertices, faces in shapes if len(faces)),
             )
             for index, links, shapes in solid
@@ -256,6 +262,7 @@ def read_scene(
         settings=settings,
         unit=unit,
         stand_ins=tuple(link.name for link in model.links if link.visuals and not link.collisions),
+        solids=solids,
     )
 
 
@@ -283,15 +290,20 @@ def _shapes(
     ]
 
 
-def _solid(shapes: Sequence[tuple[FloatArray, IntArray]], unit: float, settings: GeometrySettings) -> Solid:
+def _solid(
+    shapes: Sequence[tuple[FloatArray, IntArray]], unit: float, settings: GeometrySettings, known: dict[bytes, Solid]
+) -> Solid:
+    """The solid of some shapes, the known one where one was made of the same numbers."""
     starts = np.cumsum([0, *(len(vertices) for vertices, _ in shapes)])
-    return Solid(
-        np.concatenate([vertices for vertices, _ in shapes]),
-        np.concatenate([faces + start for (_, faces), start in zip(shapes, starts, strict=False)]),
-        unit=unit,
-        hole=settings.hole,
-        points=settings.points,
-    )
+    vertices = np.concatenate([vertices for vertices, _ in shapes])
+    faces = np.concatenate([faces + start for (_, faces), start in zip(shapes, starts, strict=False)])
+    made_of = blake2b(repr((unit, len(vertices))).encode())
+    made_of.update(vertices.tobytes())
+    made_of.update(faces.tobytes())
+    key = made_of.digest()
+    if key not in known:
+        known[key] = Solid(vertices, faces, unit=unit, hole=settings.hole, points=settings.points)
+    return known[key]
 
 
 def transformed(points: FloatArray, T: FloatArray) -> FloatArray:

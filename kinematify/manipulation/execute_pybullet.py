@@ -11,8 +11,7 @@ import pybullet as bullet
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import joint_values, rest_configuration
 from kinematify.robot.transforms import quaternion_of
-from kinematify.simulation.engine import Refused
-from kinematify.simulation.pybullet_world import PybulletBody, connect, load_at
+from kinematify.simulation.pybullet_world import Client, PybulletBody, connect, load_at
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -36,17 +35,13 @@ def open_world(loaded: Loaded, settings: ExecutionSettings, hold: Hold) -> Pybul
     """
     del hold  # its hulls slip out of fingers that hold by friction
     client, motion = connect(settings.time_step, iterations=_ITERATIONS), loaded.motion
-    try:
-        robot, placed = (
-            load_at(client, LeaderMechanism(robot=model), prepared.urdf, T_world_root, itself=False)
-            for model, prepared, T_world_root in (
-                (loaded.robot, loaded.robot_prepared, motion.T_world_base),
-                (loaded.object, loaded.object_prepared, motion.T_world_object),
-            )
+    robot, placed = (
+        load_at(client, LeaderMechanism(robot=model), prepared.urdf, T_world_root, itself=False)
+        for model, prepared, T_world_root in (
+            (loaded.robot, loaded.robot_prepared, motion.T_world_base),
+            (loaded.object, loaded.object_prepared, motion.T_world_object),
         )
-    except Refused:
-        bullet.disconnect(client)
-        raise
+    )
     world = PybulletExecution(client, loaded, settings, robot, placed)
     world.start()
     return world
@@ -56,7 +51,7 @@ def open_world(loaded: Loaded, settings: ExecutionSettings, hold: Hold) -> Pybul
 class PybulletExecution:
     """See `kinematify.manipulation.execute.ExecutionWorld`."""
 
-    client: int
+    client: Client
     loaded: Loaded
     settings: ExecutionSettings
     robot: PybulletBody
@@ -70,23 +65,27 @@ class PybulletExecution:
         _hold(self.robot, {**arm, **fingers})
         _hold(self.object, {**motion.start, motion.joint: float(motion.opened[0])})
         for index in self.object.indices:
-            bullet.changeDynamics(self.object.body, index, jointDamping=0.0, physicsClientId=self.client)
+            self.client.changeDynamics(self.object.body, index, jointDamping=0.0)
         for hand in self.loaded.hand_links:
             for held in self.loaded.held_links:
-                bullet.setCollisionFilterPair(
-                    self.robot.body, self.object.body, self.robot.index_of(hand), self.object.index_of(held), 0,
-                    physicsClientId=self.client,
-                )  # fmt: skip
+                self.client.setCollisionFilterPair(
+                    self.robot.body, self.object.body, self.robot.index_of(hand), self.object.index_of(held), 0
+                )
 
     def step(self, arm: FloatArray, speed: FloatArray) -> bool:
         """Simulate one time step."""
         joints, count = self._arm, len(self._arm)
-        bullet.setJointMotorControlArray(
-            self.robot.body, joints, bullet.POSITION_CONTROL, targetPositions=arm.tolist(),
-            targetVelocities=speed.tolist(), forces=self.loaded.strongest(self.settings).tolist(),
-            positionGains=[_GAIN] * count, velocityGains=[1.0] * count, physicsClientId=self.client,
-        )  # fmt: skip
-        bullet.stepSimulation(self.client)
+        self.client.setJointMotorControlArray(
+            self.robot.body,
+            joints,
+            bullet.POSITION_CONTROL,
+            targetPositions=arm.tolist(),
+            targetVelocities=speed.tolist(),
+            forces=self.loaded.strongest(self.settings).tolist(),
+            positionGains=[_GAIN] * count,
+            velocityGains=[1.0] * count,
+        )
+        self.client.stepSimulation()
         return True
 
     @property
@@ -104,30 +103,35 @@ class PybulletExecution:
         """Let the joint go, and weld the hand to the part where it now is."""
         motion, client = self.loaded.motion, self.client
         for name in (motion.joint, *motion.freed):
-            bullet.setJointMotorControl2(
-                self.object.body, self._joint(self.object, name), bullet.VELOCITY_CONTROL, force=0.0,
-                physicsClientId=client,
-            )  # fmt: skip
+            client.setJointMotorControl2(
+                self.object.body, self._joint(self.object, name), bullet.VELOCITY_CONTROL, force=0.0
+            )
         tool, held = motion.robot.tool, self.loaded.held
         T_world_tool = self.robot.frame(tool)
         T_tool, T_held = (
             np.linalg.inv(side.centre(link)) @ T_world_tool for side, link in ((self.robot, tool), (self.object, held))
         )
-        weld = bullet.createConstraint(
-            self.robot.body, self.robot.index_of(tool), self.object.body, self.object.index_of(held),
-            bullet.JOINT_FIXED, [0.0, 0.0, 0.0], T_tool[:3, 3].tolist(), T_held[:3, 3].tolist(),
-            *(quaternion_of(T[:3, :3], real_last=True) for T in (T_tool, T_held)), physicsClientId=client,
-        )  # fmt: skip
-        bullet.changeConstraint(weld, maxForce=self.settings.weld_force, physicsClientId=client)
+        weld = client.createConstraint(
+            self.robot.body,
+            self.robot.index_of(tool),
+            self.object.body,
+            self.object.index_of(held),
+            bullet.JOINT_FIXED,
+            [0.0, 0.0, 0.0],
+            T_tool[:3, 3].tolist(),
+            T_held[:3, 3].tolist(),
+            *(quaternion_of(T[:3, :3], real_last=True) for T in (T_tool, T_held)),
+        )
+        client.changeConstraint(weld, maxForce=self.settings.weld_force)
 
     def opened(self) -> float:
         """Value of the joint that is opened [rad or m]."""
         joint = self._joint(self.object, self.loaded.motion.joint)
-        return float(bullet.getJointState(self.object.body, joint, self.client)[0])
+        return float(self.client.getJointState(self.object.body, joint)[0])
 
     def arm(self) -> FloatArray:
         """Values of the arm's joints."""
-        return np.array([state[0] for state in bullet.getJointStates(self.robot.body, self._arm, self.client)])
+        return np.array([state[0] for state in self.client.getJointStates(self.robot.body, self._arm)])
 
     def joints(self) -> tuple[dict[str, float], dict[str, float]]:
         """Values of all joints of robot and object."""
@@ -136,7 +140,7 @@ class PybulletExecution:
 
     def deeper(self, than: float) -> tuple[float, tuple[str, str]] | None:
         """Deepest contact of the robot, if it is deeper than that."""
-        points = bullet.getContactPoints(self.robot.body, self.object.body, physicsClientId=self.client)
+        points = self.client.getContactPoints(self.robot.body, self.object.body)
         deepest = min(points, key=lambda point: point[8], default=None)
         if deepest is None or -deepest[8] - _MARGIN <= than:
             return None
@@ -146,7 +150,7 @@ class PybulletExecution:
 
     def close(self) -> None:
         """Free the world."""
-        bullet.disconnect(self.client)
+        self.client.disconnect()
 
 
 def _hold(side: PybulletBody, values: Mapping[str, float]) -> None:
@@ -154,8 +158,14 @@ def _hold(side: PybulletBody, values: Mapping[str, float]) -> None:
     robot = side.mechanism.robot
     full = joint_values(robot, {**rest_configuration(robot), **values})
     for name, index in zip(side.mechanism.joints, side.indices, strict=True):
-        bullet.resetJointState(side.body, index, full[name], physicsClientId=side.client)
-        bullet.setJointMotorControl2(
-            side.body, index, bullet.POSITION_CONTROL, targetPosition=full[name], targetVelocity=0.0, force=_STRONG,
-            positionGain=_GAIN, velocityGain=1.0, physicsClientId=side.client,
-        )  # fmt: skip
+        side.client.resetJointState(side.body, index, full[name])
+        side.client.setJointMotorControl2(
+            side.body,
+            index,
+            bullet.POSITION_CONTROL,
+            targetPosition=full[name],
+            targetVelocity=0.0,
+            force=_STRONG,
+            positionGain=_GAIN,
+            velocityGain=1.0,
+        )

@@ -50,7 +50,7 @@ def write_model_folder(out: Path, write: Callable[[Path], None], *, overwrite: b
         if isinstance(error, OSError):
             raise OutputError(
                 f"The output folder {out} cannot be written ({error.strerror or error}). "
-                "Give another place with -o, or mend its permissions or free disk space."
+                "Give another place with -o, or change its permissions or free disk space."
             ) from error
         raise
 
@@ -71,7 +71,7 @@ def check_output(out: Path, *, overwrite: bool) -> None:
     if not parent.is_dir() or not os.access(parent, os.W_OK | os.X_OK):
         raise OutputError(
             f"The output folder {out} cannot be made because {parent} is not a folder that you may write. "
-            "Give another place with -o, or mend its permissions."
+            "Give another place with -o, or change its permissions."
         )
 
 

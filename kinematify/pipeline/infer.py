@@ -18,6 +18,7 @@ from kinematify.contact.seams import find_cuts, joined, rigid_pieces
 from kinematify.errors import InputError
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.fit import fit_bearings
+from kinematify.pipeline.heading import heading_of, turned, with_heading
 from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.pieces import inference_of_pieces, piece_standing_for
 from kinematify.pipeline.stages import choose_joints, find_trees, with_doubt_of_parents
@@ -88,6 +89,10 @@ def infer(
         assembly = load_assembly(assembly, config=config.assembly)
     if base is not None and base not in assembly.names:
         raise InputError(f"There is no part {base} to be the base link. The parts are {', '.join(assembly.names)}.")
+    angle = heading_of(assembly) if graph is None and config.joints.method == "geometry" else 0.0
+    if angle != 0.0:
+        square = infer(turned(assembly, -angle), config=config, base=base, progress=progress)
+        return with_heading(square, assembly, angle)
     clock = StageClock(progress)
     with clock.stage("contacts", 0.0):
         surfaces = part_surfaces(assembly, config=config.surface)

@@ -42,16 +42,23 @@ def find_trees(
 ) -> tuple[KinematicTree, ...]:
     """The best kinematic trees of an assembly; arguments as in `rank_trees`."""
     stats = assembly_stats(assembly)
+    evidence = gather_evidence(graph, stats, bearings, find_pins(assembly, graph, bearings, config))
     return rank_trees(
-        graph,
-        stats,
-        gather_evidence(graph, stats, bearings, find_pins(assembly, graph, bearings, config)),
-        config.topology,
-        seed=config.seed,
-        base=base,
-        simulated=simulated,
-        warm=warm,
+        graph, stats, evidence, config.topology, seed=config.seed, base=base, simulated=simulated, warm=warm
     )
+
+
+def tree_reward(
+    assembly: Assembly, graph: ContactGraph, bearings: Mapping[Pair, EdgeBearing], config: Config
+) -> TreeReward:
+    """What trees of an assembly are worth under the configuration."""
+    stats = assembly_stats(assembly)
+    evidence = gather_evidence(graph, stats, bearings, find_pins(assembly, graph, bearings, config))
+    return _reward_class(config.topology)(graph, stats, evidence, config.topology)
+
+
+def _reward_class(config: TopologyConfig) -> type[TreeReward]:
+    return PaperReward if config.reward == "paper" else TreeReward
 
 
 def rank_trees(
@@ -83,7 +90,7 @@ def rank_trees(
     Raises:
         InputError: There are fewer than two parts, `base` is no part, or the lengths do not match.
     """
-    reward = (PaperReward if config.reward == "paper" else TreeReward)(graph, stats, evidence, config, simulated)
+    reward = _reward_class(config)(graph, stats, evidence, config, simulated)
     if base is not None and not 0 <= base < graph.n_parts:
         raise InputError(f"Part {base} was given as base link, but the parts are numbered 0 to {graph.n_parts - 1}.")
     if base is None and config.base_rule == "given":

@@ -39,7 +39,7 @@ def warnings_of(
     return (
         *assembly.warnings,
         *_doubtful_base(assembly, trees, config.topology.base_doubt),
-        *_floating_parts(assembly, graph, trees[0]),
+        *floating_parts(assembly, graph, trees[0]),
         *_compound_joints(assembly, joints, graph, config.joints.compound),
         *_followed_twins(assembly, joints, bearings),
     )
@@ -53,11 +53,11 @@ def _doubtful_base(assembly: Assembly, trees: Sequence[KinematicTree], doubt: fl
         return []
     others = " or ".join(assembly.names[part] for part in dict.fromkeys(rivals))
     taken = assembly.names[best.root]
-    said = f"Which part stands still is not clear: {taken} was taken, {others} would do nearly as well. "
+    said = f"The base link is not certain: {taken} was chosen, {others} scored nearly as well. "
     return [said + "Give --base to choose."]
 
 
-def _floating_parts(assembly: Assembly, graph: ContactGraph, tree: KinematicTree) -> list[str]:
+def floating_parts(assembly: Assembly, graph: ContactGraph, tree: KinematicTree) -> list[str]:
     """Warn of tree edges between parts that do not touch."""
     warnings = []
     for parent, child in tree.edges():

@@ -23,7 +23,7 @@ from kinematify.refinement.plan import PlanChange
 from kinematify.refinement.simulate import TIERS
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.failure_rates import GEOMETRY, tier_of
-from kinematify.validation.feedback import feedback_from
+from kinematify.validation.run.feedback import feedback_from
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from kinematify.refinement.candidates import CandidateJoints
     from kinematify.refinement.plan import Plan
     from kinematify.refinement.simulate import DearTiers, Simulator
-    from kinematify.validation.feedback import Feedback, RangeSignal
+    from kinematify.validation.run.feedback import Feedback, RangeSignal
 
 _SAME_WAY = np.cos(np.radians(10.0))  # as `kinematify bench` tells wrong axes from right ones
 
@@ -213,8 +213,8 @@ class Chooser:
         share = self.config.least_kept if signal.lost else self.config.least_travel
         if new.upper - new.lower < share * (old.upper - old.lower):
             self.refused.append(
-                f"{signal.child}: {signal.check} asked for a range of {ranged(new)} in place of {ranged(old)}, too "
-                "little of it to be told from hiding the failure"
+                f"{signal.child}: {signal.check} asked for a range of {ranged(new)} in place of {ranged(old)}; a cut "
+                "that large could hide the failure instead of fixing it"
             )
             return plan, None
         change = PlanChange(

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from kinematify.refinement.urdf_editor import Diff
     from kinematify.robot.robot import Link
     from kinematify.validation.finding import Finding
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.report import ValidationReport
 
 _ROUNDS = 3
 """Looks at the result at most: what a broken file hides is seen in the second, pieces that still meet in the third."""

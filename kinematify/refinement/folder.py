@@ -121,9 +121,9 @@ def read_record(folder: Path) -> dict[str, Any]:
     path = folder / RECORD_FILE
     if not path.is_file():
         raise InputError(
-            f"There is no {RECORD_FILE} in {folder}, so that nothing is known of how its model was chosen. Give a "
-            "folder of `kinematify infer`, or inferred/ of `kinematify generate --infer`; a URDF from elsewhere can be "
-            "inferred anew with `kinematify infer MODEL.urdf -o FOLDER --refine 3`."
+            f"There is no {RECORD_FILE} in {folder}, so the alternatives of its model are unknown. Give a "
+            "folder of `kinematify infer`, or inferred/ of `kinematify generate --infer`; infer a URDF from elsewhere "
+            "with `kinematify infer MODEL.urdf -o FOLDER --refine 3`."
         )
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
@@ -170,7 +170,7 @@ def _check_untouched(folder: Path, record: dict[str, Any]) -> None:
         more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
         raise InputError(
             f"The file {folder / changed[0]}{more} was changed or removed since the model was inferred, and refining "
-            f"would lose that. Infer the changed parts anew (`kinematify infer {folder / MODEL_FILE} -o NEW --refine "
+            f"would lose that. Infer the changed parts again (`kinematify infer {folder / MODEL_FILE} -o NEW --refine "
             "3`), or put the file back."
         )
 

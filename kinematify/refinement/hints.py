@@ -1,8 +1,9 @@
 """Hints: what the user knows about single joints decides; geometry fills in the rest and says where it disagrees.
 
 A hint names a part and what moves it: ``door_1=prismatic`` gives the type, ``lid:axis=x`` the direction of the axis
-in the world, ``lid:pivot=0.1,0,0.9`` a point that a hinge goes through. What is not said, the opening direction and
-the limits come from the best candidate that agrees.
+in the world, ``lid:pivot=0.1,0,0.9`` a point that a hinge goes through, ``lid:range=0..1.57`` its limits,
+``lid:parent=body`` what it hangs on, ``arm_2:twin=arm_1`` that it moves as another part does. What no hint gives comes
+from the best candidate that agrees.
 """
 
 from __future__ import annotations
@@ -15,11 +16,13 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointCandidate
+from kinematify.joints.choice.twins import TwinJoints
 from kinematify.refinement.candidates import CandidateJoints, described
+from kinematify.refinement.parents import with_parents
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline import Inference
@@ -34,9 +37,12 @@ _SAME = np.cos(np.radians(1.0))  # a candidate along an axis that is given by it
 _THROUGH = 0.005  # of the object's diagonal: a candidate that goes through the point that is given
 _HELD = 0.1  # a slide that is stopped within a tenth of the part's length has no way to go
 _FORMS = (
-    "Write PART=TYPE, PART:axis=AXIS, PART:pivot=X,Y,Z or PART:limits=LOWER,UPPER, as in `door_1=prismatic`, "
-    "`lid:axis=x` (numbers do as well: `lid:axis=0.7,0,0.7`), `lid:pivot=0.1,0,0.9` and `lid:limits=0,1.57`."
+    "Write PART=TYPE, PART:fixed, PART:axis=AXIS, PART:pivot=X,Y,Z, PART:range=LOWER..UPPER, PART:parent=LINK or "
+    "PART:twin=PART, as in `door_1=prismatic`, `lid:axis=x` (or numbers: `lid:axis=0.7,0,0.7`), "
+    "`lid:pivot=0.1,0,0.9`, `lid:range=0..1.57` (or `0..90deg`, `0..300mm`), `lid:parent=body`, `arm_2:twin=arm_1`."
 )
+_KEYS = ("axis", "pivot", "range", "parent", "twin")
+_UNITS = {"deg": np.pi / 180.0, "rad": 1.0, "mm": 1e-3, "cm": 1e-2, "m": 1.0}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,14 +56,23 @@ class Hint:
     pivot: str | None = None
     """A point on the axis, world frame [m], written in the same way."""
     limits: str | None = None
-    """Lower and upper limit [rad or m], two numbers with a comma between them, along `axis` or else along the axis that
-    the joint had."""
+    """Lower and upper limit, ``LOWER..UPPER`` [rad or m], or with one of `_UNITS` behind them, along `axis` or else
+    along the axis that the joint had."""
+    parent: str | None = None
+    """Part that it hangs on."""
+    twin: str | None = None
+    """Part whose joint it has, carried over by the motion that lays that part upon this one."""
 
     @property
     def texts(self) -> tuple[str, ...]:
         """As it is typed."""
-        stated = (("", self.kind), (":axis", self.axis), (":pivot", self.pivot), (":limits", self.limits))
+        stated = (("", self.kind), *((f":{key}", getattr(self, _field(key))) for key in _KEYS))
         return tuple(f"{self.part}{key}={value}" for key, value in stated if value is not None)
+
+    @property
+    def about_joint(self) -> bool:
+        """Whether it states anything of the joint itself."""
+        return any(item is not None for item in (self.kind, self.axis, self.pivot, self.limits))
 
     @property
     def direction(self) -> FloatArray | None:
@@ -79,7 +94,7 @@ def parse_hints(texts: Sequence[str], parts: Sequence[str], *, base: str | None 
     """Read hints as they are typed; those on one part are taken together.
 
     Args:
-        texts: ``PART=TYPE``, ``PART:axis=AXIS``, ``PART:pivot=X,Y,Z`` and ``PART:limits=LOWER,UPPER``.
+        texts: As `_FORMS` has them.
         parts: Names that there are.
         base: Part that is said to be the base link, if any.
 
@@ -90,33 +105,46 @@ def parse_hints(texts: Sequence[str], parts: Sequence[str], *, base: str | None 
     for text in texts:
         hint = _parsed(text, parts)
         known = found.get(hint.part, Hint(part=hint.part))
-        for name in ("kind", "axis", "pivot", "limits"):
-            old, new = getattr(known, name), getattr(hint, name)
-            if old is not None and new is not None and old != new:
-                raise InputError(
-                    f"The hints contradict each other: the joint of {hint.part} cannot be both {old} and {new}. "
-                    "Keep one of them."
-                )
-        found[hint.part] = Hint(
-            part=hint.part,
-            kind=hint.kind or known.kind,
-            axis=hint.axis or known.axis,
-            pivot=hint.pivot or known.pivot,
-            limits=hint.limits or known.limits,
-        )
+        stated = {name: value for name in _FIELDS if (value := getattr(hint, name)) is not None}
+        for name, new in stated.items():
+            old = getattr(known, name)
+            if old is not None and old != new:
+                raise _contradiction(f"the joint of {hint.part} cannot be both {old} and {new}")
+        found[hint.part] = replace(known, **stated)
     for hint in found.values():
-        if hint.kind is JointType.FIXED and hint.axis is not None:
-            raise InputError(
-                f"The hints contradict each other: {hint.part} cannot be fixed and have an axis along {hint.axis}. "
-                "Keep one of them."
-            )
-        if hint.kind in (JointType.FIXED, JointType.CONTINUOUS) and hint.limits is not None:
-            raise InputError(
-                f"The hints contradict each other: {hint.part} cannot be {hint.kind} and have limits. Keep one of them."
-            )
+        _check(hint)
         if hint.part == base:
             raise _about_the_base(hint.part)
+    _check_circles(found, "parent", "hang on each other")
+    _check_circles(found, "twin", "are each the model of the other one")
     return tuple(found.values())
+
+
+def _check(hint: Hint) -> None:
+    """Refuse a hint that contradicts itself."""
+    if hint.kind is JointType.FIXED and hint.axis is not None:
+        raise _contradiction(f"{hint.part} cannot be fixed and have an axis along {hint.axis}")
+    if hint.kind in (JointType.FIXED, JointType.CONTINUOUS) and hint.limits is not None:
+        raise _contradiction(f"{hint.part} cannot be {hint.kind} and have limits")
+    for kinds, units in (((JointType.PRISMATIC,), ("deg", "rad")), ((JointType.REVOLUTE,), ("mm", "cm"))):
+        if hint.kind in kinds and hint.limits is not None and hint.limits.endswith(units):
+            raise _contradiction(f"{hint.part} cannot be {hint.kind} and have the range {hint.limits}")
+    if hint.twin is not None and hint.about_joint:
+        raise _contradiction(f"{hint.part} takes its joint from {hint.twin} and cannot have one of its own")
+
+
+def _check_circles(hints: Mapping[str, Hint], name: str, said: str) -> None:
+    """Refuse hints of which one leads to the next and back to the first."""
+    for start in hints:
+        chain = [start]
+        while chain[-1] in hints and (above := getattr(hints[chain[-1]], name)) is not None:
+            if above in chain:
+                raise _contradiction(f"{' and '.join(sorted(chain))} {said}")
+            chain.append(above)
+
+
+def _contradiction(reason: str) -> InputError:
+    return InputError(f"The hints contradict each other: {reason}. Keep one of them.")
 
 
 def _about_the_base(part: str) -> InputError:
@@ -128,34 +156,64 @@ def _about_the_base(part: str) -> InputError:
 
 def _parsed(text: str, parts: Sequence[str]) -> Hint:
     left, _, value = text.rpartition("=")
-    name, value = left.strip(), value.strip().lower()
-    for ending in (":axis", ":pivot", ":limits"):
-        name = name.removesuffix(ending)
+    if text.strip().endswith(":fixed"):
+        left, value = text.strip().removesuffix(":fixed"), "fixed"
+    name, value = left.strip(), value.strip()
+    key = next((key for key in _KEYS if name.endswith(f":{key}")), "")
+    name = name.removesuffix(f":{key}")
     if not name or not value:
         raise InputError(f"The hint {text!r} cannot be read. {_FORMS}")
+    _check_part(text, name, parts)
+    if key in ("parent", "twin"):
+        _check_part(text, value, parts)
+        if value == name:
+            raise InputError(f"The hint {text!r} names {name} twice: a part is neither its own parent nor its twin.")
+        return Hint(part=name, parent=value) if key == "parent" else Hint(part=name, twin=value)
+    value = value.lower()
+    if key == "pivot" and _vector(value) is None:
+        raise InputError(f"The hint {text!r} asks for the pivot {value!r}. Give three numbers [m]. {_FORMS}")
+    if key == "range":
+        ends = _ends(value)
+        if ends is None or not ends[0] <= 0.0 <= ends[1] or ends[0] == ends[1]:
+            raise InputError(
+                f"The hint {text!r} asks for the range {value!r}. Give two numbers [rad or m] with zero, which is the "
+                f"pose of the input, between them. {_FORMS}"
+            )
+    if key in ("", "axis"):
+        choices = list(AXES if key else TYPES)
+        numbers = _vector(value) if key else None
+        if value not in choices and (numbers is None or not numbers.any()):
+            raise InputError(f"The hint {text!r} asks for {value!r}. Choose one of {', '.join(choices)}. {_FORMS}")
+    if not key:
+        return Hint(part=name, kind=TYPES[value])
+    return Hint(
+        part=name,
+        axis=value if key == "axis" else None,
+        pivot=value if key == "pivot" else None,
+        limits=value if key == "range" else None,
+    )
+
+
+def _check_part(text: str, name: str, parts: Sequence[str]) -> None:
     if name not in parts:
         near = difflib.get_close_matches(name, parts, n=3, cutoff=0.6)
         meant = f"Did you mean {' or '.join(near)}?" if near else f"The parts are {', '.join(parts)}."
         raise InputError(f"The hint {text!r} names no part of the input. {meant}")
-    if left.endswith(":pivot"):
-        if _vector(value) is None:
-            raise InputError(f"The hint {text!r} asks for the pivot {value!r}. Give three numbers [m]. {_FORMS}")
-        return Hint(part=name, pivot=value)
-    if left.endswith(":limits"):
-        ends = _vector(value, 2)
-        if ends is None or not ends[0] <= 0.0 <= ends[1] or ends[0] == ends[1]:
-            raise InputError(
-                f"The hint {text!r} asks for the limits {value!r}. Give two numbers [rad or m] with zero, which is the "
-                f"pose of the input, between them. {_FORMS}"
-            )
-        return Hint(part=name, limits=value)
-    choices = list(AXES if left.endswith(":axis") else TYPES)
-    numbers = _vector(value) if left.endswith(":axis") else None
-    if value not in choices and (numbers is None or not numbers.any()):
-        raise InputError(f"The hint {text!r} asks for {value!r}. Choose one of {', '.join(choices)}. {_FORMS}")
-    if left.endswith(":axis"):
-        return Hint(part=name, axis=value)
-    return Hint(part=name, kind=TYPES[value])
+
+
+def _field(key: str) -> str:
+    """Name of the field of a hint that a key sets."""
+    return {"": "kind", "range": "limits"}.get(key, key)
+
+
+_FIELDS = ("kind", *map(_field, _KEYS))
+
+
+def _ends(text: str) -> FloatArray | None:
+    """Lower and upper limit [rad or m]; None if the text is anything else."""
+    unit = next((unit for unit in _UNITS if text.endswith(unit)), "")
+    found = _vector(text.removesuffix(unit).replace("..", ","), 2)
+    return None if found is None else found * _UNITS.get(unit, 1.0)
 
 
 def _vector(text: str, count: int = 3) -> FloatArray | None:
@@ -174,25 +232,64 @@ def with_hints(inference: Inference, hints: Sequence[Hint]) -> Inference:
         InputError: A hint is about the base link, which has no joint above it.
     """
     names = list(inference.assembly.names)
+    parents = {names.index(hint.part): names.index(hint.parent) for hint in hints if hint.parent is not None}
+    for child in parents:
+        if inference.trees[0].parents[child] < 0:
+            raise _about_the_base(names[child])
+    if parents:
+        inference = with_parents(inference, parents)
     maker = CandidateJoints(inference.assembly, inference.graph, inference.bearings, inference.config)
     joints, warnings = list(inference.joints), list(inference.warnings)
-    for hint in hints:
-        place = next((k for k, joint in enumerate(joints) if names[joint.child] == hint.part), None)
-        if place is None:
+    place = {names[joint.child]: k for k, joint in enumerate(joints)}
+    for hint in _models_first(hints):
+        if hint.part not in place:
             raise _about_the_base(hint.part)
-        before = joints[place]
-        joints[place] = _hinted(inference, maker, before, hint)
-        warnings += _objections(joints[place], hint, inference, before)
+        before = joints[place[hint.part]]
+        if hint.twin is not None:
+            if hint.twin not in place:
+                raise _about_the_base(hint.twin)
+            joints[place[hint.part]] = _as_twin(inference, joints[place[hint.twin]], before)
+        elif hint.about_joint:
+            joints[place[hint.part]] = _hinted(inference, maker, before, hint)
+            warnings += _objections(joints[place[hint.part]], hint, inference, before)
     spoken = {hint.part for hint in hints}
     earlier = tuple(text for text in inference.hints if text.partition("=")[0].partition(":")[0] not in spoken)
     texts = tuple(text for hint in hints for text in hint.texts)
     return replace(inference, joints=tuple(joints), warnings=tuple(warnings), hints=(*earlier, *texts))
 
 
+def _models_first(hints: Sequence[Hint]) -> list[Hint]:
+    """The hints in an order in which a part comes after the one whose joint it takes."""
+    twin_of = {hint.part: hint.twin for hint in hints if hint.twin is not None}
+
+    def steps(part: str) -> int:
+        return 1 + steps(twin_of[part]) if part in twin_of else 0
+
+    return sorted(hints, key=lambda hint: steps(hint.part))
+
+
+def _as_twin(inference: Inference, model: JointEstimate, joint: JointEstimate) -> JointEstimate:
+    """A joint as that of the part of which the user said that it is its twin."""
+    names = inference.assembly.names
+    carried = _twins(inference).carried(model, joint)
+    if carried is None:
+        raise InputError(
+            f"The hint {names[joint.child]}:twin={names[model.child]} cannot be followed: no motion or reflection "
+            f"lays {names[model.child]} and its contact with {names[model.parent]} upon {names[joint.child]} and its "
+            f"contact with {names[joint.parent]}. Give the joint of {names[joint.child]} by its type, axis and range."
+        )
+    return _certain(carried)
+
+
+def _twins(inference: Inference) -> TwinJoints:
+    config = inference.config
+    return TwinJoints(inference.assembly, inference.graph, config.bearing, seed=config.seed)
+
+
 def _hinted(inference: Inference, maker: CandidateJoints, joint: JointEstimate, hint: Hint) -> JointEstimate:
     """The joint that agrees with a hint; its confidence is that of the user."""
     if hint.kind is JointType.FIXED:
-        return _told(replace(joint, kind=JointType.FIXED, lower=0.0, upper=0.0))
+        return _certain(replace(joint, kind=JointType.FIXED, lower=0.0, upper=0.0))
     candidate = _best(joint, hint, _THROUGH * inference.assembly.diagonal)
     found = maker.realise(inference.trees[0], joint, candidate)
     if hint.kind is JointType.CONTINUOUS:
@@ -201,12 +298,12 @@ def _hinted(inference: Inference, maker: CandidateJoints, joint: JointEstimate, 
         found = replace(found, kind=JointType.REVOLUTE, lower=-np.pi, upper=np.pi)
     if hint.limits is not None:
         found = _limited(found, hint, joint)
-    return _told(found)
+    return _certain(found)
 
 
 def _limited(found: JointEstimate, hint: Hint, before: JointEstimate) -> JointEstimate:
     """The joint with the limits of a hint, which are along the axis that was named, or had before."""
-    ends = _vector(hint.limits or "", 2)
+    ends = _ends(hint.limits or "")
     assert ends is not None
     named = before.axis if hint.direction is None else hint.direction
     lower, upper = ends if float(found.axis @ named) >= 0.0 else -ends[::-1]
@@ -214,7 +311,7 @@ def _limited(found: JointEstimate, hint: Hint, before: JointEstimate) -> JointEs
     return replace(found, kind=kind, lower=float(lower), upper=float(upper))
 
 
-def _told(joint: JointEstimate) -> JointEstimate:
+def _certain(joint: JointEstimate) -> JointEstimate:
     return replace(joint, confidence=1.0, evidence={**joint.evidence, HINTED: 1.0})
 
 

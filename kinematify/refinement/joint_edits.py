@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from kinematify.refinement.urdf_editor import UrdfEditor
     from kinematify.robot.robot import Joint, Robot
     from kinematify.validation.finding import Finding
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.report import ValidationReport
 
 _LEAST_RANGE = 0.25
 """A limit that leaves less of the declared range is not written."""

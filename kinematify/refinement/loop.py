@@ -33,15 +33,15 @@ from kinematify.simulation.engines import DEFAULT_ENGINES, require_engine
 from kinematify.validation.check import FeedbackRow
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.failure_rates import GEOMETRY
-from kinematify.validation.feedback import feedback_from
 from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.run.feedback import feedback_from
 
 if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings
     from kinematify.pipeline.infer import Progress
     from kinematify.pipeline.inference import Inference
     from kinematify.refinement.simulate import MotionVerdict
-    from kinematify.validation.feedback import Feedback
+    from kinematify.validation.run.feedback import Feedback
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -189,7 +189,7 @@ class _Loop:
                     self.ended = f"the time was used up before {self.tier} could be simulated"
                 else:
                     self.ended = (
-                        "nothing was left to choose again" if done.feedback else "nothing failed that it can mend"
+                        "nothing was left to choose again" if done.feedback else "nothing failed that it can fix"
                     )
                 return
             if plan.signature in seen:

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.validation.check import Check
     from kinematify.validation.finding import Finding
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.report import ValidationReport
 
 _UNIT_SHARE = 1e-3  # of the largest part: a good unit for FCL, which takes short lengths for none
 

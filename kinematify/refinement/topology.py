@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.geometry.surface import PartSurface
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.validation.feedback import EdgeSignal
+    from kinematify.validation.run.feedback import EdgeSignal
 
 
 @dataclass(frozen=True, kw_only=True)

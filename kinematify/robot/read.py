@@ -351,7 +351,7 @@ def upright_reading(ignored: Robot, heeded: Robot) -> Robot:
     reading = UpAxis(heeded=closes, gap_ignored=apart[0], gap_heeded=apart[1])
     if not closes:
         return replace(ignored, up_axis=reading)
-    note = "The up axis that COLLADA meshes state is heeded, because the links meet only then."
+    note = "The up axis of the COLLADA meshes is applied, because the links meet only with it."
     return replace(heeded, notes=(*heeded.notes, note), up_axis=reading)
 
 

@@ -1,4 +1,4 @@
-"""Drake as an engine (extra ``drake``): discrete time steps with its implicit contact solver and implicit servos."""
+"""Drake (extra ``drake``): discrete time steps with its implicit contact solver and implicit servos; and raw files."""
 
 from __future__ import annotations
 
@@ -22,41 +22,37 @@ from pydrake.geometry import (
 )
 from pydrake.math import RigidTransform
 from pydrake.multibody.parsing import Parser
-from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, CoulombFriction
+from pydrake.multibody.plant import (
+    AddMultibodyPlant,
+    AddMultibodyPlantSceneGraph,
+    CoulombFriction,
+    MultibodyPlantConfig,
+)
 from pydrake.multibody.tree import PdControllerGains, PrismaticJoint, RevoluteJoint
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import deepest
-from kinematify.simulation.engine import (
-    FINER,
-    SLOW_SECONDS,
-    DriveRun,
-    Dropped,
-    FreeRun,
-    LoadedJoint,
-    LoadedModel,
-    Measured,
-    Refused,
-)
+from kinematify.simulation.engine import FINER, LoadedJoint, LoadedModel, Measured, Refused
+from kinematify.simulation.raw_model import NO_NUMBERS, MovesFreely, Reproductions, RunningFile, Unloadable
 from kinematify.simulation.servos import acting_pairs, commands
+from kinematify.simulation.stepped import count_steps, drive_run, drop_run, free_run
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.contacts import Contacts, Touching
+    from kinematify.simulation.engine import DriveRun, Dropped, FreeRun
     from kinematify.simulation.prepared import Prepared
     from kinematify.simulation.servos import Drive, Servos
 
 _RESERVED = ("world", "WorldBody")
 """Drake's names of the outside; links of these names are loaded under other ones."""
-_FREE_LOOKS = 24
-"""Times at which speeds and energies of a free run are measured."""
 _FRICTION = 0.5
 """Of the floor."""
 _SLAB, _MODULUS = 0.1, 1e7
@@ -65,15 +61,6 @@ _ABOVE = 1e-3
 """Height above the floor of what does not touch it [m], as far as one cares."""
 _CHATTER = ("half spaces",)
 """In warnings about our own floor."""
-
-
-def open_engine(settings: EngineSettings, log: Path) -> DrakeEngine:
-    """Return Drake, whose warnings are kept."""
-    del log
-    logger, said = logging.getLogger("drake"), _Said()
-    logger.addHandler(said)
-    logger.propagate = False
-    return DrakeEngine(settings=settings, said=said)
 
 
 class _Said(logging.Handler):
@@ -89,12 +76,20 @@ class _Said(logging.Handler):
             self.texts.append(text)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
 class DrakeEngine:
     """See `kinematify.simulation.engine.Engine`."""
 
-    settings: EngineSettings
-    said: _Said
+    def __init__(self, settings: EngineSettings, log: Path) -> None:
+        """Keep Drake's warnings."""
+        del log
+        self.settings, self.said, logger = settings, _Said(), logging.getLogger("drake")
+        logger.addHandler(self.said)
+        logger.propagate = False
+
+    @staticmethod
+    def load_raw(urdf: Path, root: str, package_dirs: Sequence[Path]) -> DrakeFile:
+        """Load a file as users do."""
+        return DrakeFile(urdf, root, package_dirs)
 
     def load(self, prepared: Prepared, mechanism: LeaderMechanism) -> DrakeModel:
         """Load a prepared file."""
@@ -194,6 +189,12 @@ class _World:
             if pair.id_A in link_of and pair.id_B in link_of:
                 depth = -query.ComputeSignedDistancePairClosestPoints(pair.id_A, pair.id_B).distance
                 yield link_of[pair.id_A], link_of[pair.id_B], float(depth)
+
+    def pressing(self) -> frozenset[tuple[int, int]]:
+        """Pairs of bodies that touch."""
+        body = self.mechanism.body_of_link
+        pairs = ((int(body[a]), int(body[b])) for a, b, _ in self.touching())
+        return frozenset((min(pair), max(pair)) for pair in pairs)
 
     def sunk(self) -> float:
         """How deep a link is in the floor [m]; where none touches it, a little above."""
@@ -434,32 +435,21 @@ class DrakeSimulation:
 
     def hold(self, efforts: FloatArray, seconds: float) -> FreeRun:
         """Hold the model by servos."""
-        steps = _steps(seconds, self.step)
+        count = count_steps(seconds, self.step)
         world = self.model.world(servos=self.servos, force=efforts)
-        return self._free(world, steps, told=np.repeat(self._held[None], steps, axis=0))
+        return self._free(world, count, told=np.repeat(self._held[None], count, axis=0))
 
     def release(self, seconds: float, *, fine: bool = False) -> FreeRun:
         """Let the model go."""
         finer = FINER if fine else 1
-        return self._free(self.model.world(ideal=True, finer=finer), finer * _steps(seconds, self.step), finer=finer)
+        return self._free(
+            self.model.world(ideal=True, finer=finer), finer * count_steps(seconds, self.step), every=finer
+        )
 
-    def _free(self, world: _World, steps: int, *, told: FloatArray | None = None, finer: int = 1) -> FreeRun:
-        leaders = [world.mechanism.joints.index(travel.joint) for travel in world.mechanism.travels]
+    def _free(self, world: _World, count: int, *, told: FloatArray | None = None, every: int = 1) -> FreeRun:
         world.act(self.model.ignored_pairs, on=False)
         world.place(self.model.values_at_rest)
-        looks = set(np.linspace(0, steps - 1, _FREE_LOOKS).astype(int).tolist())
-        values, energies, fastest = [], [world.energy()], 0.0
-        for number in world.steps(steps, self.step / finer, told):
-            values.append(world.values()[leaders])
-            if number in looks:
-                energies.append(world.energy())
-                fastest = max(fastest, world.fastest())
-        return FreeRun(
-            q=np.array(values).reshape(-1, len(leaders))[finer - 1 :: finer],
-            energy=np.array(energies),
-            fastest=fastest,
-            warnings=tuple(world.failure),
-        )
+        return free_run(world, world.steps(count, self.step / every, told), count, every=every)
 
     @cached_property
     def _drive_world(self) -> _World:
@@ -482,26 +472,10 @@ class DrakeSimulation:
         world.failure.clear()
         told = commands(drive, mechanism, self.servos, samples)
         exerted = world.plant.get_net_actuation_output_port(world.instance)
-        looks = set(drive.looks.tolist())
-        values, forces, fastest = [], [], 0.0
-        pressed: frozenset[tuple[int, int]] = frozenset()
-        for number in world.steps(len(told), self.step, told):
-            values.append(world.values())
-            forces.append(float(exerted.Eval(world.plant_context)[drive.leader]))
-            if number in looks:
-                fastest = max(fastest, world.fastest())
-            if number == drive.arrived - 1:
-                body = mechanism.body_of_link
-                touching = [(int(body[a]), int(body[b])) for a, b, _ in world.touching()]
-                pressed = frozenset((min(pair), max(pair)) for pair in touching)
+        steps = world.steps(len(told), self.step, told)
+        run = drive_run(world, steps, drive, lambda: float(exerted.Eval(world.plant_context)[drive.leader]))
         world.act(pairs, on=False)
-        return DriveRun(
-            q=np.array(values).reshape(-1, len(mechanism.joints)),
-            force=np.array(forces),
-            pressed=pressed,
-            fastest=fastest,
-            warnings=tuple(world.failure),
-        )
+        return run
 
     def drop(self) -> Dropped:
         """Let the model fall on a floor."""
@@ -511,19 +485,9 @@ class DrakeSimulation:
         world = self.model.world(servos=self.servos, floor=height)
         world.act(self.model.ignored_pairs, on=False)
         world.place(self.model.values_at_rest)
-        steps, window = _steps(settings.drop_seconds, self.step), _steps(SLOW_SECONDS, self.step)
-        early = late = world.poses()
-        for number in world.steps(steps, self.step, np.repeat(self._held[None], steps, axis=0)):
-            if number == steps - 1 - window:
-                early = world.poses()
-        late = world.poses()
-        if world.failure:
-            return Dropped(depth=np.inf, speed=np.inf, warnings=tuple(world.failure))
-        return Dropped(
-            depth=world.sunk(),
-            speed=float(np.linalg.norm((late - early)[:, :3, 3], axis=1).max()) / (window * self.step),
-            warnings=(),
-        )
+        count = count_steps(settings.drop_seconds, self.step)
+        run = world.steps(count, self.step, np.repeat(self._held[None], count, axis=0))
+        return drop_run(world, run, count, self.step, places=lambda: world.poses()[:, :3, 3], depth=world.sunk)
 
 
 def _lay_floor(plant: Any, scene: Any, height: float) -> None:
@@ -554,5 +518,225 @@ def _corners(world: _World) -> FloatArray:
     return np.concatenate(corners) if corners else np.zeros((0, 3))
 
 
-def _steps(seconds: float, step: float) -> int:
-    return max(2, round(seconds / step))
+_LOAD = """import numpy as np; from pydrake.all import *
+builder = DiagramBuilder(); plant, scene = AddMultibodyPlant(MultibodyPlantConfig(), builder); \
+parser = Parser(plant); [parser.package_map().PopulateFromFolder(folder) for folder in {folders}]
+parser.AddModels({path!r}); plant.WeldFrames(plant.world_frame(), plant.GetFrameByName({root!r})); \
+plant.mutable_gravity_field().set_gravity_vector({gravity}); plant.Finalize(); diagram = builder.Build()
+context = diagram.CreateDefaultContext(); state = plant.GetMyContextFromRoot(context); \
+simulator = Simulator(diagram, context); rest = np.array({values}); plant.SetPositions(state, rest)
+"""
+_NO_CONTACTS = """bodies = [plant.get_body(k) for k in plant.GetBodyIndices(ModelInstanceIndex(2))]; \
+scene.collision_filter_manager(scene.GetMyContextFromRoot(context)).Apply(CollisionFilterDeclaration().ExcludeWithin(\
+GeometrySet([shape for body in bodies for shape in plant.GetCollisionGeometriesForBody(body)])))
+"""
+_JOINTS = (
+    _LOAD
+    + """joints = [plant.get_joint(k) for k in plant.GetJointIndices()]
+for joint in joints: joint.num_velocities() == 1 and print(joint.name(), *joint.position_lower_limits(), \
+*joint.position_upper_limits())
+"""
+)
+_OVERLAP = (
+    _LOAD
+    + """query = scene.get_query_output_port().Eval(scene.GetMyContextFromRoot(context)); \
+name = lambda shape: plant.GetBodyFromFrameId(query.inspector().GetFrameId(shape)).name()
+pairs = [pair for pair in query.ComputePointPairPenetration() if {{name(pair.id_A), name(pair.id_B)}} == {links}]
+print(np.max([-query.ComputeSignedDistancePairClosestPoints(pair.id_A, pair.id_B).distance for pair in pairs]))
+"""
+)
+_REST = (
+    _LOAD
+    + """seen = [simulator.AdvanceTo((k + 1) * {step!r}) and plant.GetPositions(state)[{joint}] for k in range({steps})]
+print(np.min(seen), np.max(seen))
+"""
+)
+_PUSH = (
+    _LOAD
+    + """{off}port = plant.get_applied_generalized_force_input_port(); push = 0.0; seen = [rest[{joint}]]
+moved, ratios, weights, tau = {moved}, np.array({ratios}), np.array({weights}), np.zeros(plant.num_velocities())
+for k in range({steps}): slow = {speed!r} - plant.GetVelocities(state)[{joint}]; \
+push = np.clip(push + {integral!r} * slow, -{force!r}, {force!r}); \
+tau[{joint}] = np.clip({proportional!r} * slow + push, -{force!r}, {force!r}); \
+port.FixValue(state, tau); simulator.AdvanceTo((k + 1) * {step!r}); \
+q, v = rest.copy(), np.zeros_like(rest); q[moved] += ratios * (weights @ (plant.GetPositions(state) - rest)[moved]); \
+v[moved] = ratios * (weights @ plant.GetVelocities(state)[moved]); \
+plant.SetPositionsAndVelocities(state, np.r_[q, v]); seen.append(q[{joint}])
+print(np.{farthest}(seen))
+"""
+)
+_RELEASE = (
+    _LOAD
+    + _NO_CONTACTS
+    + """plant.SetVelocities(state, {speeds})
+energy = lambda: plant.CalcPotentialEnergy(state) + plant.CalcKineticEnergy(state)
+seen = [energy()] + [simulator.AdvanceTo(k * {step!r}) and energy() for k in range({looks}, {steps} + 1, {looks})]
+print(np.max(seen) - seen[0])
+"""
+)
+_EARTH, _NOWHERE = (0.0, 0.0, -9.81), (0.0, 0.0, 0.0)
+
+
+class DrakeFile(RunningFile):
+    """See `RunningFile`: a file as `Parser` adds it to a plant with the default time step, its first link welded."""
+
+    look_steps = 10
+    code = Reproductions(
+        joints=_JOINTS,
+        overlap=_OVERLAP,
+        rest=_REST,
+        push=_PUSH.replace("{gravity}", f"{_NOWHERE}").replace("{off}", ""),
+        push_alone=_PUSH.replace("{gravity}", f"{_NOWHERE}").replace("{off}", _NO_CONTACTS),
+        release=_RELEASE.replace("{looks}", "10"),
+    )
+
+    def __init__(self, urdf: Path, root: str, package_dirs: Sequence[Path]) -> None:
+        """Load it.
+
+        Raises:
+            Unloadable: Drake does not open it.
+            MovesFreely: It moves a link in other ways than by turning or sliding.
+        """
+        self._path, self._root, self._folders = urdf, root, [str(folder) for folder in package_dirs]
+        self.time_step = float(MultibodyPlantConfig().time_step)
+        self._file = {
+            "path": str(urdf), "root": root, "folders": self._folders, "gravity": _EARTH, "step": self.time_step,
+        }  # fmt: skip
+        self._worlds: dict[tuple[bool, bool], _RawWorld] = {}
+        plant = self._world(contacts=True).plant
+        moving = [plant.get_joint(index) for index in plant.GetJointIndices()]
+        moving = sorted((joint for joint in moving if joint.num_velocities()), key=lambda joint: joint.position_start())
+        self.joints = tuple(joint.name() for joint in moving)
+        if not all(isinstance(joint, RevoluteJoint | PrismaticJoint) for joint in moving):
+            raise MovesFreely(self.lines_of_joints())
+        self.limits = {
+            joint.name(): (float(joint.position_lower_limits()[0]), float(joint.position_upper_limits()[0]))
+            for joint in moving
+        }
+
+    def _world(self, *, contacts: bool, gravity: bool = True) -> _RawWorld:
+        known = self._worlds.get((contacts, gravity))
+        if known is None:
+            known = _loaded(self._path, self._root, self._folders, contacts=contacts, gravity=gravity)
+            self._worlds[contacts, gravity] = known
+        return known
+
+    def begin(
+        self,
+        values: Mapping[str, float],
+        speeds: Mapping[str, float] | None = None,
+        *,
+        contacts: bool,
+        gravity: bool = True,
+        released: Sequence[int] | None = None,
+    ) -> None:
+        """See `RunningFile`; joints have no motors."""
+        del released
+        self._now, rest = self._world(contacts=contacts, gravity=gravity), self.row(values)
+        self.set_state(rest, np.zeros_like(rest) if speeds is None else self.row(speeds))
+        self.apply(0, 0.0)
+
+    def steps(self, count: int, every: int = 1) -> Iterator[int]:
+        """See `RunningFile`."""
+        return self._now.steps(count, self.time_step, every)
+
+    @property
+    def complaint(self) -> str | None:
+        """Why the last run ended early."""
+        return self._now.complaint
+
+    def state(self) -> tuple[FloatArray, FloatArray]:
+        """See `RunningFile`."""
+        plant, state = self._now.plant, self._now.state
+        return np.array(plant.GetPositions(state)), np.array(plant.GetVelocities(state))
+
+    def set_state(self, q: FloatArray, v: FloatArray) -> None:
+        """See `RunningFile`."""
+        self._now.plant.SetPositionsAndVelocities(self._now.state, np.concatenate([q, v]))
+
+    def apply(self, joint: int, force: float) -> None:
+        """See `RunningFile`."""
+        forces = np.zeros(len(self.joints))
+        forces[joint : joint + 1] = force
+        self._now.plant.get_applied_generalized_force_input_port().FixValue(self._now.state, forces)
+
+    def energy(self) -> tuple[float, float]:
+        """See `RunningFile`."""
+        plant, state = self._now.plant, self._now.state
+        return float(plant.CalcPotentialEnergy(state)), float(plant.CalcKineticEnergy(state))
+
+    def touching(self) -> Iterator[tuple[str, str, float]]:
+        """See `RunningFile`; of shapes that may touch; the signed distance of a pair is its depth."""
+        world = self._now
+        query = world.scene.get_query_output_port().Eval(world.scene.GetMyContextFromRoot(world.context))
+        for pair in query.ComputePointPairPenetration():
+            first, second = sorted((world.link_of[pair.id_A], world.link_of[pair.id_B]))
+            depth = -float(query.ComputeSignedDistancePairClosestPoints(pair.id_A, pair.id_B).distance)
+            yield first, second, depth
+
+    def inertias(self, values: Mapping[str, float]) -> FloatArray:
+        """See `RunningFile`."""
+        self.begin(values, contacts=True)
+        return np.asarray(1.0 / np.diagonal(np.linalg.inv(self._now.plant.CalcMassMatrix(self._now.state))))
+
+    def _links_in_code(self, links: tuple[str, str]) -> object:
+        return set(links)
+
+
+@dataclass(kw_only=True, eq=False)
+class _RawWorld:
+    """A diagram with one file in it, and a context."""
+
+    diagram: Any
+    plant: Any
+    scene: Any
+    context: Any
+    link_of: Mapping[Any, str]
+    """Of each collision shape."""
+    complaint: str | None = None
+    """Why the last run ended early."""
+
+    @property
+    def state(self) -> Any:
+        """The plant's part of the context."""
+        return self.plant.GetMyContextFromRoot(self.context)
+
+    def steps(self, count: int, step: float, looks: int = 1) -> Iterator[int]:
+        """Simulate, yielding the number of steps done after every few; ends early where Drake gives up."""
+        self.complaint = None
+        self.context.SetTime(0.0)
+        simulator = Simulator(self.diagram, self.context)
+        try:
+            simulator.Initialize()
+            for done in range(looks, count + 1, looks):
+                simulator.AdvanceTo(done * step)
+                if not np.isfinite(self.plant.GetPositionsAndVelocities(self.state)).all():
+                    self.complaint = NO_NUMBERS
+                    return
+                yield done
+        except RuntimeError as error:
+            self.complaint = " ".join(str(error).split())[:200]
+
+
+def _loaded(urdf: Path, root: str, folders: Sequence[str], *, contacts: bool, gravity: bool) -> _RawWorld:
+    builder = DiagramBuilder()
+    plant, scene = AddMultibodyPlant(MultibodyPlantConfig(), builder)
+    parser = Parser(plant)
+    for folder in folders:
+        parser.package_map().PopulateFromFolder(folder)
+    try:
+        (model,) = parser.AddModels(str(urdf))
+        plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(root))
+        plant.mutable_gravity_field().set_gravity_vector(_EARTH if gravity else _NOWHERE)
+        plant.Finalize()
+        diagram = builder.Build()
+    except RuntimeError as error:
+        lines = _LOAD.partition("context =")[0].format(path=str(urdf), root=root, folders=folders, gravity=_EARTH)
+        raise Unloadable(str(error), lines) from error
+    bodies = [plant.get_body(index) for index in plant.GetBodyIndices(model)]
+    link_of = {shape: body.name() for body in bodies for shape in plant.GetCollisionGeometriesForBody(body)}
+    context = diagram.CreateDefaultContext()
+    if not contacts:
+        off = CollisionFilterDeclaration().ExcludeWithin(GeometrySet(list(link_of)))
+        scene.collision_filter_manager(scene.GetMyContextFromRoot(context)).Apply(off)
+    return _RawWorld(diagram=diagram, plant=plant, scene=scene, context=context, link_of=link_of)

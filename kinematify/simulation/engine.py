@@ -1,10 +1,11 @@
 """What Kinematify asks of a physics engine.
 
 An engine loads the prepared copy of a model (`Engine.load`), looks at configurations of it (`EngineModel`), and runs it
-in time (`Simulation`). One that only computes, as Pinocchio does, sees no contacts and never runs. All numbers are in
-the order of the document: links as in `LeaderMechanism.links`, joints as in `LeaderMechanism.joints`.
+in time (`Simulation`). It also loads a file as users do (`Engine.load_raw`, see `raw_model`). An engine that only
+computes, as Pinocchio does, sees no contacts and never runs. All numbers of a prepared model are in the order of the
+document: links as in `LeaderMechanism.links`, joints as in `LeaderMechanism.joints`.
 
-A new engine is one file: the three classes, and an entry in `kinematify.simulation.engines`.
+A new engine is one file ``NAME_engine.py`` with the class ``NameEngine``, and its entry in `engines`.
 """
 
 from __future__ import annotations
@@ -14,11 +15,14 @@ from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from pathlib import Path
 
+    from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.contacts import Contacts, Touching
     from kinematify.simulation.prepared import Prepared
+    from kinematify.simulation.raw_model import RawEngineModel
     from kinematify.simulation.servos import Drive, Servos
 
 FINER = 4
@@ -116,6 +120,27 @@ class Dropped:
 
 class Engine(Protocol):
     """An engine in this process."""
+
+    def __init__(self, settings: EngineSettings, log: Path) -> None:
+        """Open it.
+
+        Args:
+            settings: Time step, servos and how long it runs.
+            log: File that this process prints into, where an engine speaks by printing.
+        """
+
+    @staticmethod
+    def load_raw(urdf: Path, root: str, package_dirs: Sequence[Path]) -> RawEngineModel:
+        """Load a file untouched, with the engine's defaults; what runs gives a `RunningFile`.
+
+        Args:
+            urdf: The file.
+            root: Name of its first link.
+            package_dirs: Where packages lie, for engines that look for them.
+
+        Raises:
+            Unloadable: The engine does not open it.
+        """
 
     def load(self, prepared: Prepared, mechanism: LeaderMechanism) -> EngineModel:
         """Load a prepared file, its root fixed at the world's origin, gravity along -z.

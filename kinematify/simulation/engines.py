@@ -12,7 +12,6 @@ from kinematify.versions import package_versions
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
-    from types import ModuleType
 
     from kinematify.config.validation import EngineSettings
     from kinematify.simulation.engine import Engine
@@ -24,8 +23,7 @@ class EngineEntry:
     """What is known of an engine without loading it."""
 
     name: str
-    """As users write it; ``kinematify.simulation.NAME_engine`` holds a function ``open_engine(settings, log)``, and
-    ``NAME_file`` a class of `kinematify.simulation.raw_model.RawEngineModel`, `RunningFile` if it runs."""
+    """As users write it; ``kinematify.simulation.NAME_engine`` holds the class ``NameEngine``, an `Engine`."""
     title: str
     """As it is written in messages."""
     package: str
@@ -33,9 +31,11 @@ class EngineEntry:
     extra: str | None = None
     """Extra of Kinematify that installs it; None: every installation has it."""
     family: str
-    """First characters of the ids of its checks."""
+    """First characters of the ids of its checks of the prepared model."""
     runs: bool = True
     """False: it only computes; it sees no contacts and never runs."""
+    prepared: bool = True
+    """False: it loads raw files only, and has no checks but KV8xx."""
     most_joints: int | None = None
     """Larger models are not given to it."""
     inflation: float = 0.0
@@ -46,16 +46,20 @@ class EngineEntry:
     """True: a joint is stopped one step after it has passed its limit, and left where it stands then."""
     contact_flag: str | None = None
     """Of its loader: without it links of one file pass through each other; None: they collide by default."""
+    holds: tuple[str, ...] = ()
+    """What may connect a hand with a part (values of `kinematify.manipulation.request.Hold`) where plans are executed
+    in it, by ``manipulation/execute_NAME.py``; there environments run too, by ``envs/NAME_worlds.py``."""
     prints_when_loaded: bool = False
     """True: it may be loaded only where what is printed goes to a file."""
 
-    def module(self, what: str) -> str:
-        """Name of its module for an ``engine`` or a ``file``."""
-        return f"kinematify.simulation.{self.name}_{what}"
+    @property
+    def module(self) -> str:
+        """Name of its module."""
+        return f"kinematify.simulation.{self.name}_engine"
 
 
 _ENTRIES = (
-    EngineEntry(name="mujoco", title="MuJoCo", package="mujoco", family="KV4"),
+    EngineEntry(name="mujoco", title="MuJoCo", package="mujoco", family="KV4", holds=("weld", "contact")),
     EngineEntry(
         name="pybullet",
         title="PyBullet",
@@ -66,15 +70,22 @@ _ENTRIES = (
         keeps_energy=False,
         stops_late=True,
         contact_flag="URDF_USE_SELF_COLLISION",
+        holds=("weld",),  # its hulls slip out of fingers that hold by friction
         prints_when_loaded=True,
     ),
     EngineEntry(name="drake", title="Drake", package="drake", extra="drake", family="KV9"),
     EngineEntry(name="pinocchio", title="Pinocchio", package="pin", family="KV6", runs=False),
+    EngineEntry(name="newton", title="Newton", package="newton", extra="newton", family="", prepared=False),
 )
 ENGINES = {entry.name: entry for entry in _ENTRIES}
 """Keyed by name."""
 DEFAULT_ENGINES = tuple(name for name, engine in ENGINES.items() if engine.extra is None)
 """Engines that every installation has; FCL and the exact geometry are always there."""
+
+
+def engines_that_hold(hold: str) -> tuple[str, ...]:
+    """Names of the engines that execute plans with a hand that holds so (`EngineEntry.holds`)."""
+    return tuple(name for name, engine in ENGINES.items() if hold in engine.holds)
 
 
 def require_engine(name: str) -> None:
@@ -104,7 +115,7 @@ def open_engine(name: str, settings: EngineSettings, log: Path) -> Engine:
     Raises:
         EnvironmentFault: It is not installed.
     """
-    return cast("Engine", _module(name, "engine").open_engine(settings, log))
+    return _class_of(name)(settings, log)
 
 
 def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> RawEngineModel:
@@ -120,13 +131,13 @@ def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = (
         EnvironmentFault: The engine is not installed.
         Unloadable: The engine does not open the file.
     """
-    opened = getattr(_module(name, "file"), f"{name.capitalize()}File")
-    return cast("RawEngineModel", opened(urdf, root, package_dirs))
+    return _class_of(name).load_raw(urdf, root, package_dirs)
 
 
-def _module(name: str, what: str) -> ModuleType:
-    """A module of an engine; its library is imported here, one in a process."""
+def _class_of(name: str) -> type[Engine]:
+    """The class of an engine; its library is imported here, one in a process."""
     try:
-        return importlib.import_module(ENGINES[name].module(what))
+        module = importlib.import_module(ENGINES[name].module)
     except ImportError as error:
         raise EnvironmentFault(_missing(ENGINES[name], str(error))) from error
+    return cast("type[Engine]", getattr(module, f"{name.capitalize()}Engine"))

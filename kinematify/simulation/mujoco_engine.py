@@ -1,4 +1,4 @@
-"""MuJoCo as an engine: several runs at a time, one per thread."""
+"""MuJoCo: prepared models in several runs at a time, one per thread, and raw files."""
 
 from __future__ import annotations
 
@@ -35,10 +35,12 @@ from kinematify.simulation.mujoco_model import (
     with_floor,
     with_servos,
 )
+from kinematify.simulation.raw_model import MovesFreely, Reproductions, RunningFile, Unloadable
 from kinematify.simulation.servos import commands
+from kinematify.simulation.stepped import count_steps
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from kinematify.config.validation import EngineSettings
@@ -54,23 +56,21 @@ _NUMBERS = 20_000_000
 _TIME = re.compile(r" Time = ")
 
 
-def open_engine(settings: EngineSettings, log: Path) -> MujocoEngine:
-    """Return MuJoCo; its messages are kept, else they go into a file in the working directory."""
-    del log
-    said: list[str] = []
-    mujoco.set_mju_user_warning(said.append)
-    return MujocoEngine(settings=settings, threads=len(os.sched_getaffinity(0)), said=said)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class MujocoEngine:
     """See `kinematify.simulation.engine.Engine`."""
 
-    settings: EngineSettings
-    threads: int
-    """At most; MuJoCo computes outside of Python's lock."""
-    said: list[str]
-    """Added to at any time."""
+    def __init__(self, settings: EngineSettings, log: Path) -> None:
+        """Keep MuJoCo's messages, which else go into a file in the working directory."""
+        del log
+        self.settings, self.threads = settings, len(os.sched_getaffinity(0))  # it computes outside of Python's lock
+        self.said: list[str] = []
+        mujoco.set_mju_user_warning(self.said.append)
+
+    @staticmethod
+    def load_raw(urdf: Path, root: str, package_dirs: Sequence[Path]) -> MujocoFile:
+        """Load a file as users do; MuJoCo knows no packages."""
+        del package_dirs
+        return MujocoFile(urdf, root)
 
     def load(self, prepared: Prepared, mechanism: LeaderMechanism) -> MujocoModel:
         """Load a prepared file."""
@@ -193,13 +193,13 @@ class MujocoSimulation:
     def hold(self, efforts: FloatArray, seconds: float) -> FreeRun:
         """Hold the model by servos, which make up for its weight."""
         model = limited_servos(self._everything.model, efforts)
-        steps = _steps(seconds, self.step)
+        steps = count_steps(seconds, self.step)
         return self._free(model, np.repeat(self._held[None], steps, axis=0))
 
     def release(self, seconds: float, *, fine: bool = False) -> FreeRun:
         """Let the model go."""
         free = released(self._everything.model)
-        steps = _steps(seconds, self.step)
+        steps = count_steps(seconds, self.step)
         if not fine:
             return self._free(free, np.zeros((steps, free.nu)))
         free.opt.timestep /= FINER
@@ -260,9 +260,9 @@ class MujocoSimulation:
         lowest = _lowest_point(measuring.model, _data_of(measuring, _start_state(measuring, self._values_at_rest)))
         allowed = with_allowances(self._servoed, measuring, self.sweep, only=False)
         loaded = self._compiled(with_floor(allowed, height=lowest - settings.drop, tolerance=self.sweep.tolerance))
-        control = np.repeat(self._held[None, None], _steps(settings.drop_seconds, self.step), axis=1)
+        control = np.repeat(self._held[None, None], count_steps(settings.drop_seconds, self.step), axis=1)
         (run,) = _run(loaded, [loaded.model], _start_state(loaded, self._values_at_rest), control, threads=1)
-        window = _steps(SLOW_SECONDS, self.step)
+        window = count_steps(SLOW_SECONDS, self.step)
         early, late = (_data_of(loaded, state) for state in (run.state[-1 - window], run.state[-1]))
         moved = np.linalg.norm(late.xpos[loaded.body] - early.xpos[loaded.body], axis=1)
         return Dropped(
@@ -371,10 +371,6 @@ def _around_fastest(run: _Run, inertia: FloatArray) -> FloatArray:
     return run.q[step - 1 : step + 1]
 
 
-def _steps(seconds: float, step: float) -> int:
-    return max(2, round(seconds / step))
-
-
 def _data_of(loaded: CompiledModel, state: FloatArray) -> mujoco.MjData:
     data = mujoco.MjData(loaded.model)
     mujoco.mj_setState(loaded.model, data, state, _STATE)
@@ -402,3 +398,157 @@ def _corners(model: mujoco.MjModel, geom: int) -> FloatArray:
     signs = np.array(np.meshgrid([-1.0, 1.0], [-1.0, 1.0], [-1.0, 1.0])).reshape(3, -1).T
     corners: FloatArray = model.geom_aabb[geom, :3] + signs * model.geom_aabb[geom, 3:]
     return corners
+
+
+_OPEN = """import mujoco, numpy as np
+model = mujoco.MjModel.from_xml_path({path!r})
+"""
+_JOINTS = (
+    _OPEN
+    + """for k in range(model.njnt): ends = model.jnt_range[k] if model.jnt_limited[k] else (-np.inf, np.inf); \
+print(model.joint(k).name, *ends)
+"""
+)
+_LOAD = """import mujoco, numpy as np
+model = mujoco.MjModel.from_xml_path({path!r}); data = mujoco.MjData(model)
+data.qpos[:] = {values}; mujoco.mj_forward(model, data); rest = data.qpos.copy(); push = 0.0
+"""
+_NO_CONTACTS = "model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT\n"
+_OVERLAP = (
+    _LOAD
+    + """name = lambda geom: model.body(model.geom_bodyid[geom]).name
+print(max(-contact.dist for contact in data.contact if {{name(geom) for geom in contact.geom}} == set({links})))
+"""
+)
+_REST = (
+    _LOAD
+    + """seen = [data.qpos[{joint}] for _ in range({steps}) if mujoco.mj_step(model, data) is None]
+print(min(seen), max(seen))
+"""
+)
+_PUSH = (
+    _LOAD
+    + """{off}model.opt.gravity[:] = 0.0; seen = [rest[{joint}]]
+moved, ratios, weights = {moved}, np.array({ratios}), np.array({weights})
+for _ in range({steps}): slow = {speed!r} - data.qvel[{joint}]; \
+push = np.clip(push + {integral!r} * slow, -{force!r}, {force!r}); \
+data.qfrc_applied[{joint}] = np.clip({proportional!r} * slow + push, -{force!r}, {force!r}); \
+mujoco.mj_step(model, data); \
+way, speed = weights @ (data.qpos - rest)[moved], weights @ data.qvel[moved]; \
+data.qpos[:] = rest; data.qvel[:] = 0.0; data.qpos[moved] += ratios * way; data.qvel[moved] = ratios * speed; \
+seen.append(data.qpos[{joint}])
+print({farthest}(seen))
+"""
+)
+_RELEASE = (
+    _LOAD
+    + _NO_CONTACTS
+    + """model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY; data.qvel[:] = {speeds}
+seen = [sum(data.energy) for _ in range({steps}) if mujoco.mj_step(model, data) is None]
+print(max(seen) - seen[0])
+"""
+)
+
+
+class MujocoFile(RunningFile):
+    """See `RunningFile`: a file as `MjModel.from_xml_path` loads it."""
+
+    code = Reproductions(
+        joints=_JOINTS,
+        overlap=_OVERLAP,
+        rest=_REST,
+        push=_PUSH.replace("{off}", ""),
+        push_alone=_PUSH.replace("{off}", _NO_CONTACTS),
+        release=_RELEASE,
+    )
+
+    def __init__(self, urdf: Path, root: str) -> None:
+        """Load it.
+
+        Raises:
+            Unloadable: MuJoCo does not open it.
+            MovesFreely: It moves a link in other ways than by turning or sliding.
+        """
+        self._file, self._root = {"path": str(urdf)}, root
+        try:
+            self._model = mujoco.MjModel.from_xml_path(str(urdf))
+        except ValueError as error:
+            raise Unloadable(str(error), _OPEN.format(path=str(urdf))) from error
+        if self._model.nq != self._model.nv or self._model.nv != self._model.njnt:
+            raise MovesFreely(_OPEN.format(path=str(urdf)) + "print(model.jnt_type)\n")
+        self._data, option = mujoco.MjData(self._model), self._model.opt
+        self._flags, self._gravity = option.disableflags, option.gravity.copy()
+        option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+        self.joints = tuple(self._model.joint(k).name for k in range(self._model.njnt))
+        ranges = zip(self.joints, self._model.jnt_limited, self._model.jnt_range.tolist(), strict=True)
+        self.limits = {name: tuple(ends) if limited else (-np.inf, np.inf) for name, limited, ends in ranges}
+        self.time_step = float(option.timestep)
+
+    def begin(
+        self,
+        values: Mapping[str, float],
+        speeds: Mapping[str, float] | None = None,
+        *,
+        contacts: bool,
+        gravity: bool = True,
+        released: Sequence[int] | None = None,
+    ) -> None:
+        """See `RunningFile`; joints have no motors."""
+        del released
+        model, data, option = self._model, self._data, self._model.opt
+        option.disableflags, option.gravity[:] = self._flags, self._gravity
+        mujoco.mj_resetData(model, data)
+        data.qpos[:] = self.row(values)
+        mujoco.mj_forward(model, data)
+        if speeds is not None:
+            data.qvel[:] = self.row(speeds)
+            mujoco.mj_energyVel(model, data)
+        option.disableflags |= 0 if contacts else int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        option.gravity[:] *= gravity
+
+    def steps(self, count: int, every: int = 1) -> Iterator[int]:
+        """See `RunningFile`."""
+        for done in range(every, count + 1, every):
+            mujoco.mj_step(self._model, self._data, nstep=every)
+            yield done
+
+    def state(self) -> tuple[FloatArray, FloatArray]:
+        """See `RunningFile`."""
+        return self._data.qpos.copy(), self._data.qvel.copy()
+
+    def set_state(self, q: FloatArray, v: FloatArray) -> None:
+        """See `RunningFile`."""
+        self._data.qpos[:], self._data.qvel[:] = q, v
+
+    def apply(self, joint: int, force: float) -> None:
+        """See `RunningFile`."""
+        self._data.qfrc_applied[joint] = force
+
+    def energy(self) -> tuple[float, float]:
+        """See `RunningFile`; of the state before the last step."""
+        return float(self._data.energy[0]), float(self._data.energy[1])
+
+    def touching(self) -> Iterator[tuple[str, str, float]]:
+        """See `RunningFile`."""
+        mujoco.mj_forward(self._model, self._data)
+        for contact in self._data.contact:
+            bodies = sorted(int(self._model.geom_bodyid[geom]) for geom in contact.geom)
+            first, second = (self._model.body(body).name if body else self._root for body in bodies)
+            yield first, second, -float(contact.dist)
+
+    @property
+    def complaint(self) -> str | None:
+        """Warnings of numbers that are none."""
+        bad = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
+        broken = [item.name.removeprefix("mjWARN_") for item in bad if self._data.warning[item].number]
+        return f"MuJoCo warns {', '.join(broken)}" if broken else None
+
+    def inertias(self, values: Mapping[str, float]) -> FloatArray:
+        """See `RunningFile`."""
+        self.begin(values, contacts=True)
+        inverse = np.zeros((self._model.nv, self._model.nv))
+        mujoco.mj_solveM(self._model, self._data, inverse, np.eye(self._model.nv))
+        return np.asarray(1.0 / np.diagonal(inverse))
+
+    def _links_in_code(self, links: tuple[str, str]) -> object:
+        return sorted({"world" if name == self._root else name for name in links})

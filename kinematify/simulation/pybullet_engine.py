@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -13,54 +13,45 @@ from scipy.spatial.transform import Rotation
 
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import Contacts
-from kinematify.simulation.engine import (
-    FINER,
-    SLOW_SECONDS,
-    DriveRun,
-    Dropped,
-    FreeRun,
-    LoadedJoint,
-    LoadedModel,
-    Measured,
-    Refused,
-)
+from kinematify.simulation.engine import FINER, LoadedJoint, LoadedModel, Measured, Refused
+from kinematify.simulation.pybullet_raw import PybulletFile
 from kinematify.simulation.pybullet_world import PybulletBody, load, text_of
 from kinematify.simulation.servos import acting_pairs
+from kinematify.simulation.stepped import count_steps, drive_run, drop_run, free_run
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
     from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.contacts import Touching
+    from kinematify.simulation.engine import DriveRun, Dropped, FreeRun
     from kinematify.simulation.prepared import Prepared
     from kinematify.simulation.servos import Drive, Servos
 
 _CHATTER = ("pybullet build time", "numActiveThreads", "argc=", "started thread", "stopping threads", "Thread with")
 _DECIMALS = 6
 """Of joint values [rad or m] at which contacts are looked at."""
-_FREE_LOOKS = 24
-"""Times at which speeds and energies of a free run are measured."""
 _POSITION_GAIN = 0.2
 """Share of the error that a motor takes back per step: fast, and without overshoot."""
 _UNLIMITED = 1e9
 """Force [N m or N] that no motion needs."""
-_DIVERGED = ("a value is not finite",)
 
 
-def open_engine(settings: EngineSettings, log: Path) -> PybulletEngine:
-    """Return PyBullet, which says what it has to say in the log of its process."""
-    return PybulletEngine(settings=settings, log=log)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class PybulletEngine:
-    """See `kinematify.simulation.engine.Engine`."""
+    """See `kinematify.simulation.engine.Engine`; it says what it has to say in the log of its process."""
 
     settings: EngineSettings
     log: Path
+
+    @staticmethod
+    def load_raw(urdf: Path, root: str, package_dirs: Sequence[Path]) -> PybulletFile:
+        """Load a file as users do; PyBullet looks for packages by itself."""
+        del package_dirs
+        return PybulletFile(urdf, root)
 
     def load(self, prepared: Prepared, mechanism: LeaderMechanism) -> PybulletModel:
         """Load a prepared file; a second time with a free base, because a fixed one has no mass."""
@@ -72,7 +63,7 @@ class PybulletEngine:
             said = self._printed() or [str(refusal)]
             raise Refused(" ".join(said[-3:])[:400].rstrip(".")) from refusal
         masses = free.masses()
-        free.disconnect()
+        free.client.disconnect()
         return PybulletModel(engine=self, prepared=prepared, looking=fixed, masses=masses)
 
     def messages(self) -> list[str]:
@@ -220,149 +211,129 @@ class PybulletSimulation:
 
     def hold(self, efforts: FloatArray, seconds: float) -> FreeRun:
         """Hold the model by motors."""
-        _Motors(self._free_world, self.model.values_at_rest).hold(efforts)
-        return self._free(_steps(seconds, self.step))
+        run = _Run(self.model, self._free_world)
+        run.hold(efforts)
+        count = count_steps(seconds, self.step)
+        return free_run(run, run.steps(count), count)
 
     def release(self, seconds: float, *, fine: bool = False) -> FreeRun:
         """Let the model go."""
         world, finer = self._free_world, FINER if fine else 1
-        bullet.setPhysicsEngineParameter(fixedTimeStep=self.step / finer, physicsClientId=world.client)
-        world.place(self.model.values_at_rest)
+        world.client.setPhysicsEngineParameter(fixedTimeStep=self.step / finer)
+        run, count = _Run(self.model, world), finer * count_steps(seconds, self.step)
         world.release(ideal=True)
-        run = self._free(finer * _steps(seconds, self.step))
-        bullet.setPhysicsEngineParameter(fixedTimeStep=self.step, physicsClientId=world.client)
-        return replace(run, q=run.q[finer - 1 :: finer])
-
-    def _free(self, steps: int) -> FreeRun:
-        world, mechanism = self._free_world, self.model.looking.mechanism
-        leaders = [mechanism.joints.index(travel.joint) for travel in mechanism.travels]
-        looks = set(np.linspace(0, steps - 1, _FREE_LOOKS).astype(int).tolist())
-        values: list[list[float]] = []
-        energies = [self._energy(*world.state()[:2])]
-        fastest = 0.0
-        for step in range(steps):
-            bullet.stepSimulation(physicsClientId=world.client)
-            q, v, _ = world.state()
-            if not np.isfinite([q, v]).all():
-                break
-            values.append([q[column] for column in leaders])
-            if step in looks:
-                energies.append(self._energy(q, v))
-                fastest = max(fastest, world.fastest_link())
-        return FreeRun(
-            q=np.array(values).reshape(-1, len(leaders)),
-            energy=np.array(energies),
-            fastest=fastest,
-            warnings=_DIVERGED if len(values) < steps else (),
-        )
-
-    def _energy(self, q: list[float], v: list[float]) -> tuple[float, float]:
-        """Potential energy of all links but the root, and kinetic energy [J]."""
-        world = self._free_world
-        states, speeds = world.link_states(), np.array(v)
-        links = zip(world.mechanism.links, world.link.tolist(), strict=True)
-        weights = [
-            (GRAVITY * self.model.prepared.link_by_name[name].mass, states[index][0][2])
-            for name, index in links
-            if index >= 0
-        ]
-        inertia = self.model.looking.mass_matrix(np.array(q))
-        return sum(weight * height for weight, height in weights), float(0.5 * speeds @ inertia @ speeds)
+        result = free_run(run, run.steps(count), count, every=finer)
+        world.client.setPhysicsEngineParameter(fixedTimeStep=self.step)
+        return result
 
     def drive(self, drives: Sequence[Drive]) -> list[DriveRun]:
         """Drive a joint to an end, the others held."""
         return [self._drive(drive) for drive in drives]
 
     def _drive(self, drive: Drive) -> DriveRun:
-        world, mechanism = self._drive_world, self.model.looking.mechanism
+        body, mechanism = self._drive_world, self.model.looking.mechanism
         column = mechanism.joints.index(mechanism.travels[drive.leader].joint)
-        force = float(self.force[drive.leader])
         samples = self.model.engine.settings.sweep_samples
         pairs = acting_pairs(mechanism, self.sweep, drive, self.model.ignored_pairs, samples)
-        world.act(pairs, on=True)
-        motors = _Motors(world, self.model.values_at_rest)
-        motors.hold(_UNLIMITED)
-        looks = set(drive.looks.tolist())
-        values, forces, fastest = [], [], 0.0
-        pressed: frozenset[tuple[int, int]] = frozenset()
-        for step, (target, speed) in enumerate(zip(drive.reference.tolist(), drive.speed.tolist(), strict=True)):
-            motors.command(column, target, speed, force)
-            bullet.stepSimulation(physicsClientId=world.client)
-            q, _, torques = world.state()
-            if not np.isfinite(q).all():
-                break
-            motors.follow(q)
-            values.append(q)
-            forces.append(torques[column])
-            if step in looks:
-                fastest = max(fastest, world.fastest_link())
-            if step == drive.arrived - 1:
-                pressed = world.touching_bodies()
-        world.act(pairs, on=False)
-        return DriveRun(
-            q=np.array(values).reshape(-1, len(mechanism.joints)),
-            force=np.array(forces),
-            pressed=pressed,
-            fastest=fastest,
-            warnings=_DIVERGED if len(values) < len(drive.reference) else (),
-        )
+        body.act(pairs, on=True)
+        run = _Run(self.model, body)
+        run.hold(_UNLIMITED)
+        told = zip(drive.reference.tolist(), drive.speed.tolist(), strict=True)
+        orders = ((column, target, speed, float(self.force[drive.leader])) for target, speed in told)
+        result = drive_run(run, run.steps(len(drive.reference), orders), drive, lambda: run.torques[column])
+        body.act(pairs, on=False)
+        return result
 
     def drop(self) -> Dropped:
         """Let the model fall on a floor."""
-        world, settings = self.model.world(fixed=False), self.model.engine.settings
-        client = world.client
-        world.act(self.model.ignored_pairs, on=False)
-        _Motors(world, self.model.values_at_rest).hold(np.inf)
-        height = _lowest(world) - settings.drop
-        shape = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=client)
-        floor = bullet.createMultiBody(0.0, shape, basePosition=[0.0, 0.0, height], physicsClientId=client)
-        steps, window = _steps(settings.drop_seconds, self.step), _steps(SLOW_SECONDS, self.step)
-        early = _centres(world)
-        for step in range(steps):
-            bullet.stepSimulation(physicsClientId=client)
-            if step == steps - 1 - window:
-                early = _centres(world)
-        late = _centres(world)
-        near = bullet.getClosestPoints(world.body, floor, 1e-3, physicsClientId=client)
-        world.disconnect()
-        if not np.isfinite(late).all():
-            return Dropped(depth=np.inf, speed=np.inf, warnings=_DIVERGED)
-        margins = {index: float(world.margin[link]) for link, index in enumerate(world.link.tolist())}
-        return Dropped(
-            depth=max((-point[8] - margins[point[3]] for point in near), default=-1e-3),
-            speed=float(np.linalg.norm(late - early, axis=1).max()) / (window * self.step),
-            warnings=(),
-        )
+        body, settings = self.model.world(fixed=False), self.model.engine.settings
+        client = body.client
+        body.act(self.model.ignored_pairs, on=False)
+        run = _Run(self.model, body)
+        run.hold(np.inf)
+        height = _lowest(body) - settings.drop
+        shape = client.createCollisionShape(bullet.GEOM_PLANE)
+        floor = client.createMultiBody(0.0, shape, basePosition=[0.0, 0.0, height])
+        count = count_steps(settings.drop_seconds, self.step)
+        margins = {index: float(body.margin[link]) for link, index in enumerate(body.link.tolist())}
+
+        def depth() -> float:
+            near = client.getClosestPoints(body.body, floor, 1e-3)
+            return max((-point[8] - margins[point[3]] for point in near), default=-1e-3)
+
+        dropped = drop_run(run, run.steps(count), count, self.step, places=lambda: _centres(body), depth=depth)
+        client.disconnect()
+        return dropped
 
 
-class _Motors:
-    """Position motors on all joints; followers follow what their leaders do, which PyBullet does not care for."""
+class _Run:
+    """A run of a model with position motors on all joints, a `SteppedWorld`.
 
-    def __init__(self, world: PybulletBody, rest: FloatArray) -> None:
-        """Place the model at rest, values of all joints, shape (J,)."""
-        self._world, self._rest = world, rest
-        mechanism = world.mechanism
-        self._leaders = [mechanism.joints.index(travel.joint) for travel in mechanism.travels]
-        self._followers = [k for k in range(len(mechanism.joints)) if k not in self._leaders]
-        world.place(rest)
+    Followers follow what their leaders do, which PyBullet does not care for.
+    """
+
+    def __init__(self, model: PybulletModel, world: PybulletBody) -> None:
+        """Place the model at rest."""
+        self._model, self._world, self.mechanism = model, world, world.mechanism
+        self._leaders = [self.mechanism.joints.index(travel.joint) for travel in self.mechanism.travels]
+        self._followers = [k for k in range(len(self.mechanism.joints)) if k not in self._leaders]
+        self.failure: tuple[str, ...] = ()
+        world.place(model.values_at_rest)
+
+    def steps(self, count: int, orders: Iterable[tuple[int, float, float, float]] | None = None) -> Iterator[int]:
+        """Simulate; ends where a value is not finite.
+
+        Args:
+            count: Steps.
+            orders: For every step what a motor is told (`command`), the followers then follow; None: nothing is told.
+        """
+        told = iter(orders or ())
+        for step in range(count):
+            if orders is not None:
+                self.command(*next(told))
+            self._world.client.stepSimulation()
+            self._q, self._v, self.torques = self._world.state()
+            if not np.isfinite([self._q, self._v]).all():
+                self.failure = ("a value is not finite",)
+                return
+            if orders is not None and self._followers:
+                values = self.mechanism.all_values(np.array(self._q)[None, self._leaders])[0]
+                for column in self._followers:
+                    self.command(column, float(values[column]), 0.0, _UNLIMITED)
+            yield step
+
+    def values(self) -> FloatArray:
+        """Of all joints [rad or m], shape (J,)."""
+        return np.array(self._q)
+
+    def fastest(self) -> float:
+        """Largest speed of a centre of mass [m/s]."""
+        return self._world.fastest_link()
+
+    def pressing(self) -> frozenset[tuple[int, int]]:
+        """Pairs of bodies that press against each other."""
+        return self._world.touching_bodies()
+
+    def energy(self) -> tuple[float, float]:
+        """Potential energy of all links but the root, and kinetic energy [J]."""
+        states, (q, v, _) = self._world.link_states(), self._world.state()
+        links = zip(self.mechanism.links, self._world.link.tolist(), strict=True)
+        masses = self._model.prepared.link_by_name
+        weights = [(GRAVITY * masses[name].mass, states[index][0][2]) for name, index in links if index >= 0]
+        speeds, inertia = np.array(v), self._model.looking.mass_matrix(np.array(q))
+        return sum(weight * height for weight, height in weights), float(0.5 * speeds @ inertia @ speeds)
 
     def hold(self, force: float | FloatArray) -> None:
         """Hold all joints at rest, with one force or one for each leader [N m or N]; followers without limit."""
-        forces = np.full(len(self._rest), _UNLIMITED)
+        rest = self._model.values_at_rest
+        forces = np.full(len(rest), _UNLIMITED)
         forces[self._leaders] = np.minimum(force, _UNLIMITED)
-        for column, value in enumerate(self._rest.tolist()):
+        for column, value in enumerate(rest.tolist()):
             self.command(column, value, 0.0, float(forces[column]))
-
-    def follow(self, q: list[float]) -> None:
-        """Command the followers to where their leaders stand."""
-        if self._followers:
-            values = self._world.mechanism.all_values(np.array(q)[None, self._leaders])[0]
-            for column in self._followers:
-                self.command(column, float(values[column]), 0.0, _UNLIMITED)
 
     def command(self, column: int, target: float, speed: float, force: float) -> None:
         """Command one of `LeaderMechanism.joints`."""
-        bullet.setJointMotorControl2(
+        self._world.client.setJointMotorControl2(
             self._world.body,
             self._world.indices[column],
             bullet.POSITION_CONTROL,
@@ -371,12 +342,7 @@ class _Motors:
             force=force,
             positionGain=_POSITION_GAIN,
             velocityGain=1.0,
-            physicsClientId=self._world.client,
         )
-
-
-def _steps(seconds: float, step: float) -> int:
-    return max(2, round(seconds / step))
 
 
 def _link_transforms(loaded: PybulletBody, states: list[list[tuple[tuple[float, ...], ...]]]) -> FloatArray:
@@ -396,14 +362,14 @@ def _link_transforms(loaded: PybulletBody, states: list[list[tuple[tuple[float, 
 def _lowest(world: PybulletBody) -> float:
     """Height of the lowest point of all collision shapes [m]; the boxes around them are a little too large."""
     heights: list[float] = [
-        bullet.getAABB(world.body, index, physicsClientId=world.client)[0][2]
+        world.client.getAABB(world.body, index)[0][2]
         for index in world.link.tolist()
-        if bullet.getCollisionShapeData(world.body, index, physicsClientId=world.client)
+        if world.client.getCollisionShapeData(world.body, index)
     ]
     return min(heights)
 
 
 def _centres(world: PybulletBody) -> FloatArray:
     """Centres of mass of all links, shape (L, 3)."""
-    base, _ = bullet.getBasePositionAndOrientation(world.body, physicsClientId=world.client)
+    base, _ = world.client.getBasePositionAndOrientation(world.body)
     return np.array([base, *(state[0] for state in world.link_states())])

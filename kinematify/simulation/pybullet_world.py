@@ -8,7 +8,7 @@ from __future__ import annotations
 import weakref
 from collections import defaultdict
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
@@ -39,11 +39,28 @@ _LARGE_INERTIA = 0.1
 _BASE = -1
 
 
+class Client:
+    """A world, with PyBullet's functions for it; it is freed when nothing refers to it any more."""
+
+    def __init__(self) -> None:
+        """Connect to a new world, in this process."""
+        number = bullet.connect(bullet.DIRECT)
+        self._named = {"physicsClientId": number}
+        self.disconnect = weakref.finalize(self, bullet.disconnect, physicsClientId=number)
+        """Frees it now, once: PyBullet gives the same number to the next one."""
+
+    def __getattr__(self, name: str) -> Any:
+        """A function of PyBullet in this world."""
+        function = partial(getattr(bullet, name), **self._named)
+        setattr(self, name, function)
+        return function
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PybulletBody:
     """A model in a world, and where the links and joints of the document stand in it."""
 
-    client: int
+    client: Client
     body: int
     mechanism: LeaderMechanism
     link: IntArray
@@ -61,11 +78,6 @@ class PybulletBody:
         return bool((self.link >= _BASE).all() and (self.joint >= 0).all())
 
     @cached_property
-    def freeing(self) -> weakref.finalize[..., Any]:
-        """Frees the world, once: PyBullet gives the same number to the next one."""
-        return weakref.finalize(self, bullet.disconnect, physicsClientId=self.client)
-
-    @cached_property
     def indices(self) -> list[int]:
         """`joint` as PyBullet wants it."""
         return [int(index) for index in self.joint]
@@ -73,8 +85,8 @@ class PybulletBody:
     @cached_property
     def joint_infos(self) -> list[tuple[Any, ...]]:
         """What PyBullet tells of each joint, by its index."""
-        count = bullet.getNumJoints(self.body, physicsClientId=self.client)
-        return [bullet.getJointInfo(self.body, k, physicsClientId=self.client) for k in range(count)]
+        count = self.client.getNumJoints(self.body)
+        return [self.client.getJointInfo(self.body, k) for k in range(count)]
 
     @cached_property
     def order(self) -> IntArray:
@@ -91,9 +103,9 @@ class PybulletBody:
         """Largest side of the box around all collision shapes at zero [m], at least 1 mm."""
         self.place(np.zeros(len(self.joint)))
         boxes = [
-            bullet.getAABB(self.body, index, physicsClientId=self.client)
+            self.client.getAABB(self.body, index)
             for index in self.link.tolist()
-            if bullet.getCollisionShapeData(self.body, index, physicsClientId=self.client)
+            if self.client.getCollisionShapeData(self.body, index)
         ]
         corners = np.array(boxes).reshape(-1, 3)
         return float(max(np.ptp(corners, axis=0).max(), 1e-3)) if len(corners) else 1.0
@@ -101,17 +113,13 @@ class PybulletBody:
     def place(self, values: FloatArray) -> None:
         """Set all joints, shape (J,) [rad or m], and stop them."""
         if self.indices:
-            bullet.resetJointStatesMultiDof(
-                self.body,
-                self.indices,
-                [[value] for value in values.tolist()],
-                [[0.0]] * len(values),
-                physicsClientId=self.client,
+            self.client.resetJointStatesMultiDof(
+                self.body, self.indices, [[value] for value in values.tolist()], [[0.0]] * len(values)
             )
 
     def state(self) -> tuple[list[float], list[float], list[float]]:
         """Return values, speeds and motor torques of all joints."""
-        states = bullet.getJointStates(self.body, self.indices, physicsClientId=self.client)
+        states = self.client.getJointStates(self.body, self.indices) or ()
         return [s[0] for s in states], [s[1] for s in states], [s[3] for s in states]
 
     def link_states(self) -> list[tuple[tuple[float, ...], ...]]:
@@ -119,16 +127,14 @@ class PybulletBody:
 
         Of each, [0] is the centre of mass, [4] and [5] are the frame, [6] is the speed of the centre of mass.
         """
-        count = bullet.getNumJoints(self.body, physicsClientId=self.client)
-        states = bullet.getLinkStates(
-            self.body, range(count), computeLinkVelocity=1, computeForwardKinematics=1, physicsClientId=self.client
-        )
+        count = self.client.getNumJoints(self.body)
+        states = self.client.getLinkStates(self.body, range(count), computeLinkVelocity=1, computeForwardKinematics=1)
         return list(states or ())
 
     def contacts(self, row: int) -> list[tuple[int, int, int, float]]:
         """Return (row, link, link, depth [m]) of all contacts of the configuration that was set."""
         self.find_contacts_anew()
-        points = bullet.getContactPoints(self.body, self.body, physicsClientId=self.client)
+        points = self.client.getContactPoints(self.body, self.body)
         link_of = self.link_of
         return [(row, link_of[point[3]], link_of[point[4]], -point[8]) for point in points]
 
@@ -139,13 +145,13 @@ class PybulletBody:
         place they are wrong, so all pairs are made to be found anew.
         """
         for index in self.link.tolist():
-            bullet.setCollisionFilterGroupMask(self.body, index, 1, 1, physicsClientId=self.client)
-        bullet.performCollisionDetection(physicsClientId=self.client)
+            self.client.setCollisionFilterGroupMask(self.body, index, 1, 1)
+        self.client.performCollisionDetection()
 
     def touching_bodies(self) -> frozenset[tuple[int, int]]:
         """Return pairs of bodies that pushed each other in the last step, smaller index first."""
         body, link_of = self.mechanism.body_of_link, self.link_of
-        points = bullet.getContactPoints(self.body, self.body, physicsClientId=self.client)
+        points = self.client.getContactPoints(self.body, self.body)
         pairs = ((int(body[link_of[p[3]]]), int(body[link_of[p[4]]])) for p in points if p[9] > 0.0)
         return frozenset((min(pair), max(pair)) for pair in pairs)
 
@@ -162,7 +168,7 @@ class PybulletBody:
         q = np.zeros(len(values))
         q[self.order] = values
         zero = [0.0] * len(values)
-        torques = bullet.calculateInverseDynamics(self.body, q.tolist(), zero, zero, physicsClientId=self.client)
+        torques = self.client.calculateInverseDynamics(self.body, q.tolist(), zero, zero)
         held: FloatArray = np.array(torques)[self.order] / self.mass_scale
         return held
 
@@ -170,7 +176,7 @@ class PybulletBody:
         """Return the joint-space inertia, shape (J, J)."""
         q = np.zeros(len(values))
         q[self.order] = values
-        matrix = bullet.calculateMassMatrix(self.body, q.tolist(), physicsClientId=self.client)
+        matrix = self.client.calculateMassMatrix(self.body, q.tolist())
         ordered: FloatArray = np.array(matrix).reshape(len(values), len(values))[np.ix_(self.order, self.order)]
         return ordered / self.mass_scale
 
@@ -182,44 +188,38 @@ class PybulletBody:
         """World pose of a link's frame, shape (4, 4)."""
         index = self.index_of(link)
         if index == _BASE:
-            inertial = bullet.getDynamicsInfo(self.body, _BASE, physicsClientId=self.client)
+            inertial = self.client.getDynamicsInfo(self.body, _BASE)
             return np.asarray(self.centre(link) @ np.linalg.inv(pose_of(inertial[3], inertial[4])))
-        state = bullet.getLinkState(self.body, index, computeForwardKinematics=1, physicsClientId=self.client)
+        state = self.client.getLinkState(self.body, index, computeForwardKinematics=1)
         return pose_of(state[4], state[5])
 
     def centre(self, link: str) -> FloatArray:
         """World pose of a link's centre of mass, in which constraints are stated, shape (4, 4)."""
         index = self.index_of(link)
         if index == _BASE:
-            return pose_of(*bullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client))
-        state = bullet.getLinkState(self.body, index, computeForwardKinematics=1, physicsClientId=self.client)
+            return pose_of(*self.client.getBasePositionAndOrientation(self.body))
+        state = self.client.getLinkState(self.body, index, computeForwardKinematics=1)
         return pose_of(state[0], state[1])
 
     def release(self, *, ideal: bool = False) -> None:
         """Switch all motors off, which are on from the start; `ideal`: damping and friction too."""
         for index in self.indices:
-            bullet.setJointMotorControl2(
-                self.body, index, bullet.VELOCITY_CONTROL, force=0.0, physicsClientId=self.client
-            )
+            self.client.setJointMotorControl2(self.body, index, bullet.VELOCITY_CONTROL, force=0.0)
         if ideal:
             for index in self.link.tolist():
-                bullet.changeDynamics(
-                    self.body, index, linearDamping=0.0, angularDamping=0.0, jointDamping=0.0,
-                    physicsClientId=self.client,
-                )  # fmt: skip
+                self.client.changeDynamics(self.body, index, linearDamping=0.0, angularDamping=0.0, jointDamping=0.0)
 
     def silence(self) -> None:
         """Let no two links act on each other but those that `act` names."""
         for index in self.link.tolist():
-            bullet.setCollisionFilterGroupMask(self.body, index, 0, 0, physicsClientId=self.client)
+            self.client.setCollisionFilterGroupMask(self.body, index, 0, 0)
 
     def act(self, pairs: Iterable[tuple[int, int]], *, on: bool) -> None:
         """Let the links of these pairs (indices in the document) act on each other, or not."""
         for first, second in pairs:
-            bullet.setCollisionFilterPair(
-                self.body, self.body, int(self.link[first]), int(self.link[second]), int(on),
-                physicsClientId=self.client,
-            )  # fmt: skip
+            self.client.setCollisionFilterPair(
+                self.body, self.body, int(self.link[first]), int(self.link[second]), int(on)
+            )
 
     def fastest_link(self) -> float:
         """Return the largest speed of a centre of mass [m/s], infinite where it is no number."""
@@ -230,28 +230,20 @@ class PybulletBody:
     def masses(self) -> dict[str, float]:
         """Mass of each link that is there [kg]; the base must be free."""
         links = zip(self.mechanism.links, self.link.tolist(), strict=True)
-        return {
-            name: bullet.getDynamicsInfo(self.body, index, physicsClientId=self.client)[0]
-            for name, index in links
-            if index >= _BASE
-        }
-
-    def disconnect(self) -> None:
-        """Free the world now; it is freed anyway when nothing refers to it any more."""
-        self.freeing()
+        return {name: self.client.getDynamicsInfo(self.body, index)[0] for name, index in links if index >= _BASE}
 
 
-def connect(step: float, *, iterations: int | None = None) -> int:
-    """Return the number of a new world.
+def connect(step: float, *, iterations: int | None = None) -> Client:
+    """Return a new world.
 
     Args:
         step: Time step [s].
         iterations: Of its solver; as many as it likes if None.
     """
-    client: int = bullet.connect(bullet.DIRECT)
+    client = Client()
     solver = {} if iterations is None else {"numSolverIterations": iterations}
-    bullet.setPhysicsEngineParameter(enableFileCaching=0, fixedTimeStep=step, physicsClientId=client, **solver)
-    bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=client)
+    client.setPhysicsEngineParameter(enableFileCaching=0, fixedTimeStep=step, **solver)
+    client.setGravity(0.0, 0.0, -GRAVITY)
     return client
 
 
@@ -271,27 +263,21 @@ def load(
     Raises:
         Refused: PyBullet cannot.
     """
-    client = connect(step)
-    try:
-        loaded = _loaded(client, mechanism, urdf, useFixedBase=fixed, flags=_FLAGS)
-    except Refused:
-        bullet.disconnect(physicsClientId=client)
-        raise
+    loaded = _loaded(connect(step), mechanism, urdf, useFixedBase=fixed, flags=_FLAGS)
     if looking:
         loaded = replace(loaded, mass_scale=_scaled_down(loaded))
     if loaded.complete:
         loaded.act(_welded_pairs(mechanism), on=False)
-    assert loaded.freeing.alive
     return loaded
 
 
 def load_at(
-    client: int, mechanism: LeaderMechanism, urdf: Path, T_world_root: FloatArray, *, itself: bool
+    client: Client, mechanism: LeaderMechanism, urdf: Path, T_world_root: FloatArray, *, itself: bool
 ) -> PybulletBody:
     """Load a file into a world, its root fixed at a pose.
 
     Args:
-        client: Number of the world.
+        client: The world.
         mechanism: Its tree.
         urdf: The file, its meshes convex.
         T_world_root: Shape (4, 4).
@@ -306,21 +292,18 @@ def load_at(
     return _loaded(client, mechanism, urdf, **options)
 
 
-def _loaded(client: int, mechanism: LeaderMechanism, urdf: Path, **options: Any) -> PybulletBody:
+def _loaded(client: Client, mechanism: LeaderMechanism, urdf: Path, **options: Any) -> PybulletBody:
     try:
-        body = bullet.loadURDF(str(urdf), physicsClientId=client, **options)
+        body = client.loadURDF(str(urdf), **options)
     except bullet.error as error:
         raise Refused(str(error)) from error
-    infos = [bullet.getJointInfo(body, k, physicsClientId=client) for k in range(bullet.getNumJoints(body, client))]
+    infos = [client.getJointInfo(body, k) for k in range(client.getNumJoints(body))]
     links = {text_of(info[12]): info[0] for info in infos}
     links.setdefault(mechanism.robot.root, _BASE)
     joints = {text_of(info[1]): info[0] for info in infos if info[2] != bullet.JOINT_FIXED}
     indices = [links.get(name, -2) for name in mechanism.links]
     inflated = [
-        index >= _BASE
-        and any(
-            shape[2] == bullet.GEOM_MESH for shape in bullet.getCollisionShapeData(body, index, physicsClientId=client)
-        )
+        index >= _BASE and any(shape[2] == bullet.GEOM_MESH for shape in client.getCollisionShapeData(body, index))
         for index in indices
     ]
     return PybulletBody(
@@ -336,15 +319,13 @@ def _loaded(client: int, mechanism: LeaderMechanism, urdf: Path, **options: Any)
 def _scaled_down(loaded: PybulletBody) -> float:
     """Scale masses and inertias by a power of two, which changes no digit, so that all moments are small."""
     client, body, count = loaded.client, loaded.body, len(loaded.joint_infos)
-    infos = {index: bullet.getDynamicsInfo(body, index, physicsClientId=client) for index in range(-1, count)}
+    infos = {index: client.getDynamicsInfo(body, index) for index in range(-1, count)}
     largest = max(max(info[2]) for info in infos.values())
     scale = 2.0 ** min(0.0, np.floor(np.log2(_LARGE_INERTIA / max(largest, _LARGE_INERTIA))))
     if scale < 1.0:
         for index, info in infos.items():
             moments = [moment * scale for moment in info[2]]
-            bullet.changeDynamics(
-                body, index, mass=info[0] * scale, localInertiaDiagonal=moments, physicsClientId=client
-            )
+            client.changeDynamics(body, index, mass=info[0] * scale, localInertiaDiagonal=moments)
     return float(scale)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kinematify.robot.arrays import FloatArray
 
@@ -17,6 +18,8 @@ _PROPORTIONAL, _INTEGRAL, _MOST_INTEGRAL = 0.3, 0.05, 0.4
 """Of the velocity error that a push takes away in one step: well below what the step can follow."""
 _START_SECONDS = 0.5
 """In which a push at least brings a heavy part up to speed."""
+NO_NUMBERS = "the values of joints are no numbers any more"
+"""What is said of a run that ends in values that are none."""
 PATIENCE = 0.8
 """Of a push, which has grown to its full force long before [s]."""
 
@@ -171,14 +174,61 @@ class RawEngineModel(ABC):
 
 
 class RunningFile(RawEngineModel):
-    """A file in an engine that simulates."""
+    """A file in an engine that simulates: what an engine can do, and the runs that are made of it."""
 
     time_step: float
     """Of the engine [s]."""
+    look_steps: ClassVar[int] = 1
+    """Between two looks at the energy."""
+
+    @property
+    def complaint(self) -> str | None:
+        """What the engine says of the run since `begin`; None if nothing."""
+        return None
 
     @abstractmethod
-    def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> RestRun:
-        """Let go at `values`, with or without contacts among the links."""
+    def begin(
+        self,
+        values: Mapping[str, float],
+        speeds: Mapping[str, float] | None = None,
+        *,
+        contacts: bool,
+        gravity: bool = True,
+        released: Sequence[int] | None = None,
+    ) -> None:
+        """Set all joints, and whether links touch and weigh.
+
+        Args:
+            values: Of all joints [rad or m].
+            speeds: The same [rad/s or m/s]; None: all stand still.
+            contacts: Links collide with each other.
+            gravity: It acts.
+            released: Indices of joints without motors, where an engine gives joints some; None: motors as loaded.
+        """
+
+    @abstractmethod
+    def steps(self, count: int, every: int = 1) -> Iterator[int]:
+        """Simulate, yielding the number of steps done after every few; ends early where the engine gives up."""
+
+    @abstractmethod
+    def state(self) -> tuple[FloatArray, FloatArray]:
+        """Copies of values and speeds of all joints, shape (joints,) each."""
+
+    @abstractmethod
+    def set_state(self, q: FloatArray, v: FloatArray) -> None:
+        """Set values and speeds of all joints in the course of a run."""
+
+    @abstractmethod
+    def apply(self, joint: int, force: float) -> None:
+        """Apply a force to a joint in the next step [N or N m]."""
+
+    @abstractmethod
+    def energy(self) -> tuple[float, float]:
+        """Potential and kinetic [J]."""
+
+    @abstractmethod
+    def touching(self) -> Iterable[tuple[str, str, float]]:
+        """Two links and their depth [m] of every contact; the order of the links is that of the engine."""
 
     @abstractmethod
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
@@ -188,13 +238,59 @@ class RunningFile(RawEngineModel):
         """Largest force at each joint that the engine answers rightly [N or N m], shape (joints,)."""
         return np.full(len(values), np.inf)
 
-    @abstractmethod
-    def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
-        """Push a joint from `values`, the others held there."""
+    def row(self, values: Mapping[str, float]) -> FloatArray:
+        """Values of all joints in the engine's order."""
+        return np.array([values[name] for name in self.joints])
 
-    @abstractmethod
+    def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
+        """See `RawEngineModel`."""
+        self.begin(values, contacts=True, released=())
+        return self._overlaps()
+
+    def _overlaps(self) -> tuple[Overlap, ...]:
+        depths: dict[tuple[str, str], float] = {}
+        for first, second, depth in self.touching():
+            depths[first, second] = max(depths.get((first, second), 0.0), depth)
+        return deepest_first(depths)
+
+    def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> RestRun:
+        """Let go at `values`, with or without contacts among the links."""
+        self.begin(values, contacts=contacts)
+        seen = [self.state()[0] for _ in self.steps(self._steps(seconds))]
+        values_seen = np.array(seen).reshape(len(seen), len(self.joints))
+        finite = bool(np.isfinite(values_seen).all())
+        return RestRun(values=values_seen, complaint=self.complaint or (None if finite else NO_NUMBERS))
+
     def release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> ReleaseRun:
         """Let go at `values` with `speeds` [rad/s or m/s], without motors and without contacts among the links."""
+        self.begin(values, speeds, contacts=False, released=range(len(self.joints)))
+        seen = [self.energy()]
+        for _ in self.steps(self._steps(seconds), self.look_steps):
+            energy = self.energy()
+            if not math.isfinite(sum(energy)):
+                return ReleaseRun(energy=np.array(seen), complaint="the energy is no number any more")
+            seen.append(energy)
+        return ReleaseRun(energy=np.array(seen), complaint=self.complaint)
+
+    def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
+        """Push a joint from `values`, the others held there."""
+        moved = [self.joints.index(name) for name in push.moved]
+        self.begin(values, contacts=contacts, gravity=False, released=moved)
+        rest, ratios, weights = self.row(values), np.array(push.ratios), np.array(push.weights)
+        progress = PushProgress(start=values[push.joint], push=push, time_step=self.time_step)
+        done = 0
+        self.apply(moved[0], progress.force(0.0))
+        for done in self.steps(push.steps):
+            q, v = self.state()
+            way, speed = weights @ (q - rest)[moved], float(weights @ v[moved])
+            q, v = rest.copy(), np.zeros_like(rest)
+            q[moved] += ratios * way
+            v[moved] = ratios * speed
+            self.set_state(q, v)
+            if not progress.goes_on(float(q[moved[0]]), done):
+                break
+            self.apply(moved[0], progress.force(speed))
+        return Pushed(farthest=progress.value, steps=done, overlaps=self._overlaps())
 
     def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
         """Return plain code of the engine that repeats `rest` and prints the least and the largest value of a joint."""

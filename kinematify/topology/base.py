@@ -58,7 +58,7 @@ def rank_bases(
     """
     skeleton = Skeleton(edges, stats, clusters, evidence, config)
     cues = (
-        ("It alone stands on the ground.", stand(skeleton)),
+        ("It alone touches the ground.", stand(skeleton)),
         ("It alone reaches the ceiling, and all the rest hangs below.", canopy(skeleton)),
         ("It carries most other parts directly and is the largest.", body(skeleton)),
         ("It is the standing end of a chain.", pedestal(skeleton)),

@@ -355,7 +355,7 @@ def search_trees(
         best = sorted(seen, key=lambda parents: -seen[parents])[:keep]
         found |= {parents: (seen[parents], reward.terms(parents, candidate.score)) for parents in best}
     ranked = sorted(found, key=lambda parents: (-found[parents][0], parents))[:keep]
-    return tuple(_finish(reward, parents, *found[parents]) for parents in ranked)
+    return tuple(finish_tree(reward, parents, *found[parents]) for parents in ranked)
 
 
 def plausible_bases(reward: TreeReward) -> tuple[BaseCandidate, ...]:
@@ -469,7 +469,8 @@ def _cluster_pairs(graph: ContactGraph) -> Iterator[Pair]:
         yield from combinations(sorted(cluster), 2)
 
 
-def _finish(reward: TreeReward, parents: Parents, total: float, terms: Mapping[str, float]) -> KinematicTree:
+def finish_tree(reward: TreeReward, parents: Parents, total: float, terms: Mapping[str, float]) -> KinematicTree:
+    """A tree with its reward, its terms, and what is known of its edges."""
     used = {pair(parent, child) for child, parent in enumerate(parents) if parent >= 0}
     touching = set(touching_pairs(reward.graph))
     return KinematicTree(

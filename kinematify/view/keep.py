@@ -1,4 +1,4 @@
-"""A candidate of the viewer becomes the joint of the model folder, as a hint would make it."""
+"""A candidate or a parent of the viewer becomes that of the model folder, as a hint would make it."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from kinematify.refinement.hints import AXES, Hint, with_hints
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from kinematify.pipeline import Inference
@@ -53,6 +54,13 @@ class ModelFolder:
             InputError: The folder holds no model of this version, or it was changed by hand.
             OutputError: The folder cannot be written; it is as it was.
         """
+        return self._keep(lambda before: hint_of(part, chosen, _kind_of(before, part)))
+
+    def hang(self, part: str, parent: str) -> Kept:
+        """Let a part hang on another one, and write the model; errors as those of `keep`."""
+        return self._keep(lambda _: Hint(part=part, parent=parent))
+
+    def _keep(self, hint_for: Callable[[Inference], Hint]) -> Kept:
         check_output(self.folder, overwrite=True)
         if not self._steps:
             assembly, config = open_model_folder(self.folder)
@@ -60,7 +68,7 @@ class ModelFolder:
             inference = infer(assembly, config=config, base=record["trees"][0]["root"])
             self._steps.append(as_left(inference, record))
         before = self._steps[-1]
-        hint = hint_of(part, chosen, _kind_of(before, part))
+        hint = hint_for(before)
         after = with_hints(before, [hint])
         write_refined(after, self.folder, preview=True)
         self._steps.append(after)
@@ -102,7 +110,7 @@ def hint_of(part: str, chosen: JointAlternative, before: JointType) -> Hint:
         return Hint(part=part, kind=JointType.FIXED)
     named = next((name for name, way in AXES.items() if abs(float(chosen.axis @ np.array(way))) > _ALONG), None)
     axis = named if named is not None and chosen.limits is None else _numbers(chosen.axis)
-    limits = None if chosen.limits is None else _numbers(np.array(chosen.limits))
+    limits = None if chosen.limits is None else _numbers(np.array(chosen.limits)).replace(",", "..")
     if not chosen.kind.turns:
         return Hint(part=part, kind=JointType.PRISMATIC, axis=axis, limits=limits)
     kind = before if before.turns and not chosen.by_hand else chosen.kind

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import importlib
 import tempfile
+from collections.abc import Mapping
+from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,13 +17,16 @@ from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from trimesh import Trimesh
 
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint, Robot
     from kinematify.view.window import Window
+
+_SLACK = 1e-6
+"""Share of a limit by which a value may pass it: files round their limits to six digits."""
 
 
 def load(path: str | Path, *, package_dirs: Sequence[str | Path] = ()) -> LoadedModel:
@@ -41,10 +46,10 @@ def load(path: str | Path, *, package_dirs: Sequence[str | Path] = ()) -> Loaded
 
 
 class LoadedModel:
-    """A robot of a file, to pose, to look at, and to hand to an engine.
+    """The robot of a file: poses, meshes, a viewer, and models of MuJoCo and Pinocchio.
 
-    A configuration is given as joint name -> value [rad or m]. The name of a link may stand for the joint above it,
-    what is not named stands at zero, and followers follow.
+    A configuration maps joint names to values [rad or m]. The name of a link selects the joint above it. Joints that
+    are not named are at zero; mimic joints follow their leader.
     """
 
     def __init__(self, urdf: Path, package_dirs: tuple[Path, ...]) -> None:
@@ -71,7 +76,8 @@ class LoadedModel:
             q: The configuration; all joints at zero if absent.
 
         Raises:
-            InputError: `q` names neither a joint nor a link that a joint moves.
+            InputError: A name is neither a joint nor a link that a joint moves, or a value is no number or lies outside
+                the limits of its joint.
         """
         return forward_kinematics(self.robot, self._by_joint(q or {}))
 
@@ -142,7 +148,9 @@ class LoadedModel:
         return window
 
     def _by_joint(self, q: Mapping[str, float]) -> dict[str, float]:
-        """A configuration by the names of joints."""
+        """A configuration by the names of joints, each value within its limits."""
+        if not isinstance(q, Mapping):
+            raise InputError(f"A configuration maps joint names to numbers [rad or m]; {q!r} is a {type(q).__name__}.")
         above = {link: joint.name for link, joint in self.robot.joint_above.items()}
         named = {name if name in self.robot.joint_by_name else above.get(name, name): q[name] for name in q}
         unknown = sorted(set(named) - set(self.robot.joint_by_name))
@@ -151,7 +159,21 @@ class LoadedModel:
                 f"{self.path} has no joint {unknown[0]}, and no link of that name hangs on one. Its joints are "
                 f"{', '.join(self.joints) or 'none'}."
             )
-        return {name: float(value) for name, value in named.items()}
+        return {name: self._within(self.robot.joint_by_name[name], value) for name, value in named.items()}
+
+    def _within(self, joint: Joint, value: object) -> float:
+        """`value` as a number within the limits of `joint`."""
+        unit = "rad" if joint.kind.turns else "m"
+        if isinstance(value, bool) or not isinstance(value, Real) or not np.isfinite(number := float(value)):
+            raise InputError(f"The value of the joint {joint.name} is {value!r}; give a finite number in {unit}.")
+        slack = _SLACK * max(1.0, abs(joint.lower), abs(joint.upper))
+        inside = joint.lower - slack <= number <= joint.upper + slack
+        if joint.leads and not joint.endless and not inside:
+            raise InputError(
+                f"The joint {joint.name} moves from {joint.lower:g} to {joint.upper:g} {unit}; {number:g} {unit} lies "
+                "outside. Give a value within the limits, or change them in the file."
+            )
+        return number
 
 
 def _colored(trimesh: Any, mesh: Any) -> Any:

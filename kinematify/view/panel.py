@@ -53,6 +53,9 @@ class Actions(Protocol):
     def try_candidate(self, joint: str, number: int) -> None:
         """Move a joint as one of its candidates says, 0 for as in the file."""
 
+    def try_parent(self, name: str) -> None:
+        """Let the part of the chosen joint hang on another one when it is kept."""
+
     def set_by_hand(self) -> None:
         """Begin to set the chosen joint by hand."""
 
@@ -150,8 +153,8 @@ class Panel:
         slider.min, slider.max, slider.step = lower, upper, step
         slider.value = float(np.clip(0.0, lower, upper))
 
-    def show_joint(self, joint: Joint, candidates: Sequence[str]) -> None:
-        """Show what is known of a joint, and its candidates in words, below the sliders."""
+    def show_joint(self, joint: Joint, candidates: Sequence[str], parents: Sequence[str]) -> None:
+        """Show what is known of a joint, its candidates in words and what its part could hang on, below the sliders."""
         self._joint = joint.name
         moves = _plain(f"{joint.child} on {joint.parent} ({joint.kind.value}).")
         self._told.content = f"**{_plain(joint.name)}** moves {moves}"
@@ -161,6 +164,9 @@ class Panel:
         self._choice.options = tuple(self._options)
         self._choice.value = _AS_WRITTEN
         self._choice.visible = bool(candidates)
+        self._parent.options = tuple(parents) or (joint.parent,)
+        self._parent.value = joint.parent if joint.parent in self._parent.options else self._parent.options[0]
+        self._parent.visible = self._can_keep and len(parents) > 1
         self._by_hand.visible = self._can_keep
         self._keep.visible = False
 
@@ -226,6 +232,8 @@ class Panel:
         self._play = gui.add_button("Play", visible=False)
         self._play.on_click(_ignoring_event(actions.play))
         self._options = [_AS_WRITTEN]
+        self._parent: Any = gui.add_dropdown("Hangs on", ("",), visible=False)
+        self._parent.on_update(_ignoring_event(lambda: actions.try_parent(self._parent.value)))
         self._choice: Any = gui.add_dropdown("It could also", (_AS_WRITTEN,), visible=False)
         self._choice.on_update(_ignoring_event(self._tried))
         self._by_hand = gui.add_button(

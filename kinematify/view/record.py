@@ -76,6 +76,8 @@ class Shown:
     """Confidence below which they are."""
     chains: tuple[DrawnChain, ...] = ()
     """Where chains of joints close."""
+    parents: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """What each part but the base could hang on: the parts that it touches first, then all others."""
 
 
 def _dashed(start: FloatArray, end: FloatArray) -> FloatArray:
@@ -103,6 +105,7 @@ def shown_with(scene: ViewScene, path: Path) -> Shown:
             doubtful=tuple(map(str, record.get("doubtful", ()))),
             doubtful_below=float(record.get("doubtful_below", 0.0)),
             chains=tuple(_chain(item, scene.robot) for item in record.get("closed_chains", ())),
+            parents=_possible_parents(record),
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise _no_record(path, error) from error
@@ -128,6 +131,15 @@ def _no_record(path: Path, error: Exception) -> InputError:
         f"{path} is no record of an inference ({type(error).__name__}: {error}). Run `kinematify infer` again, or "
         "view the model from another folder."
     )
+
+
+def _possible_parents(record: dict[str, Any]) -> dict[str, tuple[str, ...]]:
+    names = [item["name"] for item in record["parts"]]
+    touching = {frozenset((item["a"], item["b"])) for item in record["contacts"]}
+    return {
+        child: tuple(sorted((name for name in names if name != child), key=lambda name: {child, name} not in touching))
+        for child in (joint["child"] for joint in record["joints"])
+    }
 
 
 def _alternatives_of(record: dict[str, Any]) -> dict[tuple[str, str], tuple[JointAlternative, ...]]:

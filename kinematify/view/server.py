@@ -71,7 +71,8 @@ class ModelViewer:
         """Show a model from the beginning."""
         with self._lock:
             scene = shown.scene
-            self._scene, self._alternatives = scene, shown.alternatives
+            self._scene, self._alternatives, self._parents = scene, shown.alternatives, shown.parents
+            self._parent: str | None = None
             self._q = {joint.name: scene.rest[joint.name] for joint in scene.leaders}
             self._marked: frozenset[str] = frozenset()
             self._sweeping: str | None = None
@@ -172,7 +173,20 @@ class ModelViewer:
             self._try(joint, candidates[number - 1] if number else None)
             self._glow()
 
+    def try_parent(self, name: str) -> None:
+        """Let the part of the chosen joint hang on another one when it is kept; its joint is found then."""
+        with self._lock:
+            if self._chosen is None:
+                return
+            joint = self._scene.robot.joint_by_name[self._chosen]
+            other = name if name != joint.parent and name in self._parents.get(joint.child, ()) else None
+            if other is not None:
+                self._end_by_hand()
+            self._parent = other
+            self._panel.offer_keeping(other is not None or self._scene.tried(joint.name) is not None)
+
     def _try(self, joint: str, alternative: JointAlternative | None) -> None:
+        self._parent = None
         self._scene.try_joint(joint, alternative)
         self._sweeping = None
         item = self._scene.robot.joint_by_name[joint]
@@ -240,6 +254,9 @@ class ModelViewer:
         with self._lock:
             joint = None if self._chosen is None else self._scene.robot.joint_by_name[self._chosen]
             tried = None if joint is None else self._scene.tried(joint.name)
+            parent = self._parent
+        if joint is not None and parent is not None:
+            return self._written(partial(self._folder.hang, joint.child, parent))
         if joint is None or tried is None:
             return None
         return self._written(partial(self._folder.keep, joint.child, tried))
@@ -282,7 +299,9 @@ class ModelViewer:
     def _show_joint(self, name: str) -> None:
         joint = self._scene.robot.joint_by_name[name]
         bounds = self._scene.bounds.get(self._scene.group_of(joint.child), np.zeros((2, 3)))
-        self._panel.show_joint(joint, [described(item, bounds) for item in self._candidates(joint)])
+        said = [described(item, bounds) for item in self._candidates(joint)]
+        self._parent = None
+        self._panel.show_joint(joint, said, self._parents.get(joint.child, ()))
 
     def take_pose(self, name: str) -> None:
         """Bring all joints to rest, to the end of their way, or anywhere."""

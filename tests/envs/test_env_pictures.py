@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import importlib.util
 import os
 from pathlib import Path
 
@@ -63,8 +62,6 @@ def test_the_picture_shows_the_part_where_it_is(kind: str, monkeypatch: pytest.M
 
 @pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
 def test_record_video(engine: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    if importlib.util.find_spec("moviepy") is None:
-        pytest.skip("moviepy is not installed; RecordVideo needs it")
     monkeypatch.setenv("MUJOCO_GL", "off")
     env = gymnasium.make(OPEN_PART, engine=engine, render_mode="rgb_array", max_episode_steps=2)
     env = gymnasium.wrappers.RecordVideo(env, str(tmp_path / "films"), disable_logger=True)

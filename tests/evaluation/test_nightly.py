@@ -148,6 +148,7 @@ def test_an_unchanged_night_reports_nothing_and_a_slow_object_fails_nothing(boxe
     assert len({first.place, second.place, slow.place}) == 3
     assert all((place / "index.html").is_file() for place in (first.place, slow.place, tmp_path))
     assert not (tmp_path / ".unfinished").exists()
+    assert json.loads((tmp_path / "badge.json").read_text())["message"] == "passing"
 
 
 def test_one_bad_object_does_not_end_the_night(boxes: Path, tmp_path: Path) -> None:
@@ -156,6 +157,8 @@ def test_one_bad_object_does_not_end_the_night(boxes: Path, tmp_path: Path) -> N
     assert len(bad.night.runs) == 2
     gates = [change for change in bad.night.changes if change.gate]
     assert {change.object for change in gates} == {"drawered"}
+    badge = json.loads((tmp_path / "badge.json").read_text())
+    assert (badge["schemaVersion"], badge["color"], badge["message"]) == (1, "red", f"{len(gates)} worse")
     suites = etree.fromstring((bad.place / "junit.xml").read_bytes())
     assert [case.get("classname") for case in suites.iter("testcase") if case.find("failure") is not None] == [
         "drawered.accuracy"

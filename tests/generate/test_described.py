@@ -10,7 +10,8 @@ from manifold3d import Manifold, Mesh64
 
 from kinematify.errors import InputError
 from kinematify.generate.blueprint_file import described_blueprint
-from kinematify.generate.described import ObjectDescription, known_families
+from kinematify.generate.described import ObjectDescription, SteppedDescription, known_families, library
+from kinematify.generate.library.steps import checked_steps
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.materials import COLORS
@@ -30,16 +31,21 @@ def overlaps(blueprint):
     return [(a, b) for a, b in combinations(solids, 2) if (solids[a] ^ solids[b]).volume() > 1e-9]
 
 
+IN_STEPS = [name for name in DESCRIBED if isinstance(library()[name], SteppedDescription)]
+SAMPLE = [name for name in DESCRIBED if name not in IN_STEPS] + [name for name in IN_STEPS if not library()[name].like][
+    ::9
+]
 COUNTED = [
     (name, {parameter.name: int(bound)})
     for name in DESCRIBED
+    if name not in IN_STEPS
     for parameter in known_families()[name].parameters
     for bound in parameter.bounds
     if bound != parameter.default
 ]
 
 
-@pytest.mark.parametrize(("name", "given"), [*((name, {}) for name in DESCRIBED), *COUNTED])
+@pytest.mark.parametrize(("name", "given"), [*((name, {}) for name in SAMPLE), *COUNTED])
 def test_parts_move_freely_to_both_ends(name, given):
     blueprint = build(known_families()[name], given)
     assert blueprint.joints
@@ -47,6 +53,27 @@ def test_parts_move_freely_to_both_ends(name, given):
     for joint in blueprint.joints:
         for value in (joint.lower, joint.upper) if np.isfinite(joint.upper) else (1.0, 4.0):
             assert not overlaps(blueprint.moved({joint.child: value})), (joint.child, value)
+
+
+def test_every_step_is_known_and_every_formula_is_one():
+    for name in IN_STEPS:
+        checked_steps(library()[name].steps)
+
+
+@pytest.mark.parametrize(
+    "formula",
+    ["().__class__", "draw.__call__(1)", "[x for x in X].append(1)", "2 ** 9", "lambda: 1", "_secret", "f'{1:>99}'"],
+)
+def test_a_formula_computes_and_does_nothing_else(formula):
+    with pytest.raises(ValueError, match="formula"):
+        checked_steps([{"let": {"a": formula}}])
+
+
+def test_an_object_in_steps_has_the_size_that_is_asked_for():
+    built = build(known_families()["standing_desk"], {"width": 1.4, "height": 0.7})
+    assert np.ptp(built.assembly.bounds[:, 0]) == pytest.approx(1.4)
+    with pytest.raises(InputError, match="must be a number from 1 to"):
+        build(known_families()["standing_desk"], {"width": 40.0})
 
 
 def test_no_word_names_two_families():

@@ -104,5 +104,5 @@ def test_parent_that_cannot_hold_a_folder(tmp_path):
 
 def test_place_that_cannot_be_written():
     # Holds for root, too: the kernel makes no folder there.
-    with pytest.raises(OutputError, match="mend its permissions"):
+    with pytest.raises(OutputError, match="change its permissions"):
         write_model_folder(Path("/proc/kinematify/out"), fill, overwrite=False)

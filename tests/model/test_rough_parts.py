@@ -12,7 +12,7 @@ from trimesh.creation import box
 
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
-from kinematify.refinement.draft import ObjectBuilder
+from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
@@ -88,9 +88,9 @@ def write(folder: Path, moving: trimesh.Trimesh, *boards: trimesh.Trimesh) -> Pa
 def carved(folder: Path, moving: trimesh.Trimesh, *boards: trimesh.Trimesh) -> tuple[Path, FittedCollision]:
     """The file with collision pieces, and what is known of them."""
     path = write(folder, moving, *boards)
-    draft, robot = ObjectBuilder(path, folder / "out" / "fixed.urdf"), read_robot(path)
-    fitted = draft.carve(robot, frozenset(robot.link_by_name), load_config(), load_settings())
-    return draft.write(), fitted
+    editor, robot = UrdfEditor(path, folder / "out" / "fixed.urdf"), read_robot(path)
+    fitted = editor.carve(robot, frozenset(robot.link_by_name), load_config(), load_settings())
+    return editor.write(), fitted
 
 
 def reached(urdf: Path) -> tuple[float, float]:
@@ -151,9 +151,9 @@ def test_what_stands_inside_of_another_keeps_its_pieces(tmp_path: Path) -> None:
 
 def test_a_link_that_is_not_asked_for_stays_and_the_other_is_carved_clear_of_it(tmp_path: Path) -> None:
     path = write(tmp_path, drawer())
-    draft, robot = ObjectBuilder(path, tmp_path / "out" / "fixed.urdf"), read_robot(path)
-    draft.carve(robot, frozenset({"case"}), load_config(), load_settings())
-    fixed = draft.write()
+    editor, robot = UrdfEditor(path, tmp_path / "out" / "fixed.urdf"), read_robot(path)
+    editor.carve(robot, frozenset({"case"}), load_config(), load_settings())
+    fixed = editor.write()
     slider = read_robot(fixed).link_by_name["slider"]
     assert [shape.file.resolve() for shape in slider.collisions if shape.file] == [tmp_path / "slider.stl"]
     deep, value = reached(fixed)

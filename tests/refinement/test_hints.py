@@ -46,14 +46,22 @@ def test_hints_are_read_and_those_on_one_part_are_taken_together() -> None:
         (["door_1:axis=w"], "x, y, z"),
         (["door_1:axis=0,0,0"], "x, y, z"),
         (["door_1:pivot=1,2"], "three numbers"),
-        (["door_1:limits=0.1,1.5"], "zero, which is the pose of the input"),
-        (["door_1:limits=1"], "two numbers"),
-        (["lid=fixed", "lid:limits=0,1"], "cannot be fixed and have limits"),
+        (["door_1:range=0.1..1.5"], "zero, which is the pose of the input"),
+        (["door_1:range=1"], "two numbers"),
+        (["lid=fixed", "lid:range=0..1"], "cannot be fixed and have limits"),
         (["door_1"], "PART=TYPE"),
         (["=prismatic"], "PART=TYPE"),
         (["door_1=prismatic", "door_1=revolute"], "contradict"),
         (["lid:axis=x", "lid:axis=z"], "both x and z"),
         (["lid:axis=x", "lid=fixed"], "cannot be fixed and have an axis"),
+        (["lid:axis=x", "lid:fixed"], "cannot be fixed and have an axis"),
+        (["door_1=prismatic", "door_1:range=0..90deg"], "prismatic and have the range 0..90deg"),
+        (["door_1:parent=bdy"], "Did you mean body"),
+        (["lid:parent=lid"], "neither its own parent"),
+        (["lid:parent=door_1", "door_1:parent=lid"], "hang on each other"),
+        (["lid:parent=door_1", "lid:parent=body"], "both door_1 and body"),
+        (["door_1:twin=door_2", "door_2:twin=door_1"], "each the model of the other"),
+        (["door_1:twin=door_2", "door_1=prismatic"], "takes its joint from door_2"),
     ],
 )
 def test_what_cannot_be_meant_is_refused_with_the_choices(texts: list[str], said: str) -> None:
@@ -90,13 +98,54 @@ def test_limits_are_along_the_axis_that_was_named_or_had_before() -> None:
     inference = inferred("edge_door")
     name = moving(inference)
     before = joint_of(inference, name)
-    joint = joint_of(with_hints(inference, [Hint(part=name, limits="-0.25,1.25")]), name)
+    joint = joint_of(with_hints(inference, [Hint(part=name, limits="-0.25..1.25")]), name)
     assert (joint.lower, joint.upper) == (-0.25, 1.25)
     assert np.allclose(joint.axis, before.axis)
     against = ",".join(f"{-value:.6g}" for value in before.axis)
-    joint = joint_of(with_hints(inference, [Hint(part=name, axis=against, limits="-0.25,1.25")]), name)
+    joint = joint_of(with_hints(inference, [Hint(part=name, axis=against, limits="-0.25..1.25")]), name)
     turned = np.sign(joint.axis @ before.axis)
     assert (joint.lower, joint.upper) == ((-1.25, 0.25) if turned > 0.0 else (-0.25, 1.25))
+
+
+def test_a_range_may_be_given_in_degrees_and_millimetres() -> None:
+    inference = inferred("edge_door")
+    name = moving(inference)
+    joint = joint_of(with_hints(inference, parse_hints([f"{name}:range=-10..90deg"], (name,))), name)
+    assert (joint.lower, joint.upper) == pytest.approx((math.radians(-10.0), math.pi / 2.0))
+    slide = [f"{name}=prismatic", f"{name}:axis=x", f"{name}:range=-20..300mm"]
+    joint = joint_of(with_hints(inference, parse_hints(slide, (name,))), name)
+    assert sorted([abs(joint.lower), abs(joint.upper)]) == pytest.approx([0.02, 0.3])
+
+
+def test_a_part_hangs_where_a_hint_says_and_all_else_stays() -> None:
+    inference = inferred("toilet")
+    names = inference.assembly.names
+    bowl, seat, lid = (names.index(name) for name in ("bowl", "seat", "lid"))
+    assert inference.trees[0].root == bowl
+    hung = with_hints(inference, parse_hints(["lid:parent=seat", "seat:parent=bowl"], names))
+    assert hung.trees[0].parents[lid] == seat
+    assert hung.trees[0].parents[seat] == bowl
+    assert hung.hints == ("lid:parent=seat", "seat:parent=bowl")
+    assert [(joint.parent, joint.child) for joint in hung.joints] == list(hung.trees[0].edges())
+    turned = with_hints(hung, [Hint(part="seat", parent="lid")])
+    assert turned.trees[0].parents[seat] == lid
+    assert turned.trees[0].parents[lid] == bowl, "what carried it hangs on what the two hung on"
+    with pytest.raises(InputError, match="base link"):
+        with_hints(inference, [Hint(part="bowl", parent="lid")])
+
+
+def test_a_twin_has_the_joint_of_its_model_mirrored() -> None:
+    inference = inferred("torso")
+    hints = ["left_upper_arm:range=-0.1..1.2", "right_upper_arm:twin=left_upper_arm"]
+    hinted = with_hints(inference, parse_hints(hints, inference.assembly.names))
+    one, other = joint_of(hinted, "left_upper_arm"), joint_of(hinted, "right_upper_arm")
+    assert one.kind is other.kind
+    assert (one.lower, one.upper) == (other.lower, other.upper)
+    away = inference.assembly.parts[one.child].centroid - inference.assembly.parts[other.child].centroid
+    mirror = np.eye(3) - 2.0 * np.outer(away, away) / (away @ away)
+    np.testing.assert_allclose(other.axis, -mirror @ one.axis, atol=1e-6)
+    with pytest.raises(InputError, match="cannot be followed"):
+        with_hints(inference, [Hint(part="left_forearm", twin="left_upper_arm")])
 
 
 def test_a_pivot_chooses_the_hinge_that_goes_through_it() -> None:

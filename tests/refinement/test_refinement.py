@@ -34,7 +34,7 @@ from kinematify.robot.joint_type import JointType
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.failure_rates import LINE, TYPE, shipped_rates
 from kinematify.validation.finding import Severity
-from kinematify.validation.inferred import round_rows
+from kinematify.validation.run.inferred import round_rows
 from tests.objects import BUILDERS
 from tests.places import ROOT
 

@@ -15,20 +15,17 @@ import pytest
 
 from kinematify.config.validation import load_settings
 from kinematify.simulation.engines import DEFAULT_ENGINES
-from kinematify.validation.as_loaded import across_engines, as_loaded_words, confirm_on_raw_model, with_refusals
 from kinematify.validation.as_loaded_context import AsLoadedContext
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.run import validate
+from kinematify.validation.run.as_loaded import across_engines, as_loaded_words, confirm_on_raw_model, with_refusals
 from kinematify.validation.stage import StageRequest
 from kinematify.validation.stages import as_loaded
 from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, tell
 
 ENGINES = ("mujoco", "pybullet")
-NO_DRAKE = pytest.mark.skipif(
-    find_spec("pydrake") is None, reason="Drake is not installed: pip install 'kinematify[drake]'"
-)
-each_engine = pytest.mark.parametrize("engine", [*ENGINES, pytest.param("drake", marks=NO_DRAKE)])
+each_engine = pytest.mark.parametrize("engine", [*ENGINES, "drake"])
 WALL = Box(size=(0.02, 0.64, 0.4), at=(0.35, 0.0, 0.0))
 """In front of the cabinet: the drawer gets 135 mm far, the door hits it too."""
 
@@ -81,6 +78,17 @@ def test_a_good_cabinet_passes(tmp_path: Path, engine: str) -> None:
     result = told(cabinet(), tmp_path, engine)
     assert {check: r.findings for check, r in result.results.items() if r.status is not Status.PASS} == {}
     assert counts(result) == {"joints": 2.0, "right": 2.0}
+
+
+@pytest.mark.skipif(find_spec("newton") is None, reason="Newton is not installed: pip install 'kinematify[newton]'")
+def test_newton_loads_moves_and_rests_what_others_do(tmp_path: Path) -> None:
+    result = told(jamming(), tmp_path, "newton")
+    assert counts(result) == {"joints": 2.0, "right": 1.0}
+    (finding,) = (item for item in result.results["KV804"].findings if item.severity is Severity.ERROR)
+    assert (finding.joint, set(finding.pair or ())) == ("door_joint", {"drawer", "door"})
+    assert printed(finding.reproduction) == pytest.approx([finding.value], abs=1e-4)
+    passed = {check for check, item in result.results.items() if item.status is Status.PASS}
+    assert {"KV801", "KV803", "KV805", "KV806"} <= passed
 
 
 def test_pinocchio_reads_joints_limits_and_overlaps(tmp_path: Path) -> None:

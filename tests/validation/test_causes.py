@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 from lxml import etree
 
 from kinematify.robot.read import read_robot
-from kinematify.validation.causes import with_causes
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.junit import as_junit
 from kinematify.validation.formats.sarif import as_sarif
-from kinematify.validation.report import ValidationReport
+from kinematify.validation.run.causes import with_causes
+from kinematify.validation.run.report import ValidationReport
 from kinematify.validation.suppression import Suppression, suppress
 
 if TYPE_CHECKING:

@@ -13,7 +13,14 @@ from kinematify.validation.check import ENGINE_FAMILIES, REGISTRY, FeedbackRow, 
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Blame, Severity, Status
 from kinematify.validation.isolation import _EVERY_STAGE
-from kinematify.validation.plan import agreement_stage, as_loaded_stages, asset_stage, keys, later_stages, task_stage
+from kinematify.validation.run.plan import (
+    agreement_stage,
+    as_loaded_stages,
+    asset_stage,
+    keys,
+    later_stages,
+    task_stage,
+)
 from kinematify.validation.stage import Recorder
 from tests.places import ROOT
 

@@ -17,8 +17,6 @@ from kinematify.validation.finding import Blame, Severity, Status
 from kinematify.validation.stages import engine as engine_stage
 from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, prepared_request, tell
 
-pytest.importorskip("pydrake.multibody.plant", reason="Drake is not installed: pip install 'kinematify[drake]'")
-
 IDS = {check.id for check in checks_of("KV9")}
 run = partial(engine_stage.run, engine="drake")
 

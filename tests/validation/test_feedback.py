@@ -14,8 +14,8 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Joint
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.failure_rates import CLASSES, LINE, PARENT, TYPE, FailureRates, shipped_rates, tier_of
-from kinematify.validation.feedback import Feedback, feedback_from
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity
+from kinematify.validation.run.feedback import Feedback, feedback_from
 from kinematify.validation.stage import Recorder
 from kinematify.validation.stages.geometry import run
 from kinematify.validation.summary import JointSummary

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
-from kinematify.validation.opinions import evidence_before_blame
+from kinematify.validation.run.opinions import evidence_before_blame
 
 
 def failed(check: str, joint: str, severity: Severity = Severity.WARNING) -> CheckResult:

@@ -13,8 +13,8 @@ from kinematify.errors import DescriptionError
 from kinematify.robot.read import read_robot
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
-from kinematify.validation.precheck.document import precheck
 from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.stages.precheck import precheck
 
 CLEAN = """\
 <?xml version="1.0"?>

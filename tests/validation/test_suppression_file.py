@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from kinematify.errors import InputError
+from kinematify.validation.run.suppression_file import load_suppressions, unused_suppressions
 from kinematify.validation.suppression import Suppression, suppress
-from kinematify.validation.suppression_file import load_suppressions, unused_suppressions
 from tests.reports import add_checks, finding, report, result
 
 

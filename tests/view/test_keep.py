@@ -15,7 +15,8 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.view.alternatives import JointAlternative
 from kinematify.view.keep import ModelFolder
-from kinematify.view.record import load_alternatives
+from kinematify.view.record import load_alternatives, shown_with
+from kinematify.view.scene import ViewScene
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ def test_what_was_set_by_hand_is_written_with_its_limits(folder: Path) -> None:
     axis, pivot = np.array([0.0, 0.6, -0.8]), np.array([0.01, 0.02, 0.03])
     by_hand = JointAlternative(kind=JointType.REVOLUTE, axis=axis, pivot=pivot, by_hand=True, limits=(-0.25, 1.25))
     told = ModelFolder(folder).keep(joint.child, by_hand)
-    assert f"{joint.child}:limits=-0.25,1.25" in told.hints
+    assert f"{joint.child}:range=-0.25..1.25" in told.hints
     (found,) = read_robot(folder / "model.urdf").joints
     turned = float(found.axis @ axis)
     assert abs(turned) > 1.0 - 1e-9
@@ -86,3 +87,20 @@ def test_what_was_set_by_hand_is_written_with_its_limits(folder: Path) -> None:
     endless = replace(by_hand, kind=JointType.CONTINUOUS, limits=None)
     ModelFolder(folder).keep(joint.child, endless)
     assert read_robot(folder / "model.urdf").joints[0].kind is JointType.CONTINUOUS
+
+
+def test_another_parent_is_written_as_a_hint_and_can_be_taken_back(tmp_path: Path) -> None:
+    folder = tmp_path / "model"
+    write_inference(infer(BUILDERS["toilet"]().assembly), folder, preview=False)
+    record = read_record(folder)
+    (lid,) = (joint for joint in record["joints"] if joint["child"] == "lid")
+    other = "seat" if lid["parent"] == "bowl" else "bowl"
+    shown = shown_with(ViewScene(read_robot(folder / "model.urdf")), folder / "inference.json")
+    assert other in shown.parents["lid"]
+    kept = ModelFolder(folder)
+    told = kept.hang("lid", other)
+    assert told.hints == (f"lid:parent={other}",)
+    (joint,) = (joint for joint in read_robot(folder / "model.urdf").joints if joint.child == "lid")
+    assert joint.parent == other
+    kept.undo()
+    assert read_record(folder)["trees"][0]["parents"]["lid"] == lid["parent"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ _URDF = """<robot name="door">
 <visual><origin xyz="0.4 0 0"/><geometry><box size="0.8 0.04 1.8"/></geometry></visual>
 <collision><origin xyz="0.4 0 0"/><geometry><box size="0.8 0.04 1.8"/></geometry></collision></link>
 <joint name="hinge" type="revolute"><parent link="frame"/><child link="door"/><origin xyz="-0.4 -0.1 0"/>
-<axis xyz="0 0 -1"/><limit lower="0" upper="1.5" effort="1" velocity="1"/></joint>
+<axis xyz="0 0 -1"/><limit lower="0" upper="1.6" effort="1" velocity="1"/></joint>
 </robot>"""
 
 
@@ -37,6 +38,28 @@ def test_a_model_is_posed_by_the_name_of_the_joint_or_of_its_link(urdf: Path) ->
     assert np.allclose(turned[:3, :3] @ [1.0, 0.0, 0.0], [0.0, -1.0, 0.0])
     with pytest.raises(kinematify.KinematifyError, match=r"no joint lid.*hinge"):
         robot.pose({"lid": 1.0})
+
+
+@pytest.mark.parametrize(
+    ("q", "reason"),
+    [
+        ({"hinge": 99}, r"hinge moves from 0 to 1\.6 rad; 99 rad lies outside"),
+        ({"door": -0.1}, r"hinge moves from 0 to 1\.6 rad"),
+        ({"hinge": "open"}, r"value of the joint hinge is 'open'; give a finite number in rad"),
+        ({"hinge": float("nan")}, r"finite number"),
+        (["hinge"], r"maps joint names to numbers.*list"),
+    ],
+)
+def test_a_value_that_no_joint_can_take_is_refused_with_the_range(urdf: Path, q: Any, reason: str) -> None:
+    robot = kinematify.load(urdf)
+    for use in (robot.pose, robot.meshes):
+        with pytest.raises(kinematify.KinematifyError, match=reason):
+            use(q)
+
+
+def test_a_joint_without_limits_takes_any_value(urdf: Path) -> None:
+    urdf.write_text(_URDF.replace("revolute", "continuous"))
+    assert np.allclose(kinematify.load(urdf).pose({"hinge": 99.0})["door"][0, 0], np.cos(99.0))
 
 
 def test_meshes_stand_where_the_links_do_in_their_colours(urdf: Path) -> None:

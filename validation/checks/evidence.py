@@ -1,9 +1,9 @@
 """KV340 to KV349: does the geometry of two links explain the joint between them?
 
-KV341 to KV346 are opinions, for people build doors that no rule has seen: they count only beside an error of fact about
-the same joint, and are one note per joint else (`kinematify.validation.opinions`). One cause, one finding: a joint with
-the wrong parent is judged no further, and where several joints in series share one contact only what holds for each of
-them is.
+KV341 to KV346 are opinions, for people build doors that no rule has seen: they count only beside an error of fact
+about the same joint, and are one note per joint else (`kinematify.validation.run.opinions`). One cause, one finding:
+a joint with the wrong parent is judged no further, and where several joints in series share one contact only what
+holds for each of them is.
 """
 
 from __future__ import annotations

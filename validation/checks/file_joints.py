@@ -10,8 +10,8 @@ from kinematify.robot.joint_type import FREE_KINDS
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
 from kinematify.validation.checks.file_numbers import finite_numbers
+from kinematify.validation.document import shown
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.precheck.urdf import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.urdf_numbers import JointElement
     from kinematify.validation.check import OpenCheck
-    from kinematify.validation.precheck.urdf import Urdf
+    from kinematify.validation.document import Urdf
 
 _SINGLE = ("revolute", "continuous", "prismatic")
 _KNOWN = (*_SINGLE, "fixed", *FREE_KINDS)

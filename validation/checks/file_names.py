@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
+from kinematify.validation.document import shown
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.precheck.urdf import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.validation.check import OpenCheck
-    from kinematify.validation.precheck.urdf import Urdf
+    from kinematify.validation.document import Urdf
 
 _HARMFUL = re.compile(r"""[\s<>&"'/\\|*?:;,]""")
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")

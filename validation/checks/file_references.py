@@ -12,14 +12,14 @@ from kinematify.errors import DescriptionError
 from kinematify.robot.mesh_paths import MESH_SUFFIXES, find_mesh
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
+from kinematify.validation.document import shown
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.precheck.urdf import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kinematify.validation.check import OpenCheck
-    from kinematify.validation.precheck.urdf import Urdf
+    from kinematify.validation.document import Urdf
 
 _BY_ENGINES = (".obj", ".stl")
 _DRIVE = re.compile(r"[A-Za-z]:[\\/]")

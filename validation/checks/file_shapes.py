@@ -9,8 +9,8 @@ from lxml import etree
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
 from kinematify.validation.checks.file_numbers import finite_numbers
+from kinematify.validation.document import blame_of, shown
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.precheck.urdf import blame_of, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.validation.check import OpenCheck
-    from kinematify.validation.precheck.urdf import Urdf
+    from kinematify.validation.document import Urdf
 
 _SIZES = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length"), "capsule": ("radius", "length")}
 _KNOWN = ("mesh", *_SIZES)

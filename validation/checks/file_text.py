@@ -11,8 +11,8 @@ from lxml import etree
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.robot.urdf_text import has_doctype
 from kinematify.validation.check import check
+from kinematify.validation.document import shown
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.precheck.urdf import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.urdf_text import UrdfText
     from kinematify.validation.check import OpenCheck
-    from kinematify.validation.precheck.urdf import Urdf
+    from kinematify.validation.document import Urdf
 
 _CHILDREN = {
     "robot": {"link", "joint", "material", "transmission", "gazebo", "sensor"},

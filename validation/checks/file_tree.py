@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
+from kinematify.validation.document import shown
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.precheck.urdf import shown
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.urdf_numbers import JointElement
     from kinematify.validation.check import OpenCheck
-    from kinematify.validation.precheck.urdf import Urdf
+    from kinematify.validation.document import Urdf
 
 _SHOWN = 8
 

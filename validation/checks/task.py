@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.manipulation.request import Failure, Hold
+from kinematify.simulation.engines import engines_that_hold
 from kinematify.validation.check import FeedbackRow, check
 from kinematify.validation.finding import Blame, Severity
 
@@ -141,7 +142,7 @@ def jams(result: OpenCheck, task: RobotTask) -> None:
     fails="The plan fails in simulation",
     severity=Severity.ERROR,
     blame=Blame.TASK,
-    engines=("mujoco", "pybullet"),
+    engines=engines_that_hold(Hold.WELD),
 )
 def plan_fails(result: OpenCheck, task: RobotTask) -> None:
     """Joint servos track the plan with the hand welded to the part when the fingers have arrived; the joint ends at
@@ -163,7 +164,7 @@ def plan_fails(result: OpenCheck, task: RobotTask) -> None:
     fails="Friction alone does not hold",
     severity=Severity.NOTE,
     blame=Blame.TASK,
-    engines=("mujoco",),
+    engines=engines_that_hold(Hold.CONTACT),
 )
 def slips(result: OpenCheck, task: RobotTask) -> None:
     """The same with real contact: the fingers close with task.execution.grip_force, and nothing but friction

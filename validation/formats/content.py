@@ -15,15 +15,15 @@ from kinematify.errors import ExitStatus
 from kinematify.validation.check import FAMILIES
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Finding, Severity, Status
-from kinematify.validation.inferred import ROUND_HEADINGS, round_rows
-from kinematify.validation.outcome import counted_words, severity_counts, status_counts
+from kinematify.validation.run.inferred import ROUND_HEADINGS, round_rows
+from kinematify.validation.run.outcome import counted_words, severity_counts, status_counts
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
-    from kinematify.validation.causes import FindingGroup
     from kinematify.validation.finding import CheckResult
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.causes import FindingGroup
+    from kinematify.validation.run.report import ValidationReport
     from kinematify.validation.summary import JointSummary
 
 SHOWN_JOINTS = 4
@@ -183,7 +183,7 @@ def _candidate(better: Mapping[str, Any]) -> str:
 def title(told: CheckResult | Finding) -> str:
     """Id, title and engine of a check: what is wrong of a finding or a check that failed, else what should be."""
     failed = isinstance(told, Finding) or told.status is Status.FAIL
-    return _titled(told, CHECKS[told.check].fails) if failed else lasting_title(told)
+    return _titled(told.check, CHECKS[told.check].fails, told.engine) if failed else lasting_title(told)
 
 
 def follow_words(consequences: Iterable[Finding]) -> str:
@@ -197,11 +197,12 @@ def follow_words(consequences: Iterable[Finding]) -> str:
 
 def lasting_title(told: CheckResult | Finding) -> str:
     """Id, title and engine of a check, the same whatever became of it: names by which machines follow it over time."""
-    return _titled(told, CHECKS[told.check].title)
+    return _titled(told.check, CHECKS[told.check].title, told.engine)
 
 
-def _titled(told: CheckResult | Finding, title: str) -> str:
-    return f"{told.check} {title}{f' [{told.engine}]' if told.engine else ''}"
+def _titled(check: str, title: str, *engines: str | None) -> str:
+    names = ", ".join(dict.fromkeys(engine for engine in engines if engine))
+    return f"{check} {title}{f' [{names}]' if names else ''}"
 
 
 def family(check: str) -> str:
@@ -273,7 +274,7 @@ def block_of(group: Sequence[FindingGroup]) -> FindingBlock:
     return FindingBlock(
         findings=tuple(told.finding for told in group),
         severity=first.severity,
-        title=title(first),
+        title=_titled(first.check, CHECKS[first.check].fails, *(told.finding.engine for told in group)),
         blames=f"(blames {first.blame.value})",
         facts="; ".join(fact for fact in _facts(first) if fact),
         message=first.message,
@@ -286,18 +287,22 @@ def block_of(group: Sequence[FindingGroup]) -> FindingBlock:
     )
 
 
-def blocks(told: Iterable[FindingGroup], *, together: int = 2, alike: bool = True) -> list[FindingBlock]:
+def blocks(
+    told: Iterable[FindingGroup], *, together: int = 2, alike: bool = True, by_engine: bool = True
+) -> list[FindingBlock]:
     """Return a block for all findings that differ in names and numbers only, in the order of the first of each.
 
     Args:
         told: The findings.
         together: From so many on they share a block; fewer have one each.
         alike: False: all of one check, engine and severity that have a place share a block, whatever their words.
+        by_engine: False: those that have a place share it in all engines.
     """
     grouped: dict[tuple[object, ...], list[FindingGroup]] = {}
     for item in told:
         finding = item.finding
-        key = (finding.check, finding.engine, finding.severity, finding.blame, finding.suppressed)
+        engine = None if where(finding) and not by_engine else finding.engine
+        key = (finding.check, engine, finding.severity, finding.blame, finding.suppressed)
         words = _pattern(finding) if alike or not where(finding) else ""
         grouped.setdefault((*key, words), []).append(item)
     apart = ([group] if len(group) >= together else [[item] for item in group] for group in grouped.values())
@@ -318,7 +323,8 @@ def _facts(finding: Finding) -> tuple[str, ...]:
 
 def _others(group: Sequence[FindingGroup]) -> str:
     """Where else the same was found."""
-    named = list(dict.fromkeys(where(item.finding) for item in group[1:]))
+    _, *others = dict.fromkeys(where(item.finding) for item in group)
+    named = [place for place in others if place]
     more = len(named) - PLACES
     return "; ".join(named[:PLACES]) + (f" and {more} more" if more > 0 else "")
 

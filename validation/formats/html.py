@@ -26,16 +26,16 @@ from kinematify.validation.formats.content import (
 )
 from kinematify.validation.formats.html_frame import badge, page, table, text
 from kinematify.validation.formats.html_motion import curves, show_button, viewer
-from kinematify.validation.inferred import round_words
-from kinematify.validation.outcome import Unusable, severity_counts
+from kinematify.validation.run.inferred import round_words
+from kinematify.validation.run.outcome import Unusable, severity_counts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.validation.finding import Finding
     from kinematify.validation.formats.content import FindingBlock
-    from kinematify.validation.outcome import Outcome
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.outcome import Outcome
+    from kinematify.validation.run.report import ValidationReport
     from kinematify.validation.summary import PairSummary, PairTable
 
 _COUNTS = ("", "", "number", "number", "number", "number", "number")

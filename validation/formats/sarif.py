@@ -21,16 +21,16 @@ from kinematify.validation.formats.content import (
     title,
     where,
 )
-from kinematify.validation.outcome import Unusable
+from kinematify.validation.run.outcome import Unusable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.validation.causes import FindingGroup
     from kinematify.validation.check import Check
     from kinematify.validation.finding import Finding
-    from kinematify.validation.outcome import Outcome
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.causes import FindingGroup
+    from kinematify.validation.run.outcome import Outcome
+    from kinematify.validation.run.report import ValidationReport
 
 SARIF_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTE: "note"}

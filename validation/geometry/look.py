@@ -72,7 +72,7 @@ class GeometryContext:
         """The same of the visual geometry; None where the collision geometry is a copy of it."""
         if not self._compare_visible or not simplified(self.scene.model):
             return None
-        scene = read_scene(self.scene.model, self.scene.settings, visible_shapes)
+        scene = read_scene(self.scene.model, self.scene.settings, visible_shapes, solids=self.scene.solids)
         same = [body.group for body in scene.bodies] == [body.group for body in self.scene.bodies]
         return GeometryContext(scene, compare_visible=False) if same else None
 
@@ -195,7 +195,7 @@ class GeometryContext:
     @cached_property
     def _links_apart(self) -> Scene:
         """Every link in the frame of its body, for the names of places."""
-        return read_scene(self.scene.model, self.scene.settings, by_link=True)
+        return read_scene(self.scene.model, self.scene.settings, by_link=True, solids=self.scene.solids)
 
     @cached_property
     def _overlap_of_links(self) -> OverlapQueries:

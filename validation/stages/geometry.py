@@ -54,7 +54,7 @@ def run(request: StageRequest, recorder: Recorder) -> None:
         recorder.run(entry, look)
     if recorder.wants("KV604") and look.in_time():
         # The engines are given copies in which links without collision geometry collide by their visual one.
-        as_prepared = read_scene(model, request.settings.geometry) if scene.stand_ins else scene
+        as_prepared = read_scene(model, request.settings.geometry, solids=scene.solids) if scene.stand_ins else scene
         overlap = OverlapQueries(as_prepared) if scene.stand_ins else look.overlap
         write_poses(request.work, EXACT, exact_contacts(as_prepared, overlap, request.settings))
 

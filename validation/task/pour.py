@@ -12,6 +12,7 @@ from kinematify.manipulation.kinematics import Arm
 from kinematify.manipulation.pour import PourPlan, Vessel, plan_pour, read_vessel
 from kinematify.manipulation.request import Failure, Hold
 from kinematify.manipulation.robot import robot_of
+from kinematify.simulation.engines import ENGINES, engines_that_hold
 from kinematify.validation.finding import Severity
 
 if TYPE_CHECKING:
@@ -19,11 +20,7 @@ if TYPE_CHECKING:
     from kinematify.validation.check import OpenCheck
     from kinematify.validation.stage import StageRequest
 
-_WHERE = {
-    ("mujoco", Hold.WELD): "in MuJoCo, with the hand welded to the cup",
-    ("pybullet", Hold.WELD): "in PyBullet, with the hand welded to the cup",
-    ("mujoco", Hold.CONTACT): "in MuJoCo, with fingers that hold by friction",
-}
+_HOLD = {Hold.WELD: "with the hand welded to the cup", Hold.CONTACT: "with fingers that hold by friction"}
 _MESSAGES = {
     Failure.NO_GRASP: "A gripper finds no hold on the cup. {words}",
     Failure.NO_REACH: "The arm does not take the cup to the container: {words}.",
@@ -114,7 +111,7 @@ class PourTask:
         result.measured.update({"share": execution.share, "depth": execution.depth})
         if not execution.success:
             result.find(
-                f"The pouring fails {_WHERE[engine, hold]}: {execution.reason}.",
+                f"The pouring fails in {ENGINES[engine].title}, {_HOLD[hold]}: {execution.reason}.",
                 "Check masses and collision geometry of the cup; the plan itself is free of collisions.",
                 value=execution.share,
                 limit=self.settings.execution.opened,
@@ -129,7 +126,7 @@ class PourTask:
 
     def tell_films(self, result: OpenCheck) -> None:
         """Film the first execution and add the name of the film."""
-        known = [engine for engine, _ in _WHERE if engine in self.request.task_engines]
+        known = [engine for engine in engines_that_hold(Hold.WELD) if engine in self.request.task_engines]
         if self.task.films is None or self.world is None or not known:
             result.skip(_NOT_PULLED)
             return

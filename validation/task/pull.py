@@ -24,7 +24,8 @@ from kinematify.manipulation.request import Failure, Hold
 from kinematify.manipulation.robot import robot_of
 from kinematify.manipulation.sizes import sizing, write_scaled
 from kinematify.robot.read import read_robot
-from kinematify.validation.checks import CHECKS
+from kinematify.simulation.engines import ENGINES
+from kinematify.validation.check import REGISTRY
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
@@ -42,7 +43,6 @@ OBJECT_FILE = "object.urdf"
 LEEWAY = 20.0
 """Before the deadline no more work is begun, so that what is known can be told [s]."""
 _FILM_SECONDS = 15.0  # a film is begun only with so much time left [s]
-_ENGINE = {"mujoco": "MuJoCo", "pybullet": "PyBullet"}
 _HOLD = {Hold.WELD: "with the hand welded to the part", Hold.CONTACT: "with fingers that hold by friction"}
 
 
@@ -225,7 +225,7 @@ class PullTask:
             Failure.JAMS: f"{plan.joint} jams at {plan.free:.0%} of its range, whoever pulls: {plan.words}.",
         }
         assert plan.failure is not None
-        message, blame, severity, remedy = messages[plan.failure], None, None, CHECKS[result.id].remedy
+        message, blame, severity, remedy = messages[plan.failure], None, None, REGISTRY[result.id].remedy
         if plan.failure is Failure.NO_WAY:
             severity = Severity.NOTE
         elif suspect is not None:
@@ -287,9 +287,9 @@ class PullTask:
             result.measured[f"{joint} depth"] = execution.depth
             if not execution.success:
                 result.find(
-                    f"The plan for {joint} fails in {_ENGINE[execution.engine]}, {_HOLD[execution.hold]}: "
+                    f"The plan for {joint} fails in {ENGINES[execution.engine].title}, {_HOLD[execution.hold]}: "
                     f"{execution.reason}.",
-                    CHECKS[result.id].remedy,
+                    REGISTRY[result.id].remedy,
                     joint=joint,
                     value=execution.share,
                     limit=self.settings.execution.opened,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import time
@@ -29,6 +30,7 @@ from kinematify.evaluation.nightly.runs import (
     validation_scenario,
 )
 from kinematify.evaluation.nightly.store import (
+    BADGE_FILE,
     JUNIT_FILE,
     MODELS,
     PAGE_FILE,
@@ -121,6 +123,7 @@ def run_night(request: NightRequest, progress: Progress) -> NightResult:
             nights = (*nights, night)
         # The trends, then nothing of what was only needed to resume; all of it can be repeated after a kill.
         replace_text(request.out / PAGE_FILE, trend_page(nights[-request.settings.shown_nights :]))
+        replace_text(request.out / BADGE_FILE, json.dumps(nights[-1].badge) + "\n")
         shutil.rmtree(request.out / UNFINISHED, ignore_errors=True)
         none = () if baseline is not None else (_NO_BASELINE,)
         return NightResult(night=night, place=request.out / night.name, notices=(*warnings, *none))

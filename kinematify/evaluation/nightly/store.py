@@ -39,6 +39,7 @@ RUNS_FILE = "runs.jsonl"
 JUNIT_FILE = "junit.xml"
 PAGE_FILE = "index.html"
 BASELINE_FILE = "baseline.json"
+BADGE_FILE = "badge.json"
 MODELS = "models"
 """Folder of a night for the pages of its models."""
 UNFINISHED = ".unfinished"
@@ -68,6 +69,13 @@ class Night:
     def failed(self) -> bool:
         """True if a quality gate fails, against either night."""
         return any(change.gate for change in (*self.changes, *self.baseline_changes))
+
+    @property
+    def badge(self) -> dict[str, Any]:
+        """The verdict as an endpoint badge of shields.io reads it."""
+        problems = sum(change.gate for change in (*self.changes, *self.baseline_changes))
+        message, color = (f"{problems} worse", "red") if problems else ("passing", "brightgreen")
+        return {"schemaVersion": 1, "label": "nightly", "message": message, "color": color}
 
 
 @contextmanager

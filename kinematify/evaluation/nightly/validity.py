@@ -24,14 +24,14 @@ from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.content import where
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.picture import scene_of
-from kinematify.validation.outcome import severity_counts, status_counts
 from kinematify.validation.run import validate
+from kinematify.validation.run.outcome import severity_counts, status_counts
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from kinematify.validation.finding import CheckResult, Finding
-    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run.report import ValidationReport
 
 _OPENED = " opened"
 """After the name of a joint, in what KV705 measures."""

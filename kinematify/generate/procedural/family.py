@@ -53,10 +53,14 @@ class Family:
 class Values:
     """Parameters with their values, as a family reads them."""
 
-    def __init__(self, values: Mapping[str, Value], rng: np.random.Generator) -> None:
-        """Keep the values; `rng` is for decoration that has no parameter."""
+    def __init__(self, values: Mapping[str, Value], rng: np.random.Generator, *, drawn: bool = True) -> None:
+        """Keep the values; `rng` is for decoration that has no parameter, which is only `drawn` by a seed."""
         self._values = dict(values)
-        self.rng = rng
+        self.rng, self.drawn = rng, drawn
+
+    def value(self, name: str) -> Value:
+        """As it was given."""
+        return self._values[name]
 
     def number(self, name: str) -> float:
         """A length [m] or an angle [rad]."""
@@ -149,7 +153,7 @@ def build(family: Family, given: Mapping[str, Value], *, seed: int | None = None
     )
     far = {kind: float(values[key]) for kind, key in _FAR.items() if values[key]}
     # What opens at all is asked of the family by opening it; how far, is set on the joints.
-    family.build(Values({**values, "open": 1.0} if far else values, rng), workshop)
+    family.build(Values({**values, "open": 1.0} if far else values, rng, drawn=seed is not None), workshop)
     if not workshop.moves:
         counts = ", ".join(p.name for p in family.parameters if isinstance(p.default, int))
         raise InputError(f"Nothing of this {family.title} would move. Ask for one of {counts} at least.")

@@ -18,7 +18,12 @@ _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # ten times as fast, wh
 
 def read_table(path: Path) -> Any:
     """Return what a file of the package says: lists, mappings, texts and numbers."""
-    return yaml.load(path.read_text(encoding="utf-8"), Loader=_LOADER)
+    return parse_table(path.read_text(encoding="utf-8"))
+
+
+def parse_table(text: str) -> Any:
+    """Return what YAML of the package says."""
+    return yaml.load(text, Loader=_LOADER)
 
 
 Value = float | int | str

@@ -347,7 +347,7 @@ def motions_between(first: FloatArray, second: FloatArray, *, tolerance: float) 
     for start in _starts(first, second):
         if tree.query(start.points(first))[0].mean() > _START * tolerance:
             continue
-        motion, distance = _matched(first, second, tree, start)
+        motion, distance = matched(first, second, tree, start)
         if distance <= tolerance:
             found.append((distance, motion))
     kept: list[RigidMotion] = []
@@ -368,7 +368,7 @@ def _starts(first: FloatArray, second: FloatArray) -> list[RigidMotion]:
     return starts
 
 
-def _matched(first: FloatArray, second: FloatArray, tree: cKDTree, motion: RigidMotion) -> tuple[RigidMotion, float]:
+def matched(first: FloatArray, second: FloatArray, tree: cKDTree, motion: RigidMotion) -> tuple[RigidMotion, float]:
     """Match nearest points until they stay, mirrored or not as at the start; and their mean distance [m]."""
     sign = np.sign(np.linalg.det(motion.turn))
     for _ in range(_ROUNDS):

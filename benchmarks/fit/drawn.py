@@ -1,0 +1,57 @@
+"""Objects of the library as different people model them, for the fit: sizes are drawn, and a style of modelling."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.generate.blueprint_file import described_blueprint
+from kinematify.generate.described import SteppedDescription, library
+from kinematify.generate.library.builder import ModelingStyle
+from kinematify.robot.joint_type import JointType
+
+if TYPE_CHECKING:
+    from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
+    from kinematify.robot.arrays import FloatArray
+
+_SEEDS = "library 2"
+"""Namespace of the seeds: another one wherever the order of the draws changes."""
+DRAWN = tuple(sorted(name for name, item in library().items() if isinstance(item, SteppedDescription)))
+"""Names of the objects of the library that are written in steps."""
+
+
+def drawn_object(name: str, seed: int, style: ModelingStyle | None = None) -> Blueprint:
+    """Draw an object, turned about z by quarters and mirrored at random: no side is the front of everything.
+
+    Args:
+        name: Of `DRAWN`.
+        seed: Draws sizes, and the style where none is given.
+        style: How it is modelled.
+
+    Raises:
+        InputError: It cannot be built with what is drawn.
+    """
+    rng = np.random.default_rng([seed, zlib.crc32(f"{_SEEDS} {name}".encode())])
+    someone = ModelingStyle.drawn(rng)
+    described = library()[name]
+    assert isinstance(described, SteppedDescription), name
+    built = described_blueprint(described.description(style or someone, rng), source=f"object {name}")
+    turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    mirrored = bool(rng.random() < 0.5)
+    quarters = np.linalg.matrix_power(turn, int(rng.integers(4)))
+    placed: FloatArray = quarters @ np.diag([-1.0 if mirrored else 1.0, 1.0, 1.0])
+    parts = tuple(
+        replace(part, vertices=part.vertices @ placed.T, faces=part.faces[:, ::-1] if mirrored else part.faces)
+        for part in built.parts
+    )
+    return replace(built, parts=parts, joints=tuple(_seen(joint, placed, mirrored) for joint in built.joints))
+
+
+def _seen(joint: BlueprintJoint, placed: FloatArray, mirrored: bool) -> BlueprintJoint:
+    axis = placed @ joint.axis
+    # In a mirror, what turns to the left turns to the right.
+    turned_round = mirrored and joint.kind is not JointType.PRISMATIC
+    return replace(joint, axis=-axis if turned_round else axis, pivot=placed @ joint.pivot)

@@ -1,0 +1,629 @@
+"""What moves on an object, as the hand at work draws it: leaves, drawers, wheels, knobs, levers, rods.
+
+`out` is the direction in which a surface looks, a unit vector along an axis of the world.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.generate.library.shapes import (
+    X,
+    Y,
+    Z,
+    beam,
+    block,
+    box,
+    cone,
+    cylinder,
+    rod,
+    sphere,
+    torus,
+    tube,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.generate.library.builder import ObjectBuilder
+    from kinematify.generate.library.shapes import Point, Shape
+    from kinematify.robot.arrays import FloatArray
+
+
+def case(
+    d: ObjectBuilder,
+    name: str,
+    lower: Point,
+    upper: Point,
+    *,
+    opening: Point | None = None,
+    wall: float | None = None,
+    material: str = "wood",
+) -> None:
+    """A block, or for those who model walls a hollow box, open where `opening` points to."""
+    low, high = np.asarray(lower, dtype=np.float64), np.asarray(upper, dtype=np.float64)
+    size = high - low
+    thick = wall or 0.06 * float(size.min())
+    edge = 0.15 * thick
+    solid: Shape = box(low, high)
+    if d.style.rounded:
+        solid = {**solid, "kind": "rounded_box", "radius": edge}
+    d.part(name, solid, material=material)
+    if d.style.hollow and opening is not None:
+        out = np.asarray(opening)
+        d.cut(name, box(low + thick + np.minimum(2 * out * thick, 0), high - thick + np.maximum(2 * out * thick, 0)))
+
+
+def legs(d: ObjectBuilder, name: str, lower: Point, upper: Point, thick: float) -> None:
+    """Four legs at the corners of a box, square or round."""
+    (x0, y0, z0), (x1, y1, z1) = lower, upper
+    h = 0.5 * thick
+    for x in (x0 + h, x1 - h):
+        for y in (y0 + h, y1 - h):
+            foot, top = (x, y, z0), (x, y, z1)
+            d.part(name, cylinder(h, foot, top) if d.style.sides > 12 else beam(thick, thick, foot, top))
+
+
+def grip(d: ObjectBuilder, on: str, at: Point, out: FloatArray, along: FloatArray, length: float) -> None:
+    """A handle on a part: a bar on posts, a block or a knob; apart or none where the hand makes it so."""
+    if d.style.grips == "none":
+        return
+    at = np.asarray(at, dtype=np.float64)
+    thick = 0.12 * length
+    kind = d.pick("bar", "block", "knob", "plate")
+    high = d.draw(1.5, 3.0) * thick
+    half = 0.5 * length * along
+    if kind == "bar":
+        top = at + high * out
+        shapes = [cylinder(0.5 * thick, top - half, top + half)]
+        shapes += [cylinder(0.4 * thick, at + s * 0.8 * half, top + s * 0.8 * half) for s in (-1.0, 1.0)]
+    elif kind == "block":
+        shapes = [beam(thick, high, at + 0.5 * high * out - half, at + 0.5 * high * out + half, out)]
+    elif kind == "knob":
+        shapes = [cylinder(0.6 * thick, at, at + high * out), sphere(thick, at + high * out)]
+    else:
+        across = np.cross(out, along)
+        shapes = [
+            beam(0.2 * thick, high, at + 0.5 * high * out - half, at + 0.5 * high * out + half, out),
+            beam(thick, 0.25 * thick, at + high * out - half, at + high * out + half, out),
+        ]
+        shapes[1]["xyz"] = np.add(shapes[1]["xyz"], 0.4 * thick * across).tolist()
+    if d.style.grips == "apart":
+        d.fix(d.part(f"{on}_grip", *shapes, material="metal"), on)
+    else:
+        d.part(on, *shapes)
+
+
+def leaf(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    lower: Point,
+    upper: Point,
+    *,
+    hinge: FloatArray,
+    out: FloatArray,
+    reach: float = 1.6,
+    handle: bool = True,
+    material: str = "wood",
+) -> None:
+    """A door, lid or flap: a plate between two corners, hinged at the edge that `hinge` points to, opening outward.
+
+    The plate may lie on a front or be let into it.
+    """
+    low, high = np.minimum(lower, upper), np.maximum(lower, upper)
+    along = np.abs(np.cross(hinge, out))
+    across = np.abs(np.asarray(hinge))
+    wide = float((high - low) @ across)
+    gap = d.gap(float(min(wide, (high - low) @ along)))
+    low, high = low + gap * (along + across), high - gap * (along + across)
+    thick = float((high - low) @ np.abs(out))
+    d.part(name, box(low, high), material=material)
+    middle = 0.5 * (low + high)
+    edge = middle + 0.5 * float((high - low) @ across) * hinge
+    pivot = edge + (d.style.line - 0.5) * thick * out
+    if d.style.barrels:
+        pivot = edge + (0.5 * thick) * out
+        radius = min(0.6 * thick, 0.03 * wide)
+        length = float((high - low) @ along)
+        for share in (-0.3, 0.3):
+            at = pivot + share * length * along
+            d.part(d.pick(name, name, parent), cylinder(radius, at - 0.06 * length * along, at + 0.06 * length * along))
+    if handle:
+        where = middle - 0.38 * wide * hinge + 0.5 * thick * out
+        grip(d, name, where, out, d.pick(along, along, across), min(0.25 * wide, 0.15))
+    d.hinge(name, parent, np.cross(out, hinge), pivot, reach)
+
+
+def drawer(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    lower: Point,
+    upper: Point,
+    *,
+    out: FloatArray,
+    travel: float = 0.75,
+    handle: bool = True,
+    material: str = "wood",
+) -> None:
+    """A drawer in the bay between two corners, which ends at the front; it comes out."""
+    low, high = np.minimum(lower, upper), np.maximum(lower, upper)
+    ahead, sides = np.abs(out), 1.0 - np.abs(out)
+    size = high - low
+    deep = float(size @ ahead)
+    least = float(size[sides > 0.5].min())
+    gap = d.gap(least)
+    d.bore(parent, box(low, high + 1e-3 * deep * out) if out.sum() > 0 else box(low + 1e-3 * deep * out, high))
+    middle = 0.5 * (low + high)
+    face = middle + 0.5 * deep * out
+    thick = min(0.03, 0.06 * deep)
+    reach = 0.5 * size * sides
+    lap = 0.02 * least * sides
+    front = face + (gap + thick) * out
+    d.part(name, box(face + gap * out - reach - lap, front + reach + lap), material=material)
+    if d.style.drawer != "front":
+        back = middle - (0.5 * deep - gap) * out
+        half = reach - gap * sides
+        d.part(name, box(back - half, face + (gap + 0.5 * thick) * out + half))
+        if d.style.drawer == "tray":
+            wall = 0.06 * least
+            inner = half - wall * sides
+            d.cut(name, box(back + wall * out - inner, face - wall * out + inner + 2.0 * wall * Z))
+    if handle:
+        flat = np.array([1.0, 1.0, 0.0]) * sides
+        along = flat / max(float(np.linalg.norm(flat)), 1e-9)
+        grip(d, name, front, out, along, min(0.35 * float(size @ along), 0.2))
+    d.slide(name, parent, out, travel * deep)
+
+
+def wheel(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    middle: Point,
+    radius: float,
+    wide: float,
+    out: FloatArray,
+    *,
+    axle: float = 0.0,
+    material: str = "rubber",
+) -> None:
+    """A wheel that spins about `out`; `axle` is how far the parent lies behind its inner face [m]."""
+    at = np.asarray(middle, dtype=np.float64)
+    inner, outer = at - 0.5 * wide * out, at + 0.5 * wide * out
+    if d.style.wheel == "disc":
+        d.part(name, cylinder(radius, inner, outer), material=material)
+    elif d.style.wheel == "tyre":
+        wire = min(0.5 * wide, 0.3 * radius)
+        d.part(
+            name,
+            torus(radius - wire, wire, at, out),
+            cylinder(radius - wire, at - 0.3 * wide * out, at + 0.3 * wide * out),
+        )
+    else:
+        d.part(name, tube(radius, 0.82 * radius, inner, outer), cylinder(0.22 * radius, inner, outer))
+        side = np.roll(out, 1)
+        up = np.cross(out, side)
+        for k in range(d.count(3, 6)):
+            angle = 2.0 * np.pi * k / 5
+            d.part(
+                name,
+                beam(
+                    0.5 * wide, 0.12 * radius, at, at + 0.9 * radius * (np.cos(angle) * side + np.sin(angle) * up), out
+                ),
+            )
+    if axle > 0.0:
+        stub = cylinder(0.15 * radius, inner - (axle + 0.02 * radius) * out, inner if d.style.has_bore else at)
+        if d.style.has_bore:
+            d.part(name, cylinder(0.15 * radius, inner - (axle - d.gap(radius)) * out, at))
+        else:
+            d.part(d.pick(parent, name), stub)
+    d.spin(name, parent, out, at)
+
+
+def knob(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    at: Point,
+    radius: float,
+    high: float,
+    out: FloatArray,
+    *,
+    reach: float | None = None,
+    material: str = "plastic",
+) -> None:
+    """A knob or dial on a surface; without `reach` [rad] it turns without end."""
+    at = np.asarray(at, dtype=np.float64)
+    gap = d.gap(radius)
+    foot = at + (gap - d.style.max_penetration * high) * out
+    top = at + high * out
+    side = np.roll(out, 1)
+    if d.style.has_bore:
+        deep = 0.6 * high
+        d.cut(parent, cylinder(0.3 * radius + 1.5 * gap, at - (deep + gap) * out, at + 0.05 * high * out))
+        d.part(name, cylinder(0.3 * radius, at - deep * out, top), material=material)
+        foot = at + gap * out
+    kind = d.style.knob
+    if kind == "bar":
+        d.part(
+            name, beam(0.4 * radius, high, 0.5 * (foot + top) - radius * side, 0.5 * (foot + top) + radius * side, out)
+        )
+        d.part(name, cylinder(0.55 * radius, foot, foot + 0.4 * (top - foot)))
+    elif kind == "ball":
+        d.part(name, cylinder(0.4 * radius, foot, top), sphere(0.8 * radius, top))
+    elif kind == "star":
+        arms = [np.cos(a) * side + np.sin(a) * np.cross(out, side) for a in np.arange(5) * 2 * np.pi / 5]
+        d.part(name, cylinder(0.5 * radius, foot, top))
+        d.part(
+            name,
+            *(beam(0.3 * radius, 0.6 * high, 0.5 * (foot + top), 0.5 * (foot + top) + radius * a, out) for a in arms),
+        )
+    else:
+        d.part(name, cylinder(radius, foot, top), material=material)
+    if kind == "pointer":
+        d.part(name, beam(0.12 * radius, 0.2 * high, top, top + 0.9 * radius * side, out))
+    if reach is None:
+        d.spin(name, parent, out, at)
+    else:
+        d.hinge(name, parent, out, at, reach)
+
+
+def button(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    at: Point,
+    size: tuple[float, float],
+    high: float,
+    out: FloatArray,
+    *,
+    is_round: bool = False,
+    material: str = "plastic",
+) -> None:
+    """A button of a width and a height that stands out of a surface and is pressed in."""
+    at = np.asarray(at, dtype=np.float64)
+    gap = d.gap(min(size))
+    deep = 0.8 * high if d.style.has_bore else d.style.max_penetration * high
+    low, high_end = at + (0.0 if deep else gap) * out - deep * out, at + high * out
+    if is_round:
+        d.bore(parent, cylinder(0.5 * size[0] + 1.5 * gap, at - (deep + high) * out, at + 0.05 * high * out))
+        d.part(name, cylinder(0.5 * size[0], low, high_end), material=material)
+    else:
+        wide, tall = _across(out, size)
+        half = 0.5 * (wide + tall)
+        d.bore(
+            parent,
+            box(at - half - gap * _ones(out) - (deep + high) * out, at + half + gap * _ones(out) + 0.05 * high * out),
+        )
+        d.part(name, box(low - half, high_end + half), material=material)
+    d.slide(name, parent, -out, 0.7 * high, ajar=False)
+
+
+def lever(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    at: Point,
+    out: FloatArray,
+    along: Point,
+    length: float,
+    *,
+    reach: float = 0.8,
+    lower: float = 0.0,
+    material: str = "metal",
+) -> None:
+    """A bar that lies along a surface and turns about its normal at one end, as a door handle does."""
+    at, direction = np.asarray(at, dtype=np.float64), np.asarray(along, dtype=np.float64)
+    thick = 0.12 * length
+    level = at + d.draw(1.0, 2.0) * thick * out
+    d.part(name, d.pick(rod, cylinder)(0.5 * thick, level, level + length * direction), material=material)
+    d.part(name, cylinder(0.45 * thick, at + (d.gap(thick) - (2.0 * thick if d.style.has_bore else 0.0)) * out, level))
+    d.bore(parent, cylinder(0.45 * thick + 1.5 * d.gap(thick), at - 2.5 * thick * out, at + 0.01 * thick * out))
+    d.hinge(name, parent, out, at, reach, lower)
+
+
+def arm(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    start: Point,
+    end: Point,
+    thick: float,
+    axis: FloatArray,
+    *,
+    lower: float = -1.0,
+    upper: float = 1.0,
+    material: str = "metal",
+    side: float | None = None,
+) -> None:
+    """A link of a chain that turns about `axis` at `start`: beside what carries it, or in it.
+
+    Args:
+        d: The object.
+        name: Of the link.
+        parent: What carries it.
+        start: Its joint [m].
+        end: Its other end [m].
+        thick: Of the bar [m].
+        axis: Of the joint.
+        lower: Limit [rad].
+        upper: Limit [rad].
+        material: Of the link.
+        side: How far beside the plane of the joint it lies, along the axis [m]; careful hands lay it beside its parent.
+    """
+    beside = (thick + d.gap(thick) if d.style.has_bore else 0.0) if side is None else side
+    a, b = np.asarray(start, dtype=np.float64) + beside * axis, np.asarray(end, dtype=np.float64) + beside * axis
+    half = 0.5 * thick * axis
+    kind = d.pick("beam", "beam", "rod", "plate")
+    if kind == "rod" and not d.style.has_bore:
+        d.part(name, rod(0.5 * thick, a, b), material=material)
+    else:
+        wide = thick if kind == "beam" else 1.4 * thick
+        d.part(name, beam(wide, 0.9 * thick, a, b, axis), material=material)
+        d.part(name, *(cylinder(0.5 * wide, p - 0.45 * thick * axis, p + 0.45 * thick * axis) for p in (a, b)))
+    if d.style.has_bore:
+        gap = d.gap(thick)
+        d.part(name, cylinder(0.2 * thick, a - 2.4 * half, a))
+        d.cut(parent, cylinder(0.2 * thick + 1.5 * gap, np.asarray(start) - 3.0 * half, np.asarray(start) + 3.0 * half))
+    elif d.style.barrels:
+        d.part(d.pick(name, parent), cylinder(0.2 * thick, a - 2.5 * half, a + 1.5 * half))
+    d.hinge(name, parent, axis, start, upper, lower)
+
+
+def plunger(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    start: Point,
+    end: Point,
+    radius: float,
+    *,
+    travel: float,
+    square: bool = False,
+    material: str = "metal",
+) -> None:
+    """A rod that slides along itself, from `end` inside its parent outward past `start`.
+
+    `start` lies outside and `end` inside; positive motion draws it out.
+    """
+    a, b = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
+    out = (a - b) / float(np.linalg.norm(a - b))
+    gap = d.gap(radius)
+    if square:
+        d.part(name, beam(2.0 * radius, 2.0 * radius, a, b), material=material)
+        d.bore(parent, beam(2.0 * (radius + gap), 2.0 * (radius + gap), a, b - gap * out))
+    else:
+        d.part(name, cylinder(radius, a, b), material=material)
+        d.bore(parent, cylinder(radius + 1.5 * gap, a, b - gap * out))
+    d.slide(name, parent, out, travel)
+
+
+def cap(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    at: Point,
+    radius: float,
+    high: float,
+    out: FloatArray,
+    *,
+    turns: bool,
+    material: str = "plastic",
+) -> None:
+    """A cap over a neck, which it turns about or is drawn off from."""
+    at = np.asarray(at, dtype=np.float64)
+    gap = d.gap(radius)
+    top = at + high * out
+    d.part(parent, cylinder(0.8 * radius, at - 0.1 * high * out, at + 0.75 * high * out))
+    d.part(name, cylinder(radius, at + gap * out, top), material=material)
+    if d.style.has_bore:
+        d.cut(name, cylinder(0.8 * radius + 1.5 * gap, at - high * out, at + 0.8 * high * out + gap * out))
+    if turns:
+        d.spin(name, parent, out, at)
+    else:
+        d.slide(name, parent, out, high)
+
+
+def rotor(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    at: Point,
+    out: FloatArray,
+    radius: float,
+    blades: int,
+    *,
+    wide: float = 0.15,
+    material: str = "plastic",
+) -> None:
+    """Blades about a hub in front of a surface."""
+    at = np.asarray(at, dtype=np.float64)
+    hub = 0.14 * radius
+    gap = d.gap(hub)
+    foot = at + (gap - d.style.max_penetration * hub) * out
+    d.part(name, cylinder(hub, foot, at + 1.6 * hub * out), material=material)
+    if d.maybe():
+        d.part(name, cone(hub, 0.2 * hub, at + 1.6 * hub * out, at + 2.6 * hub * out))
+    side = np.roll(out, 1)
+    tilt = d.draw(0.0, 0.5)
+    for angle in np.arange(blades) * 2.0 * np.pi / blades:
+        along = np.cos(angle) * side + np.sin(angle) * np.cross(out, side)
+        flat = np.cos(tilt) * out + np.sin(tilt) * np.cross(out, along)
+        middle = at + hub * out
+        d.part(name, beam(wide * radius, 0.3 * hub, middle + 0.5 * hub * along, middle + radius * along, flat))
+    d.spin(name, parent, out, at)
+
+
+def caster(d: ObjectBuilder, name: str, parent: str, top: Point, high: float) -> None:
+    """A fork that swivels below a point and a wheel in it."""
+    at = np.asarray(top, dtype=np.float64)
+    radius = 0.38 * high
+    wide = 0.5 * radius
+    axle = at + np.array([0.4 * radius, 0.0, -(high - radius)])
+    gap = d.gap(high)
+    fork = f"{name}_fork"
+    plate = at - 0.16 * high * Z
+    d.part(
+        fork,
+        cylinder(0.35 * radius, at - gap * Z, plate),
+        block(plate, (1.6 * radius, 1.8 * wide, 0.1 * high)),
+        material="steel",
+    )
+    if d.style.has_bore:
+        d.cut(parent, cylinder(0.2 * radius + 1.5 * gap, at - 0.1 * high * Z, at + 0.32 * high * Z))
+        d.part(fork, cylinder(0.2 * radius, at - 0.1 * high * Z, at + 0.3 * high * Z))
+    for side in (-1.0, 1.0):
+        leg = axle + side * 0.8 * wide * Y
+        d.part(fork, beam(0.5 * radius, 0.3 * wide, np.array([leg[0], leg[1], plate[2]]), leg - 0.3 * radius * Z, Y))
+    d.spin(fork, parent, Z, at)
+    d.part(name, cylinder(radius, axle - 0.45 * wide * Y, axle + 0.45 * wide * Y), material="rubber")
+    d.spin(name, fork, Y, axle)
+
+
+def crank(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    at: Point,
+    out: FloatArray,
+    length: float,
+    *,
+    spins: bool = True,
+    material: str = "metal",
+) -> None:
+    """A shaft out of a surface, an arm across and a grip at its end; the grip may be a part that turns."""
+    at = np.asarray(at, dtype=np.float64)
+    thick = 0.1 * length
+    along = np.roll(out, 1)
+    level = at + 0.35 * length * out
+    gap = d.gap(thick)
+    start = at - (0.3 * length if d.style.has_bore else -gap) * out
+    d.bore(parent, cylinder(0.5 * thick + 1.5 * gap, start - gap * out, at + 1e-3 * length * out))
+    d.part(
+        name,
+        cylinder(0.5 * thick, start, level),
+        beam(thick, 0.8 * thick, level - 0.6 * thick * along, level + length * along, out),
+        material=material,
+    )
+    foot = level + 0.9 * length * along + (0.4 * thick + gap) * out
+    handle = cylinder(0.7 * thick, foot, foot + 0.5 * length * out)
+    if spins and d.maybe(0.4):
+        d.part(f"{name}_grip", handle, material="wood")
+        d.spin(f"{name}_grip", name, out, foot)
+    else:
+        low = foot - (0.4 * thick + gap) * out
+        d.part(name, cylinder(0.7 * thick, low, foot + 0.5 * length * out))
+    d.spin(name, parent, out, at)
+
+
+def bail(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    start: Point,
+    end: Point,
+    high: float,
+    thick: float,
+    up: FloatArray,
+    *,
+    lower: float = -1.5,
+    upper: float = 1.5,
+    material: str = "metal",
+) -> None:
+    """A bow over the line from `start` to `end`, about which it swings."""
+    a, b = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
+    along = (b - a) / float(np.linalg.norm(b - a))
+    gap = d.gap(thick)
+    a, b = a - (0.5 * thick + gap) * along, b + (0.5 * thick + gap) * along
+    shape = cylinder if d.style.sides > 12 else lambda r, p, q: beam(2 * r, 2 * r, p, q)
+    r = 0.5 * thick
+    d.part(
+        name,
+        shape(r, a - 0.8 * thick * up, a + high * up),
+        shape(r, b - 0.8 * thick * up, b + high * up),
+        material=material,
+    )
+    d.part(name, shape(r, a + high * up - r * along, b + high * up + r * along))
+    if d.style.has_bore:
+        d.part(
+            name, cylinder(0.3 * thick, a, a + 1.5 * thick * along), cylinder(0.3 * thick, b, b - 1.5 * thick * along)
+        )
+        d.cut(parent, cylinder(0.3 * thick + 1.5 * gap, a, a + (1.5 * thick + gap) * along))
+        d.cut(parent, cylinder(0.3 * thick + 1.5 * gap, b, b - (1.5 * thick + gap) * along))
+    d.hinge(name, parent, along, 0.5 * (a + b), upper, lower)
+
+
+def axles(
+    d: ObjectBuilder, parent: str, xs: Sequence[float], half: float, radius: float, wide: float, axle: float
+) -> None:
+    """Pairs of wheels; the car drives along x, its sides are at y = -half and half."""
+    for i, x in enumerate(xs):
+        for s, side in ((-1.0, "right"), (1.0, "left")):
+            wheel(
+                d,
+                f"wheel_{i}_{side}",
+                parent,
+                (x, s * (half + axle + wide / 2), radius),
+                radius,
+                wide,
+                s * Y,
+                axle=axle,
+            )
+
+
+def in_fork(d: ObjectBuilder, name: str, parent: str, middle: Point, radius: float, wide: float, top: float) -> None:
+    """A wheel about x between two cheeks of its parent that come down from a height, without an axle."""
+    at = np.asarray(middle, dtype=np.float64)
+    play = max(d.pick(d.style.gap, 0.1 * wide, 0.3 * wide), 0.0005)
+    sheet = d.draw(0.15, 0.4) * wide
+    length = d.draw(0.3, 0.6) * radius
+    for s in (-1.0, 1.0):
+        x = at[0] + s * (wide / 2 + play)
+        d.part(
+            parent, box((x, at[1] - length, at[2] - d.draw(0.1, 0.5) * radius), (x + s * sheet, at[1] + length, top))
+        )
+    reach = wide / 2 + play + sheet
+    bridge = max(top - 0.3 * wide, at[2] + radius + play)
+    d.part(parent, box((at[0] - reach, at[1] - length, bridge), (at[0] + reach, at[1] + length, bridge + 0.3 * wide)))
+    wheel(d, name, parent, at, radius, wide, X)
+
+
+def pinned(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    shapes: Sequence[Sequence[Shape]],
+    r: float,
+    low: float,
+    high: float,
+    upper: float,
+    lower: float,
+) -> None:
+    """Two arms that cross at the origin, and a pin about z in both: of one of them, of its own, or not drawn."""
+    for arm_name, some in zip((parent, name), shapes, strict=True):
+        d.part(arm_name, *some, material="steel")
+    pin = cylinder(r, (0, 0, low), (0, 0, high))
+    kind = d.pick("merged", "apart", "none")
+    if kind != "none":
+        d.bore(name, cylinder(r + 1.5 * d.gap(2 * r) + 1e-5, (0, 0, low - 1), (0, 0, high + 1)))
+        if kind == "merged":
+            d.part(parent, pin)
+        else:
+            d.fix(d.part("pin", pin, material="steel"), parent)
+    d.hinge(name, parent, Z, (0, 0, 0), upper, lower, ajar=False)
+
+
+def _across(out: FloatArray, size: tuple[float, float]) -> tuple[FloatArray, FloatArray]:
+    """Vectors of a width and a height across `out`; upright surfaces have their height along z."""
+    if abs(out[2]) > 0.5:
+        return np.array([size[0], 0.0, 0.0]), np.array([0.0, size[1], 0.0])
+    flat = np.array([abs(out[1]), abs(out[0]), 0.0])
+    return size[0] * flat, np.array([0.0, 0.0, size[1]])
+
+
+def _ones(out: FloatArray) -> FloatArray:
+    return 1.0 - np.abs(out)

@@ -1,0 +1,45 @@
+"""Unit, heading, order and names of the input do not matter."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+import trimesh
+
+from benchmarks.studies.invariance import Change, changes, differences_of, differing
+from kinematify.assembly.load import load_assembly
+from kinematify.pipeline import infer
+from kinematify.pipeline.heading import heading_of, turned
+from tests.objects import BUILDERS
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.mark.parametrize("name", ["edge_door", "laptop", "parallel_gripper"])
+def test_tree_types_and_scaled_limits_are_the_same(name: str) -> None:
+    differences = differences_of(BUILDERS[name]().assembly, changes(37.0))
+    assert not any(differences.values()), differences
+
+
+def test_what_is_read_from_files_is_the_same_in_any_unit(tmp_path: Path) -> None:
+    assembly = BUILDERS["drawer"]().assembly
+    found = {}
+    for scale in (1.0, 1e-3, 1e3):
+        folder = tmp_path / str(scale)
+        folder.mkdir()
+        for part in assembly.parts:
+            trimesh.Trimesh(scale * part.vertices, part.faces, process=False).export(folder / f"{part.name}.stl")
+        found[scale] = infer(load_assembly(folder))
+    for scale in (1e-3, 1e3):
+        assert not differing(found[1.0], found[scale], Change(scale=scale))
+
+
+@pytest.mark.parametrize("degrees", [0.0, 10.0, -37.0, 44.9])
+def test_the_heading_is_that_of_the_walls(degrees: float) -> None:
+    assembly = BUILDERS["edge_door"]().assembly
+    given = turned(assembly, np.radians(degrees))
+    assert heading_of(given) == pytest.approx(np.radians(degrees), abs=1e-7)
+    assert heading_of(turned(given, -heading_of(given))) == 0.0

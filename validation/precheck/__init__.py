@@ -1,1 +1,0 @@
-"""Before any mesh is opened: is the file a URDF that engines may see?"""

@@ -1,0 +1,110 @@
+"""Which stage tells which checks, and in which order they run."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from kinematify.simulation.engines import ENGINES
+from kinematify.validation.checks import CHECKS, checks_of
+from kinematify.validation.isolation import Stage
+from kinematify.validation.stages import agreement, as_loaded, asset, engine, evidence, geometry, prepare, task
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Sequence
+
+    from kinematify.simulation.engines import EngineEntry
+    from kinematify.validation.check import Check
+
+CheckKey = tuple[str, str | None]
+"""Id of a check and the engine it runs in."""
+
+
+def asset_stage() -> Stage:
+    """Meshes and declared physics; what comes later needs readable meshes."""
+    imports = ("kinematify.validation.asset.bodies", "kinematify.validation.asset.mesh_look")
+    return Stage(
+        name="asset",
+        run=asset.run,
+        checks=keys(checks_of("KV15", "KV2")),
+        imports=imports,
+        library="trimesh.creation",  # for boxes, cylinders and spheres
+    )
+
+
+def later_stages(chosen: Sequence[str]) -> list[Stage]:
+    """Everything that moves the model, the longest first; engines that were not chosen are left out."""
+    stages = [
+        Stage(name="prepare", run=prepare.run, checks=(), imports=("kinematify.simulation.prepared",)),
+        Stage(
+            name="geometry",
+            run=geometry.run,
+            checks=keys(checks_of("KV30", "KV31", "KV32", "KV33")),
+            imports=("kinematify.validation.geometry.look", "kinematify.validation.geometry.exact_contacts"),
+        ),
+        Stage(
+            name="evidence",
+            run=evidence.run,
+            checks=keys(checks_of("KV34", "KV35")),
+            imports=tuple(f"kinematify.validation.evidence.{name}" for name in ("bodies", "case", "measure", "pins")),
+        ),
+    ]
+    for name in (name for name in chosen if ENGINES[name].prepared):
+        checks = tuple(key for key in keys(CHECKS.values()) if key[1] == name and not key[0].startswith(("KV7", "KV8")))
+        stages.append(
+            Stage(
+                name=name,
+                run=partial(engine.run, engine=name),
+                checks=checks,
+                after=("prepare",),
+                imports=("kinematify.validation.engine_context",),
+                library=_library(ENGINES[name]),
+            )
+        )
+    return stages
+
+
+def as_loaded_stages(chosen: Sequence[str]) -> list[Stage]:
+    """The untouched file in each engine; they come after the geometry, which tells how far every joint is free."""
+    return [
+        Stage(
+            name=f"{name} as loaded",
+            run=partial(as_loaded.run, engine=name),
+            checks=tuple(key for key in keys(checks_of("KV8")) if key[1] == name),
+            imports=("kinematify.validation.as_loaded_context",),
+            library=_library(ENGINES[name]),
+        )
+        for name in chosen
+        if any(name in check.engines for check in checks_of("KV8"))
+    ]
+
+
+def _library(engine: EngineEntry) -> str | None:
+    """What can be loaded once for all stages of an engine; none that may be missing."""
+    return None if engine.prints_when_loaded or engine.extra else engine.module
+
+
+def agreement_stage() -> Stage:
+    """Compares what the engines left; it comes after all of them, whether they ended well or not."""
+    checks = tuple(key for key in keys(checks_of("KV6")) if key[1] is None)
+    imports = ("kinematify.validation.engine_results",)
+    return Stage(name="agreement", run=agreement.run, checks=checks, imports=imports)
+
+
+def task_stage() -> Stage:
+    """A robot uses the object; it comes after all others, since it wants to know which joints they doubt."""
+    return Stage(name="task", run=task.run, checks=keys(checks_of("KV7")))
+
+
+def needed(stages: Sequence[Stage], selected: Collection[str]) -> list[Stage]:
+    """Return the stages that tell a selected check, with those that they come after; the agreement needs all."""
+    if any(check.id in selected for check in checks_of("KV6")):
+        return list(stages)
+    wanted = [stage for stage in stages if any(check in selected for check, _ in stage.checks)]
+    names = {stage.name for stage in wanted} | {name for stage in wanted for name in stage.after}
+    return [stage for stage in stages if stage.name in names]
+
+
+def keys(checks: Iterable[Check]) -> tuple[CheckKey, ...]:
+    """(id, engine) of every result that the checks give."""
+    return tuple((check.id, engine) for check in checks for engine in (check.engines or (None,)))

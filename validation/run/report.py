@@ -1,0 +1,160 @@
+"""The answer of `kinematify validate`: every check with its status, every finding, and a verdict."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from kinematify.errors import ExitStatus
+from kinematify.validation.checks import CHECKS
+from kinematify.validation.finding import Severity, Status
+from kinematify.validation.run.as_loaded import as_loaded_words
+from kinematify.validation.run.causes import group_by_cause
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.validation.finding import CheckResult, Finding
+    from kinematify.validation.run.causes import FindingGroup
+    from kinematify.validation.summary import JointCurve, JointSummary, PairTable
+
+SCHEMA = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class ValidationReport:
+    """The result for one model."""
+
+    model: str
+    """Path as it was given."""
+    checks: tuple[CheckResult, ...]
+    joints: tuple[JointSummary, ...] = ()
+    curves: tuple[JointCurve, ...] = ()
+    """As the engines drove the joints, those that ran."""
+    pairs: PairTable | None = None
+    """None if the exact geometry was not looked at."""
+    refinement: Mapping[str, Any] | None = None
+    """Rounds of `kinematify refine`, where their record stands beside the model."""
+    environment: Mapping[str, Any] = field(default_factory=dict)
+    """Versions, seed, settings, seconds, and ``interrupted`` if it is partial."""
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """All findings, the worst first, otherwise in the order of the checks."""
+        order = list(Severity)
+        found = [finding for check in self.checks for finding in check.findings]
+        return tuple(sorted(found, key=lambda finding: order.index(finding.severity)))
+
+    @property
+    def counted(self) -> tuple[Finding, ...]:
+        """Findings that are not suppressed."""
+        return tuple(finding for finding in self.findings if finding.suppressed is None)
+
+    @property
+    def told(self) -> tuple[FindingGroup, ...]:
+        """Findings that follow from no other, the worst first, each with what follows from it."""
+        return group_by_cause(self.findings)
+
+    @property
+    def verdict(self) -> str:
+        """``fail`` with an error, ``warn`` with a warning, else ``pass``; suppressed findings do not count."""
+        severities = {finding.severity for finding in self.counted}
+        if Severity.ERROR in severities:
+            return "fail"
+        return "warn" if Severity.WARNING in severities else "pass"
+
+    @property
+    def unfinished(self) -> tuple[CheckResult, ...]:
+        """Checks that time ran out for."""
+        return tuple(check for check in self.checks if check.unfinished)
+
+    @property
+    def as_loaded(self) -> str:
+        """How many joints move in the untouched file, by engine; empty if no engine loaded it."""
+        return as_loaded_words(self.checks)
+
+    @property
+    def exit_status(self) -> int:
+        """1 with an error, else 3 if a check was not finished, else 0."""
+        if self.verdict == "fail":
+            return ExitStatus.FAILURES
+        return ExitStatus.FAULT if self.unfinished else ExitStatus.FINE
+
+    def as_json(self) -> dict[str, Any]:
+        """The report as JSON values (design 2.3, schema 1); absent values and non-finite numbers are null."""
+        return {
+            "schema": SCHEMA,
+            "model": self.model,
+            "verdict": self.verdict,
+            "as_loaded": self.as_loaded or None,
+            "checks": [_check_json(check) for check in self.checks],
+            "findings": self._findings_json(),
+            "joints": [_joint_json(joint) for joint in self.joints],
+            "refinement": _plain(self.refinement),
+            "environment": _plain(self.environment),
+        }
+
+    def _findings_json(self) -> list[dict[str, Any]]:
+        place = {id(finding): number for number, finding in enumerate(self.findings)}
+        return [
+            _finding_json(finding) | {"follows_from": None if finding.cause is None else place[id(finding.cause)]}
+            for finding in self.findings
+        ]
+
+
+def _check_json(check: CheckResult) -> dict[str, Any]:
+    return {
+        "check": check.check,
+        "title": CHECKS[check.check].fails if check.status is Status.FAIL else CHECKS[check.check].title,
+        "engine": check.engine,
+        "status": check.status.value,
+        "reason": check.reason,
+        "seconds": round(check.seconds, 4),
+        "measured": _plain(check.measured),
+    }
+
+
+def _finding_json(finding: Finding) -> dict[str, Any]:
+    return {
+        "check": finding.check,
+        "severity": finding.severity.value,
+        "blame": finding.blame.value,
+        "joint": finding.joint,
+        "link": finding.link,
+        "pair": None if finding.pair is None else list(finding.pair),
+        "engine": finding.engine,
+        "q": _plain(finding.q),
+        "value": _plain(finding.value),
+        "limit": _plain(finding.limit),
+        "unit": finding.unit,
+        "message": finding.message,
+        "remedy": finding.remedy,
+        "line": finding.line,
+        "reproduction": finding.reproduction,
+        "suppressed": finding.suppressed,
+    }
+
+
+def _joint_json(joint: JointSummary) -> dict[str, Any]:
+    return {
+        "joint": joint.joint,
+        "type": joint.kind,
+        "declared_limits": _plain(joint.declared_limits),
+        "free_travel": _plain(joint.free_travel),
+        "best_alternative": _plain(joint.best_alternative),
+        "next_best": _plain(joint.next_best),
+    }
+
+
+def _plain(value: Any) -> Any:
+    """JSON values only; numbers that are not finite become null."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if hasattr(value, "items"):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    if hasattr(value, "tolist"):
+        return _plain(value.tolist())
+    return value
