@@ -1,16 +1,16 @@
 """What are answers about joints worth: recorded ones of a strong model, and those of simulated voters?
 
 Objects are inferred at rest from their parts alone. Counted are joints between the right two parts: wrong ones (type,
-direction by more than 5 deg, or line by more than 5 % of the object's diagonal) that an answer repairs, and right ones
-that it spoils, congruent parts that follow an answer included. Only the questions that `--vlm` asks by default are
-counted, unless a row says *all answers*. Recorded answers were given to the pictures and the text of the question
+direction by more than 5 deg, or line by more than 5 % of the object's diagonal) that an answer repairs, and right
+ones that it spoils, congruent parts that follow an answer included. Only the questions that `--vlm` asks by default
+are counted, unless a row says *all answers*. Recorded answers were given to the pictures and the text of the question
 alone. Objects are split into halves by a hash of their names; what a voter's record says is measured on one half and
-used on the other (*held-out*), on questions about generated objects (*known objects*, as `kinematify infer` does), or on all answers
-(*in-sample*). A simulated voter is right in a stated share of its answers and
-takes any other choice else; its record is ten simulated questions about known objects, as `kinematify infer` asks them
-once for each model. Answers with a confidence below `vision.least_confidence` count as unsure; that bound was chosen
-with all recorded answers in sight, and so were the other settings of the prior. The older form of question asked for type, direction and side in words; where these name motions
-among the options, they count as a choice of all of them.
+used on the other (*held-out*), on questions about generated objects (*known objects*, as `kinematify infer` does), or
+on all answers (*in-sample*). A simulated voter is right in a stated share of its answers and takes any other choice
+else; its record is ten simulated questions about known objects, as `kinematify infer` asks them once for each model.
+Answers with a confidence below `vision.least_confidence` count as unsure; that bound was chosen with all recorded
+answers in sight, and so were the other settings of the prior. The older form of question asked for type, direction
+and side in words; where these name motions among the options, they count as a choice of all of them.
 """
 
 from __future__ import annotations
@@ -281,11 +281,12 @@ def report(found: Report[Record]) -> list[str]:
     right, known = found.summary["screening"]
     objects = {row["object"] for row in rows}
     said = (
-        f"{len(objects)} objects, {len(rows)} joints, {len(wrong)} wrong, of which {offers} have the right motion "
-        f"among the options; {len(asked)} questions ({len(asked) / max(len(objects), 1):.1f} an object). The strong model "
-        f"answered {right} of {known} questions about known objects rightly."
+        f"{len(objects)} objects, {len(rows)} joints, {len(wrong)} wrong, of which {offers} have the right motion among "
+        f"the options; {len(asked)} questions ({len(asked) / max(len(objects), 1):.1f} an object). The strong model "
+        f"answered {right} of {known} questions about generated objects rightly."
     )
-    sets = [(name, str(counts[name, True]), str(counts[name, False])) for name in dict.fromkeys(r["set"] for r in rows)]
+    names = dict.fromkeys(row["set"] for row in rows)
+    sets = [(name, str(counts[name, True]), str(counts[name, False])) for name in names]
     return [
         explained(__doc__),
         said,
@@ -327,9 +328,7 @@ def _recorded_rows(
     found = []
     for title, record_of in records.items():
         chosen = {
-            _key(row): _after(
-                row, row["answers"][form]["named"], record_of[half_of(row["object"])].reliability(config)
-            )
+            _key(row): _after(row, row["answers"][form]["named"], record_of[half_of(row["object"])].reliability(config))
             for row in told
         }
         shown = " / ".join(dict.fromkeys(f"{item.right} of {item.asked}" for item in record_of))

@@ -174,7 +174,10 @@ def choose_again(
 
 def _spread(inference: Inference, answers: Mapping[int, Answer], shown: Shown) -> dict[int, tuple[int, Answer]]:
     """Which answer speaks of each joint, and about which joint it was given; twins that disagree count as unsure."""
-    found, least = {place: (place, answer) for place, answer in answers.items()}, inference.config.vision.least_confidence
+    found, least = (
+        {place: (place, answer) for place, answer in answers.items()},
+        inference.config.vision.least_confidence,
+    )
     for group in groups(inference):
         told = [place for place in group if place in answers and answers[place].counts(least)]
         if any(not _agree(inference, told[0], other, answers, shown) for other in told[1:]):

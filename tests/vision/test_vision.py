@@ -116,7 +116,10 @@ class Says:
 
     def ask(self, questions: Sequence[JointQuestion]) -> list[Answer]:
         self.seen += questions
-        return [Answer(choice=self._choice(question), confidence=self.confidence, reason="so it is") for question in questions]
+        return [
+            Answer(choice=self._choice(question), confidence=self.confidence, reason="so it is")
+            for question in questions
+        ]
 
     def _choice(self, question: JointQuestion) -> str:
         if isinstance(self.picks, str):
