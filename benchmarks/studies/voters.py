@@ -281,8 +281,8 @@ def report(found: Report[Record]) -> list[str]:
     right, known = found.summary["screening"]
     objects = {row["object"] for row in rows}
     said = (
-        f"{len(objects)} objects, {len(rows)} joints, {len(wrong)} wrong, of which {offers} have the right motion among "
-        f"the options; {len(asked)} questions ({len(asked) / max(len(objects), 1):.1f} an object). The strong model "
+        f"{len(objects)} objects, {len(rows)} joints, {len(wrong)} wrong; for {offers} of these the right motion is "
+        f"among the options. {len(asked)} questions ({len(asked) / max(len(objects), 1):.1f} an object). The strong model "
         f"answered {right} of {known} questions about generated objects rightly."
     )
     names = dict.fromkeys(row["set"] for row in rows)
@@ -322,7 +322,7 @@ def _recorded_rows(
     known = VoterRecord(right=screening[0], asked=screening[1])
     records = {
         "held-out": (halves[1], halves[0]),  # of an object of half 0 and of half 1
-        "known objects": (known, known),
+        **({"known objects": (known, known)} if form == _PICKS else {}),  # they were asked in this form alone
         "in-sample": (whole, whole),
     }
     found = []
