@@ -26,7 +26,7 @@ from benchmarks.browser import open_browser
 from benchmarks.study import Options, Study, explained
 from kinematify.errors import EnvironmentFault
 from kinematify.evaluation.record import grouped, table
-from kinematify.generate.request import from_text
+from kinematify.generate.sentence import from_text
 from kinematify.pipeline import infer, write_inference
 
 if TYPE_CHECKING:

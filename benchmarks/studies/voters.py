@@ -282,8 +282,8 @@ def report(found: Report[Record]) -> list[str]:
     objects = {row["object"] for row in rows}
     said = (
         f"{len(objects)} objects, {len(rows)} joints, {len(wrong)} wrong; for {offers} of these the right motion is "
-        f"among the options. {len(asked)} questions ({len(asked) / max(len(objects), 1):.1f} an object). The strong model "
-        f"answered {right} of {known} questions about generated objects rightly."
+        f"among the options. {len(asked)} questions ({len(asked) / max(len(objects), 1):.1f} an object). The strong "
+        f"model answered {right} of {known} questions about generated objects rightly."
     )
     names = dict.fromkeys(row["set"] for row in rows)
     sets = [(name, str(counts[name, True]), str(counts[name, False])) for name in names]

@@ -91,9 +91,12 @@ if TYPE_CHECKING:
 @click.option("--up", type=click.Choice(["auto", "y", "z"]), default="auto", help="Axis that points up in the parts.")
 @click.option("--scale", type=float, default=1.0, metavar="FACTOR", help="Metres per unit of the parts.")
 @click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder to make.")
-@click.option("--lenient", is_flag=True, help="Leave out what is not understood of a sentence, instead of refusing it.")
+@click.option("--strict", is_flag=True, help="Write nothing unless all that the sentence asks for is built.")
 @click.option("--infer", "inferred", is_flag=True, help="Find the joints again from the parts alone, and compare.")
 @collision_option
+@click.option(
+    "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
+)
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
 @click.option("--no-validation", is_flag=True, help="Leave out the verdict on the model; it is most of the time.")
@@ -120,9 +123,10 @@ def command(
     up: str,
     scale: float,
     out: Path | None,
-    lenient: bool,
+    strict: bool,
     inferred: bool,
     collision: str | None,
+    config: str,
     force: bool,
     no_preview: bool,
     no_validation: bool,
@@ -130,15 +134,16 @@ def command(
 ) -> int:
     """Build what a sentence, a category or a blueprint asks for, with its exact joints, and validate it.
 
-    What is asked for and cannot be built (an object, a part, a count, a side, a size, a colour) is named, and it ends
-    with 2; --lenient builds the rest.
+    What the sentence asks for and the object has not (a part, a count, a side, a size, a colour) is listed as "Not
+    built", and the command ends with 1; with --strict it writes nothing and ends with 2. An unknown object or a
+    contradiction ends with 2.
 
     OUT becomes a model folder: model.urdf, meshes/, preview.png, the verdict on the model in validation.html and
     validation.json, and what is known of it: truth.json (joints) and source.json (parameters). parts/ holds one mesh
     per part and nothing of the joints. With --infer they are found again from parts/ alone: inferred/ is the model
     folder of that, and how far it is from the exact one is said.
 
-    Ends with 1 if the model has an error, see `kinematify validate`.
+    Ends with 1, too, if the model has an error, see `kinematify validate`.
 
     Without --source nothing is downloaded: objects are put together from boards, hinges, slides and bearings by rules.
 
@@ -146,9 +151,6 @@ def command(
     model (llm) writes a blueprint, which is built, and what the validation finds goes back to it. The job is
     kept beside OUT (OUT.job): a call that was stopped goes on there, and pays for nothing twice.
     """
-    from kinematify.cli.generation import Generation
-    from kinematify.cli.provided import LanguageGeneration, ProvidedGeneration, ProvidedOptions, written_request
-
     if listing:
         _list(category, json_to)
         return 0
@@ -158,6 +160,9 @@ def command(
     if composed:
         raise click.UsageError("--compose belongs to --corpus. For one object, say it in --text.")
     if source is not None:
+        from kinematify.cli.provided import LanguageGeneration, ProvidedGeneration, ProvidedOptions
+        from kinematify.config import load_config
+
         if category is not None or settings or blueprint is not None:
             raise click.UsageError(
                 "--category, --set and --blueprint belong to objects built by rules. Leave --source out for those."
@@ -165,12 +170,13 @@ def command(
         asked = ProvidedOptions(
             text=text, images=images, source=source, command=program, time_limit=time_limit, budget=budget,
             rounds=rounds, record=record, replay=replay, resend=resend, up=up, scale=scale, seed=seed,
+            config=load_config(config),
         )  # fmt: skip
         place = _needed(out)
         if source == "llm":
             return _run(
                 LanguageGeneration(
-                    written_request(place), None, place, not no_preview, not no_validation, inferred, collision,
+                    None, None, place, not no_preview, not no_validation, inferred, collision, asked.config, strict,
                     options=asked,
                 ),
                 force,
@@ -188,29 +194,37 @@ def command(
         raise click.UsageError("A --blueprint says everything: --set and --seed have no effect. Leave them out.")
     if settings and text is not None:
         raise click.UsageError("--set belongs to --category. Say it in the text, or name the category instead.")
-    if lenient and text is None:
-        raise click.UsageError("--lenient is about the words of --text. Leave it out.")
+    if strict and text is None:
+        raise click.UsageError("--strict is about the words of --text. Leave it out.")
+    from kinematify.cli.generation import Generation
+    from kinematify.config import load_config
+
     generation = Generation(
-        _requested(text, category, settings, blueprint, lenient=lenient),
+        _requested(text, category, settings, blueprint),
         seed,
         _needed(out),
         preview=not no_preview,
         validated=not no_validation,
         inferred=inferred,
         collision=collision,
+        config=load_config(config),
+        strict=strict,
     )
     return _run(generation, force, json_to)
 
 
-def _requested(
-    text: str | None, category: str | None, settings: tuple[str, ...], blueprint: Path | None, *, lenient: bool
-) -> Requested:
-    from kinematify.generate.blueprint_file import WrittenBlueprint
-    from kinematify.generate.request import from_category, from_text
-
+def _requested(text: str | None, category: str | None, settings: tuple[str, ...], blueprint: Path | None) -> Requested:
     if blueprint is not None:
+        from kinematify.generate.blueprint_file import WrittenBlueprint
+
         return WrittenBlueprint(blueprint)
-    return from_text(text, lenient=lenient) if text is not None else from_category(category or "", _pairs(settings))
+    if text is not None:
+        from kinematify.generate.sentence import from_text
+
+        return from_text(text)
+    from kinematify.generate.request import from_category
+
+    return from_category(category or "", _pairs(settings))
 
 
 def _run(run: Generation | ProvidedGeneration, force: bool, json_to: str | None) -> int:

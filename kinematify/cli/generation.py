@@ -9,24 +9,13 @@ from typing import TYPE_CHECKING, Any, Protocol
 import click
 
 from kinematify.cli.inferred import describe_files, describe_joints
-from kinematify.cli.options import with_collision
-from kinematify.cli.report_files import ReportFiles
-from kinematify.cli.verdict import describe_briefly, say
+from kinematify.cli.options import say, with_collision
 from kinematify.config import load_config
-from kinematify.errors import ExitStatus
-from kinematify.evaluation.metrics import score_blueprint
+from kinematify.errors import ExitStatus, InputError
+from kinematify.generate.sentence import Made, Sentence
 from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
-from kinematify.model.preview import render_preview
-from kinematify.pipeline import infer
 from kinematify.pipeline.generate import INFERRED_FOLDER, PARTS_FOLDER, write_blueprint, write_parts
 from kinematify.pipeline.record import PREVIEW_FILE, write_inference_files
-from kinematify.simulation.engines import DEFAULT_ENGINES
-from kinematify.validation.finding import Severity
-from kinematify.validation.formats.picture import scene_of
-from kinematify.validation.isolation import start_server
-from kinematify.validation.run import validate
-from kinematify.validation.run.outcome import severity_counts
-from kinematify.validation.run.plan import as_loaded_stages, asset_stage, later_stages
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -48,21 +37,6 @@ class Requested(Protocol):
         """Its category."""
         ...
 
-    @property
-    def understood(self) -> tuple[str, ...]:
-        """Short phrases, for a sentence."""
-        ...
-
-    @property
-    def ignored(self) -> tuple[str, ...]:
-        """Words of a sentence that were left out."""
-        ...
-
-    @property
-    def unused(self) -> tuple[str, ...]:
-        """Words of a sentence that change nothing."""
-        ...
-
     def build(self, *, seed: int | None = None) -> Blueprint:
         """Build the object.
 
@@ -79,7 +53,8 @@ _INFERRED, _WRITTEN = 0.4, 0.6  # shares of the time at which these are done, fo
 class Generation:
     """What was asked for, and what has come of it so far."""
 
-    request: Requested
+    request: Requested | None
+    """None where a language model is asked."""
     seed: int | None
     out: Path
     preview: bool
@@ -88,7 +63,10 @@ class Generation:
     """Whether the joints are found again from the parts alone, beside the exact ones."""
     collision: str | None = None
     """``auto`` or ``mesh``; None: as the configuration says."""
-    blueprint: Blueprint = field(init=False)
+    config: Config = field(default_factory=load_config)
+    strict: bool = False
+    """Whether nothing is written unless all that is asked for is built."""
+    made: Made = field(init=False)
     model: KinematicModel = field(init=False)
     inference: Inference | None = None
     report: ValidationReport | None = None
@@ -97,16 +75,24 @@ class Generation:
         """Build the object, write it with its exact joints and validate that; infer them from its parts if asked to.
 
         Raises:
-            InputError: A parameter is out of its bounds.
+            InputError: A parameter is out of its bounds, or something is not built and `strict` is set.
             OutputError: The folder exists and must not be replaced, or cannot be written.
         """
         check_output(self.out, overwrite=overwrite)
-        self.blueprint = self.build(progress)
+        self.made = self.build(progress)
+        if self.strict and self.made.not_built:
+            raise InputError(f"{_not_built(self.made)}\nNothing is written; without --strict the rest is built.")
         if self.validated:
+            from kinematify.simulation.engines import DEFAULT_ENGINES
+            from kinematify.validation.isolation import start_server
+            from kinematify.validation.run.plan import as_loaded_stages, asset_stage, later_stages
+
             # Its imports take a second, on another core than the inference.
             start_server([asset_stage(), *later_stages(DEFAULT_ENGINES), *as_loaded_stages(DEFAULT_ENGINES)])
-        config = with_collision(load_config(), self.collision)
+        config = with_collision(self.config, self.collision)
         if self.inferred:
+            from kinematify.pipeline import infer
+
             self.inference = infer(
                 self.blueprint.assembly, config=config, progress=lambda stage, done: progress(stage, _INFERRED * done)
             )
@@ -115,19 +101,29 @@ class Generation:
         if self.validated:
             self._validate(lambda stage, done: progress(f"validation: {stage}", _WRITTEN + (1.0 - _WRITTEN) * done))
 
-    def build(self, progress: Reporter) -> Blueprint:
+    def build(self, progress: Reporter) -> Made:
         """Build what is asked for.
 
         Raises:
             InputError: A parameter is out of its bounds.
         """
         del progress
-        return self.request.build(seed=self.seed)
+        assert self.request is not None, "who asks no language model has a request"
+        if isinstance(self.request, Sentence):
+            return self.request.made(seed=self.seed)
+        return Made(blueprint=self.request.build(seed=self.seed))
+
+    @property
+    def blueprint(self) -> Blueprint:
+        """What was built."""
+        return self.made.blueprint
 
     def _write(self, folder: Path, config: Config) -> None:
-        self.model = write_blueprint(self.blueprint, folder, config)
+        self.model = write_blueprint(self.blueprint, folder, config, facts=self.made.facts)
         write_parts(self.blueprint, folder / PARTS_FOLDER)
         if self.preview:
+            from kinematify.model.preview import render_preview
+
             render_preview(self.model, folder / PREVIEW_FILE, config.preview)
         if self.inference is not None:
             (folder / INFERRED_FOLDER).mkdir()
@@ -138,8 +134,8 @@ class Generation:
 
     @property
     def exit_status(self) -> int:
-        """1 if the model has an error, 130 if the validation was interrupted, else 0."""
-        return status_of(self.report)
+        """1 if the model has an error or something is not built, 130 if the validation was interrupted, else 0."""
+        return status_of(self.report) or (ExitStatus.FAILURES if self.made.not_built else 0)
 
     @property
     def answer(self) -> dict[str, Any]:
@@ -147,11 +143,10 @@ class Generation:
         return {
             "schema": 1,
             "out": str(self.out),
-            "category": self.request.family,
+            "category": self.blueprint.family,
             "parameters": dict(self.blueprint.parameters),
-            "understood": list(self.request.understood),
-            "ignored": list(self.request.ignored),
-            "unused": list(self.request.unused),
+            "understood": self.made.specification and self.made.specification.as_json(),
+            "not_built": list(self.made.not_built),
             "validation": summary_of(self.report),
             "accuracy": None if self.inference is None else _accuracy(self.score(self.inference)),
         }
@@ -161,7 +156,7 @@ class Generation:
         if quiet:
             return
         blocks = [
-            _understood(self.request),
+            _understood(self.made),
             f"Base: {self.model.root}\n\n{describe_joints(self.model.joints)}",
             "\n".join(describe_files(self.out)),
             verdict_on(self.report, self.out),
@@ -169,16 +164,23 @@ class Generation:
         if self.inference is not None:
             score = _describe_score(self.score(self.inference))
             blocks.append(f"Inferred from the parts alone: {self.out / INFERRED_FOLDER / MODEL_FILE}\n{score}")
+        blocks.append(_not_built(self.made))
         say("\n\n".join(block for block in blocks if block))
         warn_if_interrupted(self.report)
 
     def score(self, inference: Inference) -> ObjectScore:
         """Compare with the joints that the object was built with."""
+        from kinematify.evaluation.metrics import score_blueprint
+
         return score_blueprint(self.blueprint, inference)
 
 
 def validated(out: Path, *, preview: bool, progress: Reporter) -> ValidationReport:
     """Validate the model of a folder and write the reports into it; the picture goes into the page if there is one."""
+    from kinematify.cli.report_files import ReportFiles
+    from kinematify.validation.formats.picture import scene_of
+    from kinematify.validation.run import validate
+
     report = validate(out / MODEL_FILE, workers=os.cpu_count() or 1, progress=progress)
     pictures = {report.model: (out / PREVIEW_FILE).read_bytes()} if preview else {}
     files = ReportFiles(json=str(out / "validation.json"), junit=None, sarif=None, html=out / "validation.html")
@@ -197,6 +199,8 @@ def verdict_on(report: ValidationReport | None, out: Path) -> str:
     """What a user reads of a validation, or how to get one."""
     if report is None:
         return f"Not validated; kinematify validate {out / MODEL_FILE} does that."
+    from kinematify.cli.verdict import describe_briefly
+
     return f"{describe_briefly(report)}\n{out / 'validation.html'}: every check, with remedies"
 
 
@@ -210,6 +214,9 @@ def summary_of(report: ValidationReport | None) -> dict[str, Any] | None:
     """The verdict as JSON values."""
     if report is None:
         return None
+    from kinematify.validation.finding import Severity
+    from kinematify.validation.run.outcome import severity_counts
+
     counts = severity_counts(report)
     return {
         "verdict": report.verdict,
@@ -219,13 +226,17 @@ def summary_of(report: ValidationReport | None) -> dict[str, Any] | None:
     }
 
 
-def _understood(request: Requested) -> str:
-    lines = [f"Understood: {', '.join(request.understood)}."] if request.understood else []
-    if request.unused:
-        lines.append(f"Of no effect on shape or motion: {', '.join(request.unused)}.")
-    if request.ignored:
-        lines.append(f"Not understood, and left out: {', '.join(request.ignored)}.")
+def _understood(made: Made) -> str:
+    if made.specification is None:
+        return ""
+    lines = [f"Understood: {made.specification}."]
+    if made.specification.harmless:
+        lines.append(f"Of no effect on shape or motion: {', '.join(made.specification.harmless)}.")
     return "\n".join(lines)
+
+
+def _not_built(made: Made) -> str:
+    return f"Not built: {'; '.join(made.not_built)}" if made.not_built else ""
 
 
 def _accuracy(score: ObjectScore) -> dict[str, Any]:

@@ -11,31 +11,37 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.assembly.load import load_assembly
+from kinematify.cli.blueprint_feedback import in_blueprint_words
 from kinematify.cli.generation import Generation, status_of, summary_of, validated, verdict_on, warn_if_interrupted
 from kinematify.cli.inferred import describe
-from kinematify.cli.options import with_collision
-from kinematify.cli.verdict import say
-from kinematify.config import load_config
-from kinematify.generate.blueprint_file import WrittenBlueprint
+from kinematify.cli.options import say, with_collision
+from kinematify.errors import InputError
+from kinematify.generate.blueprint_file import read_blueprint
+from kinematify.generate.procedural.language.compare import compare
+from kinematify.generate.procedural.language.parse import parse_any
 from kinematify.generate.providers.command import CommandSource
 from kinematify.generate.providers.job import open_job
-from kinematify.generate.providers.language_model import BLUEPRINT_FILE, LanguageModel, language_model
+from kinematify.generate.providers.judge import drawn_findings
+from kinematify.generate.providers.language_model import LanguageModel, examples_for, language_model
 from kinematify.generate.providers.rodin import RodinSource
 from kinematify.generate.providers.source import RecordingSource, ReplayedSource, check_prompt
+from kinematify.generate.sentence import Made, from_text, kinds_of_object
 from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
 from kinematify.pipeline import infer
 from kinematify.pipeline.generate import write_blueprint
 from kinematify.pipeline.record import write_inference_files
-from kinematify.validation.finding import Severity
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from kinematify.cli.progress import Reporter
+    from kinematify.config import Config
     from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.procedural.language.specification import Specification
+    from kinematify.generate.providers.job import PaidJob
     from kinematify.generate.providers.language_model import Written
-    from kinematify.generate.providers.source import Generated, PartSource
+    from kinematify.generate.providers.source import Generated, PartSource, Prompt
     from kinematify.pipeline import Inference
     from kinematify.validation.run.report import ValidationReport
 
@@ -60,6 +66,7 @@ class ProvidedOptions:
     up: str
     scale: float
     seed: int | None
+    config: Config
 
     def part_source(self) -> PartSource:
         """The generator that was asked for.
@@ -86,7 +93,7 @@ class ProvidedOptions:
         if self.command is not None or self.seed is not None:
             raise click.UsageError("--command and --seed mean nothing to a language model. Leave them out.")
         asked = {"rounds": self.rounds, "answer_seconds": self.time_limit}
-        settings = load_config().sources.language_model.model_copy(
+        settings = self.config.sources.language_model.model_copy(
             update={name: value for name, value in asked.items() if value is not None}
         )
         return language_model(settings, budget=self.budget, record=self.record, replay=self.replay)
@@ -96,7 +103,7 @@ class ProvidedOptions:
             raise click.UsageError("--record and --replay exclude each other.")
 
     def _plain_source(self) -> PartSource:
-        settings = load_config().sources
+        settings = self.config.sources
         if self.source == "command":
             if self.command is None:
                 raise click.UsageError("--source command needs --command 'program {image} {out}'.")
@@ -140,7 +147,7 @@ class ProvidedGeneration:
         """
         check_output(self.out, overwrite=overwrite)
         self._make_parts(lambda stage, done: progress(stage, _MADE * done))
-        config = with_collision(load_config(), self.collision)
+        config = with_collision(self.options.config, self.collision)
         progress("reading the parts", _MADE)
         given = load_assembly(
             self.generated.path, config=config.assembly, up=self.options.up, scale=self.options.scale,
@@ -201,19 +208,19 @@ class ProvidedGeneration:
         warn_if_interrupted(self.report)
 
 
-_MOST_FINDINGS = 10  # that are told in one round
-
-
 @dataclass
 class LanguageGeneration(Generation):
-    """As for what a file describes, once the model has written the file."""
+    """A request that a language model translates into words of the library, or designs."""
 
     options: ProvidedOptions = field(kw_only=True)
     model_asked: LanguageModel = field(init=False)
-    written: Written = field(init=False)
+    rounds: int = 0
+    tokens: int = 0
+    written: Written | None = None
+    """The blueprint, where the library has no such object."""
 
-    def build(self, progress: Reporter) -> Blueprint:
-        """Let the model write, and mend what the validation finds.
+    def build(self, progress: Reporter) -> Made:
+        """Let the model translate, or else write and correct a blueprint; compare what is built with the request.
 
         Raises:
             InputError: See `LanguageModel.write`.
@@ -221,44 +228,81 @@ class LanguageGeneration(Generation):
         """
         self.model_asked = self.options.language_model()
         prompt = check_prompt(self.options.text, self.options.images, seed=0)
+        asked = parse_any(prompt.text) if prompt.text else None
         with open_job(job_folder(self.out), "llm", prompt.digest(self.model_asked.options())) as job:
             if self.options.resend:
                 job.resend()
-            self.written = self.model_asked.write(prompt, job, self._findings, progress)
-        facts = {
-            "source": "llm",
-            "model": self.model_asked.model,
-            "text": self.options.text,
-            "rounds": self.written.rounds,
-        }
-        return replace(super().build(progress), parameters=facts)
+            made = None if asked is None or prompt.images else self._translated(asked, prompt, job, progress)
+            if made is None or made.not_built:
+                made = self._designed(asked, prompt, job, progress, made)
+        facts = {"source": "llm", "model": self.model_asked.model, "text": self.options.text, "rounds": self.rounds}
+        return replace(made, blueprint=replace(made.blueprint, parameters={**made.blueprint.parameters, **facts}))
+
+    def _translated(self, asked: Specification, prompt: Prompt, job: PaidJob, progress: Reporter) -> Made | None:
+        """The object of the library that the model names; None if there is none."""
+        found = self.model_asked.translate(prompt, job, kinds_of_object(), progress)
+        self.tokens = found.tokens
+        if not found.sentence:
+            return None
+        try:
+            sentence = from_text(found.sentence)
+            made = sentence.made()
+        except InputError:
+            return None
+        missing = compare(asked, made.blueprint, sentence.plan.nouns).missing
+        listed = (*found.unmapped, *made.not_built, *map(str, missing))
+        return replace(made, not_built=tuple(dict.fromkeys(listed)))
+
+    def _designed(
+        self, asked: Specification | None, prompt: Prompt, job: PaidJob, progress: Reporter, other: Made | None
+    ) -> Made:
+        """The blueprint that the model writes; what the library has instead, if that comes nearer to the request.
+
+        Raises:
+            InputError: Nothing can be built.
+        """
+
+        def judged(blueprint: Blueprint, nouns: Mapping[str, tuple[str, ...]]) -> Sequence[str]:
+            missing = () if asked is None else compare(asked, blueprint, nouns).missing
+            unmet = [
+                f"Asked for and not built: {item}. Add it, and name its part under requirements." for item in missing
+            ]
+            return [*unmet, *drawn_findings(blueprint), *self._findings(blueprint)]
+
+        try:
+            self.written = self.model_asked.write(
+                prompt, job, judged, progress, examples=examples_for(prompt.text or ""), spent=self.tokens
+            )
+        except InputError:
+            if other is None:
+                raise
+            return other
+        self.rounds, self.tokens = self.written.rounds, self.written.tokens
+        blueprint = read_blueprint(self.written.path)
+        missing = () if asked is None else compare(asked, blueprint, self.written.nouns).missing
+        made = Made(blueprint=blueprint, specification=asked, not_built=tuple(dict.fromkeys(map(str, missing))))
+        return made if other is None or len(made.not_built) <= len(other.not_built) else other
 
     def _findings(self, blueprint: Blueprint) -> Sequence[str]:
-        """What the validation holds against the model of a blueprint; nothing where it is left out."""
+        """What the validation holds against the model of a blueprint; nothing without validation."""
         if not self.validated:
             return ()
         with TemporaryDirectory() as folder:
-            write_blueprint(blueprint, Path(folder), load_config())
+            write_blueprint(blueprint, Path(folder), self.config)
             report = validate(Path(folder, MODEL_FILE), workers=os.cpu_count() or 1)
-        errors = [item for item in report.counted if item.severity is Severity.ERROR]
-        return [f"{item.message} {item.remedy}" for item in errors[:_MOST_FINDINGS]]
+        return in_blueprint_words(report.counted)
 
     @property
     def answer(self) -> dict[str, Any]:
         """Everything as JSON values."""
-        facts = {"rounds": self.written.rounds, "tokens": self.written.tokens, "blueprint": str(self.written.path)}
+        path = None if self.written is None else str(self.written.path)
+        facts = {"rounds": self.rounds, "tokens": self.tokens, "blueprint": path}
         return {**super().answer, "language_model": facts}
 
     def say(self, *, quiet: bool) -> None:
         """Tell the user; nothing if a machine reads stdout."""
         if not quiet:
-            say(
-                f"Written by {self.model_asked.model} in {self.written.rounds} rounds, {self.written.tokens} tokens: "
-                f"{self.written.path}\n"
-            )
+            by = f"by {self.model_asked.model}, {self.tokens} tokens"
+            where = "" if self.written is None else f" in {self.rounds} rounds: {self.written.path}"
+            say(f"{'Translated' if self.written is None else 'Written'} {by}{where}\n")
         super().say(quiet=quiet)
-
-
-def written_request(out: Path) -> WrittenBlueprint:
-    """What the model is going to write."""
-    return WrittenBlueprint(job_folder(out) / BLUEPRINT_FILE)

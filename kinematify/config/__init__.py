@@ -25,7 +25,7 @@ from kinematify.config.joints import (
     RockersConfig,
     SweepConfig,
 )
-from kinematify.config.output import CollisionConfig, DynamicsConfig, ModelConfig, PreviewConfig
+from kinematify.config.output import CollisionConfig, DynamicsConfig, LinkageConfig, ModelConfig, PreviewConfig
 from kinematify.config.services import RodinConfig, ServiceConfig, SourcesConfig, VisionConfig
 from kinematify.config.shapes import (
     AssemblyConfig,
@@ -61,6 +61,7 @@ __all__ = [
     "JournalConfig",
     "KindConfig",
     "LimitsConfig",
+    "LinkageConfig",
     "ModelConfig",
     "NeuralSdfConfig",
     "PanelsConfig",
@@ -102,6 +103,7 @@ class Config(StageConfig):
     model: ModelConfig = section()
     collision: CollisionConfig = section()
     dynamics: DynamicsConfig = section()
+    linkages: LinkageConfig = section()
     preview: PreviewConfig = section()
     joints: JointsConfig = section()
     topology: TopologyConfig = section()

@@ -44,6 +44,19 @@ class ModelConfig(StageConfig):
     """Longer model names are cut [characters]."""
 
 
+class LinkageConfig(StageConfig):
+    """Closed chains of the model that is written."""
+
+    parallel_deg: float = 3.0  # axes of fitted bearings are off by 0.02 deg in the median, rough pins by 1 or 2
+    """Axes of a chain that differ by less are made parallel [deg]."""
+    exact: float = 5.0e-4  # half of what a closed loop may open
+    """Joints follow by a fixed multiple where no pin opens by more."""
+    mimic_deg: float = 1.0  # the gap decides; this only finds the multiple
+    """How far a joint may be from a fixed multiple [deg]."""
+    least: float = 0.02  # 1 deg: less is play
+    """A linkage that is free over less than this is not judged by what it meets [rad or m]."""
+
+
 class CollisionConfig(StageConfig):
     """Collision geometry of the model that is written."""
 

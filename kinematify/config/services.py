@@ -48,7 +48,7 @@ class RodinConfig(ServiceConfig):
 class LanguageModelConfig(ServiceConfig):
     """A language model that writes blueprints."""
 
-    answer_seconds: float = 300.0  # a long answer of a slow model
+    answer_seconds: float = 3600.0  # a long answer of a model of 7e9 parameters on two cores
     model: str = "default"  # local servers serve one model and take any name
     """Name of the model at the service; the variable KINEMATIFY_LLM_MODEL wins."""
     rounds: int = 4  # what is not mended in three answers is not mended

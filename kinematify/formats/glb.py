@@ -41,7 +41,7 @@ def write_glb(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
     exported: Any = scene.export  # untyped in trimesh
     out.write_bytes(exported(file_type="glb"))
     moving = sum(joint.kind is not JointType.FIXED for joint in content.robot.joints)
-    return (f"glTF has no joints: the nodes of {moving} tell theirs in extras.kinematify; physics is left out.",)
+    return (f"glTF has no joints: the nodes of {moving} have theirs in extras.kinematify; physics is not written.",)
 
 
 def _described(joint: Joint) -> dict[str, object]:

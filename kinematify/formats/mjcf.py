@@ -52,7 +52,7 @@ def write_mjcf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
     fast = [joint.name for joint in content.robot.joints if joint.velocity is not None and _moves(joint)]
     lost = told_renaming(content)
     if fast:
-        lost.append(f"Speed limits of {len(fast)} joints are left out: MJCF has none.")
+        lost.append(f"Speed limits of {len(fast)} joints are not written: MJCF has none.")
     return tuple(lost)
 
 

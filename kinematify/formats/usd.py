@@ -42,10 +42,10 @@ def write_usd(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
     fast = [joint.name for joint in content.robot.joints if joint.velocity is not None]
     lost = []
     if followers:
-        lost.append(f"The physics schema has no followers: {', '.join(followers)} move freely, and tell in customData "
-                    "whom they should follow.")  # fmt: skip
+        lost.append(f"The physics schema has no followers: {', '.join(followers)} move freely; customData states "
+                    "which joint they should follow.")  # fmt: skip
     if fast:
-        lost.append(f"Speed limits of {len(fast)} joints are left out: the physics schema has none.")
+        lost.append(f"Speed limits of {len(fast)} joints are not written: the physics schema has none.")
     return tuple(lost)
 
 

@@ -1,9 +1,8 @@
-"""What to build, from a sentence or from a category with settings."""
+"""What to build of the library: a family with values, or mechanisms on a body; and how two objects stand together."""
 
 from __future__ import annotations
 
 import difflib
-import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -11,13 +10,10 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.composer.compose import compose
-from kinematify.generate.composer.sentence import NoBodyError, names_a_body, nouns_of_mechanisms, read_composition
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.parts import PartRequirement
 from kinematify.generate.procedural.language.sizes import OVERALL
-from kinematify.generate.procedural.language.understand import NoFamilyError, NotUnderstoodError, understand
-from kinematify.generate.procedural.language.words import PLAIN_WORDS, without_purposes, without_rough_sizes
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
@@ -33,24 +29,7 @@ if TYPE_CHECKING:
 _SCALES = 3.0  # to so many times the usual size and as much smaller, walls and gaps stay those of such an object
 _DRAWS, _NEXT_DRAW = 20, 1_000_003
 _GAP = 0.05  # between several [m]
-_HOLDS = re.compile(r"[,\s]+(?:that is |which is )?(holding)\s+", re.IGNORECASE)
-_ON_TOP = re.compile(
-    r"^(?P<other>.*\S),?\s+(?:with|and|carrying)\s+(?P<one>an?\s.*\S)\s+on\s+(?:top|it|top of it|its top)\W*$",
-    re.IGNORECASE,
-)
-_ON = re.compile(
-    r"^(?P<one>.*?\S)\s+(?:(?:that is |which is )?(?:mounted|standing|sitting|placed|stands|sits)\s+)?on\s+"
-    r"(?:top of )?(?P<other>(?:an?|the|its)\s.*)$",
-    re.IGNORECASE,
-)
-_AND = re.compile(
-    r"^(?P<one>(?:(?!\b(?:with|having|has|whose|that)\b).)*?\S),?\s+(?:and|next to|beside)\s+"
-    r"(?P<other>(?:an?|one|two|three|four|five|six)\s.*)$",
-    re.IGNORECASE,
-)
-_TOY = re.compile(r"\b(?:toy|model|miniature|dolls?(?:'s)?)\s+", re.IGNORECASE)
 _TOY_LENGTH, _TOY_SCALE = 0.4, 0.2  # longest side [m], and at most so much smaller than usual
-_SEVERAL = 400  # characters at most that may name several objects
 _BESIDE = 0.3  # between what stands side by side [m]
 _LEVEL = 2e-3  # of a surface that something stands on [m]
 _GRID = 15  # places along either side at which it is looked for
@@ -65,12 +44,6 @@ class Request:
 
     family: str
     values: Mapping[str, Value]
-    understood: tuple[str, ...] = ()
-    """Short phrases, for a sentence."""
-    ignored: tuple[str, ...] = ()
-    """Words of a sentence that were not understood."""
-    unused: tuple[str, ...] = ()
-    """Words of a sentence that ask for no shape and no motion."""
     requirements: tuple[PartRequirement, ...] = ()
     """What is asked of its parts, besides the values."""
     composition: Composition | None = None
@@ -84,7 +57,7 @@ class Request:
     is_toy: bool = False
     """It is small: all of it is scaled."""
     how: str = ""
-    """``holding``, ``on``, ``carrying`` or ``beside`` the other one."""
+    """``holding``, ``on``, ``carrying`` or ``beside`` the other one; not empty if it need not move."""
 
     def build(self, *, seed: int | None = None) -> Blueprint:
         """Build the object; a seed draws what was not asked for.
@@ -124,122 +97,6 @@ class Request:
         raise reason
 
 
-def from_text(sentence: str, *, lenient: bool = False) -> Request:
-    """Read a sentence: an object of a family, or else mechanisms on a body.
-
-    Args:
-        sentence: English.
-        lenient: Leave out what is not understood, instead of refusing the sentence.
-
-    Raises:
-        InputError: It cannot be understood; see `understand`.
-    """
-    sentence, purposes = without_purposes(sentence, nouns_of_mechanisms())
-    sentence, rough = without_rough_sizes(sentence, nouns_of_mechanisms())
-    plain = tuple(dict.fromkeys(re.findall(rf"\b(?:{'|'.join(sorted(PLAIN_WORDS))})\b", sentence.lower())))
-    request = _read(sentence, lenient=lenient)
-    return replace(request, unused=(*plain, *purposes, *rough, *request.unused))
-
-
-def _read(sentence: str, *, lenient: bool) -> Request:
-    holder, _, held = _HOLDS.split(sentence, maxsplit=1) if _HOLDS.search(sentence) else (sentence, "", "")
-    if held.strip():
-        holding, thing = _read(holder, lenient=lenient), _read(held, lenient=lenient)
-        # What a seed draws may have hands that are one with the arms.
-        wanted = PartRequirement(nouns=(_hand(holding.build()).name,), words="a hand")
-        return replace(_joined(holding, "holding", thing), requirements=(*holding.requirements, wanted))
-    try:
-        return _read_one(sentence, lenient=False)
-    except InputError as reason:
-        if len(sentence) <= _SEVERAL and (several := _read_several(sentence)) is not None:
-            return several
-        if _TOY.search(sentence) and not lenient:
-            try:
-                small = _read(_TOY.sub(" ", sentence), lenient=False)
-            except InputError:
-                raise reason from None
-            return replace(small, is_toy=True, understood=(*small.understood, "small as a toy"))
-        if lenient:
-            return _read_one(sentence, lenient=True)
-        raise reason from None
-
-
-def _joined(one: Request, how: str, other: Request) -> Request:
-    return replace(
-        one,
-        how=how,
-        other=other,
-        understood=(*one.understood, f"{how} {', '.join(other.understood)}"),
-        ignored=(*one.ignored, *other.ignored),
-    )
-
-
-def _read_several(sentence: str) -> Request | None:
-    """Read `a printer on a cart with four casters`, `a table and two chairs`: two objects, each of which is known.
-
-    Raises:
-        InputError: Both are, and one has no place on the other.
-    """
-    for pattern, how in ((_ON_TOP, "carrying"), (_ON, "on"), (_AND, "beside")):
-        found = pattern.search(sentence)
-        if found is None:
-            continue
-        try:
-            one, other = (_read_one(found[name], lenient=False, alone=False) for name in ("one", "other"))
-        except InputError:
-            continue
-        request = _joined(one, how, other) if how != "carrying" else _joined(other, how, one)
-        if request.build().joints:
-            return request
-    return None
-
-
-def _read_one(sentence: str, *, lenient: bool, alone: bool = True) -> Request:
-    """Read one object; what is not alone need not move."""
-    body = names_a_body(sentence)
-    if body and not any(body in family.words for family in known_families().values()) and not lenient:
-        return _composed(sentence, alone)  # a luggage trolley is no luggage
-    try:
-        meant = understand(sentence, known_families())
-    except NotUnderstoodError as error:
-        try:
-            return _composed(sentence, alone)
-        except InputError as reason:
-            if not lenient:
-                if isinstance(reason, NoBodyError):
-                    raise error from None
-                if isinstance(error, NoFamilyError):
-                    raise reason from None
-                raise InputError(f"{error} Nor can it be composed of mechanisms: {reason}") from error
-        meant = understand(sentence, known_families(), lenient=True)
-    return Request(
-        family=meant.family,
-        values=meant.values,
-        understood=meant.understood,
-        ignored=meant.ignored,
-        requirements=meant.requirements,
-        overall=meant.overall,
-        copies=meant.copies,
-    )
-
-
-def _composed(sentence: str, alone: bool) -> Request:
-    """Read a sentence as mechanisms on a body, and see that they can be built."""
-    composition = read_composition(sentence)
-    compose(composition, may_stand_still=not alone)
-    told = [
-        f"{item.count} {item.title}{'s' if item.count > 1 else ''}{f' on the {item.side}' if item.side else ''}"
-        for item in composition.wanted
-    ]
-    return Request(
-        family=composition.title.replace(" ", "_"),
-        values={},
-        understood=(composition.title, *told, *(item.words for item in composition.requirements)),
-        composition=composition,
-        copies=composition.copies,
-    )
-
-
 def _scaled_to(blueprint: Blueprint, size: str, metres: float) -> Blueprint:
     """Return an object that is so wide, deep or high when it is closed.
 
@@ -258,7 +115,7 @@ def _scaled_to(blueprint: Blueprint, size: str, metres: float) -> Blueprint:
 
 def _holding(blueprint: Blueprint, held: Blueprint) -> Blueprint:
     """Return an object with another one at the outer side of its hand, its thinnest side towards the hand."""
-    hand = _hand(blueprint)
+    hand = hand_of(blueprint)
     bounds = held.assembly.bounds
     thinnest = int(np.argmin(np.ptp(bounds, axis=0)))
     # A turn about x stands what lies; one about z turns what is narrow, its front then looks along x.
@@ -323,7 +180,7 @@ def _beside(blueprint: Blueprint, other: Blueprint) -> Blueprint:
     return blueprint.carrying(other, blueprint.root, place)
 
 
-def _hand(blueprint: Blueprint) -> Part:
+def hand_of(blueprint: Blueprint) -> Part:
     """Its hand.
 
     Raises:

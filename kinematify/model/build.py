@@ -123,7 +123,7 @@ def _joint(
         parent=parent.name,
         child=child.name,
         T_parent_child=T_parent_child,
-        axis=_snapped(estimate.axis),
+        axis=snapped(estimate.axis),
         lower=lower,
         upper=upper,
         effort=config.turn_effort if kind.turns else config.slide_effort,
@@ -131,7 +131,7 @@ def _joint(
     )
 
 
-def _snapped(axis: FloatArray) -> FloatArray:
+def snapped(axis: FloatArray) -> FloatArray:
     """The frame's axis that a direction differs from by no more than fits do, else the direction itself."""
     nearest = np.round(axis)
     return nearest if float(np.linalg.norm(axis - nearest)) < _SNAP else axis

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from kinematify.contact.tree import KinematicTree
 from kinematify.generate.procedural.blueprint import ground_truth
@@ -17,6 +17,7 @@ from kinematify.robot.obj_file import write_obj
 from kinematify.robot.robot import LoopJoint
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from kinematify.config import Config
@@ -77,10 +78,18 @@ def write_parts(blueprint: Blueprint, folder: Path) -> None:
         write_obj(folder / f"{part.name}.obj", part.vertices, part.faces)
 
 
-def write_blueprint(blueprint: Blueprint, folder: Path, config: Config) -> KinematicModel:
+def write_blueprint(
+    blueprint: Blueprint, folder: Path, config: Config, *, facts: Mapping[str, Any] | None = None
+) -> KinematicModel:
     """Write ``model.urdf`` with the exact joints, ``truth.json`` and ``source.json`` into a folder, made if need be.
 
     The folder is one object of a benchmark: `kinematify bench` takes it as it is.
+
+    Args:
+        blueprint: What is written.
+        folder: Where.
+        config: Of the model.
+        facts: What else ``source.json`` says, as JSON values.
 
     Returns:
         The model that was written.
@@ -92,6 +101,6 @@ def write_blueprint(blueprint: Blueprint, folder: Path, config: Config) -> Kinem
     model = true_model(blueprint, config)
     write_model(simulable_model(model, config).robot, folder)
     (folder / "truth.json").write_text(ground_truth(blueprint).to_json() + "\n", encoding="utf-8")
-    facts = {"kind": "procedural", "category": blueprint.family, "parameters": dict(blueprint.parameters)}
-    (folder / SOURCE_FILE).write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+    known = {"kind": "procedural", "category": blueprint.family, "parameters": dict(blueprint.parameters)}
+    (folder / SOURCE_FILE).write_text(json.dumps({**known, **(facts or {})}, indent=1) + "\n", encoding="utf-8")
     return model

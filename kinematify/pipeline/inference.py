@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from kinematify.contact.graph import pair
 from kinematify.model.build import build_model
+from kinematify.pipeline.linkages import Closing, SharedAxis, close_chains
 from kinematify.robot.lengths import length_text
 from kinematify.robot.mechanism import joints_between, widest_opening
 
@@ -40,6 +41,8 @@ class CutChain:
     """Of the tree that was taken."""
     rival: float | None
     """Of the best tree that keeps the joint instead; None where none was kept."""
+    closing: Closing = field(default_factory=Closing)
+    """What was written for it."""
 
     @property
     def told(self) -> str:
@@ -51,9 +54,21 @@ class CutChain:
         return (
             f"{first} and {second} share a pin, and a chain closes there ({', '.join(self.joints)}). A URDF is a tree, "
             f"so the joint between them was cut: of all trees this one is worth most ({self.reward:.3f}), {kept}. "
-            f"Moving {self.opening.joint} alone pulls it apart by {length_text(self.opening.distance)}. Close it in "
-            "the engine (<equality><connect> in MuJoCo, createConstraint in PyBullet), or let joints follow (<mimic>)."
+            f"{self._closed}"
         )
+
+    @property
+    def _closed(self) -> str:
+        closing, opens = self.closing, length_text(self.opening.distance)
+        if closing.loop is None:
+            return (
+                "Closed there, its joints could not move, so no loop joint was written: "
+                f"moving {self.opening.joint} alone pulls it apart by {opens}. One of these joints may be wrong."
+            )
+        if closing.driver is None:
+            return f"The loop joint {closing.loop} closes it."
+        how = "by <mimic>, which is exact here" if closing.by == "mimic" else "as the loop joint makes them"
+        return f"The loop joint {closing.loop} closes it: {closing.driver} drives it, and the others follow {how}."
 
 
 def closed_chains(
@@ -130,18 +145,29 @@ class Inference:
         below = sorted((joint.confidence, joint.child) for joint in self.joints if joint.confidence < DOUBTFUL)
         return tuple(self.assembly.names[child] for _, child in below)
 
-    @cached_property
+    @property
     def closed_chains(self) -> tuple[CutChain, ...]:
-        """Pins that the tree had to leave out; they come apart when its joints move."""
-        found = closed_chains(self.assembly, self.bearings, self.trees, self.model.robot, self.config.topology)
-        return tuple(found)
+        """Pins that the tree had to leave out, and that its motion would pull apart."""
+        return self._closed[1]
+
+    @property
+    def model(self) -> KinematicModel:
+        """The kinematic model of the best tree, with loop joints where its chains close."""
+        return self._closed[0]
 
     @cached_property
-    def model(self) -> KinematicModel:
-        """The kinematic model of the best tree."""
-        return build_model(
-            self.assembly, self.trees[0], self.joints, name=_model_name(self.assembly.source), config=self.config.model
-        )
+    def _closed(self) -> tuple[KinematicModel, tuple[CutChain, ...]]:
+        name = _model_name(self.assembly.source)
+        tree = build_model(self.assembly, self.trees[0], self.joints, name=name, config=self.config.model)
+        found = closed_chains(self.assembly, self.bearings, self.trees, tree.robot, self.config.topology)
+        chains = sorted(found, key=lambda chain: -chain.line.score)
+        if not chains:
+            return tree, ()
+        pins = [SharedAxis(links=chain.parts, axis=chain.line.axis, pivot=chain.line.pivot) for chain in chains]
+        twins = [[self.assembly.names[part] for part in cluster] for cluster in self.graph.clusters]
+        model, closings = close_chains(tree, pins, twins, self.assembly.diagonal, self.config.linkages)
+        closed = (replace(chain, closing=closing) for chain, closing in zip(chains, closings, strict=True))
+        return model, tuple(closed)
 
 
 def _model_name(source: str) -> str:

@@ -184,6 +184,9 @@ def _closed_chain(chain: CutChain) -> dict[str, Any]:
         "opens": chain.opening.distance,
         "reward": chain.reward,
         "reward_with_it": chain.rival,
+        "loop": chain.closing.loop,
+        "driver": chain.closing.driver,
+        "by": chain.closing.by or None,
         "told": chain.told,
     }
 

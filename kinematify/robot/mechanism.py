@@ -18,6 +18,12 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Robot
 
 
+_NEARBY = 1e-3
+"""Slopes of curves are taken over twice this [rad or m]."""
+_DEAD = 1e-3
+"""Slopes below are those of a dead point."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Travel:
     """The way of a joint that leads: unlimited joints turn by half a turn either way."""
@@ -106,8 +112,14 @@ class LeaderMechanism:
 
     @cached_property
     def leads(self) -> FloatArray:
-        """Motion of every joint per motion of each leader (mimic multipliers), shape (joints, leaders)."""
-        return (self._followed(np.eye(len(self.travels))) - self._at_zero).T
+        """Motion of every joint per motion of each leader, shape (joints, leaders).
+
+        Multipliers of mimic joints; slopes at rest of joints that follow a curve, at a dead point their mean size.
+        """
+        slopes = (self._followed(np.eye(len(self.travels))) - self._at_zero).T
+        for row in self._curved:
+            slopes[row] = self._slopes(row)
+        return slopes
 
     @cached_property
     def rest(self) -> FloatArray:
@@ -117,6 +129,13 @@ class LeaderMechanism:
     def all_values(self, leaders: FloatArray) -> FloatArray:
         """Return the values of all `joints` [rad or m], shape (n, joints), for rows of leaders (n, leaders)."""
         values: FloatArray = self._at_zero + leaders @ self.leads.T
+        column = {name: k for k, name in enumerate(self.joints)}
+        for row in self._curved:
+            joint = self.robot.joint_by_name[self.joints[row]]
+            if joint.closure is not None:
+                values[:, row] = joint.closure.follow(values[:, column[joint.closure.joint]])
+            elif joint.mimic is not None:
+                values[:, row] = joint.mimic.multiplier * values[:, column[joint.mimic.joint]] + joint.mimic.offset
         return values
 
     def sweep(self, samples: int) -> FloatArray:
@@ -129,6 +148,34 @@ class LeaderMechanism:
         for k, travel in enumerate(self.travels):
             rows[sweep_rows(k, samples), k] = np.linspace(travel.lower, travel.upper, samples)
         return rows
+
+    @cached_property
+    def _curved(self) -> tuple[int, ...]:
+        """Rows of joints that follow along a curve, or mimic one that does, each after what it follows."""
+        if all(joint.closure is None for joint in self.robot.joints):
+            return ()
+        found: dict[str, int] = {}
+        waiting = [self.robot.joint_by_name[name] for name in self.joints]
+        for _ in waiting:
+            for row, joint in enumerate(waiting):
+                if joint.closure is not None or (joint.mimic is not None and joint.mimic.joint in found):
+                    found.setdefault(joint.name, row)
+        return tuple(found.values())
+
+    def _slopes(self, row: int) -> FloatArray:
+        joint = self.robot.joint_by_name[self.joints[row]]
+        if joint.closure is None:
+            assert joint.mimic is not None
+            return joint.mimic.multiplier * self._slopes(self.joints.index(joint.mimic.joint))
+        column = [travel.joint for travel in self.travels].index(joint.closure.joint)
+        near = self.travels[column].rest + np.array([-_NEARBY, _NEARBY])
+        values, at = joint.closure.follow(near), np.clip(near, joint.closure.at[0], joint.closure.at[-1])
+        slope = float(np.diff(values)[0]) / max(float(np.diff(at)[0]), 1e-12)
+        if abs(slope) < _DEAD:
+            slope = float(np.abs(np.diff(joint.closure.values)).sum()) / float(np.ptp(joint.closure.at))
+        slopes = np.zeros(len(self.travels))
+        slopes[column] = slope
+        return slopes
 
     @cached_property
     def _at_zero(self) -> FloatArray:

@@ -7,9 +7,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+from lxml import etree
 
 from kinematify.errors import DescriptionError
 from kinematify.robot.joint_type import FREE_KINDS, JointType
+from kinematify.robot.linkage import with_closures
 from kinematify.robot.robot import (
     Inertial,
     Joint,
@@ -85,7 +87,7 @@ def parse_robot(element: _Element, path: Path, source: GeometrySource, geometry:
         name=element.get("name") or path.stem,
         links=_links(element, source, geometry),
         joints=joints,
-        loops=tuple(_loop(item, names) for item in element.findall("loop_joint")),
+        loops=tuple(_loop(item, names) for item in element if etree.QName(item).localname in _LOOPS),
         path=path.resolve(),
         notes=tuple(note for joint in joints if (note := _note(joint))),
     )
@@ -94,7 +96,7 @@ def parse_robot(element: _Element, path: Path, source: GeometrySource, geometry:
             robot, replace(robot, links=_links(element, replace(source, heeds_up_axis=True), geometry))
         )
     _check_free_joints(robot, [joint for joint in joints if joint.declared_kind in FREE_KINDS])
-    return robot
+    return with_closures(robot) if robot.loops else robot
 
 
 def _links(element: _Element, source: GeometrySource, geometry: Geometry) -> tuple[Link, ...]:
@@ -167,17 +169,32 @@ def _joint(element: _Element) -> Joint:
     )
 
 
+_LOOPS = {
+    "loop_joint": (("link1", "link", "link1", "xyz"), ("link2", "link", "link2", "xyz")),
+    "ball_constraint": (
+        ("ball_constraint_body_A", "name", "ball_constraint_p_AP", "value"),
+        ("ball_constraint_body_B", "name", "ball_constraint_p_BQ", "value"),
+    ),
+}
+"""What closes a chain for Isaac Sim and for Drake: where both ends name their link, and their point."""
+
+
 def _loop(element: _Element, known: Sequence[str]) -> LoopJoint:
-    name = _name(element)
-    where = f"loop_joint {name}"
-    ends = [element.find(tag) for tag in ("link1", "link2")]
-    first, second = (None if end is None else end.get("link") for end in ends)
-    if first not in known or second not in known or first is None or second is None:
-        raise DescriptionError(
-            f"The {where} joins {first} and {second}. Name two links of the file in link1 and link2."
-        )
-    one, other = (vector(end, "xyz", (0.0, 0.0, 0.0), where) for end in ends if end is not None)
-    return LoopJoint(name=name, links=(first, second), points=(one, other))
+    tag = etree.QName(element).localname
+    children = {etree.QName(child).localname: child for child in element}
+    ends = []
+    for link_tag, link_key, point_tag, point_key in _LOOPS[tag]:
+        link = children[link_tag].get(link_key) if link_tag in children else None
+        if link not in known or link is None:
+            raise DescriptionError(
+                f"The {tag} {element.get('name', '')} in line {element.sourceline} joins the link {link!r}. Name two "
+                "links of the file."
+            )
+        point = children.get(point_tag)
+        place = np.zeros(3) if point is None else vector(point, point_key, (0.0, 0.0, 0.0), f"{tag} of {link}")
+        ends.append((link, place))
+    (first, one), (second, other) = ends
+    return LoopJoint(name=element.get("name") or f"{second}_loop", links=(first, second), points=(one, other))
 
 
 def _kind(element: _Element, declared: str, where: str) -> JointType:

@@ -142,6 +142,32 @@ class Mimic:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class Closure:
+    """A joint of a closed chain follows the joint that drives the chain along a curve."""
+
+    joint: str
+    """Name of the driver."""
+    at: FloatArray
+    """Values of the driver, rising [rad or m], shape (n,). Read-only."""
+    values: FloatArray
+    """Values of the follower there [rad or m], shape (n,). Read-only."""
+    repeats: bool = False
+    """The curve is one turn of a driver that turns without end."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "at", read_only(self.at, np.float64))
+        object.__setattr__(self, "values", read_only(self.values, np.float64))
+
+    def follow(self, driver: FloatArray) -> FloatArray:
+        """Return the follower's values at values of the driver [rad or m], (n,); beyond the curve those at its end."""
+        if not self.repeats:
+            return np.asarray(np.interp(driver, self.at, self.values))
+        turns = np.floor((driver - self.at[0]) / (2.0 * np.pi))
+        within = np.interp(driver - 2.0 * np.pi * turns, self.at, self.values)
+        return np.asarray(within + turns * (self.values[-1] - self.values[0]))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Joint:
     """A joint; its frame is the child link's frame."""
 
@@ -158,6 +184,8 @@ class Joint:
     upper: float = 0.0
     """[rad or m]; +inf for continuous, 0 for fixed."""
     mimic: Mimic | None = None
+    closure: Closure | None = None
+    """How it follows another one since a chain closes (`robot.linkage`); no file states it, the loops of a robot do."""
     declared_kind: str = ""
     """Type as a file declares it, e.g. ``floating``, which `kind` has as fixed; empty where no file does."""
     has_limit: bool = True
@@ -178,8 +206,8 @@ class Joint:
 
     @property
     def leads(self) -> bool:
-        """True if it moves by itself: neither fixed nor mimic."""
-        return self.kind is not JointType.FIXED and self.mimic is None
+        """True if it moves by itself: neither fixed, nor mimic, nor driven by another joint of a closed chain."""
+        return self.kind is not JointType.FIXED and self.mimic is None and self.closure is None
 
     @property
     def endless(self) -> bool:
@@ -212,7 +240,8 @@ class Joint:
 class LoopJoint:
     """Two links that share a point besides the joints of the tree: it closes a chain of joints.
 
-    In a URDF it is a `loop_joint`, which Isaac Sim reads; readers that know trees alone leave it out.
+    In a URDF it is a `drake:ball_constraint`, or a `loop_joint` of Isaac Sim, at which Drake stops; readers that know
+    trees alone leave it out.
     """
 
     name: str
@@ -332,6 +361,9 @@ def joint_values(robot: Robot, q: Mapping[str, float]) -> dict[str, float]:
 def _value(robot: Robot, joint: Joint, q: Mapping[str, float]) -> float:
     if joint.kind is JointType.FIXED:
         return 0.0
+    if joint.closure is not None:
+        driver = _value(robot, robot.joint_by_name[joint.closure.joint], q)
+        return float(joint.closure.follow(np.array([driver]))[0])
     if joint.mimic is None:
         return float(q.get(joint.name, 0.0))
     leader = robot.joint_by_name[joint.mimic.joint]

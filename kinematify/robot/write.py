@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Inertial, Joint, Link, LoopJoint, Robot, Shape
 
 
+DRAKE = "http://drake.mit.edu"
+"""Namespace of the elements that Drake adds to URDF, some of which other engines read as well."""
+
+
 def write_robot(robot: Robot, path: Path) -> Path:
     """Write a URDF file, without the meshes: each mesh shape names its own file, as it is to stand in the URDF.
 
@@ -38,7 +42,7 @@ def robot_element(robot: Robot) -> _Element:
     Raises:
         ValueError: A mesh shape names no file.
     """
-    element = etree.Element("robot", name=robot.name)
+    element = etree.Element("robot", {"name": robot.name}, nsmap={"drake": DRAKE} if robot.loops else None)
     for link in robot.links:
         _add_link(element, link)
     for joint in robot.joints:
@@ -111,9 +115,16 @@ def _add_joint(robot: _Element, joint: Joint) -> None:
 
 
 def _add_loop(robot: _Element, loop: LoopJoint) -> None:
-    element = etree.SubElement(robot, "loop_joint", name=loop.name, type="spherical")
-    for tag, link, point in zip(("link1", "link2"), loop.links, loop.points, strict=True):
-        etree.SubElement(element, tag, link=link, xyz=numbers(point), rpy="0 0 0")
+    """As Drake reads it. Isaac Sim's `loop_joint` says the same, but Drake refuses a file that has one."""
+    element = etree.SubElement(robot, drake_tag("ball_constraint"), name=loop.name)
+    for end, link, point, place in zip("AB", loop.links, loop.points, ("AP", "BQ"), strict=True):
+        etree.SubElement(element, drake_tag(f"ball_constraint_body_{end}"), name=link)
+        etree.SubElement(element, drake_tag(f"ball_constraint_p_{place}"), value=numbers(point))
+
+
+def drake_tag(name: str) -> str:
+    """Return the name of an element that Drake adds to URDF, as lxml writes it."""
+    return f"{{{DRAKE}}}{name}"
 
 
 def _add_values(parent: _Element, tag: str, values: dict[str, float | None]) -> None:

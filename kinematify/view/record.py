@@ -104,7 +104,10 @@ def shown_with(scene: ViewScene, path: Path) -> Shown:
             alternatives=_alternatives_of(record),
             doubtful=tuple(map(str, record.get("doubtful", ()))),
             doubtful_below=float(record.get("doubtful_below", 0.0)),
-            chains=tuple(_chain(item, scene.robot) for item in record.get("closed_chains", ())),
+            chains=(
+                *declared_chains(scene.robot),
+                *(_chain(item, scene.robot) for item in record.get("closed_chains", ()) if not item.get("loop")),
+            ),
             parents=_possible_parents(record),
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
@@ -181,13 +184,13 @@ def _chain(item: dict[str, Any], robot: Robot) -> DrawnChain:
 
 
 def declared_chains(robot: Robot) -> tuple[DrawnChain, ...]:
-    """Return the chains that a URDF closes itself, by a `loop_joint`."""
+    """Return the chains that a URDF closes itself, by a loop joint."""
     return tuple(
         DrawnChain(
             links=loop.links,
             points=loop.points,
             axis=np.zeros(3),
-            told=f"{loop.links[0]} and {loop.links[1]} share a point; the loop_joint {loop.name} closes the chain.",
+            told=f"{loop.links[0]} and {loop.links[1]} share a point; the loop joint {loop.name} closes the chain.",
         )
         for loop in robot.loops
     )

@@ -15,7 +15,7 @@ from kinematify.cli.app import run
 from kinematify.cli.generation import Generation
 from kinematify.cli.verdict import describe_briefly
 from kinematify.evaluation.datasets import find_objects
-from kinematify.generate.request import from_text
+from kinematify.generate.sentence import from_text
 from kinematify.robot.read import read_robot
 from kinematify.validation.finding import Severity
 from tests.reports import add_checks, finding, report, result
@@ -42,7 +42,7 @@ def test_a_sentence_becomes_an_exact_model_its_parts_and_what_is_inferred_from_t
         *("model.urdf", "meshes", "preview.png", "inference.json")
     }
     assert answer["category"] == "cabinet"
-    assert answer["ignored"] == []
+    assert answer["not_built"] == []
     assert answer["accuracy"]["types_right"] == answer["accuracy"]["joints"] == 3
     assert answer["accuracy"]["largest_axis_angle_deg"] < 1.0
 
@@ -59,6 +59,7 @@ def test_the_model_is_validated(generated):
 
 def test_the_status_follows_the_verdict(tmp_path):
     run = Generation(from_text(SENTENCE), None, tmp_path, preview=False, validated=True)
+    run.made = run.request.made()
     assert run.exit_status == 0
     run.report = report(result(finding()))
     assert (run.report.verdict, run.exit_status) == ("fail", 1)
@@ -132,7 +133,7 @@ def test_a_composed_corpus_has_a_sentence_for_every_object(tmp_path):
     assert run(["generate", "--corpus", "2", "--compose", "--seed", "1", "-o", str(out)]) == 0
     for name in ("composed_0000", "composed_0001"):
         text = json.loads((out / name / "source.json").read_text())["parameters"]["text"]
-        assert from_text(text).composition is not None or from_text(text).family
+        assert from_text(text).family
         assert (out / name / "model.urdf").exists()
     assert run(["generate", "--text", "a cart with a drawer", "--compose", "-o", str(tmp_path / "cart")]) == 2
 
@@ -166,7 +167,7 @@ def test_the_categories_and_their_parameters_are_listed(capsys):
     assert "caster" in " ".join(stated["mechanisms"])
     assert run(["generate", "--list"]) == 0
     assert "serial_arm" in capsys.readouterr().out
-    assert run(["generate", "--list", "--category", "wardrobe"]) == 0
+    assert run(["generate", "--list", "--category", "cabinet"]) == 0
     assert "0.1 to 5 m" in capsys.readouterr().out
 
 
@@ -174,11 +175,12 @@ def test_the_categories_and_their_parameters_are_listed(capsys):
     ("arguments", "reason"),
     [
         (["--text", ""], "empty"),
-        (["--text", "a flying carpet"], "names nothing"),
+        (["--text", "a flying carpet"], "names no kind"),
         (["--category", "cabnet"], "Did you mean cabinet"),
         (["--category", "cabinet", "--set", "drawer=2"], "Did you mean drawers"),
         (["--category", "cabinet", "--set", "drawers=500"], "from 0 to 12"),
         (["--category", "cabinet", "--set", "drawers"], "KEY=VALUE"),
+        (["--strict", "--text", "a cabinet with a vent"], "Not built: vent"),
         (["--text", "a cabinet", "--category", "cabinet"], "either --text, --category or --blueprint"),
         ([], "either --text, --category or --blueprint"),
     ],
@@ -187,6 +189,16 @@ def test_bad_requests_end_with_status_two_and_a_reason(arguments, reason, tmp_pa
     assert run(["generate", *arguments, "-o", str(tmp_path / "out")]) == 2
     assert reason in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_what_is_not_built_is_listed_last_and_in_the_files(tmp_path, capsys):
+    out = tmp_path / "out"
+    command = ["generate", "--text", "a cabinet with two doors and a vent", "-o", str(out)]
+    assert run([*command, "--no-validation", "--no-preview"]) == 1
+    assert capsys.readouterr().out.splitlines()[-1] == "Not built: vent"
+    facts = json.loads((out / "source.json").read_text())
+    assert facts["not_built"] == ["vent"]
+    assert facts["understood"]["kind"] == "cabinet"
 
 
 def test_without_a_place_for_the_result_it_says_so(capsys):

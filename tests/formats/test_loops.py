@@ -11,7 +11,7 @@ from pxr import Gf, Usd, UsdGeom, UsdPhysics
 from kinematify.config import load_config
 from kinematify.errors import DescriptionError
 from kinematify.formats.export import export
-from kinematify.generate.request import from_text
+from kinematify.generate.sentence import from_text
 from kinematify.pipeline.generate import write_blueprint
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
@@ -82,9 +82,24 @@ def test_usd_has_a_spherical_joint_outside_of_the_articulation(toolbox, tmp_path
         np.testing.assert_allclose(*ends, atol=1e-6)
 
 
+def test_the_loop_joint_of_isaac_sim_is_read_too(toolbox):
+    document = etree.parse(toolbox)
+    (first, _) = read_robot(toolbox, geometry="none").loops
+    for closing in document.findall("{*}ball_constraint"):
+        document.getroot().remove(closing)
+    loop = etree.SubElement(document.getroot(), "loop_joint", name="of_isaac", type="spherical")
+    for tag, link, point in zip(("link1", "link2"), first.links, first.points, strict=True):
+        etree.SubElement(loop, tag, link=link, xyz=" ".join(map(str, point)))
+    other = toolbox.with_name("isaac.urdf")
+    document.write(other)
+    (read,) = read_robot(other, geometry="none").loops
+    assert read.links == first.links
+    np.testing.assert_allclose(read.points, first.points)
+
+
 def test_a_loop_of_a_link_that_is_not_there_is_refused(toolbox, tmp_path):
     document = etree.parse(toolbox)
-    document.find("loop_joint/link2").set("link", "nowhere")
+    document.find("{*}ball_constraint/{*}ball_constraint_body_B").set("name", "nowhere")
     broken = toolbox.with_name("broken.urdf")
     document.write(broken)
     with pytest.raises(DescriptionError, match="nowhere"):

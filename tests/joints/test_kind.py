@@ -11,7 +11,7 @@ from kinematify import infer
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box, cylinder
-from kinematify.generate.request import from_text
+from kinematify.generate.sentence import from_text
 from kinematify.joints.choice.kind import Siblings, decide_kind
 from kinematify.joints.hypotheses.panels import rank_turns
 from kinematify.joints.hypotheses.slides import rank_slides

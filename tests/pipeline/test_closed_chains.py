@@ -1,17 +1,22 @@
-"""A linkage that closes: the joint that the tree leaves out is told in result, record, summary and viewer."""
+"""A linkage that closes: the pin that the tree leaves out becomes a loop joint, and the chain moves as one."""
 
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
+from benchmarks.linkages import linkage
 from kinematify.cli.inferred import describe
 from kinematify.pipeline import Inference, infer, write_inference
+from kinematify.pipeline.linkages import SharedAxis, close_chains
+from kinematify.robot.linkage import loop_gaps
 from kinematify.robot.read import read_robot
+from kinematify.robot.robot import joint_ends
 from kinematify.view.record import shown_with
 from kinematify.view.scene import ViewScene
 from tests.household import edge_door, four_bars
@@ -40,19 +45,54 @@ def test_what_does_not_close_is_not_told() -> None:
     assert infer(edge_door().assembly).closed_chains == ()
 
 
-def test_the_record_has_it_and_the_viewer_draws_a_dashed_line(tmp_path: Path) -> None:
+def test_the_model_has_the_loop_and_one_range_and_its_pin_stays_closed(tmp_path: Path) -> None:
+    """The four bars are a parallelogram: the bars follow by <mimic>, and what is written holds what was inferred."""
     folder = tmp_path / "model"
     write_inference(inferred(), folder, preview=False)
     record = json.loads((folder / "inference.json").read_text())
     (item,) = record["closed_chains"]
-    assert sorted(item["parts"]) == sorted(inferred().closed_chains[0].parts)
-    assert record["doubtful_below"] == 0.5
+    robot = read_robot(folder / "model.urdf")
+    (loop,) = robot.loops
+    assert (item["loop"], item["by"]) == (loop.name, "mimic")
+    assert sorted(loop.links) == sorted(item["parts"])
+    (driver,) = robot.leaders
+    assert driver.name == item["driver"]
+    assert [joint.upper - joint.lower for joint in robot.joints] == pytest.approx([driver.upper - driver.lower] * 3)
+    crank, rocker = (robot.joint_by_name[f"{name}_joint"] for name in ("crank", "rocker"))
+    assert float(crank.axis @ rocker.axis) > 0.0, "congruent arms turn the same way"
+    assert (crank.lower, crank.upper) == pytest.approx((rocker.lower, rocker.upper))
+    for value in np.linspace(driver.lower, driver.upper, 9):
+        assert loop_gaps(robot, {driver.name: float(value)})[loop.name] < 5e-4 * inferred().assembly.diagonal
+
+
+def test_bars_of_any_length_are_held_by_the_loop_alone() -> None:
+    found = infer(linkage("four_bar", 0).assembly).model
+    (loop,) = found.loops
+    (driver,) = [joint for joint in found.joints if joint.leads]
+    assert not [joint for joint in found.joints if joint.mimic]
+    lower, upper = joint_ends([driver])
+    values = np.linspace(float(lower[0]), float(upper[0]), 25)
+    diagonal = 0.2
+    assert max(loop_gaps(found.robot, {driver.name: float(value)})[loop.name] for value in values) < 1e-3 * diagonal
+
+
+def test_a_pin_that_would_leave_no_motion_is_reported_and_not_written() -> None:
+    """A bar between ground and rocker is a rigid triangle."""
+    model = inferred().model
+    free = replace(model, loops=(), joints=tuple(replace(joint, mimic=None, closure=None) for joint in model.joints))
+    up, at = np.array([0.0, 0.0, 1.0]), np.array([0.05, 0.03, 0.0])
+    pins = [SharedAxis(links=("ground", "coupler"), axis=up, pivot=at + 0.02)]
+    pins += [SharedAxis(links=("rocker", "coupler"), axis=up, pivot=np.array([0.1, 0.06, 0.02])), pins[0]]
+    closed, closings = close_chains(free, pins[1:], (), 0.2, inferred().config.linkages)
+    assert [closing.loop is None for closing in closings] == [False, True]
+    assert len(closed.loops) == 1
+
+
+def test_the_viewer_draws_the_pin_where_both_links_meet(tmp_path: Path) -> None:
+    folder = tmp_path / "model"
+    write_inference(inferred(), folder, preview=False)
     scene = ViewScene(read_robot(folder / "model.urdf"))
     (chain,) = shown_with(scene, folder / "inference.json").chains
-    at_rest, moved = (
-        chain.dashes(scene.poses({item["opened_by"]: value}), scene.size)[-1, 1]
-        - chain.dashes(scene.poses({item["opened_by"]: value}), scene.size)[-9, 0]
-        for value in (0.0, 0.4)
-    )
-    assert np.linalg.norm(at_rest) == pytest.approx(0.0, abs=1e-6), "the pin is closed at rest"
-    assert np.linalg.norm(moved) > 0.01, "and its ends come apart"
+    (driver,) = scene.robot.leaders
+    dashes = chain.dashes(scene.poses({driver.name: 0.4}), scene.size)
+    assert np.linalg.norm(dashes[-1, 1] - dashes[-9, 0]) < 1e-3 * scene.size

@@ -59,7 +59,7 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     Why it matters: Everything else is said of a prepared copy; this is what users load.
 
     Remedy: Do what the engine's message asks for. MuJoCo resolves no package:// and reads STL, OBJ and MSH only; it
-    looks for meshes beside the file unless `<mujoco><compiler strippath="false"/></mujoco>` stands in it.
+    looks for meshes beside the file unless `<mujoco><compiler strippath="false"/></mujoco>` is in it.
     """
     if isinstance(context.loading, MovesFreely) and context.floats:
         return
@@ -177,7 +177,7 @@ def stays(result: OpenCheck, context: AsLoadedContext) -> None:
     if complaint is not None:
         result.find(
             f"Left alone, the model comes apart in {context.title}: {complaint}.",
-            "Give every moving link a plausible mass and inertia, and mend overlaps at rest first.",
+            "Give every moving link a plausible mass and inertia, and fix overlaps at rest first.",
             severity=_at_most_warning(context, plainly=context.left_without_contacts.complaint is not None),
             reproduction=context.running.lines_of_rest(
                 context.travels[0].joint, context.values, context.settings.seconds

@@ -49,7 +49,7 @@ from kinematify.evaluation.nightly.trend_page import trend_page
 from kinematify.evaluation.nightly.validity import NightValidation, run_validation
 from kinematify.evaluation.record import code_version, replace_text
 from kinematify.evaluation.run import BenchmarkRequest, Variant, run_benchmark
-from kinematify.generate.request import from_text
+from kinematify.generate.sentence import from_text
 from kinematify.pipeline.generate import write_blueprint
 from kinematify.processes.pool import TaskFailure
 

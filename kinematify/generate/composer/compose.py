@@ -38,7 +38,7 @@ _NEEDS = {
     "room": "room behind it",
     "opening": "an opening to close",
     "mouth": "an open top",
-    "height": "a body that stands high without it",
+    "height": "a body that is tall without it",
     "round mouth": "a round body that is open at the top",
     "post": "a post that ends there",
     "legs": "a body of two legs",
@@ -129,7 +129,7 @@ def compose(
         InputError: Nothing moves, a side is not there or taken, or there is no room; the message names what.
     """
     if not may_stand_still and not any(wanted.mechanism.moves for wanted in composition.wanted):
-        raise InputError(f"Nothing of this {composition.title} would move. Ask for {_known()}.")
+        raise InputError(f"Nothing of this {composition.title} would move. Ask for a part that does, e.g. a drawer.")
     layout = _laid_out(composition, seed)
     fitting = Fitting(clearance=clearance, grip="bar", rest=composition.rest)
     numbers: Counter[str] = Counter()

@@ -13,9 +13,11 @@ from kinematify.generate.composer.compose import BANDS, Composition, MechanismSp
 from kinematify.generate.composer.mechanisms import MECHANISMS, MechanismKind
 from kinematify.generate.composer.side import FACING
 from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.language.compare import Missing
 from kinematify.generate.procedural.language.counts import MOST_COPIES
+from kinematify.generate.procedural.language.motions import MOTIONS
 from kinematify.generate.procedural.language.openness import OUT, VERBS, share_at
-from kinematify.generate.procedural.language.parts import MOTIONS, PartReader, PartRequirement
+from kinematify.generate.procedural.language.parts import PartReader, PartRequirement
 from kinematify.generate.procedural.language.reading import ParseState
 from kinematify.generate.procedural.language.sizes import DIMENSIONS, SIZE_WORDS, angle_at, length_at
 from kinematify.generate.procedural.language.words import (
@@ -33,6 +35,8 @@ from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+
+    from kinematify.generate.procedural.language.specification import Specification
 
 _Kind = TypeVar("_Kind")
 _SIDES = {side: side for side in FACING} | {"rear": "back", "underside": "bottom"}
@@ -69,8 +73,15 @@ _SCALES = 3.5  # times as long as usual a body may be
 _SHORTEST, _LONGEST = 0.05, 20.0  # [m]
 
 
-class NoBodyError(InputError):
-    """A sentence names no body of the composer."""
+@dataclass(frozen=True, kw_only=True)
+class Composed:
+    """What a specification asks of the composer."""
+
+    composition: Composition
+    used: frozenset[int]
+    """Words that were taken up."""
+    dropped: tuple[Missing, ...]
+    """What has no place on the body."""
 
 
 @dataclass(kw_only=True)
@@ -84,66 +95,121 @@ class _Look:
     """Of `FACING`."""
 
 
-def read_composition(sentence: str) -> Composition:
-    """Find out which body and mechanisms a sentence asks for.
+def read_composition(specification: Specification, body: BodyKind, *, may_stand_still: bool = False) -> Composed:
+    """Find out which mechanisms go on a body; what has no place there is dropped.
+
+    Args:
+        specification: What is asked for.
+        body: Of the object's name.
+        may_stand_still: It need not move.
 
     Raises:
-        NoBodyError: It names no body of the composer.
-        InputError: It has words that are not understood; the message names them.
+        InputError: It contradicts itself, asks for absurd sizes, or nothing of it would move.
     """
-    tokens = tokens_of(sentence, _vocabulary(), mend=False)
-    reader = _Reader(tokens)
+    tokens = tokens_of(specification.text, _vocabulary())
+    reader = _Reader(tokens, body, specification.name)
     reader.read()
-    if reader.body is None:
-        raise NoBodyError(
-            f"The text {sentence[:80]!r} names no body that mechanisms can be placed on. There are "
-            f"{', '.join(_SHAPES)}."
-        )
     if reader.handles is not None and not any(item.mechanism.has_grip for item in reader.wanted):
-        reader.left.append("handles")
+        reader.drop("handles")
     wanted = (*reader.wanted, *_taken_for_granted(reader))
     if reader.hinge and not any(item.hinge for item in wanted):
-        reader.left.append(f"opens to the {reader.hinge}")
-    if reader.left:
-        raise _not_understood([*_phrases_of(tokens, reader.unread), *reader.left])
+        reader.drop(f"opens to the {reader.hinge}")
     for mechanism in reader.excluded:
         if any(wanted.mechanism is mechanism for wanted in reader.wanted):
             raise InputError(f"The text asks for a {mechanism.words[0]} and for none. Say one of both.")
     if reader.bare is not None:
-        longest = max(range(len(reader.size)), key=reader.body.size.__getitem__)
+        longest = max(range(len(reader.size)), key=body.size.__getitem__)
         if reader.size[longest] is not None:
-            raise InputError(f"The text gives the longest side of the {reader.body.words[0]} twice. Say it once.")
+            raise InputError(f"The text gives the longest side of the {body.words[0]} twice. Say it once.")
         reader.size[longest] = reader.bare
-    for metres, usual in zip(reader.size, reader.body.size, strict=True):
+    for metres, usual in zip(reader.size, body.size, strict=True):
         if metres is not None and metres > _SCALES * usual:
-            raise InputError(f"A {reader.body.words[0]} of {metres:g} m is too large; usual is {usual:g} m there.")
+            raise InputError(f"A {body.words[0]} of {metres:g} m is too large; usual is {usual:g} m there.")
     width, depth, height = reader.size
-    composition = Composition(
-        body=reader.body,
-        said=reader.said,
-        wanted=wanted,
-        size=(width, depth, height),
-        material=reader.of_body.material,
-        color=reader.of_body.color,
-        handles=(reader.handles.material, reader.handles.color) if reader.handles else (None, None),
-        rest=reader.rest,
-        requirements=tuple(reader.requirements),
-        copies=reader.copies,
-        scale=reader.scale,
+    composition = _fitting(
+        Composition(
+            body=body,
+            said=reader.said,
+            wanted=wanted,
+            size=(width, depth, height),
+            material=reader.of_body.material,
+            color=reader.of_body.color,
+            handles=(reader.handles.material, reader.handles.color) if reader.handles else (None, None),
+            rest=reader.rest,
+            requirements=tuple(reader.requirements),
+            copies=reader.copies,
+            scale=reader.scale,
+        ),
+        reader,
+        may_stand_still=may_stand_still,
     )
-    return _with_what_parts_say(composition, tokens, reader) if reader.unread else composition
+    unread = list(reader.unread)
+    if unread:
+        composition, unread = _with_what_parts_say(composition, tokens, reader, may_stand_still)
+    used = frozenset(range(len(tokens))) - set(unread)
+    return Composed(composition=composition, used=used, dropped=tuple(reader.dropped))
 
 
-def _with_what_parts_say(composition: Composition, tokens: tuple[Token, ...], reader: _Reader) -> Composition:
-    """Read words that name no mechanism against the parts that are built: `a flap that folds down`.
+def _fitting(composition: Composition, reader: _Reader, *, may_stand_still: bool) -> Composition:
+    """The composition without mechanisms that have no place on its body, the last said first.
 
     Raises:
-        InputError: They do not hold of them.
+        InputError: Nothing of it would move.
     """
+    first: InputError | None = None
+    while True:
+        try:
+            compose(composition, may_stand_still=may_stand_still)
+        except InputError as error:
+            first = first or error
+            if (asked := _unkept(composition, may_stand_still)) is not None:
+                reader.drop(asked.words, reason=str(error).rsplit(", but ", maxsplit=1)[-1].rstrip("."))
+                kept = tuple(item for item in composition.requirements if item is not asked)
+                composition = replace(composition, requirements=kept)
+                continue
+            items = [item for item in reader.wanted if item in composition.wanted]
+            if not items:
+                raise first from None
+            alone = [item for item in items if _fits_without(composition, item)]
+            last = (alone or items)[-1]
+            reader.drop(
+                last.title, *reader.places.get(id(last), ()), reason=str(error).split(". ", maxsplit=1)[0].rstrip(".")
+            )
+            rest = tuple(item for item in composition.wanted if item is not last)
+            composition = replace(
+                composition,
+                wanted=rest or tuple(_taken_for_granted(reader, nothing_wanted=True)),
+                requirements=tuple(item for item in composition.requirements if last.stem not in item.nouns),
+            )
+        else:
+            return composition
+
+
+def _unkept(composition: Composition, may_stand_still: bool) -> PartRequirement | None:
+    """The requirement without which the composition can be built, if it is one of these alone."""
+    for item in composition.requirements:
+        rest = tuple(other for other in composition.requirements if other is not item)
+        try:
+            compose(replace(composition, requirements=rest), may_stand_still=may_stand_still)
+        except InputError:
+            continue
+        return item
+    return None
+
+
+def _fits_without(composition: Composition, item: MechanismSpec) -> bool:
     try:
-        made = compose(composition)
-    except InputError as error:
-        raise InputError(f"{_not_understood(_phrases_of(tokens, reader.unread))} {error}") from error
+        compose(replace(composition, wanted=tuple(other for other in composition.wanted if other is not item)))
+    except InputError:
+        return False
+    return True
+
+
+def _with_what_parts_say(
+    composition: Composition, tokens: tuple[Token, ...], reader: _Reader, may_stand_still: bool
+) -> tuple[Composition, list[int]]:
+    """Read words that name no mechanism against the parts that are built, `a flap that folds down`; what is left."""
+    made = compose(composition, may_stand_still=may_stand_still)
     family = Family(
         name=made.family,
         title=composition.title,
@@ -155,36 +221,15 @@ def _with_what_parts_say(composition: Composition, tokens: tuple[Token, ...], re
     used = set(range(len(tokens))) - set(reader.unread)
     parts = PartReader(reading=ParseState(tokens=tokens, family=family, used=used, named=reader.named), made=made)
     parts.read()
-    if left := _phrases_of(tokens, [k for k in reader.unread if k not in parts.reading.used]):
-        raise _not_understood(left)
-    return replace(composition, requirements=(*composition.requirements, *parts.requirements))
+    left = [k for k in reader.unread if k not in parts.reading.used]
+    return replace(composition, requirements=(*composition.requirements, *parts.requirements)), left
 
 
-def _phrases_of(tokens: tuple[Token, ...], places: Sequence[int]) -> list[str]:
-    """What stands at some places as it was written, neighbours together; articles alone say nothing."""
-    phrases: list[list[int]] = []
-    for k in places:
-        if phrases and k == phrases[-1][-1] + 1:
-            phrases[-1].append(k)
-        elif tokens[k].text not in ARTICLES:
-            phrases.append([k])
-    return [" ".join(tokens[k].given for k in phrase) for phrase in phrases]
-
-
-def _not_understood(left: Sequence[str]) -> InputError:
-    return InputError(
-        f"Not understood: {', '.join(map(repr, left))}. Nothing else is built in its place. Bodies are "
-        f"{', '.join(_SHAPES)}; on them go {', '.join(mechanism.words[0] for mechanism in MECHANISMS)}."
-    )
-
-
-def _taken_for_granted(reader: _Reader) -> list[MechanismSpec]:
+def _taken_for_granted(reader: _Reader, *, nothing_wanted: bool = False) -> list[MechanismSpec]:
     """What the body has without being asked for."""
     body = reader.body
-    if body is None:
-        return []
     named = [*reader.excluded, *(item.mechanism for item in reader.wanted)]
-    granted = {**body.always, **({} if reader.wanted else body.usual)}
+    granted = {**body.always, **({} if reader.wanted and not nothing_wanted else body.usual)}
     if any(item.mechanism.needs == "opening" for item in reader.wanted):
         granted.pop("door", None)  # something else closes it
     called = {kind: word for word, kind in body.says.items()}
@@ -198,16 +243,6 @@ def _taken_for_granted(reader: _Reader) -> list[MechanismSpec]:
         for kind in MECHANISMS
         if kind.words[0] in granted and kind not in named
     ]
-
-
-def names_a_body(sentence: str) -> str:
-    """Return the name of the first body that a sentence names by several words that say what it is, else nothing."""
-    tokens = tokens_of(sentence, _vocabulary(), mend=False)
-    for k in range(len(tokens)):
-        named = _longest(tuple(token.text for token in tokens[k : k + 5]), _bodies())
-        if named is not None:
-            return " ".join(named[0]) if len([word for word in named[0] if word not in STOP_WORDS]) > 1 else ""
-    return ""
 
 
 def told(composition: Composition) -> str:
@@ -230,12 +265,14 @@ def _phrase(count: int, *words: str | None) -> str:
 class _Reader:
     """Goes through a sentence once, from noun to noun."""
 
-    def __init__(self, tokens: Sequence[Token]) -> None:
-        """Begin before the first word."""
+    def __init__(self, tokens: Sequence[Token], body: BodyKind, name: Sequence[int]) -> None:
+        """Begin before the first word; the body's name stands at some words."""
         self._tokens = tokens
         self._words = Words(tuple(tokens))
         self._look = _Look()
-        self.body: BodyKind | None = None
+        self.body = body
+        self.named = frozenset(name)
+        self._past_name = False
         self.said = ""
         self.of_body = _Look()
         self.wanted: list[MechanismSpec] = []
@@ -250,12 +287,12 @@ class _Reader:
         self.scale = 1.0
         self.hinge = ""
         """Side of the doors that nobody named."""
-        self.left: list[str] = []
-        """Words that cannot be understood here, as they were written."""
+        self.dropped: list[Missing] = []
+        """What has no place here."""
+        self.places: dict[int, range] = {}
+        """Words of what is wanted, by the id of it."""
         self.unread: list[int] = []
         """Words that name no mechanism; what they say of parts is read when these are there."""
-        self.named: frozenset[int] = frozenset()
-        """Words of the body's name."""
         self._looking: list[int] = []
         """Words of what was said of the noun to come."""
 
@@ -281,6 +318,10 @@ class _Reader:
             k += max(taken, 1)
         self.unread += self._looking  # it describes nothing that follows
 
+    def drop(self, words: str, *where: int, reason: str = "") -> None:
+        """Build without something that was asked for."""
+        self.dropped.append(Missing(words=words, at=frozenset(where), reason=reason))
+
     @staticmethod
     def _says_nothing(token: Token) -> bool:
         return token.is_sign or (token.text in STOP_WORDS and token.text not in _REPEATING) or token.text in _MOVING
@@ -298,7 +339,7 @@ class _Reader:
         number, texts = self._tokens[k].number, self._texts(k)
         if number is None or len(texts) < _BARE or texts[1] not in UNITS:
             return 0
-        of_what_comes = self.body is not None and _longest(self._texts(k + _BARE + 1), self._known()) is not None
+        of_what_comes = self._past_name and _longest(self._texts(k + _BARE + 1), self._known()) is not None
         if of_what_comes or (self.wanted and self._tokens[k - 1].text != ","):
             return 0  # it would be the length of a mechanism
         metres = number * UNITS[texts[1]]
@@ -319,7 +360,7 @@ class _Reader:
     def _mechanism(self, k: int) -> int:
         """`drawers on the left side`; `a turntable on a table`, whose body comes behind it."""
         named = _longest(self._texts(k), self._known())
-        if named is None or (self.body is None and named[0] in _bodies() and not self._stands_on(k + len(named[0]))):
+        if named is None or k in self.named:
             return 0
         words, mechanism = named
         look, end = self._described_so_far(), k + len(words)
@@ -332,8 +373,8 @@ class _Reader:
         again = look.count is None and before is not None
         if again and before is not None and (opened := self._opened_by(end, before, words)):
             return len(words) + opened
-        if (self.body is None and not self._stands_on(end)) or again:
-            self.left.append(" ".join(words))  # a part of something else, or one that was named before
+        if again or (not self._past_name and not self._stands_on(end)):
+            self.drop(" ".join(words), *range(k, end))  # a part of something else, or one that was named before
             return len(words)
         if look.count == 0:
             self.excluded.append(mechanism)
@@ -344,28 +385,28 @@ class _Reader:
             side = "" if mechanism.arranged == "axles" else next((s for s in mechanism.sides if s in _FLANKS), "right")
         # What goes on the front alone is at its top or bottom there.
         banded = mechanism.arranged in BANDS and side in ("top", "bottom") and side not in mechanism.sides
-        self.wanted.append(
-            MechanismSpec(
-                mechanism=mechanism,
-                said=_unusual(words, mechanism.words),
-                count=look.count or (_several(mechanism) if plural else 1),
-                side="" if banded else side,
-                level=(1 if side == "top" else -1) if banded else 0,
-                material=look.material,
-                color=look.color,
-            )
+        wanted = MechanismSpec(
+            mechanism=mechanism,
+            said=_unusual(words, mechanism.words),
+            count=look.count or (_several(mechanism) if plural else 1),
+            side="" if banded else side,
+            level=(1 if side == "top" else -1) if banded else 0,
+            material=look.material,
+            color=look.color,
         )
+        self.wanted.append(wanted)
+        self.places[id(wanted)] = range(k, end)
         return len(words) + taken
 
     def _known(self) -> Mapping[tuple[str, ...], MechanismKind]:
         """Mechanisms by their words, as they are called on this body."""
-        says = self.body.says if self.body is not None else {}
+        says = self.body.says
         own = {tuple(word.split()): _mechanisms()[tuple(kind.split())] for word, kind in says.items()}
         return {**own, **{words: kind for words, kind in _mechanisms().items() if words not in own}}
 
     def _detail(self, k: int) -> int:
         """`with two handles`, which this body has anyway; `with five blades`, of the rotor that it has or just got."""
-        if self.body is None:
+        if not self._past_name:
             return 0
         here = self.wanted[-1:] or [
             MechanismSpec(mechanism=kind) for kind in MECHANISMS if kind.words[0] in self.body.always
@@ -386,7 +427,7 @@ class _Reader:
     def _roughly(self, k: int) -> int:
         """`small`, of the whole."""
         word = self._words.text(k)
-        if self.body is not None or word not in SIZE_WORDS:
+        if self._past_name or word not in SIZE_WORDS:
             return 0
         self.scale *= _LARGER if SIZE_WORDS[word][0] else 1.0 / _LARGER
         return 1
@@ -432,19 +473,17 @@ class _Reader:
 
     def _named_body(self, k: int) -> int:
         """`cart`, once."""
-        named = None if self.body is not None else _longest(self._texts(k), _bodies())
-        if named is None:
+        if self._past_name or k != min(self.named):
             return 0
-        words, self.body = named
-        self.named = frozenset(range(k, k + len(words)))
+        self._past_name = True
+        words = tuple(self._tokens[i].text for i in sorted(self.named))
         self.said = _unusual(words, self.body.words)
         self.of_body = self._described_so_far()
         self.copies = 1 if self.of_body.count is None else self.of_body.count
-        its_part = _longest(self._texts(k + len(words)), _mechanisms())
-        if its_part is not None:  # a cabinet door is no cabinet
-            self.left.append(" ".join((*words, *its_part[0])))
         if not 1 <= self.copies <= MOST_COPIES:
-            self.left.append(f"{self.of_body.count} {' '.join(words)}")
+            raise InputError(
+                f"The text asks for {self.copies} {' '.join(words)}; at most {MOST_COPIES} are built side by side."
+            )
         return len(words)
 
     def _openness(self, k: int) -> int:
@@ -453,14 +492,14 @@ class _Reader:
         says_that_it_can = self._words.text(k - 1) in ("that", "which", "can")
         for words, share in _OPENNESS.items() if self._look == _Look() and not says_that_it_can else ():
             # Amid a sentence it would be said of one mechanism alone.
-            if texts[: len(words)] == words and (self.body is None or texts == words):
+            if texts[: len(words)] == words and (not self._past_name or texts == words):
                 self.rest = share
                 return len(words)
         return 0
 
     def _look_of_body(self, k: int) -> int:
         """`, walnut,`: what stands between commas describes the whole."""
-        if self.body is None or self._words.text(k - 1) != "," or self._look != _Look():
+        if not self._past_name or self._words.text(k - 1) != "," or self._look != _Look():
             return 0
         end = k
         while taken := self._described(end):
@@ -500,7 +539,7 @@ class _Reader:
         """`four`, `no`; a number that is not whole, or a second one, is not understood."""
         number = self._tokens[k].number
         of_article = self._words.text(k - 1) in ARTICLES  # a pair, a dozen
-        if self.body is None and self._words.text(k) in KINDS:
+        if not self._past_name and self._words.text(k) in KINDS:
             return 0
         if number is None or number != int(number) or (self._look.count is not None and not of_article):
             return 0

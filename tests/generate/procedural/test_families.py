@@ -12,7 +12,7 @@ from kinematify.generate.procedural.blueprint import Blueprint
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.workshop import STYLES
-from kinematify.generate.request import from_text
+from kinematify.generate.sentence import from_text
 from kinematify.robot.joint_type import JointType
 
 SEEDS = (None, 0)

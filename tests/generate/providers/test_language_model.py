@@ -12,13 +12,17 @@ from PIL import Image
 from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.generate.blueprint_file import read_blueprint
+from kinematify.generate.blueprint_file import described_blueprint, read_blueprint
+from kinematify.generate.procedural.language.compare import compare
+from kinematify.generate.procedural.language.parse import parse_any
 from kinematify.generate.providers.job import open_job
+from kinematify.generate.providers.judge import drawn_findings
 from kinematify.generate.providers.language_model import ADDRESS, KEY, MODEL, LanguageModel, language_model
 from kinematify.generate.providers.source import check_prompt
 from kinematify.robot.read import read_robot
 from tests.generate.providers import chat_server
 from tests.generate.providers.chat_server import ChatServer
+from tests.places import BENCH
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -51,7 +55,7 @@ def model_at(server: ChatServer, **options: object) -> LanguageModel:
     return LanguageModel(server.url, "tester", chat_server.KEY, SETTINGS, **options)
 
 
-def written(model: LanguageModel, folder: Path, judge=lambda _: (), images: tuple[Path, ...] = ()):
+def written(model: LanguageModel, folder: Path, judge=lambda *_: (), images: tuple[Path, ...] = ()):
     prompt = check_prompt(TEXT, images, seed=0)
     with open_job(folder, "llm", prompt.digest(model.options())) as job:
         return model.write(prompt, job, judge, lambda *_: None)
@@ -59,7 +63,7 @@ def written(model: LanguageModel, folder: Path, judge=lambda _: (), images: tupl
 
 def test_what_the_model_writes_is_built_and_judged(server, tmp_path):
     judged = []
-    found = written(model_at(server), tmp_path, lambda blueprint: judged.append(blueprint) or ())
+    found = written(model_at(server), tmp_path, lambda blueprint, _: judged.append(blueprint) or ())
     assert [part.name for part in read_blueprint(found.path).parts] == ["body", "lid"]
     assert [blueprint.root for blueprint in judged] == ["body"]
     assert (found.rounds, found.tokens, found.findings) == (1, 1000, ())
@@ -85,14 +89,14 @@ def test_what_is_wrong_goes_back_until_nothing_is(server, tmp_path):
 def test_the_best_of_all_rounds_is_kept(server, tmp_path):
     server.script = [lidded(name="one"), lidded(name="two"), "nothing more"]
     findings = {"one": ("a", "b"), "two": ("c",)}
-    found = written(model_at(server), tmp_path, lambda blueprint: findings[blueprint.name])
+    found = written(model_at(server), tmp_path, lambda blueprint, _: findings[blueprint.name])
     assert read_blueprint(found.path).name == "two"
     assert found.findings == ("c",)
     assert found.rounds == SETTINGS.rounds
 
 
 def test_the_budget_ends_the_rounds(server, tmp_path):
-    found = written(model_at(server, budget=1500.0), tmp_path, lambda _: ("never good",))
+    found = written(model_at(server, budget=1500.0), tmp_path, lambda *_: ("never good",))
     assert (found.rounds, found.tokens) == (2, 2000)
 
 
@@ -152,7 +156,7 @@ def test_a_recording_answers_without_a_service(server, tmp_path):
     assert written(model, tmp_path / "two").rounds == 1
     assert chat_server.KEY not in "".join(path.read_text() for path in (tmp_path / "tape").iterdir())
     with pytest.raises(InputError, match="Nothing is recorded"):
-        written(model, tmp_path / "three", lambda _: ("not good",))
+        written(model, tmp_path / "three", lambda *_: ("not good",))
 
 
 def test_pictures_are_sent_as_they_are(server, tmp_path):
@@ -178,17 +182,79 @@ def test_what_the_validation_finds_is_mended(server, tmp_path, monkeypatch):
     """The first lid turns into its box; the second one opens."""
     monkeypatch.setenv(ADDRESS, server.url)
     monkeypatch.setenv(KEY, chat_server.KEY)
-    server.script = [lidded(axis=1.0), lidded()]
+    server.script = ['{"sentence": null, "unmapped": []}', lidded(axis=1.0), lidded()]
     out, answer = tmp_path / "box", tmp_path / "answer.json"
     command = ["generate", "--text", TEXT, "--source", "llm", "-o", str(out), "--no-preview", "--json", str(answer)]
     assert run(command) == 0
-    told = server.requests[1]["messages"][-1]["content"]
-    assert "lid" in told
+    told = server.requests[2]["messages"][-1]["content"]
+    assert '"axis"' in told
+    assert "<axis>" not in told
     facts = json.loads(answer.read_text())
     assert facts["language_model"]["rounds"] == 2
     assert facts["validation"]["failed"] == []
     assert read_robot(out / "model.urdf").joints[0].axis[0] == -1.0
     assert json.loads((out / "source.json").read_text())["parameters"]["source"] == "llm"
+
+
+def test_what_the_library_has_is_translated_and_what_was_not_mapped_is_listed(server, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv(ADDRESS, server.url)
+    monkeypatch.setenv(KEY, chat_server.KEY)
+    server.script = ['{"sentence": "a cabinet with two doors", "unmapped": []}']
+    command = ["generate", "--source", "llm", "--no-preview", "--no-validation"]
+    assert run([*command, "--text", "a cabinet with two doors", "-o", str(tmp_path / "one")]) == 0
+    assert len(server.requests) == 1, "no blueprint is asked for"
+    server.script = ['{"sentence": "a cabinet with two doors", "unmapped": ["a mail slot"]}', "I cannot design that."]
+    assert run([*command, "--text", "a cabinet with two doors and a mail slot", "-o", str(tmp_path / "two")]) == 1
+    assert "Not built: a mail slot" in capsys.readouterr().out.splitlines()[-1]
+    assert (tmp_path / "two" / "model.urdf").exists()
+
+
+def test_what_is_missing_goes_back_and_is_then_listed(server, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv(ADDRESS, server.url)
+    monkeypatch.setenv(KEY, chat_server.KEY)
+    server.script = ['{"sentence": null}', lidded()]
+    command = [
+        "generate",
+        "--source",
+        "llm",
+        "--no-preview",
+        "--no-validation",
+        "--rounds",
+        "2",
+        "-o",
+        str(tmp_path / "a"),
+    ]
+    assert run([*command, "--text", "a widget with two lids and a coat hook"]) == 1
+    assert "Asked for and not built: coat hook" in server.requests[2]["messages"][-1]["content"]
+    assert capsys.readouterr().out.splitlines()[-1] == "Not built: two lids (1 built); coat hook"
+
+
+RECORDED = BENCH.parent / "recorded" / "blueprints"
+NOTICED = {
+    "b1": ("a locker 1.8 m tall with two doors, each with a small vent and a coat hook", "vent"),
+    "b2": ("a wall cabinet with two doors", "two doors (1 built)"),
+    "b3": ("a pedal bin 65 cm high where the lid opens and the pedal moves", "65 cm high (6.5 m built)"),
+}
+
+
+@pytest.mark.skipif(not RECORDED.is_dir(), reason="the recorded answers of 2026-11-23 are not there")
+def test_sentences_that_a_recorded_answer_does_not_honour_are_noticed():
+    """Answers of a strong general model, recorded on 2026-11-23 with the prompt of 4264349."""
+    for name, (sentence, words) in NOTICED.items():
+        answer = json.loads((RECORDED / f"{name}.json").read_text())
+        missing = compare(parse_any(sentence), described_blueprint(answer["blueprint"])).missing
+        assert words in "; ".join(map(str, missing)), name
+    for file in RECORDED.glob("s*.json"):
+        answer = json.loads(file.read_text())
+        missing = compare(parse_any(answer["sentence"]), described_blueprint(answer["blueprint"])).missing
+        assert not [str(item) for item in missing if item.is_sure], f"nothing that was measured contradicts {file.name}"
+
+
+@pytest.mark.skipif(not RECORDED.is_dir(), reason="the recorded answers of 2026-11-23 are not there")
+@pytest.mark.parametrize(("name", "words"), [("e2", "away from its parent"), ("e3", "deep in each other")])
+def test_flaws_of_recorded_answers_are_found_before_anything_is_carved(name, words):
+    answer = json.loads((RECORDED / f"{name}.json").read_text())
+    assert any(words in line for line in drawn_findings(described_blueprint(answer["blueprint"])))
 
 
 @pytest.mark.parametrize("more", [["--seed", "1"], ["--command", "x"], ["--record", "a", "--replay", "b"]], ids=str)

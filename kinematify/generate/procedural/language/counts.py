@@ -257,7 +257,6 @@ def read_copies(reading: ParseState) -> None:
             "built side by side."
         )
     reading.copies = int(number)
-    reading.understood.append(f"{reading.copies} side by side, on one base link")
     reading.used.update(counting)
     for phrase in _TOGETHER:
         for k in range(len(reading.tokens) - len(phrase) + 1):

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.language.compare import Missing
 from kinematify.generate.procedural.language.parts import PLACES, PartRequirement
 from kinematify.generate.procedural.language.sizes import angle_at, length_at
 from kinematify.generate.procedural.language.words import OPENNESS
@@ -95,8 +96,11 @@ def _open_parts(
     if set(wanted.of(parts.made)) == opening:
         reading.used.update(range(first, end))
         return False
-    wanted.applied(parts.made)
-    return parts.require(wanted, *words, *range(first, end), *({first - 1} if place else ()))
+    where = (*words, *range(first, end), *({first - 1} if place else ()))
+    if not parts.require(wanted, *where):
+        reading.dropped.append(Missing(words=said, at=frozenset(where), reason="it does not open so far"))
+        reading.used.update(where)
+    return True
 
 
 def _clause(reading: ParseState, k: int) -> list[int]:

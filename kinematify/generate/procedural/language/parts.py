@@ -15,82 +15,38 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.blueprint import BlueprintJoint
+from kinematify.generate.procedural.language.motions import (
+    DONE,
+    GOING,
+    MOTIONS,
+    WAYS,
+    goes,
+    moves_so,
+    turns_about_itself,
+)
 from kinematify.generate.procedural.language.reading import nouns_of
 from kinematify.generate.procedural.language.words import PURPOSES, STOP_WORDS, UNITS, singular
 from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS, of_one_material, surface_of
-from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
     from kinematify.assembly.part import Part
     from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.language.reading import ParseState
-    from kinematify.robot.arrays import FloatArray
 
-_VERBS = {
-    "slides": "slide extend retract", "turns": "turn rotate swivel pivot", "swings": "hinge swing oscillate",
-    "tilts": "tilt recline tip", "flips": "flip", "spins": "spin revolve", "folds": "fold", "moves": "move adjust",
-    "rises": "lift raise rise", "sinks": "lower",
-}  # fmt: skip
-"""How a part may move -> verbs that say so."""
-
-
-_DOUBLED = ("flip", "tip", "spin", "swivel")
-"""Verbs whose last letter may be doubled: flipping."""
-
-
-def _forms(verb: str, ends: tuple[str, ...]) -> set[str]:
-    stems = [verb.removesuffix("e"), *([verb + verb[-1]] if verb in _DOUBLED else [])]
-    return {stem + end for stem in stems for end in ends}
-
-
-def _said_of(*ends: str) -> dict[str, str]:
-    return {form: moves for moves, verbs in _VERBS.items() for verb in verbs.split() for form in _forms(verb, ends)}
-
-
-MOTIONS = {
-    **{verb + end: moves for moves, verbs in _VERBS.items() for verb in verbs.split() for end in ("", "s")},
-    **_said_of("ing", "able"), "telescopic": "slides", "extendable": "slides", "hinged": "swings",
-    "telescoping": "slides", "rolls": "slides", "roll": "slides",
-}  # fmt: skip
-"""Words for how a part moves, before its noun or behind it."""
-_DONE = _said_of("ed")
-"""The same behind `can be`."""
 _OF_PARTS_ALONE = ("folds", "moves")
 """Said of the whole they are about another kind of object: a bicycle that folds has more than a handlebar."""
-_MOVES: dict[str, Callable[[Blueprint, BlueprintJoint], bool]] = {
-    "slides": lambda made, joint: joint.kind is JointType.PRISMATIC,
-    "turns": lambda made, joint: joint.kind.turns,
-    "swings": lambda made, joint: joint.kind is JointType.REVOLUTE,
-    "tilts": lambda made, joint: joint.kind is JointType.REVOLUTE and abs(joint.axis[2]) < _SLANT,
-    "flips": lambda made, joint: joint.kind.turns and abs(joint.axis[2]) < _SLANT and "wheel" not in joint.child,
-    "spins": lambda made, joint: joint.kind is JointType.CONTINUOUS,
-    "folds": lambda made, joint: joint.kind is JointType.REVOLUTE,
-    "moves": lambda made, joint: joint.kind is not JointType.FIXED,
-    "rises": lambda made, joint: _goes(made, joint, "up"),
-    "sinks": lambda made, joint: _goes(made, joint, "down"),
-}
-_WAYS = {
-    "left": (-1, 0, 0), "right": (1, 0, 0), "up": (0, 0, 1), "upward": (0, 0, 1), "down": (0, 0, -1),
-    "downward": (0, 0, -1), "out": (0, -1, 0), "outward": (0, -1, 0), "forward": (0, -1, 0), "inward": (0, 1, 0),
-    "back": (0, 1, 0), "backward": (0, 1, 0),
-}  # fmt: skip
-"""Words for where a part goes when it opens; fronts look along -y."""
 PLACES = {
     "left": (-1, 0, 0), "right": (1, 0, 0), "top": (0, 0, 1), "upper": (0, 0, 1), "uppermost": (0, 0, 1),
     "bottom": (0, 0, -1), "lower": (0, 0, -1), "lowest": (0, 0, -1), "front": (0, -1, 0), "rear": (0, 1, 0),
 }  # fmt: skip
 _HANDLES = ("handle", "knob", "pull", "grip")
 """Words for handles, which are no parts of their own."""
-_SLANT = 0.2  # of a part's way that must go where it is said to go; a door goes out as much as aside
-_QUARTER = 0.5 * math.pi
-_ABOUT, _LARGE = 0.2, 0.3  # of a part's diagonal from its middle to its axis; of the whole's diagonal
 _LINKS = ("that", "which", "whose", "is", "are", "to", "can", "be", "the", "in", "on", "at")  # between noun and verb
 _ANYHOW = ("over", "open", "apart", "around", "round", "freely", "away", "together", "aside")
 """Behind a verb they say nothing about where to."""
-_GOING = ("open", "opens", "opening", "go", "goes", "going", "come", "comes")
 _OF = ("of", "in", "made", "from", "is", "are")  # between a noun and what it is made of
 
 
@@ -135,8 +91,8 @@ class PartRequirement:
         joints = [blueprint.joint_above[name] for name in names if name in blueprint.joint_above]
         moved = self.moves or self.way or self.opened
         fits = fits and not (moved and len(joints) < len(names))
-        fits = fits and (not self.moves or all(_MOVES[self.moves](blueprint, joint) for joint in joints))
-        fits = fits and all(_goes(blueprint, joint, self.way) for joint in joints if self.way)
+        fits = fits and (not self.moves or all(moves_so(blueprint, joint, self.moves) for joint in joints))
+        fits = fits and all(goes(blueprint, joint, self.way) for joint in joints if self.way)
         if not fits:
             raise InputError(f"Asked for is {self.words!r}, but {_described(blueprint, names)}.")
         if self.look is not None:
@@ -181,7 +137,6 @@ class PartReader:
         except InputError:
             return False
         self.requirements.append(requirement)
-        self.reading.understood.append(requirement.words)
         self.reading.used.update(where)
         return True
 
@@ -216,7 +171,7 @@ class PartReader:
 
     def _movement_of_some_part(self) -> None:
         """`a fan that oscillates`, `a swivel chair`: the one part of a name does; ribs do not tilt an umbrella."""
-        names = Counter(_stem(part.name) for part in self.made.parts)
+        names = Counter(stem_of(part.name) for part in self.made.parts)
         for k in range(len(self.reading.tokens)):
             behind = self.reading.text(k - 1) in ("that", "which", "be")
             said = self._verb(k)
@@ -227,12 +182,12 @@ class PartReader:
                 continue
             for way in ways:
                 stems = {
-                    _stem(joint.child)
+                    stem_of(joint.child)
                     for joint in self.made.joints
                     if "wheel" not in joint.child  # what rolls does not make the whole turn
-                    and (behind or moves not in ("turns", "spins") or _turns_about_itself(self.made, joint))
-                    and (not moves or _MOVES[moves](self.made, joint))
-                    and (not way or _goes(self.made, joint, way))
+                    and (behind or moves not in ("turns", "spins") or turns_about_itself(self.made, joint))
+                    and (not moves or moves_so(self.made, joint, moves))
+                    and (not way or goes(self.made, joint, way))
                 }
                 stems = {stem for stem in stems if names[stem] == 1}
                 wanted = PartRequirement(nouns=tuple(sorted(stems)), words=self.said(*where), moves=moves, way=way)
@@ -242,18 +197,18 @@ class PartReader:
     def _verb(self, k: int) -> tuple[str, list[str], list[int]] | None:
         """How something moves by the verb at word k, where to (what goes up and down does one of both), and words."""
         verb = self.reading.text(k)
-        moves = MOTIONS.get(verb, _DONE.get(verb, "") if self.reading.text(k - 1) == "be" else "")
-        if k in self.reading.used or not (moves or verb in _GOING):
+        moves = MOTIONS.get(verb, DONE.get(verb, "") if self.reading.text(k - 1) == "be" else "")
+        if k in self.reading.used or not (moves or verb in GOING):
             return None
         to = k + 1
         while self.reading.text(to) in ("to", "the", "on", "at", "towards"):
             to += 1
         way, back = (self.reading.text(i).removesuffix("s") for i in (to, to + 2))
-        if way not in _WAYS:  # it may have said the hinge's side already
+        if way not in WAYS:  # it may have said the hinge's side already
             anyhow = [to] if self.reading.text(to) in _ANYHOW else []
             moves = moves or ("moves" if verb.startswith("open") else "")
             return (moves, [""], [k, *anyhow]) if moves else None
-        both = self.reading.text(to + 1) == "and" and back in _WAYS
+        both = self.reading.text(to + 1) == "and" and back in WAYS
         return moves, [way, back] if both else [way], [k, to, *([to + 2] if both else [])]
 
     def _movement_behind(self, k: int, end: int, stems: tuple[str, ...]) -> None:
@@ -362,7 +317,7 @@ class PartReader:
 
 def part_nouns(family: Family, made: Blueprint) -> dict[tuple[str, ...], tuple[str, ...]]:
     """How the parts of an object may be called, singular words -> their names without numbers."""
-    stems = {_stem(part.name) for part in made.parts}
+    stems = {stem_of(part.name) for part in made.parts}
     found: dict[tuple[str, ...], set[str]] = {}
     for stem in stems:
         words = tuple(stem.split("_"))
@@ -379,30 +334,13 @@ def part_nouns(family: Family, made: Blueprint) -> dict[tuple[str, ...], tuple[s
     return {words: tuple(sorted(names)) for words, names in found.items()}
 
 
-def _stem(name: str) -> str:
+def stem_of(name: str) -> str:
+    """A part's name without its number."""
     return name.rstrip("0123456789_")
 
 
 def _is_called(name: str, nouns: Sequence[str]) -> bool:
-    return _stem(name) in nouns
-
-
-def _goes(blueprint: Blueprint, joint: BlueprintJoint, way: str) -> bool:
-    """Whether a part goes somewhere when it opens."""
-    part = next(part for part in blueprint.parts if part.name == joint.child)
-    value = min(joint.upper, _QUARTER) if joint.kind.turns else joint.upper
-    middle = part.bounds.mean(axis=0)
-    moved: FloatArray = (joint.motion(value) @ np.append(middle, 1.0))[:3] - middle
-    return float(moved @ np.array(_WAYS[way])) > _SLANT * float(np.linalg.norm(moved)) > 0.0
-
-
-def _turns_about_itself(blueprint: Blueprint, joint: BlueprintJoint) -> bool:
-    """Whether a large part turns about its middle, as a swivel chair does and a cabinet with a door does not."""
-    bounds = next(part for part in blueprint.parts if part.name == joint.child).bounds
-    middle, size = bounds.mean(axis=0), float(np.linalg.norm(np.ptp(bounds, axis=0)))
-    aside = float(np.linalg.norm(np.cross(joint.axis, middle - joint.pivot)))
-    whole = float(np.linalg.norm(np.ptp(blueprint.assembly.bounds, axis=0)))
-    return joint.kind.turns and aside < _ABOUT * size and size > _LARGE * whole
+    return stem_of(name) in nouns
 
 
 def _looking(blueprint: Blueprint, names: Sequence[str], material: str, color: str) -> Blueprint:

@@ -6,9 +6,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
+from kinematify.generate.procedural.language.compare import Missing
 from kinematify.generate.procedural.language.words import NOUNS, Words
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.language.arrangement import Mention
     from kinematify.generate.procedural.language.words import Token
@@ -22,10 +25,13 @@ class ParseState(Words):
     tokens: tuple[Token, ...]
     family: Family
     values: dict[str, Value] = field(default_factory=dict)
-    understood: list[str] = field(default_factory=list)
     used: set[int] = field(default_factory=set)
     said: dict[str, str] = field(default_factory=dict)
-    """Words that set a parameter, as they were written."""
+    """Words that set a parameter, as they were written, by its name."""
+    places: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    """Which words these are."""
+    dropped: list[Missing] = field(default_factory=list)
+    """What such an object cannot have."""
     named: frozenset[int] = frozenset()
     """Where the family is named; a choice may be part of its name."""
     counted: set[int] = field(default_factory=set)
@@ -36,18 +42,36 @@ class ParseState(Words):
     mentions: list[Mention] = field(default_factory=list)
 
     def take(self, name: str, value: Value, said: str, *where: int) -> None:
-        """Set a parameter; two different values for one are a contradiction."""
+        """Set a parameter; of two choices the first holds, two numbers for one thing are a contradiction.
+
+        Raises:
+            InputError: There are two numbers.
+        """
         before = self.values.get(name)
+        words = self.words_at(where) or said
         if before is not None and before != value:
+            if isinstance(value, str):
+                self.dropped.append(Missing(words=words, at=frozenset(where), reason=f"{name}: {before}"))
+                self.used.update(where)
+                return
             raise InputError(
-                f"The text asks for {name} = {before} and for {name} = {value}. Say one of them for a "
-                f"{self.family.title}."
+                f"The text says {self.said.get(name, before)!r} and {words!r}: {name} {before} or {value}? Say one."
             )
         if before is None:
-            self.understood.append(said)
-            self.said[name] = " ".join(self.tokens[k].given for k in sorted(set(where))) or said
+            self.said[name] = words
+            self.places[name] = where
         self.values[name] = value
         self.used.update(where)
+
+    def drop(self, name: str, reason: str) -> None:
+        """Build without a parameter that was taken."""
+        words = self.said.pop(name, name)
+        del self.values[name]
+        self.dropped.append(Missing(words=words, at=frozenset(self.places.pop(name, ())), reason=reason))
+
+    def words_at(self, where: Collection[int]) -> str:
+        """Words as they were written."""
+        return " ".join(self.tokens[k].given for k in sorted(set(where)))
 
     def parameter(self, name: str) -> Parameter | None:
         """The family's parameter of a name."""

@@ -75,7 +75,6 @@ def read_size_words(reading: ParseState) -> None:
             if parameter.name not in reading.values and parameter.usual is not None:
                 reading.values[parameter.name] = parameter.usual[end]
         if meant and not any(item.text in ("with", "and") for item in between):
-            reading.understood.append(token.text)
             reading.used.add(k)
 
 
@@ -89,7 +88,6 @@ def read_overall(reading: ParseState) -> None:
         name = next((name for name in OVERALL if word in DIMENSIONS[name]), "")
         if length and name and reading.overall is None and not any(p.name == name for p in reading.family.parameters):
             reading.overall = (name, length[0])
-            reading.understood.append(f"{length[0]:g} m {word}")
             reading.used.update(range(k, length[1] + 1))
 
 
@@ -164,7 +162,6 @@ def read_bare_length(reading: ParseState) -> None:
             longest = _longest_side(reading.family)
             if longest and reading.parameter(longest) is None and reading.overall is None:
                 reading.overall = (longest, metres)
-                reading.understood.append(f"{longest} {metres:g} m")
                 reading.used.update(range(k, end))
                 continue
             name = longest or None

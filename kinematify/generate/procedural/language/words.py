@@ -1,8 +1,7 @@
-"""Words of a sentence: tokens, numbers, units, singulars; slips of spelling are mended only if that is asked for."""
+"""Words of a sentence: tokens, numbers, units, singulars."""
 
 from __future__ import annotations
 
-import difflib
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -126,7 +125,13 @@ _ROUGH_PART = re.compile(
     rf"(?<![\d.])(?<!\bcm )(?<!\bmm )(?<!\bm )\b(?P<size>(?:{'|'.join(_ROUGHLY)})\s+)(?P<noun>[a-z]+)\b", re.IGNORECASE
 )
 _HAVING = re.compile(r"(\b(?:with|having|has|featuring|including|plus)\b|,)", re.IGNORECASE)
-_IRREGULAR = {"leaves": "leaf", "shelves": "shelf", "knives": "knife", "feet": "foot", "axes": "axis", "dice": "die"}
+_IRREGULAR = {"leaves": "leaf", "shelves": "shelf", "knives": "knife", "feet": "foot",
+              "halves": "half", "wolves": "wolf", "axes": "axis", "dice": "die",
+              "knobs": "knob", "glasses": "glasses"}  # fmt: skip
+_ONLY_PLURAL = frozenset({
+    "scissors", "pliers", "tongs", "shears", "tweezers", "binoculars", "headphones", "nippers", "scales", "stairs",
+    "goggles", "chess", "lens", "bus", "gas", "canvas", "glasses", "sunglasses", "eyeglasses", "spectacles", "forceps",
+})  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,7 +139,7 @@ class Token:
     """One word, number or sign."""
 
     text: str
-    """As it is read: lower case, singular, spelling mended."""
+    """As it is read: lower case, singular."""
     given: str
     """As it was written, in lower case."""
 
@@ -214,8 +219,8 @@ class Words:
         return self.tokens[k].number if 0 <= k < len(self.tokens) else None
 
 
-def tokens_of(sentence: str, vocabulary: Iterable[str], *, mend: bool) -> tuple[Token, ...]:
-    """Split a sentence into tokens; with `mend`, slips of spelling become the nearest word of a vocabulary.
+def tokens_of(sentence: str, vocabulary: Iterable[str]) -> tuple[Token, ...]:
+    """Split a sentence into tokens; what a vocabulary has only in the singular is read in the singular.
 
     Raises:
         InputError: The text is empty, too long, or not written in Latin letters.
@@ -242,9 +247,18 @@ def tokens_of(sentence: str, vocabulary: Iterable[str], *, mend: bool) -> tuple[
         )
     known = frozenset(vocabulary)
     read = [singular(word, known) for word in found]
-    if mend:
-        read = [nearest_word(word, known) or word for word in read]
     return tuple(Token(text=word, given=given) for word, given in zip(read, found, strict=True))
+
+
+def lemma(word: str) -> str:
+    """Return the singular of an English noun, by its ending."""
+    if word in _IRREGULAR or len(word) < 4 or word.endswith(("ss", "us", "is")) or word in _ONLY_PLURAL:
+        return _IRREGULAR.get(word, word)
+    if word.endswith("ies"):
+        return f"{word[:-3]}y"
+    if word.endswith(("ches", "shes", "xes", "sses")):
+        return word[:-2]
+    return word.removesuffix("s")
 
 
 def singular(word: str, known: frozenset[str]) -> str:
@@ -260,17 +274,6 @@ def singular(word: str, known: frozenset[str]) -> str:
         if candidate and (candidate in known or candidate in UNITS):
             return candidate
     return word
-
-
-def nearest_word(word: str, known: frozenset[str]) -> str | None:
-    """Return the word that a slip of spelling may have been meant for; none for what is known or like nothing."""
-    if word in known or word in STOP_WORDS or word in NUMBERS or word in UNITS or len(word) < 4 or not word.isalpha():
-        return None
-    words = [*known, *(f"{item}s" for item in known), *(n for n in NUMBERS if len(n) > 3)]
-    near = difflib.get_close_matches(word, words, n=1, cutoff=0.82)
-    if not near and len(word) <= 5:
-        near = difflib.get_close_matches(word, words, n=1, cutoff=0.75)
-    return singular(near[0], known) if near else None
 
 
 def _shown(sentence: str) -> str:

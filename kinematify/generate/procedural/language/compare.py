@@ -1,0 +1,427 @@
+"""Compare a specification with the object that was built: what of it does not hold is reported, whoever built it."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.generate.procedural.language.motions import WAYS, goes, moves_so, turns_about_itself
+from kinematify.generate.procedural.language.words import PURPOSES, lemma
+from kinematify.generate.procedural.materials import COLORS, MATERIALS
+from kinematify.robot.joint_type import JointType
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+
+    from kinematify.assembly.part import Part
+    from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
+    from kinematify.generate.procedural.language.specification import Claim, PartSpecification, Specification
+
+_SIZE = 0.02  # of a size, by which it may be off
+_EDGE = 1e-3  # [m] within which something is as far out as another thing
+_SYNONYMS = (
+    {"door", "leaf", "gate"}, {"lid", "cover", "top", "cap"}, {"knob", "dial"}, {"wheel", "tyre", "tire"},
+    {"caster", "castor", "swivel_wheel", "wheel"}, {"arm", "link", "boom"}, {"drawer", "tray"},
+    {"sash", "casement", "pane"},
+    {"rotor", "blade", "propeller", "fan"}, {"seat", "cushion"}, {"back", "backrest"},
+    {"handle", "grip", "pull", "knob"},
+    {"lever", "handle"}, {"flap", "tailgate", "door"}, {"shade", "head"}, {"button", "key"}, {"barrel", "drum"},
+    {"screen", "lid", "display"}, {"shelf", "board"}, {"jaw", "finger"}, {"pedal", "foot_pedal"}, {"rack", "basket"},
+)  # fmt: skip
+"""Words of which one may stand for another, whatever object it is."""
+_OF_ANY_OBJECT = frozenset({
+    "base", "body", "frame", "top", "front", "back", "side", "bottom", "edge", "inside", "surface", "middle", "end",
+    "corner", "interior", "outside", "wall", "floor", "ceiling", "table", "ground", "it", "place", "height", "size",
+    "other", "same", "axis", "hinge", "joint", "rim", "pair", "set", "window", "desk", "centre", "center", "position",
+    "row", "column",
+    "grid", "line", "stack", "half", "way", "direction", "degree",
+})  # fmt: skip
+"""What every object has, and what it may stand on or hang from."""
+_ON_EACH = ("handle", "knob", "pull", "grip")
+"""What a parameter gives to every door and drawer."""
+_COVERS = (
+    "door", "drawer", "lid", "flap", "knob", "wheel", "caster", "handle", "button", "latch", "cover", "hatch", "switch",
+    "dial", "key", "slider", "lock", "hook", "tray",
+)  # fmt: skip
+"""Parts whose motion does not make the whole move so: a cabinet with a door does not turn."""
+_PLACES = {
+    "left": (-1, 0, 0), "right": (1, 0, 0), "top": (0, 0, 1), "upper": (0, 0, 1), "uppermost": (0, 0, 1),
+    "bottom": (0, 0, -1), "lower": (0, 0, -1), "lowest": (0, 0, -1), "underside": (0, 0, -1), "underneath": (0, 0, -1),
+    "front": (0, -1, 0), "back": (0, 1, 0), "rear": (0, 1, 0),
+}  # fmt: skip
+_ABOVE = {"above": 1, "over": 1, "below": -1, "under": -1, "beneath": -1, "underneath": -1}
+_AXES = {"width": (0, 1), "length": (0, 1, 2), "depth": (1, 0), "height": (2,), "diameter": (0, 1, 2), "": (0, 1, 2)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Missing:
+    """Something that was asked for and that the object has not."""
+
+    words: str
+    """What was asked for, as it was written."""
+    at: frozenset[int]
+    reason: str = ""
+    """What is there instead."""
+    is_sure: bool = False
+    """It was measured: what is there contradicts it."""
+
+    def __str__(self) -> str:
+        return f"{self.words} ({self.reason})" if self.reason else self.words
+
+
+@dataclass(frozen=True, kw_only=True)
+class Comparison:
+    """What of a specification an object keeps."""
+
+    held: frozenset[int]
+    """Words that hold."""
+    missing: tuple[Missing, ...]
+
+
+@dataclass(kw_only=True)
+class _Compared:
+    """An object, and what was found in it so far."""
+
+    made: Blueprint
+    nouns: Mapping[str, Sequence[str]]
+    """What its parts are called besides their names -> names of parts."""
+    specification: Specification
+    held: set[int] = field(default_factory=set)
+    missing: list[Missing] = field(default_factory=list)
+
+    # ---- parts by their nouns --------------------------------------------------------------------------------------
+
+    @cached_property
+    def closed(self) -> Blueprint:
+        """With all joints at their zero."""
+        return self.made.moved({joint.child: -joint.value for joint in self.made.joints})
+
+    def parts_called(self, noun: str) -> tuple[list[Part], int]:
+        """Parts that are called so, and how many words of the noun say it."""
+        words = noun.split()
+        for k in range(len(words)):
+            if found := self._called("_".join(words[k:])):
+                return found, len(words) - k
+        return [], 0
+
+    def _called(self, stem: str) -> list[Part]:
+        """Parts whose names say a word: as the builder calls them, exactly, at their end, by another word for it."""
+        names = set(self.nouns.get(stem.replace("_", " "), ()))
+        others = [other for group in _SYNONYMS if stem in group for other in sorted(group - {stem})]
+
+        def matches() -> Iterator[Callable[[str], bool]]:
+            yield lambda name: name in names or _stem(name) in names
+            for word in (stem, *others):
+                yield lambda name, word=word: word in (_stem(name), lemma(_stem(name)))  # type: ignore[misc]
+                yield lambda name, word=word: _ends_with(name, word)  # type: ignore[misc]
+            yield lambda name: _stem(name).startswith(f"{stem}_")
+
+        for match in matches():
+            if found := [part for part in self.made.parts if match(part.name)]:
+                return found
+        return []
+
+    def counted(self, noun: str) -> int | None:
+        """How many a parameter says that there are, of what is no part of its own: handles, shelves, slots."""
+        for word in dict.fromkeys((noun, noun.rsplit(maxsplit=1)[-1])):
+            name = word.replace(" ", "_")
+            for key in (name, f"{name}s", f"{name}es"):
+                value = self.made.parameters.get(key)
+                if isinstance(value, bool) or value is None:
+                    continue
+                if isinstance(value, int):
+                    return value
+                if isinstance(value, str) and value:
+                    return 0 if value == "none" else -1 if key in _ON_EACH else 1
+        return None
+
+    # ---- what is said of them --------------------------------------------------------------------------------------
+
+    def check(self) -> Comparison:
+        """Compare all that is said."""
+        whole = self.specification.whole
+        for claim in whole.claims:
+            if claim.about not in ("there", "count"):
+                self._judge(claim, self._whole_keeps(claim))
+        groups: dict[str, list[PartSpecification]] = defaultdict(list)
+        for part in self.specification.parts:
+            groups[part.noun.split()[-1]].append(part)
+        for parts in groups.values():
+            self._check_group(parts)
+        return Comparison(held=frozenset(self.held), missing=tuple(self.missing))
+
+    def _judge(self, claim: Claim, wrong: str | None) -> None:
+        """Take up that a claim holds (None), or what is wrong with it."""
+        if wrong is None:
+            self.held.update(claim.at)
+        else:
+            sure = claim.about in ("size", "moves", "way", "hinge")
+            self.missing.append(Missing(words=claim.words, at=frozenset(claim.at), reason=wrong, is_sure=sure))
+
+    def _check_group(self, parts: Sequence[PartSpecification]) -> None:
+        """Check parts of one noun together: the left door is one of two doors."""
+        numbers = [part.count for part in parts if part.count is not None]
+        placed = [part for part in parts if any(claim.about == "place" for claim in part.claims)]
+        apart = len(placed) == len(parts) and len(parts) > 1
+        asked = (sum(numbers) if apart else max(numbers)) if numbers else None
+        for part in parts:
+            there = part.claims[0]
+            found, known = self.parts_called(part.noun)
+            number = len(found) if found else self.counted(part.noun)
+            if part.absent:
+                self._absent(part, found, number)
+                continue
+            if not found and part.of and self._all_have_it(part):
+                continue
+            if not number:
+                moved = any(claim.about in ("moves", "way", "hinge") for claim in part.claims)
+                if part.noun.split()[-1] in _OF_ANY_OBJECT and not moved:
+                    self._account_for_modifiers(part, there, 1)
+                else:
+                    at = frozenset(k for claim in part.claims for k in claim.at)
+                    self.missing.append(Missing(words=_said(part), at=at))
+                continue
+            self._account_for_modifiers(part, there, known)
+            said = next((claim for claim in part.claims if claim.about == "count"), None)
+            if said is not None:
+                wrong = None if number in (asked, -1) or number == part.count else f"{number} built"
+                self._judge(said, wrong) if wrong is None else self.missing.append(
+                    Missing(
+                        words=f"{said.words} {there.words}", at=frozenset((*said.at, there.at[-1])), reason=wrong,
+                    )
+                )  # fmt: skip
+            chosen = _chosen(found, part)
+            for claim in part.claims[1:]:
+                if claim.about != "count":
+                    wrong = self._part_keeps(claim, chosen, found) if chosen else "a solid of another part"
+                    self._judge_part(part, claim, wrong)
+
+    def _all_have_it(self, part: PartSpecification) -> bool:
+        """Whether one part was to have something that a parameter gives to all of its kind."""
+        owner = next((item for item in self.specification.parts if item.noun == part.of and item.count == 1), None)
+        siblings, _ = self.parts_called(part.of)
+        alike = any(claim.about == "like" for item in self.specification.parts for claim in item.claims)
+        given = part.noun.split()[-1] in self.made.parameters.values() or self.counted(part.noun)
+        if (
+            owner is None
+            or alike
+            or not given
+            or len(siblings) < 2
+            or not any(claim.about == "place" for claim in owner.claims)
+        ):
+            return False
+        place = next(claim.words for claim in owner.claims if claim.about == "place")
+        words, at = f"{part.noun} of the {place} {part.of} alone", frozenset(part.claims[0].at)
+        self.missing.append(Missing(words=words, at=at, reason=f"every {part.of} has one", is_sure=True))
+        return True
+
+    def _judge_part(self, part: PartSpecification, claim: Claim, wrong: str | None) -> None:
+        if wrong is not None and claim.about != "there":
+            said = part.claims[0]
+            words = claim.words if set(said.at) & set(claim.at) else f"{said.words}: {claim.words}"
+            sure = claim.about in ("size", "moves", "way", "hinge") and wrong != "a solid of another part"
+            self.missing.append(Missing(words=words, at=frozenset(claim.at), reason=wrong, is_sure=sure))
+        else:
+            self.held.update(claim.at)
+
+    def _absent(self, part: PartSpecification, found: Sequence[Part], number: int | None) -> None:
+        at = frozenset(k for claim in part.claims for k in claim.at)
+        if number:
+            words = f"without {part.claims[0].words}"
+            self.missing.append(Missing(words=words, at=at, reason=f"{number if number > 0 else 1} built"))
+        else:
+            self.held |= at
+
+    def _account_for_modifiers(self, part: PartSpecification, there: Claim, known: int) -> None:
+        """Words before a noun that is there: what it is for is harmless, the others are reported."""
+        words = part.noun.split()
+        modifiers = max(len(words) - max(known, 1), 0)
+        self.held.update(there.at[modifiers:])
+        own = set(self.specification.kind.split())
+        left = []
+        for k, word in zip(there.at, words[:modifiers], strict=False):
+            if word in PURPOSES or word in own or lemma(word) in own:
+                self.held.add(k)
+            else:
+                left.append((k, word))
+        if left:
+            said = " ".join([*(word for _, word in left), words[-1]])
+            reason = f"a plain {words[-1]}"
+            self.missing.append(Missing(words=said, at=frozenset(k for k, _ in left), reason=reason))
+
+    def _part_keeps(self, claim: Claim, chosen: Sequence[Part], found: Sequence[Part]) -> str | None:
+        """What is wrong with a claim about some of the parts of a noun; None if it holds."""
+        joints = [self.made.joint_above[part.name] for part in chosen if part.name in self.made.joint_above]
+        if claim.about in ("moves", "way", "hinge", "open"):
+            return self._joints_keep(claim, joints) if joints else "it is fixed"
+        judges: dict[str, Callable[[], str | None]] = {
+            "size": lambda: self._sized(claim.value, chosen),
+            "color": lambda: _looks(claim, chosen),
+            "material": lambda: _looks(claim, chosen),
+            "place": lambda: self._placed(claim.value, chosen, found),
+            "relation": lambda: self._related(claim.value, chosen),
+            "like": lambda: self._mirrored(found),
+            "does": lambda: "no such motion",
+        }
+        return judges[claim.about]() if claim.about in judges else None
+
+    def _joints_keep(self, claim: Claim, joints: Sequence[BlueprintJoint]) -> str | None:
+        if claim.about == "moves":
+            right = all(moves_so(self.made, joint, claim.value) for joint in joints)
+            return None if right else joints[0].kind.value
+        if claim.about == "way":
+            return None if self._any_goes(joints, claim.value) else f"{joints[0].kind.value}, another way"
+        if claim.about == "hinge":
+            return self._hinged(joints[0], claim.value)
+        return self._opened(joints, claim.value)
+
+    def _whole_keeps(self, claim: Claim) -> str | None:
+        """What is wrong with a claim about the object; None if it holds."""
+        own = self.specification.kind.split()
+        joints = [joint for joint in self.made.joints if not _covers(joint.child, own) or claim.value == "moves"]
+        if claim.value in ("turns", "spins"):
+            joints = [joint for joint in joints if turns_about_itself(self.made, joint)]
+        judges: dict[str, Callable[[], str | None]] = {
+            "moves": lambda: None if any(moves_so(self.made, item, claim.value) for item in joints) else "no part does",
+            "way": lambda: None if self._any_goes(joints, claim.value) else "no part goes there",
+            "open": lambda: self._opened(self.made.joints, claim.value),
+            "size": lambda: self._sized(claim.value, ()),
+            "color": lambda: _looks(claim, self.made.parts[:1]),
+            "material": lambda: _looks(claim, self.made.parts[:1]),
+            "relation": lambda: None if self._is_there(claim.value[1]) else "no such part",
+            "does": lambda: "no such motion",
+        }
+        return judges[claim.about]() if claim.about in judges else None
+
+    def _is_there(self, noun: str) -> bool:
+        return noun.rsplit(maxsplit=1)[-1] in _OF_ANY_OBJECT or bool(self.parts_called(noun)[0])
+
+    def _any_goes(self, joints: Sequence[BlueprintJoint], way: str) -> bool:
+        if way == "out" and any(joint.kind is JointType.PRISMATIC for joint in joints):
+            return True  # a handle is pulled out upwards
+        return any(math.isfinite(joint.upper) and goes(self.closed, joint, way) for joint in joints if way in WAYS)
+
+    def _hinged(self, joint: BlueprintJoint, side: str) -> str | None:
+        middle = next(part for part in self.closed.parts if part.name == joint.child).bounds.mean(axis=0)
+        aside = (self.closed.joint_above[joint.child].pivot - middle) @ np.array(_PLACES.get(side, (0, 0, 0)))
+        return None if aside > 0.0 else "hinged on another side"
+
+    def _opened(self, joints: Sequence[BlueprintJoint], share: float) -> str | None:
+        is_open = any(abs(joint.value) > 1e-6 for joint in joints)
+        return None if is_open == (share > 0.0) else ("it is open" if is_open else "it is closed")
+
+    def _sized(self, asked: tuple[str, float], chosen: Sequence[Part]) -> str | None:
+        name, metres = asked
+        if chosen:
+            of = {part.name: part for part in self.closed.parts}
+            boxes = [np.ptp(of[part.name].bounds, axis=0) for part in chosen]
+        else:
+            boxes = [np.ptp(part.bounds, axis=0) for part in self.closed.parts]
+            boxes += [np.ptp(self.closed.assembly.bounds, axis=0), np.ptp(self.made.assembly.bounds, axis=0)]
+        axes = (0, 1, 2) if chosen else _AXES.get(name, (0, 1, 2))
+        sizes = [float(box[axis]) for box in boxes for axis in axes]
+        sizes += [distance for part in chosen for distance in self._between_pins(part)]
+        known = [] if chosen else [value for value in self.made.parameters.values() if isinstance(value, float)]
+        if any(abs(size / metres - 1.0) <= _SIZE for size in (*sizes, *known)):
+            return None
+        whole = float(np.ptp(self.closed.assembly.bounds, axis=0)[axes[0]]) if not chosen else max(sizes)
+        return f"{whole:.2g} m built"
+
+    def _between_pins(self, part: Part) -> list[float]:
+        """Distances between the joints of a part, as the length of a crank is measured [m]."""
+        joints = [joint for joint in self.closed.joints if part.name in (joint.parent, joint.child)]
+        pins = [joint.pivot for joint in joints] + [
+            loop.pivot for loop in self.closed.loops if part.name in (loop.one, loop.other)
+        ]
+        return [float(np.linalg.norm(one - other)) for k, one in enumerate(pins) for other in pins[:k]]
+
+    def _placed(self, place: str, chosen: Sequence[Part], found: Sequence[Part]) -> str | None:
+        toward = _PLACES.get(place)
+        if toward is None or len(chosen) < len(found):  # the left one was chosen by its place
+            return None
+        closed = {part.name: part for part in self.closed.parts}
+        middle = self.closed.parts[0].bounds.mean(axis=0)
+        aside = [float((closed[part.name].bounds.mean(axis=0) - middle) @ np.array(toward)) for part in chosen]
+        return None if max(aside) > -_EDGE else "elsewhere"
+
+    def _mirrored(self, found: Sequence[Part]) -> str | None:
+        """Whether two parts are mirror images across a plane from front to back."""
+        closed = {part.name: part for part in self.closed.parts}
+        boxes = [closed[part.name].bounds for part in found]
+        middle = np.mean([box.mean(axis=0)[0] for box in boxes])
+        images = [box[::-1, 0] * -1.0 + 2.0 * middle for box in boxes]
+        same = len(boxes) == 2 and np.allclose(images[0], boxes[1][:, 0], atol=_EDGE)
+        return None if same else "not mirrored"
+
+    def _related(self, relation: tuple[str, str], chosen: Sequence[Part]) -> str | None:
+        preposition, noun = relation
+        others, _ = self.parts_called(noun)
+        if not others:
+            own = noun.split()[-1] in self.specification.kind.split()
+            return None if own or noun.split()[-1] in _OF_ANY_OBJECT else f"no {noun}"
+        if preposition == "each":
+            return None if len(chosen) >= len(others) else f"{len(chosen)} built"
+        if preposition in _ABOVE:
+            sign = _ABOVE[preposition]
+            heights = [[sign * float(part.bounds.mean(axis=0)[2]) for part in group] for group in (chosen, others)]
+            return None if max(heights[0]) > min(heights[1]) else f"not {preposition} it"
+        return None
+
+
+def compare(
+    specification: Specification, made: Blueprint, nouns: Mapping[str, Sequence[str]] | None = None
+) -> Comparison:
+    """Compare what was asked for with what was built.
+
+    Args:
+        specification: What was asked for.
+        made: What was built.
+        nouns: How its parts are called, besides by their names: noun, singular -> names, or names without numbers.
+    """
+    return _Compared(made=made, nouns=nouns or {}, specification=specification).check()
+
+
+def _covers(name: str, own: Sequence[str]) -> bool:
+    """Whether a part only covers or controls something, and does not give the object its name."""
+    return any(f"_{_stem(name)}".endswith(f"_{word}") and word not in own for word in _COVERS)
+
+
+def _ends_with(name: str, word: str) -> bool:
+    return any(f"_{stem}".endswith(f"_{word}") for stem in (_stem(name), lemma(_stem(name))))
+
+
+def _stem(name: str) -> str:
+    return name.rstrip("0123456789_")
+
+
+def _said(part: PartSpecification) -> str:
+    """A part as it was asked for: its count, what was said before its noun, and the noun."""
+    first = min(part.claims[0].at)
+    before = [claim for claim in part.claims[1:] if max(claim.at) < first]
+    words = [claim.words for claim in sorted(before, key=lambda claim: claim.at)]
+    return " ".join([*words, part.claims[0].words])
+
+
+def _chosen(found: Sequence[Part], part: PartSpecification) -> list[Part]:
+    """Those that are meant: of several, the one that is furthest in the place that is said."""
+    place = next((claim.value for claim in part.claims if claim.about == "place" and claim.value in _PLACES), None)
+    if place is None or part.count is None or part.count >= len(found):
+        return list(found)
+    toward = np.array(_PLACES[place], dtype=np.float64)
+    return sorted(found, key=lambda item: -float(item.bounds.mean(axis=0) @ toward))[: part.count]
+
+
+def _looks(claim: Claim, parts: Sequence[Part]) -> str | None:
+    if claim.about == "color":
+        wanted = COLORS[claim.value]
+        same = all(part.color is not None and np.allclose(part.color, wanted, atol=0.02) for part in parts)
+        return None if same else "another colour"
+    same = all(
+        part.density is not None and math.isclose(part.density, MATERIALS[claim.value].density) for part in parts
+    )
+    return None if same else "another material"

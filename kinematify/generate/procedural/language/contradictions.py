@@ -1,0 +1,113 @@
+"""Refuse what nobody can build: contradictions, sizes of nothing, and what no rigid object is or does."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from kinematify.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kinematify.generate.procedural.language.specification import Claim, PartSpecification, Specification
+
+    _Fault = tuple[str, str]
+
+_NO_OBJECT_TEXT = """
+    fly flies flying sing sings singing think thinks thinking dream dreams dreaming talk talks talking swim swims
+    swimming eat eats eating sleep sleeps sleeping dance dances dancing cry cries breathe breathes breathing laugh
+    laughs invisible infinite endless weightless massless dimensionless imaginary abstract immaterial telepathic
+    magical teleport teleports teleporting levitate levitates levitating
+"""
+_NO_OBJECT = frozenset(_NO_OBJECT_TEXT.split())
+"""What no rigid object is or does."""
+_NO_SOLID_TEXT = "water air smoke light fog steam fire sound music love time nothing milk gas"
+_NO_SOLID = frozenset(_NO_SOLID_TEXT.split())
+"""What no part can be made of."""
+_MADE = (("made", "of"), ("out", "of"), ("made", "from"))
+_SHAPES = ("round", "circular", "square", "triangular", "hexagonal", "spherical", "cubic", "circle")
+_BEARINGS = ("hinge", "joint", "axis", "axle", "pivot", "rail", "slide", "bearing", "guide")
+_SLIDES = ("drawer",)
+"""They slide, whatever carries them."""
+_OTHER_WAY = ("spins", "turns", "swings", "tilts", "flips")
+_ONE_OF = {"size": "sizes", "open": "states", "hinge": "sides"}
+_SHOWN = 3
+
+
+def refuse_contradictions(specification: Specification) -> None:
+    """Check that a specification can hold.
+
+    Raises:
+        InputError: It contradicts itself, or asks for what no object is; three lines at most.
+    """
+    faults = list(_faults(specification))
+    if faults:
+        article = "an" if specification.kind[:1] in "aeiou" else "a"
+        said = "; ".join(f"{words!r} ({reason})" for words, reason in faults[:_SHOWN])
+        raise InputError(
+            f'This cannot be built: {said}.\nThe nearest sentence that works: "{article} {specification.kind}".'
+        )
+
+
+def _faults(specification: Specification) -> Iterator[_Fault]:
+    for part in specification.all_parts():
+        yield from _two_values(part)
+    yield from _present_and_absent(specification)
+    yield from _larger_parts(specification)
+    words = [token.given for token in specification.tokens]
+    for k, word in enumerate(words):
+        if word in _NO_OBJECT and k not in specification.name:
+            yield word, "no object with links and joints is or does that"
+        if word in _NO_SOLID and tuple(words[max(k - 2, 0) : k]) in _MADE:
+            yield f"made of {word}", "parts are solid"
+    for one, other in pairwise(words):
+        if one in _SHAPES and other in _SHAPES and one != other:
+            yield f"{one} {other}", "these shapes exclude each other"
+    for part in specification.parts:
+        for claim in part.claims:
+            if part.noun in _SLIDES and claim.about == "moves" and claim.value in _OTHER_WAY:
+                yield f"{claim.words} {part.noun}", f"a {part.noun} slides"
+
+
+def _two_values(part: PartSpecification) -> Iterator[_Fault]:
+    said: dict[tuple[str, str], Claim] = {}
+    for claim in part.claims:
+        name, value = claim.value if claim.about == "size" else ("", claim.value)
+        if claim.about == "size" and value <= 0.0:
+            yield claim.words, "a size is above zero"
+        if claim.about not in _ONE_OF or (claim.about == "size" and not name):
+            continue  # two lengths whose direction is not said
+        before = said.setdefault((claim.about, name), claim)
+        other = before.value[1] if claim.about == "size" else before.value
+        if other != value and (claim.about != "open" or 0.0 in (other, value)):
+            of = f" for the {name}" if name else ""
+            yield f"{before.words}, {claim.words}", f"two {_ONE_OF[claim.about]}{of} of one {part.noun}"
+
+
+def _present_and_absent(specification: Specification) -> Iterator[_Fault]:
+    by_noun: dict[str, list[PartSpecification]] = defaultdict(list)
+    for part in specification.parts:
+        by_noun[part.noun].append(part)
+    moving = any(claim.about in ("moves", "way") for part in specification.all_parts() for claim in part.claims)
+    for noun, parts in by_noun.items():
+        absent = [part for part in parts if part.absent]
+        if absent and (len(absent) < len(parts) or noun == specification.kind):
+            yield f"no {noun}", f"it asks for a {noun}, too"
+        elif absent and noun.rsplit(maxsplit=1)[-1] in _BEARINGS and moving:
+            yield absent[0].claims[0].words, "what has no joint does not move"
+        counted = [part for part in parts if any(claim.about == "count" for claim in part.claims) and not part.of]
+        numbers = {part.count for part in counted if part.count is not None}
+        placed = any(claim.about in ("place", "relation") for part in parts for claim in part.claims)
+        if len(numbers) > 1 and not placed and 1 not in numbers and 0 not in numbers:
+            yield " and ".join(f"{number} {noun}s" for number in sorted(numbers)), "two counts of one thing"
+
+
+def _larger_parts(specification: Specification) -> Iterator[_Fault]:
+    whole = {claim.value[0]: claim for claim in specification.whole.claims if claim.about == "size"}
+    for part in specification.parts:
+        for claim in part.claims:
+            size = whole.get(claim.value[0]) if claim.about == "size" and claim.value[0] else None
+            if size is not None and claim.value[1] > size.value[1] * 1.001:
+                yield f"{part.noun} {claim.words}", f"the {specification.kind} is {size.words}"

@@ -1,0 +1,553 @@
+"""Parse a sentence into a `Specification`: noun phrases, what is said of them, and where they are; nothing is built.
+
+The kind of object is the noun at the end of the first noun phrase. What comes behind `with`, `and`, `whose` or `where`
+is a part; a verb, a place, a size or a colour belongs to the part that was named last, and behind a comma to the
+object.
+"""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from kinematify.errors import InputError
+from kinematify.generate.procedural.language.motions import DONE, GOING, MOTIONS, PARTICLES, WAYS
+from kinematify.generate.procedural.language.sizes import DIMENSIONS, SIZE_WORDS, length_at
+from kinematify.generate.procedural.language.specification import Claim, PartSpecification, Specification
+from kinematify.generate.procedural.language.words import (
+    ARTICLES,
+    KINDS,
+    NUMBERS,
+    OPENNESS,
+    PLAIN_WORDS,
+    STOP_WORDS,
+    UNITS,
+    Words,
+    lemma,
+    tokens_of,
+)
+from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from kinematify.generate.procedural.language.words import Token
+
+_WITH = ("with", "having", "has", "have", "featuring", "including", "containing", "plus", "carrying", "holding")
+_JOINERS = ("and", ",", ";", ":", ".", "or", "but", "also", "as", "well", "then")
+_RELATIVE = ("that", "which", "who")
+_PREPOSITIONS = (
+    "on", "at", "in", "inside", "under", "underneath", "below", "beneath", "above", "over", "behind", "beside",
+    "between",
+    "next", "around", "along", "from", "to", "into", "of", "for", "by", "through", "onto", "against", "near", "across",
+)  # fmt: skip
+_AT = ("on", "at", "in", "to", "near", "from", "against", "by", "along", "onto")
+"""Before a place they say that something is there."""
+_BEGINS_PART = (*_WITH, *_RELATIVE, "whose", "where", "without", *_JOINERS)
+_BEING = ("is", "are", "can", "could", "be", "may", "will", "each", "all", "both", "it", "they", "being", "also")
+_CAN = ("be", "can", "to", "may")
+_PULLED = ("pulled", "slid", "swung")
+"""With `out` they are as good as opened."""
+_DETERMINERS = ("a", "an", "the", "its", "their", "some", "any", "each", "every", "both", "all", "other", "another")
+PLACES = (
+    "left", "right", "top", "bottom", "front", "back", "rear", "upper", "lower", "middle", "side", "underside",
+    "inside",
+    "outside", "center", "centre", "corner", "end", "uppermost", "lowest", "outer", "inner", "central", "underneath",
+)  # fmt: skip
+_MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word in material.words}
+_UNDER_WHOLE = ("wheel", "caster", "castor", "leg", "foot", "roller", "runner", "base", "stand", "track", "skid")
+_ADJUSTABLE = ("adjustable", "variable", "changeable")
+_MEASURES = {"height": "up", "angle": "", "length": "", "width": "", "tilt": "", "reach": "", "position": "", "arm": ""}
+FUNCTION_WORDS = frozenset(
+    {*_BEGINS_PART, *_PREPOSITIONS, *_BEING, *_DETERMINERS, "other", "way", "flat", "one", "ones", "side"}
+)
+"""Words that say how others belong together."""
+_NO_NOUN = frozenset({*PLAIN_WORDS, "way", "one", "ones"})
+_DONE_ENDS = ("ed", "ing")
+_QUOTED = 15  # words of a sentence in a message
+_SHORTEST_DONE, _NOT_DONE = 5, ("spring", "string", "bearing", "railing", "awning", "ceiling", "building", "painting")
+_STATES = (
+    "half",
+    "way",
+    "halfway",
+    "slightly",
+    "partly",
+    "fully",
+    "wide",
+    "apart",
+    "x",
+    "about",
+    "degree",
+    "degrees",
+    "ajar",
+)
+"""Behind the name of an object they say how far it stands open."""
+
+
+@dataclass
+class _Draft:
+    """A part while it is read."""
+
+    nouns: list[int] = field(default_factory=list)
+    count: int | None = 1
+    claims: list[Claim] = field(default_factory=list)
+    of: str = ""
+
+
+def parse(
+    sentence: str,
+    kinds: Collection[tuple[str, ...]],
+    mechanisms: Collection[str] = (),
+    harmless: tuple[str, ...] = (),
+) -> Specification:
+    """Parse a sentence about one object.
+
+    Args:
+        sentence: English.
+        kinds: The names of all kinds of object, singular, as words.
+        mechanisms: Nouns of what may be named before the object that carries it: `a turntable on a table`.
+        harmless: What was left out of it already, see `Specification.harmless`.
+
+    Raises:
+        InputError: It is empty, too long, no English, or names no kind of object that is known.
+    """
+    tokens = tokens_of(sentence, ())
+    name = head_of(tokens, kinds, mechanisms)
+    if not name:
+        raise InputError(unknown_object(tokens, kinds))
+    return _specified(sentence, tokens, name, harmless)
+
+
+def parse_any(sentence: str) -> Specification:
+    """Parse a sentence about an object of any kind: its name is the noun that ends the first noun phrase.
+
+    Raises:
+        InputError: It is empty, too long, or no English.
+    """
+    tokens = tokens_of(sentence, ())
+    boundaries = (*_BEGINS_PART, *_PREPOSITIONS)
+    end = next((k for k, token in enumerate(tokens) if k and token.given in boundaries), len(tokens))
+    nouns = [k for k in range(end) if not _may_follow(tokens, k)] or [max(end - 1, 0)]
+    return _specified(sentence, tokens, (nouns[-1],), ())
+
+
+def _specified(
+    sentence: str, tokens: tuple[Token, ...], name: tuple[int, ...], harmless: tuple[str, ...]
+) -> Specification:
+    reader = _Parser(tokens, name)
+    reader.read()
+    return Specification(
+        text=sentence,
+        tokens=tokens,
+        name=name,
+        whole=reader.finished(reader.whole, " ".join(lemmas(tokens, name))),
+        parts=tuple(reader.finished(part, reader.noun(part)) for part in reader.parts if part.nouns),
+        harmless=harmless,
+    )
+
+
+# ---- which object --------------------------------------------------------------------------------------------------
+
+
+def lemmas(tokens: Sequence[Token], at: Sequence[int]) -> list[str]:
+    """Words at some places, the last one singular."""
+    given = [tokens[k].given for k in at]
+    return [*given[:-1], lemma(given[-1])] if given else []
+
+
+def names_at(tokens: Sequence[Token], start: int, kinds: Collection[tuple[str, ...]]) -> range:
+    """The longest name of a kind that begins at a word; empty if there is none."""
+    for length in range(min(6, len(tokens) - start), 0, -1):
+        words = tuple(token.given for token in tokens[start : start + length])
+        if words in kinds or (*words[:-1], lemma(words[-1])) in kinds:
+            return range(start, start + length)
+    return range(0)
+
+
+def head_of(
+    tokens: Sequence[Token], kinds: Collection[tuple[str, ...]], mechanisms: Collection[str]
+) -> tuple[int, ...]:
+    """The words that name the object: the last known name of the first noun phrase, if no unknown noun follows it."""
+    found: list[range] = []
+    k = 0
+    while k < len(tokens):
+        name = names_at(tokens, k, kinds)
+        if name and (not found or not _counts(tokens, name.start) or _counts(tokens, found[-1].start)):
+            found.append(name)
+            k = name.stop
+            continue
+        if name:
+            break
+        text = tokens[k].given
+        carried = text == "on" and not found and k > 0 and lemma(tokens[k - 1].given) in mechanisms
+        carried = carried or (text == "of" and not found)  # a pair of stools
+        carried = carried or (text == "in" and tokens[k - 1].given == "built")
+        carried = carried or (text == "," and not found and all(_may_follow(tokens, at) for at in range(k)))
+        if k > 0 and (text in _BEGINS_PART or text in _PREPOSITIONS) and not carried:
+            break
+        if found and not _may_follow(tokens, k):
+            return ()
+        k += 1
+    return tuple(found[-1]) if found else ()
+
+
+def _counts(tokens: Sequence[Token], k: int) -> bool:
+    """Whether a number stands before word k, and no article."""
+    before = tokens[k - 1] if k else None
+    return before is not None and before.number is not None and before.given not in (*ARTICLES, *KINDS)
+
+
+def _may_follow(tokens: Sequence[Token], k: int) -> bool:
+    """Whether a word behind a name leaves it the head: a size, a state, a look or a verb, no other noun."""
+    token = tokens[k]
+    word = token.given
+    known = (
+        word in STOP_WORDS
+        or lemma(word) in UNITS
+        or word in UNITS
+        or word in COLOR_WORDS
+        or word in _MATERIAL_WORDS
+        or word in OPENNESS
+    )
+    known = known or token.number is not None or token.is_sign or word in MOTIONS or word in DONE or word in GOING
+    known = known or any(word in words for words in DIMENSIONS.values()) or word in PLACES or word in SIZE_WORDS
+    done = word.endswith(_DONE_ENDS) and len(word) > _SHORTEST_DONE and word not in _NOT_DONE
+    return known or done or word in _STATES
+
+
+def unknown_object(tokens: Sequence[Token], kinds: Collection[tuple[str, ...]]) -> str:
+    """Say that no such object is known, with the nearest sentence that works."""
+    end = next((k for k, token in enumerate(tokens) if k and token.given in _BEGINS_PART), len(tokens))
+    content = [token.given for token in tokens[:end] if token.given not in STOP_WORDS and token.number is None]
+    content = [word for word in content if word.isalpha()]
+    nearest = _nearest(content, kinds)
+    said = " ".join(content) or " ".join(token.given for token in tokens[:8])
+    return (
+        f"{' '.join(token.given for token in tokens[:_QUOTED])!r} names no kind of object that is known: there is no "
+        f"{said!r}. `kinematify generate --list` shows all kinds.\n"
+        f'The nearest sentence that works: "{"an" if nearest[0] in "aeiou" else "a"} {nearest}".'
+    )
+
+
+def _nearest(content: Sequence[str], kinds: Collection[tuple[str, ...]]) -> str:
+    """The name of a kind that is most like some words: it ends with one of them, else it is spelled alike."""
+    names = sorted(" ".join(kind) for kind in kinds)
+    for word in reversed(content):
+        ends = [name for name in names if name.split()[-1] == lemma(word)]
+        if ends:
+            return min(ends, key=lambda name: (len(name.split()), name))
+    for word in reversed(content):
+        near = difflib.get_close_matches(word, names, n=1, cutoff=0.7)
+        if near:
+            return near[0]
+    return "cabinet with two doors"
+
+
+def _dimension(word: str) -> str:
+    return next((name for name, words in DIMENSIONS.items() if word in words), "")
+
+
+# ---- its parts -----------------------------------------------------------------------------------------------------
+
+
+class _Parser(Words):
+    """Goes through a sentence once; every word belongs to the part that was named last, or to the object."""
+
+    def __init__(self, tokens: tuple[Token, ...], name: Sequence[int]) -> None:
+        """Begin before the first word."""
+        super().__init__(tokens)
+        self.name = name
+        self.whole = _Draft(nouns=list(name))
+        self.parts: list[_Draft] = []
+        self.current = self.whole
+        self.subject = self.whole
+        """Of the verbs to come."""
+
+    def given(self, k: int) -> str:
+        """Word k as it was written, empty beyond the ends."""
+        return self.tokens[k].given if 0 <= k < len(self.tokens) else ""
+
+    def noun(self, part: _Draft) -> str:
+        """What a part is called, singular."""
+        return " ".join(lemmas(self.tokens, part.nouns))
+
+    def finished(self, part: _Draft, noun: str) -> PartSpecification:
+        """A part that was read."""
+        there = Claim(about="there", value=True, words=self.said(part.nouns), at=tuple(part.nouns))
+        return PartSpecification(noun=noun, count=part.count, claims=(there, *part.claims), of=part.of)
+
+    def said(self, where: Sequence[int]) -> str:
+        """Words as they were written."""
+        return " ".join(self.given(k) for k in sorted(where))
+
+    def claim(self, part: _Draft, about: str, value: Any, *where: int) -> None:
+        """Take up what is said of a part."""
+        part.claims.append(Claim(about=about, value=value, words=self.said(where), at=tuple(where)))
+
+    def read(self) -> None:
+        """Take up every word."""
+        k = self._noun_phrase(0, self.whole)
+        while k < len(self.tokens):
+            k = max(self._clause(k), k + 1)
+
+    def _clause(self, k: int) -> int:
+        """What begins at word k: another part, or what is said of the last one."""
+        word = self.given(k)
+        if word in ("without", "minus"):
+            return self._part(k + 1, count=0)
+        if word in _WITH:
+            individual = self._individual(k)
+            if individual is None and word in ("with", "featuring", "including", "plus"):
+                self.subject = self.whole
+            return self._part(k + 1, of=individual)
+        if word in ("whose", "where", "while"):
+            owner = self.current if word == "whose" and self.current is not self.whole else None
+            return self._part(k + 1, of=owner)
+        if word in _RELATIVE:
+            self.subject = self.current
+            return k + 1
+        return self._joined(k) if word in _JOINERS else self._said_behind(k)
+
+    def _joined(self, k: int) -> int:
+        """What stands behind `and` or a comma: another part, or what is said of the object."""
+        if self.given(k) == "," and self._is_about_whole(k + 1):
+            self.current = self.subject = self.whole
+            return k + 1
+        return self._part(k + 1) if self._begins_noun(k + 1) else k + 1
+
+    def _individual(self, k: int) -> _Draft | None:
+        """The part that `with` at word k is about: `the left one with a knob`, `two doors, each with a vent`."""
+        placed = any(claim.about == "place" and max(claim.at) < k for claim in self.current.claims)
+        each = self.given(k - 1) in ("each", "both")
+        is_one = placed and self.current.count == 1 and self.given(k - 1) != ","
+        return self.current if self.current is not self.whole and (each or is_one) else None
+
+    def _is_about_whole(self, k: int) -> bool:
+        """Whether what stands behind a comma is a size, a look or a state alone."""
+        end = k
+        while end < len(self.tokens) and self.given(end) not in (*_BEGINS_PART, "."):
+            end += 1
+        words = [self.given(i) for i in range(k, end)]
+        plain = [w for w in words if not self._is_adjective(w) and w not in UNITS and lemma(w) not in UNITS]
+        plain = [w for w in plain if w not in STOP_WORDS and not w[:1].isdigit() and w not in NUMBERS]
+        sizes = {word for names in DIMENSIONS.values() for word in names}
+        return bool(words) and not [w for w in plain if w not in sizes and w not in ("x", "by", "half", "made")]
+
+    def _is_adjective(self, word: str) -> bool:
+        """Whether a word is of a look, a size or a state."""
+        return (
+            word in COLOR_WORDS or word in _MATERIAL_WORDS or word in SIZE_WORDS or word in OPENNESS
+            or word in PLAIN_WORDS or word in ("dark", "light")
+        )  # fmt: skip
+
+    def _begins_noun(self, k: int) -> bool:
+        """Whether a noun phrase begins at word k, and no verb phrase: `and tilts`, `and can be folded`."""
+        word = self.given(k)
+        if word in _BEING or not word or self.tokens[k].is_sign or word in _BEGINS_PART or word in _PREPOSITIONS:
+            return word in ("each", "all", "both") and self.given(k + 1) not in _BEGINS_PART
+        if length_at(self, k) and not self._noun_behind(k):
+            return False
+        verb = word in MOTIONS or word in DONE or word in GOING or word in OPENNESS
+        verb = verb or word in _PULLED
+        return not verb or self._noun_behind(k)
+
+    def _noun_behind(self, k: int) -> bool:
+        """Whether a noun follows word k before the clause ends: `sliding door`, not `slides out`."""
+        for at in range(k + 1, min(k + 6, len(self.tokens))):
+            word = self.given(at)
+            if word in _BEGINS_PART or word in _PREPOSITIONS or word in _BEING or self.tokens[at].is_sign:
+                return False
+            if word in WAYS or word in _DETERMINERS or self._is_adjective(word) or word in UNITS:
+                continue
+            if self.tokens[at].number is None and not any(word in words for words in DIMENSIONS.values()):
+                return word not in MOTIONS or self._noun_behind(at)
+        return False
+
+    def _part(self, k: int, *, count: int | None = 1, of: _Draft | None = None) -> int:
+        """A noun phrase that names a part; what has no noun is said of the part before."""
+        part = _Draft(count=count, of=self.noun(of) if of is not None else "")
+        end = self._noun_phrase(k, part)
+        again = [at for at in range(k, end) if self.given(at) in ("one", "ones") or self.tokens[at].given in NUMBERS]
+        if not part.nouns and again and self.parts and self.given(again[0]) not in ARTICLES:
+            # `two on the left and one on the right`
+            part.nouns = list(next((item for item in reversed(self.parts) if not item.of), self.parts[-1]).nouns)
+        if part.nouns:
+            self.parts.append(part)
+            self.current = self.subject = part
+        else:
+            self.current.claims += [claim for claim in part.claims if claim.about != "count"]
+        return end
+
+    def _noun_phrase(self, k: int, part: _Draft) -> int:
+        """`two small red drawers`: count, looks, sizes and motions before the noun; the word behind."""
+        start = k
+        while k < len(self.tokens):
+            word = self.given(k)
+            if part is self.whole and k in self.name:
+                k = self.name[-1] + 1
+                return k
+            ends = word in _BEGINS_PART or (word in _PREPOSITIONS and k > start) or self.tokens[k].is_sign
+            if ends and not (part is self.whole and k < self.name[0]):
+                break
+            if part.nouns and (word in _BEING or word in _PULLED or self._verb_at(k) or word in WAYS or word in PLACES):
+                break
+            taken = self._look_or_size(k, part) or self._described(k, part)
+            if not taken and word.isalpha() and word not in _DETERMINERS and word not in _NO_NOUN:
+                if word in STOP_WORDS and part.nouns:
+                    break
+                if word not in STOP_WORDS and part is not self.whole:
+                    part.nouns.append(k)
+            k += taken or 1
+        if part.nouns and part.count == 1 and part is not self.whole:
+            last = self.given(part.nouns[-1])
+            numbered = any(claim.about == "count" for claim in part.claims)
+            if lemma(last) != last and not numbered:
+                part.count = None
+        return k
+
+    def _verb_at(self, k: int) -> bool:
+        word = self.given(k)
+        return (word in MOTIONS or word in DONE or word in GOING) and not self._noun_behind(k)
+
+    def _described(self, k: int, part: _Draft) -> int:
+        """A count, a place or a motion before the noun; how many words."""
+        word, behind = self.given(k), self.given(k + 1)
+        if self.tokens[k].number is not None:
+            return self._counted(k, part)
+        placed = part is not self.whole and (self._noun_behind(k) or behind in ("one", "ones"))
+        if word in PLACES and placed:
+            self.claim(part, "place", word, k)
+        elif taken := self._adjustable(k, part):
+            return taken
+        elif word in PARTICLES and behind in WAYS and (part is not self.whole or k < self.name[0]):
+            self.claim(part, "way", behind, k, k + 1)
+            return 2
+        elif word in MOTIONS and (part is self.whole or self._noun_behind(k)):
+            self.claim(part, "moves", MOTIONS[word], k)
+        elif word in OPENNESS and behind not in ("shelf", "front", "compartment", "top"):
+            self.claim(part, "open", OPENNESS[word], k)
+        else:
+            return 0
+        return 1
+
+    def _counted(self, k: int, part: _Draft) -> int:
+        """`four`, `no`; an article counts nothing."""
+        word, number = self.given(k), self.tokens[k].number or 0.0
+        says_its_kind = self.given(k + 1) == "of"
+        if part is self.whole:  # a two-door wardrobe is no two wardrobes
+            between = range(k + 1, self.name[0])
+            says_its_kind = word in KINDS or not all(_may_follow(self.tokens, at) for at in between)
+        if word not in ARTICLES and not says_its_kind and number == int(number):
+            part.count = 0 if part.count == 0 else int(number)
+            self.claim(part, "count", int(number), k)
+        return 1
+
+    def _adjustable(self, k: int, part: _Draft) -> int:
+        """`adjustable height`, `height adjustable`: something of it goes up, or moves."""
+        one, other = self.given(k), self.given(k + 1)
+        noun = lemma(other) if one in _ADJUSTABLE else one if other in _ADJUSTABLE else ""
+        if noun not in _MEASURES:
+            return 0
+        way = _MEASURES[noun]
+        self.claim(part if part.nouns else self.whole, "way" if way else "moves", way or "moves", k, k + 1)
+        return 2
+
+    def _look_or_size(self, k: int, part: _Draft) -> int:
+        """A colour, a material or a length with its dimension; how many words."""
+        pair, word = f"{self.given(k)} {self.given(k + 1)}", self.given(k)
+        for words, number in ((pair, 2), (word, 1)):
+            if words in COLOR_WORDS:
+                self.claim(part, "color", COLOR_WORDS[words], *range(k, k + number))
+                return number
+        if word == "mirrored" and not self._noun_behind(k):
+            self.claim(part, "like", "mirrored", k)
+            return 1
+        if word in _MATERIAL_WORDS and not (part is not self.whole and word == "mirror"):
+            self.claim(part, "material", _MATERIAL_WORDS[word], k)
+            return 1
+        return self._size(k, part)
+
+    def _size(self, k: int, part: _Draft) -> int:
+        """`60 cm wide`, `a height of 2 m`, `15 cm`; how many words."""
+        length = length_at(self, k)
+        if length is None:
+            return 0
+        metres, end = length
+        behind, before = (_dimension(self.given(at)) for at in (end, k - 2))
+        if behind:
+            self.claim(part, "size", (behind, metres), *range(k, end + 1))
+            return end + 1 - k
+        if before and self.given(k - 1) == "of":
+            self.claim(part, "size", (before, metres), *range(k - 2, end))
+        elif not {self.given(k - 1), self.given(end)} & {"x", "by", "to"}:
+            self.claim(part, "size", ("", metres), *range(k, end))
+        return end - k
+
+    def _said_behind(self, k: int) -> int:
+        """What is said of a part behind its noun: a verb, a place, a state, a look, or what it stands on."""
+        word, part, before = self.given(k), self.current, self.given(k - 1)
+        taken = self._look_or_size(k, part) or self._adjustable(k, self.whole)
+        if taken:
+            return k + taken
+        does = word in GOING and (word not in OPENNESS or before in (*_RELATIVE, *_CAN))
+        if word in MOTIONS or does or (word in DONE and before == "be"):
+            return self._verb(k)
+        if word in _PULLED:
+            self.claim(part, "open", 1.0, k)
+            return k + (2 if self.given(k + 1) == "out" else 1)
+        if word in _PREPOSITIONS:
+            return self._preposition(k)
+        if word in OPENNESS:
+            able = before in (*_RELATIVE, *_CAN)
+            self.claim(part, "moves" if able else "open", "moves" if able else OPENNESS[word], k)
+        elif word in WAYS:
+            self.claim(part, "place", word, k)
+        elif before in (*_RELATIVE, "can") and word.isalpha() and word not in FUNCTION_WORDS | STOP_WORDS:
+            self.claim(self.subject, "does", word, k)
+        return k + 1
+
+    def _verb(self, k: int) -> int:
+        """`slides out`, `opens downwards`, `hinged on the left`: how the subject moves, and where to."""
+        word, subject, end = self.given(k), self.subject, k + 1
+        moves = MOTIONS.get(word, DONE.get(word, ""))
+        while self.given(end) in ("to", "the", "on", "at", "towards", "sideways"):
+            end += 1
+        way = self.given(end).removesuffix("s")
+        if way in WAYS:
+            both = self.given(end + 1) == "and" and self.given(end + 2).removesuffix("s") in WAYS
+            if word in ("hinged", "hinges", "hinge"):
+                self.claim(subject, "hinge", way, k, end)
+            else:
+                self.claim(subject, "way", way, k, end, *((end + 2,) if both else ()))
+            return end + (3 if both else 1)
+        self.claim(subject, "moves", moves or "moves", k)
+        return k + 1
+
+    def _preposition(self, k: int) -> int:
+        """`on the left side`, `under the bed`, `of glass`, `on four casters`."""
+        at = k + 1
+        while (
+            self.given(at) in (*_DETERMINERS, "of", "one", "top")
+            and self.given(at + 1)
+            and not (self.given(at) == "top" and self.given(at + 1) != "of")
+        ):
+            at += 1
+        word = self.given(at)
+        if word in PLACES and not self._noun_behind(at) and self.given(k) in _AT:
+            self.claim(self.current, "place", word, *range(k, at + 1))
+            return at + (2 if self.given(at + 1) in ("side", "hand", "end", "edge") else 1)
+        if word in _MATERIAL_WORDS and self.given(k) in ("of", "in", "from"):
+            return k + 1
+        target = _Draft()
+        end = self._noun_phrase(k + 1, target)
+        noun = self.noun(target)
+        if target.nouns and noun.split()[-1] in _UNDER_WHOLE and self.given(k) in ("on", "onto"):
+            self.parts.append(target)
+            self.current = self.subject = target
+        elif target.nouns:
+            how = "each" if self.given(k + 1) in ("each", "every") else self.given(k)
+            self.claim(self.current, "relation", (how, noun), *range(k, end))
+        else:
+            self.current.claims += target.claims
+        return max(end, k + 1)

@@ -1,0 +1,102 @@
+"""What a sentence asks for: a kind of object, its parts as individuals or groups, sizes, looks, motions and places."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kinematify.generate.procedural.language.words import Token
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim:
+    """One thing that is said of a part or of the whole."""
+
+    about: str
+    """``there``, ``count``, ``moves``, ``way``, ``place``, ``size``, ``look``, ``open``, ``like`` or ``relation``."""
+    value: Any
+    words: str
+    """As it was written."""
+    at: tuple[int, ...]
+    """Which words of the sentence these are."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PartSpecification:
+    """One part, or several equal parts, of an object."""
+
+    noun: str
+    """Singular, as in ``coat hook``; for the object itself its kind."""
+    count: int | None = 1
+    """None: some."""
+    claims: tuple[Claim, ...] = ()
+    of: str = ""
+    """Noun of the part that it belongs to, where that is said."""
+
+    @property
+    def absent(self) -> bool:
+        """It is to be left out: `without a handle`."""
+        return self.count == 0
+
+    def __str__(self) -> str:
+        said = [f"{self._value(claim)}" for claim in self.claims if claim.about not in ("there", "count")]
+        number = {None: "some ", 0: "no ", 1: ""}.get(self.count, f"{self.count} ")
+        of = f" of {self.of}" if self.of else ""
+        return f"{number}{self.noun}{of}" + (f" ({', '.join(said)})" if said else "")
+
+    @staticmethod
+    def _value(claim: Claim) -> str:
+        if claim.about == "size":
+            return f"{claim.value[0] or 'size'} {claim.value[1]:g} m"
+        return claim.words
+
+    def as_json(self) -> dict[str, Any]:
+        """Its fields as JSON values."""
+        said = {claim.about: claim.value for claim in self.claims if claim.about not in ("there", "count")}
+        return {"noun": self.noun, "count": self.count, **({"of": self.of} if self.of else {}), **said}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Specification:
+    """A sentence as it was parsed; nothing has been built."""
+
+    text: str
+    """Without what it is for and what it is like."""
+    tokens: tuple[Token, ...]
+    name: tuple[int, ...]
+    """Which words name the kind of object."""
+    whole: PartSpecification
+    """The object itself."""
+    parts: tuple[PartSpecification, ...]
+    harmless: tuple[str, ...] = ()
+    """Words of purpose and of looks, which ask for no shape and no motion."""
+    scene: tuple[tuple[str, Specification, Specification], ...] = ()
+    """Two objects that the sentence may mean instead, and how they stand: ``on``, ``carrying``, ``beside``,
+    ``holding``."""
+    is_toy: bool = False
+    """The whole is small."""
+
+    @property
+    def kind(self) -> str:
+        """Name of the object, singular."""
+        return self.whole.noun
+
+    def all_parts(self) -> Iterator[PartSpecification]:
+        """The object, then its parts."""
+        yield self.whole
+        yield from self.parts
+
+    def __str__(self) -> str:
+        return "; ".join(map(str, self.all_parts()))
+
+    def as_json(self) -> dict[str, Any]:
+        """Its fields as JSON values, for ``source.json``."""
+        return {
+            "kind": self.kind,
+            "object": self.whole.as_json(),
+            "parts": [part.as_json() for part in self.parts],
+            "harmless": list(self.harmless),
+        }

@@ -1,0 +1,396 @@
+"""From a sentence to an object: parse it, specify what is asked for, build that, and compare.
+
+Parsing builds nothing. What the library has is built; words of the sentence that have no effect on it are harmless
+(purposes and looks, and what holds anyway) or listed as not built.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
+from typing import TYPE_CHECKING, Any
+
+from kinematify.errors import InputError
+from kinematify.generate.procedural.language.contradictions import refuse_contradictions
+from kinematify.generate.procedural.language.parse import FUNCTION_WORDS, parse
+from kinematify.generate.procedural.language.words import (
+    PLAIN_WORDS,
+    PURPOSES,
+    STOP_WORDS,
+    lemma,
+    without_purposes,
+    without_rough_sizes,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from kinematify.generate.composer.bodies import BodyKind
+    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.procedural.family import Family
+    from kinematify.generate.procedural.language.compare import Missing
+    from kinematify.generate.procedural.language.specification import Specification
+    from kinematify.generate.request import Request
+
+_HOLDS = re.compile(r"[,\s]+(?:that is |which is )?holding\s+", re.IGNORECASE)
+_ON_TOP = re.compile(
+    r"^(?P<other>.*\S),?\s+(?:with|and|carrying)\s+(?P<one>an?\s.*\S)\s+on\s+(?:top|it|top of it|its top)\W*$",
+    re.IGNORECASE,
+)
+_ON = re.compile(
+    r"^(?P<one>.*?\S)\s+(?:(?:that is |which is )?(?:mounted|standing|sitting|placed|stands|sits)\s+)?on\s+"
+    r"(?:top of )?(?P<other>(?:an?|the|its)\s.*)$",
+    re.IGNORECASE,
+)
+_AND = re.compile(
+    r"^(?P<one>(?:(?!\b(?:with|having|has|whose|that)\b).)*?\S),?\s+(?:and|next to|beside)\s+"
+    r"(?P<other>(?:an?|one|two|three|four|five|six)\s.*)$",
+    re.IGNORECASE,
+)
+_TOY = re.compile(r"\b(?:toy|model|miniature|dolls?(?:'s)?)\s+", re.IGNORECASE)
+_SEVERAL = 400  # characters at most that may name several objects
+
+
+@dataclass(frozen=True, kw_only=True)
+class Made:
+    """What came of a request."""
+
+    blueprint: Blueprint
+    specification: Specification | None = None
+    """Of a sentence."""
+    not_built: tuple[str, ...] = ()
+    """What was asked for and has no effect on the object."""
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What is known of a sentence, for ``source.json``."""
+        if self.specification is None:
+            return {}
+        return {
+            "text": self.specification.text,
+            "understood": self.specification.as_json(),
+            "not_built": list(self.not_built),
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Plan:
+    """One way to build a specification."""
+
+    specification: Specification
+    request: Request
+    blueprint: Blueprint
+    """Built without a seed."""
+    used: frozenset[int]
+    dropped: tuple[Missing, ...]
+    nouns: Mapping[str, tuple[str, ...]]
+    others: tuple[_Plan, ...] = ()
+    """Of a scene: what its objects miss."""
+
+    def missing(self, blueprint: Blueprint) -> tuple[str, ...]:
+        """What of the sentence has no effect on an object."""
+        if self.others:
+            return tuple(words for plan in self.others for words in plan.missing(plan.blueprint))
+        return _missing(self, blueprint)
+
+    @cached_property
+    def fault(self) -> int:
+        """Words that are not built."""
+        return sum(len(words.split("(")[0].split()) for words in self.missing(self.blueprint))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sentence:
+    """A sentence that was parsed."""
+
+    specifications: tuple[Specification, ...]
+    """What it may mean, the likeliest first; one, but where two objects are named, or a toy."""
+
+    @cached_property
+    def plan(self) -> _Plan:
+        """How the most of it is built.
+
+        Raises:
+            InputError: It contradicts itself, or nothing of it can be built.
+        """
+        best: _Plan | None = None
+        reason: InputError | None = None
+        for specification in self.specifications:
+            try:
+                refuse_contradictions(specification)
+                for plan in _plans(specification):
+                    if best is None or plan.fault < best.fault:
+                        best = plan
+                    if best.fault == 0:
+                        return best
+            except InputError as error:
+                reason = reason or error
+        if best is None:
+            assert reason is not None, "a specification has a plan, or a reason against it"
+            raise reason
+        return best
+
+    @property
+    def family(self) -> str:
+        """What is built."""
+        return self.plan.request.family
+
+    def made(self, *, seed: int | None = None) -> Made:
+        """Build the object, and compare it with what was asked for.
+
+        Raises:
+            InputError: It contradicts itself, or nothing of it can be built.
+        """
+        plan = self.plan
+        blueprint = plan.blueprint if seed is None else plan.request.build(seed=seed)
+        return Made(blueprint=blueprint, specification=plan.specification, not_built=plan.missing(blueprint))
+
+    def build(self, *, seed: int | None = None) -> Blueprint:
+        """Build the object as far as it can be built; see `made`."""
+        return self.made(seed=seed).blueprint
+
+
+def from_text(sentence: str) -> Sentence:
+    """Parse a sentence; nothing is built.
+
+    Args:
+        sentence: English.
+
+    Raises:
+        InputError: It is empty, too long, no English, or names no kind of object that is known.
+    """
+    from kinematify.generate.composer.sentence import nouns_of_mechanisms  # noqa: PLC0415 - with the library
+
+    asking = nouns_of_mechanisms()
+    plain, purposes = without_purposes(sentence, asking)
+    plain, rough = without_rough_sizes(plain, asking)
+    looks = tuple(dict.fromkeys(re.findall(rf"\b(?:{'|'.join(sorted(PLAIN_WORDS))})\b", plain.lower())))
+    harmless = (*looks, *purposes, *rough)
+    found: list[Specification] = []
+    reason: InputError | None = None
+    try:
+        found.append(_parsed(plain, harmless))
+    except InputError as error:
+        reason = error
+    if _TOY.search(plain):
+        named = {found[0].tokens[k].given for k in found[0].name} if found else set()
+        toys = [replace(toy, is_toy=True) for toy in _may_be(_TOY.sub(" ", plain), (*harmless, "toy"))]
+        found = [*found, *toys] if _TOY.search(f"{' '.join(named)} ") else [*toys, *found]
+    found += _scenes(plain, harmless)
+    if not found:
+        assert reason is not None, "what was not parsed has a reason"
+        raise reason
+    return Sentence(specifications=tuple(found))
+
+
+@cache
+def _library() -> dict[tuple[str, ...], list[Family | BodyKind]]:
+    """Names of all kinds of object, as words -> what builds them, families first."""
+    from kinematify.generate.composer.bodies import BODIES  # noqa: PLC0415 - the library takes a while to load
+    from kinematify.generate.described import known_families  # noqa: PLC0415
+
+    found: dict[tuple[str, ...], list[Family | BodyKind]] = {}
+    kinds: list[Family | BodyKind] = [*known_families().values(), *BODIES]
+    for kind in kinds:
+        for word in kind.words:
+            found.setdefault(tuple(re.findall(r"[0-9]+|[a-z]+", word.lower())), []).append(kind)
+    return found
+
+
+def kinds_of_object() -> list[str]:
+    """The first name of every kind of object."""
+    return sorted({" ".join(kind.words[0].split()) for kinds in _library().values() for kind in kinds})
+
+
+def _parsed(text: str, harmless: tuple[str, ...]) -> Specification:
+    from kinematify.generate.composer.sentence import nouns_of_mechanisms  # noqa: PLC0415 - with the library
+
+    return parse(text, _library(), nouns_of_mechanisms(), harmless)
+
+
+def _may_be(text: str, harmless: tuple[str, ...]) -> list[Specification]:
+    """A text as a specification, if it is one."""
+    try:
+        return [_parsed(text, harmless)]
+    except InputError:
+        return []
+
+
+def _scenes(text: str, harmless: tuple[str, ...]) -> Iterator[Specification]:
+    """`a printer on a cart with four casters`, `a table and two chairs`: two objects, each of which is known."""
+    if len(text) > _SEVERAL:
+        return
+    if _HOLDS.search(text):
+        one, other = _HOLDS.split(text, maxsplit=1)
+        yield from _joined(one, "holding", other, harmless)
+        return
+    for pattern, how in ((_ON_TOP, "carrying"), (_ON, "on"), (_AND, "beside")):
+        found = pattern.search(text)
+        if found is not None:
+            pair = ("other", "one") if how == "carrying" else ("one", "other")
+            yield from _joined(found[pair[0]], how, found[pair[1]], harmless)
+
+
+def _joined(one: str, how: str, other: str, harmless: tuple[str, ...]) -> Iterator[Specification]:
+    for first in _may_be(one, harmless):
+        for second in _may_be(other, ()):
+            yield replace(first, scene=((how, first, second),))
+
+
+# ---- how it is built -----------------------------------------------------------------------------------------------
+
+
+def _plans(specification: Specification, *, alone: bool = True) -> Iterator[_Plan]:
+    """Ways to build a specification: by each kind of its name.
+
+    Raises:
+        InputError: One of them contradicts itself or is absurd.
+    """
+    from kinematify.generate.procedural.family import Family  # noqa: PLC0415 - numpy and solids, once there is an object
+
+    if specification.scene:
+        yield from _scene_plan(specification)
+        return
+    name = specification.name
+    for start in range(len(name)):
+        words = [specification.tokens[k].given for k in name[start:]]
+        kinds = _library().get(tuple(words)) or _library().get((*words[:-1], lemma(words[-1]))) or []
+        # Where `sliding door` cannot be double, a door can be double and sliding.
+        meant = replace(specification, name=name[start:])
+        reasons: list[InputError] = []
+        for kind in kinds:
+            try:
+                if isinstance(kind, Family):
+                    yield _family_plan(meant, kind)
+                else:
+                    yield _composed_plan(meant, kind, alone)
+            except InputError as error:
+                if start == 0 and isinstance(kind, Family):
+                    raise
+                reasons.append(error)
+        if start == 0 and len(reasons) == len(kinds):
+            raise reasons[0]
+
+
+def _family_plan(specification: Specification, family: Family) -> _Plan:
+    from kinematify.generate.procedural.language.parts import part_nouns  # noqa: PLC0415 - with solids
+    from kinematify.generate.procedural.language.understand import understand  # noqa: PLC0415
+    from kinematify.generate.request import Request  # noqa: PLC0415
+
+    meant = understand(specification, family)
+    request = Request(
+        family=meant.family,
+        values=meant.values,
+        requirements=meant.requirements,
+        overall=meant.overall,
+        copies=meant.copies,
+        is_toy=specification.is_toy,
+    )
+    made = request.build()
+    nouns = {" ".join(words): names for words, names in part_nouns(family, made).items()}
+    return _Plan(
+        specification=specification,
+        request=request,
+        blueprint=made,
+        used=meant.used,
+        dropped=meant.dropped,
+        nouns=nouns,
+    )
+
+
+def _composed_plan(specification: Specification, body: BodyKind, alone: bool) -> _Plan:
+    from kinematify.generate.composer.sentence import read_composition  # noqa: PLC0415 - with solids
+    from kinematify.generate.request import Request  # noqa: PLC0415
+
+    meant = read_composition(specification, body, may_stand_still=not alone)
+    composition = meant.composition
+    request = Request(
+        family=composition.title.replace(" ", "_"),
+        values={},
+        composition=composition,
+        copies=composition.copies,
+        is_toy=specification.is_toy,
+        how="" if alone else "in a scene",
+    )
+    nouns = {word: (item.stem,) for item in composition.wanted for word in item.mechanism.words}
+    return _Plan(
+        specification=specification,
+        request=request,
+        blueprint=request.build(),
+        used=meant.used,
+        dropped=meant.dropped,
+        nouns=nouns,
+    )
+
+
+def _scene_plan(specification: Specification) -> Iterator[_Plan]:
+    from kinematify.generate.procedural.language.parts import PartRequirement  # noqa: PLC0415 - with solids
+    from kinematify.generate.request import hand_of  # noqa: PLC0415
+
+    for how, first, second in specification.scene:
+        one, other = (_best(item) for item in (first, second))
+        request = replace(one.request, how=how, other=replace(other.request, how=""))
+        if how == "holding":
+            # What a seed draws may have hands that are one with the arms.
+            hand = PartRequirement(nouns=(hand_of(one.blueprint).name,), words="a hand")
+            request = replace(request, requirements=(*request.requirements, hand))
+        made = request.build()
+        if made.joints:
+            yield replace(one, specification=specification, request=request, blueprint=made, others=(one, other))
+
+
+def _best(specification: Specification) -> _Plan:
+    """How the most of an object of a scene is built.
+
+    Raises:
+        InputError: Nothing of it can be.
+    """
+    refuse_contradictions(specification)
+    return min(_plans(specification, alone=False), key=lambda plan: plan.fault)
+
+
+# ---- what is not built ---------------------------------------------------------------------------------------------
+
+
+def _missing(plan: _Plan, blueprint: Blueprint) -> tuple[str, ...]:
+    from kinematify.generate.procedural.language.compare import Missing, compare  # noqa: PLC0415 - with numpy
+
+    specification, tokens = plan.specification, plan.specification.tokens
+    compared = compare(specification, blueprint, plan.nouns)
+    taken = {*specification.name, *plan.used} - {k for item in plan.dropped for k in item.at}
+    found = list(plan.dropped)
+    for item in compared.missing:
+        if item.at <= taken and not item.is_sure:
+            continue
+        within = [other for other in found if other.at and other.at < item.at]
+        if any(other.at & item.at for other in found if other not in within):
+            continue
+        reason = item.reason or next((other.reason for other in within), "")
+        found = [other for other in found if other not in within] + [replace(item, reason=reason)]
+    covered = {k for item in found for k in item.at}
+    rest = [
+        k for k in range(len(tokens))
+        if k not in taken | covered | compared.held and not _says_nothing(specification, k)
+    ]  # fmt: skip
+    for phrase in _phrases(rest):
+        found.append(Missing(words=" ".join(tokens[k].given for k in phrase), at=frozenset(phrase)))
+    found.sort(key=lambda item: min(item.at, default=0))
+    return tuple(dict.fromkeys(map(str, found)))
+
+
+def _says_nothing(specification: Specification, k: int) -> bool:
+    token = specification.tokens[k]
+    before_name = k < specification.name[0] and (token.given in PURPOSES)
+    return token.is_sign or token.given in STOP_WORDS or token.given in FUNCTION_WORDS or before_name
+
+
+def _phrases(places: Sequence[int]) -> list[list[int]]:
+    """Neighbours together."""
+    phrases: list[list[int]] = []
+    for k in places:
+        if phrases and k == phrases[-1][-1] + 1:
+            phrases[-1].append(k)
+        else:
+            phrases.append([k])
+    return phrases
