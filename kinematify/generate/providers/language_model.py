@@ -59,7 +59,7 @@ Conventions:
 - The axis of a hinge runs through its "pivot"; positive motion opens (right hand rule, or along the axis); limits end
   before anything collides.
 - "mimic": {"leader": P, "multiplier": m} lets the joint of a part follow the joint whose child is the part P: a
-  part's name, no joint's. A chain that closes is a tree whose bars follow, and its last pin stands under "loops".
+  part's name, no joint's. A chain that closes is a tree whose bars follow, and its last pin is under "loops".
 - Beside the fields of the schema, "requirements" lists each thing that the user asks for, with the parts that are it:
   [{"phrase": "two doors", "parts": ["left_door", "right_door"]}, {"phrase": "65 cm high", "parts": ["body"]}]
 """
