@@ -298,7 +298,7 @@ def _moving(parts: list[Part], made: Blueprint, wanted: int) -> list[str]:
 
 
 def _joint(parts: list[Part], made: Blueprint, wanted: str) -> list[str]:
-    joints = [made.joint_above[part.name] for part in parts]
+    joints = [made.joint_above[part.name] for part in parts if part.name in made.joint_above]
     return (
         []
         if joints and all(_of_kind(joint, wanted) for joint in joints)

@@ -153,25 +153,25 @@ Made by `{command}`. All pictures show an object at rest and with every joint mo
 
 ## From a sentence
 
-A sentence asks for an object of a family with what is said of it, or for mechanisms on a body, which are then composed;
-every word is understood, or the sentence is refused; what asks for no shape and no motion is told.
+A sentence names an object of a family and its properties, or mechanisms that are composed on a body. A sentence with a
+word that is not understood is refused. Words that have no effect on shape or motion are reported.
 
 {_pictures(composed, 2)}
 
 ## Objects that files describe
 
-Each of these {len(described)} stands in a file of its own in `kinematify/generate/objects/`: parts made of primitives,
-the joints between them, and words. A sentence may say any of the words, count the parts, and say colour, material,
-size and how far it stands open. Under a picture stand the first words for it.
+Each of these {len(described)} has a file of its own in `kinematify/generate/objects/`: parts made of primitives,
+the joints between them, and words. A sentence may use any of the words, count the parts, and name colour, material,
+size and how far it is open. The first words are under each picture.
 
 {_pictures(asked, 3)}
 
 ## Families
 
 The {len(families)} families of `kinematify generate`, each with its defaults. A sentence (`--text`) may use any
-of the words and say any of the parameters; `--category NAME --set KEY=VALUE` takes them as they stand here, and
-`--seed N` draws those that are not given. The joints are those of the object shown; in brackets stands how many
-{len(_SEEDS)} seeds gave.
+of the words and say any of the parameters; `--category NAME --set KEY=VALUE` sets them, and
+`--seed N` draws those that are not given. The joints are those of the object shown; in brackets is the range over
+{len(_SEEDS)} seeds.
 
 {", ".join(f"[{name}](#{name})" for name in families)}
 

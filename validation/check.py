@@ -61,7 +61,7 @@ _NOT_OURS = ("KV1", "KV2", "KV6", "KV8")
 class FeedbackRow(StrEnum):
     """What `kinematify refine` makes of a finding, a row of the table in `validation/run/feedback.py`."""
 
-    ALLOWED = "an allowance with its reason: the overlap is as given, no axis is to blame"
+    ALLOWED = "an allowance with its reason: the overlap is as given, no axis is the cause"
     INTO_PARENT = "against this line, this type and this parent; if one side is free, it is the opening one"
     END = "the range ends there"
     OTHER_PARENT = "against the parent of what runs into another body, for that body"
@@ -76,7 +76,7 @@ class FeedbackRow(StrEnum):
     AS_LOADED = "against this line, this type and this parent"
     NO_WAY = "against this line, this type and this parent, if several places of the robot were tried"
     COLLISION = "none: collision geometry is in the way"
-    EXPORTER = "none: files, frames or masses are the exporter's to mend"
+    EXPORTER = "none: files, frames or masses are for the exporter to fix"
 
 
 class CauseScope(StrEnum):
@@ -246,7 +246,7 @@ def check(
     """
 
     def register(function: CheckFunction) -> CheckFunction:
-        assert id not in REGISTRY, f"{id} stands at two functions"
+        assert id not in REGISTRY, f"{id} is at two functions"
         REGISTRY[id] = Check(
             id=id,
             title=title,

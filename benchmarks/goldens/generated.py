@@ -87,31 +87,12 @@ def sentence_values(name: str) -> dict[str, Values]:
     for item in load_sentences(name):
         text = item["text"]
         try:
-            request = from_text(text)
-            exact[text], structure = blueprint_values(request.build())
-            portable[text] = {"parse": _parse(request), "built": structure}
+            built = from_text(text).made()
+            exact[text], structure = blueprint_values(built.blueprint)
+            portable[text] = {"parse": built.facts, "built": structure}
         except InputError as error:
             portable[text] = {"refused": str(error)}
     return made(exact=exact, portable=portable)
-
-
-def _parse(request: Any) -> Any:
-    names = (
-        "family",
-        "values",
-        "understood",
-        "ignored",
-        "unused",
-        "requirements",
-        "overall",
-        "copies",
-        "is_toy",
-        "how",
-    )
-    parse = {name: plain(getattr(request, name)) for name in names}
-    parse["composition"] = None if request.composition is None else told(request.composition)
-    parse["other"] = None if request.other is None else _parse(request.other)
-    return parse
 
 
 # ---- episodes ------------------------------------------------------------------------------------------------------

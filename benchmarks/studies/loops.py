@@ -172,8 +172,9 @@ def _in_mujoco(xml: Path, robot: Robot) -> Iterator[Way]:
     held = [joint.name for joint in robot.leaders if joint.name in joints]
     for driver, rest, end in _ways(robot):
         data = mujoco.MjData(model)
-        for name, value in rest_configuration(robot).items():
-            data.qpos[places[name][0]] = value
+        resting = rest_configuration(robot)
+        for name, (place, _) in places.items():
+            data.qpos[place] = resting[name]
         mujoco.mj_forward(model, data)
         inertia = np.zeros((model.nv, model.nv))
         mujoco.mj_fullM(model, data, inertia)

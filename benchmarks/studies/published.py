@@ -1,7 +1,7 @@
 """What does `kinematify validate` say of working models that others publish?
 
 The command as a user runs it, start-up included, on robots of the PyPI packages example-robot-data and pybullet_data,
-and on a folder of models from elsewhere. Every error and warning was judged by hand once, with a reason
+and on two folders of models from elsewhere. Every error and warning was judged by hand once, with a reason
 (`configs/published.yaml`): *right* if the makers would agree, *wrong* if the model is fine there, *debatable* between.
 What nobody has judged counts as *unjudged*. A check that was not finished is no finding.
 """
@@ -18,6 +18,7 @@ from collections import Counter
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
+from functools import partial
 from importlib.metadata import PackageNotFoundError, distribution
 from operator import itemgetter
 from pathlib import Path
@@ -34,7 +35,7 @@ from kinematify.evaluation.record import grouped, table
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from benchmarks.study import Measured, Record, Work
     from kinematify.evaluation.record import Report
@@ -67,6 +68,27 @@ BULLET_ROBOTS = (
 """Articulated models of the package pybullet_data, without ``.urdf``."""
 
 
+OTHER_MAKERS = {
+    "published": "other makers",
+    "published2": "other makers, unknown when their findings were judged",
+}
+"""Source by folder beside the benchmark's; in each a model has a folder of its own."""
+_FILES = {
+    "anymal_c": "urdf_pkg/urdf/anymal.urdf",
+    "booster_t1": "resources/T1/T1_serial.urdf",
+    "dobot": "data/dobot/dobot.urdf",
+    "gapartnet_102442": "example_assets/102442/mobility_annotation_gapartnet.urdf",
+    "habitat_fridge": "data/test_assets/urdf/fridge/fridge.urdf",
+    "lite3": "Lite3/Lite3_urdf/urdf/Lite3.urdf",
+    "pbp_door": "models/door.urdf",
+    "piper": "src/piper_description/urdf/piper_description.urdf",
+    "schunk_svh": "robots/hands/schunk_hand/schunk_svh_hand_right.urdf",
+    "sektion_cabinet": "assets/urdf/sektion_cabinet_model/urdf/sektion_cabinet.urdf",
+    "turtlebot": "models/turtlebot/turtlebot.urdf",
+    "wsg_50": "models/drake/wsg_50_description/urdf/wsg_50_mesh_collision.urdf",
+}
+"""The file of a model that keeps the folders of its source; of all others it is ``model.urdf``."""
+
 _BESIDE_BUSY = ("jackal", "irb2400", "kr16_2", "so100", "erd/panda", "erd/ur5_robot", "cartpole", "r2d2")
 """Models that are validated once more while other processes keep the machine busy."""
 _BUSY = 8
@@ -77,7 +99,9 @@ class PublishedOptions(Options):
     """Which models."""
 
     folder: Path | None = Field(
-        None, description="Folder of models, NAME/model.urdf; `published` beside the benchmark's if not given."
+        None,
+        description="Folder of models, NAME/model.urdf; if not given, `published` and `published2` beside the "
+        "benchmark's.",
     )
     models: tuple[str, ...] = Field((), description="Only these, patterns separated by commas.")
 
@@ -123,16 +147,19 @@ class PublishedModel:
     source: str
     urdf: Path
     package_dirs: tuple[Path, ...] = ()
+    top: Path | None = None
+    """Folder with all files of the model, if it is not that of the URDF."""
 
 
 def measure(options: PublishedOptions, work: Work) -> Measured:
     """Validate one model after the other, for the times."""
     found, left_out = {}, {}
-    for source, models in {
-        "other makers": lambda: _in_folder(options.folder),
+    sources: dict[str, Callable[[], Iterator[PublishedModel]]] = {
+        **_other_makers(options.folder),
         "example-robot-data": _example_models,
         "pybullet_data": _bullet_models,
-    }.items():
+    }
+    for source, models in sources.items():
         try:
             found.update({model.name: model for model in models() if _wanted(model.name, options.models)})
         except EnvironmentFault as fault:
@@ -170,13 +197,22 @@ def _wanted(name: str, patterns: Sequence[str]) -> bool:
     return not patterns or any(fnmatchcase(name, pattern) for pattern in patterns)
 
 
-def _in_folder(folder: Path | None) -> Iterator[PublishedModel]:
-    place = folder or bench_folder().parent / "published"
-    files = sorted(place.glob("*/model.urdf"))
+def _other_makers(folder: Path | None) -> dict[str, Callable[[], Iterator[PublishedModel]]]:
+    """Models of the given folder, else of those beside the benchmark, by source."""
+    if folder is not None:
+        return {"other makers": partial(_in_folder, folder, "other makers", InputError)}
+    return {  # what nobody asked for is left out
+        source: partial(_in_folder, bench_folder().parent / name, source, EnvironmentFault)
+        for name, source in OTHER_MAKERS.items()
+    }
+
+
+def _in_folder(folder: Path, source: str, fault: type[Exception]) -> Iterator[PublishedModel]:
+    files = {place: place / _FILES.get(place.name, "model.urdf") for place in sorted(folder.glob("*/"))}
+    files = {place: urdf for place, urdf in files.items() if urdf.is_file()}
     if not files:
-        fault = EnvironmentFault if folder is None else InputError  # what nobody asked for is left out
-        raise fault(f"There is no folder with a model.urdf in {place}. Give a folder of such folders with --folder.")
-    return (PublishedModel(name=path.parent.name, source="other makers", urdf=path) for path in files)
+        raise fault(f"There is no folder with a model.urdf in {folder}. Give a folder of such folders with --folder.")
+    return (PublishedModel(name=place.name, source=source, urdf=urdf, top=place) for place, urdf in files.items())
 
 
 def _example_models() -> Iterator[PublishedModel]:
@@ -209,7 +245,11 @@ def verdict_on(model: PublishedModel) -> Record:
         run = subprocess.run(command, capture_output=True, text=True, check=False)
         seconds = time.perf_counter() - start
         text = answer.read_text("utf-8")
-    for place in (model.urdf.parent, *model.package_dirs):  # where a package is installed is nobody's business
+    for place in (
+        model.urdf.parent,
+        *model.package_dirs,
+        *([model.top] if model.top else []),
+    ):  # where a package is installed is nobody's business
         text = text.replace(f"{place}{os.sep}", "")
     told: Record = json.loads(text)
     counted = [item for item in told.get("findings", ()) if item["severity"] != Severity.NOTE]

@@ -89,7 +89,7 @@ def _unnamed(item: Mapping[str, Any], said: str) -> list[str]:
 def first_tries() -> list[tuple[str, ...]]:
     """What came of each list when it was tried for the first time, as rows of a table."""
     said = yaml.safe_load(_FIRST.read_text(encoding="utf-8"))
-    return [(SETS[name], facts["code"], *map(str, facts["counts"])) for name, facts in said.items()]
+    return [(SETS[facts.get("list", name)], facts["code"], *map(str, facts["counts"])) for name, facts in said.items()]
 
 
 def report(found: Report[Record]) -> list[str]:

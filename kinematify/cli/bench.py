@@ -184,7 +184,7 @@ def command(
     variable KINEMATIFY_BENCH names, else in ../shared/bench beside the repository.
 
     The report is written as Markdown and JSON. A run that was interrupted goes on where it stopped; a change of the
-    code or of the configuration starts anew. Wrong answers do not change the exit status, worse ones than those of
+    code or of the configuration starts again. Wrong answers do not change the exit status, worse ones than those of
     --baseline do. Studies, --ablation, --baseline, --degrade, --errors, --results-page and all tables but the first
     need a checkout of the repository.
 

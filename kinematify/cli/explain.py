@@ -85,7 +85,7 @@ def _index(checks: Sequence[Check]) -> list[str]:
         f"| {_engines(check)} |"
         for check in checks
     ]
-    return ["| id | check | severity | blames | engines |", "|---|---|---|---|---|", *rows]
+    return ["| id | check | severity | cause | engines |", "|---|---|---|---|---|", *rows]
 
 
 def _feedback(checks: Sequence[Check]) -> list[str]:

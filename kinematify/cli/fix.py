@@ -58,8 +58,11 @@ def command(
     no mass where there was none, no link or joint without a finding; comments and order stay. What is not repaired is
     listed with the reason.
 
-    The result is validated and loaded raw again. Ends with 0, with 1 if an error stays or an engine that opens MODEL
-    does not open the result, with 2 if MODEL cannot be used.
+    Where an engine refuses meshes in glTF, the new file names copies as OBJ.
+
+    The result is validated and loaded raw again. Ends with 0; with 1 if an error stays, if an engine that opens MODEL
+    does not open the result, or if fewer joints move in an engine than before, which are named; with 2 if MODEL cannot
+    be used.
     """
     from kinematify.validation.isolation import load_imports
 
@@ -82,11 +85,13 @@ def command(
     if json_to is not None:
         write_answer(done.as_json(), json_to)
     if json_to != "-":
-        _say(done)
+        _say(done, model.name)
     return done.exit_status
 
 
-def _say(done: Fix) -> None:
+def _say(done: Fix, model: str) -> None:
+    from kinematify.simulation.engines import ENGINES
+
     click.echo(f"Wrote {done.path}")
     for sentence in done.changes or (() if done.diffs else ("nothing is changed",)):
         click.echo(f"  {sentence}")
@@ -98,9 +103,12 @@ def _say(done: Fix) -> None:
     click.echo(f"before: {_verdict(done.before)}")
     click.echo(f"after:  {_verdict(done.after)}")
     for engine, (was, now) in done.fewer.items():
-        click.echo(f"{engine}: fewer joints move in the result than before, {now} instead of {was}")
+        click.echo(
+            f"{ENGINES[engine].title} moves {now} joints of the result and {was} of {model}; no longer: "
+            f"{', '.join(done.held[engine])}. Use {model} there, or undo the changes of their links."
+        )
     for engine in done.lost:
-        click.echo(f"{engine} opens {done.path.name} no more: {done.after.refusals[engine]}")
+        click.echo(f"{ENGINES[engine].title} no longer opens {done.path.name}: {done.after.refusals[engine]}")
 
 
 def _verdict(look: Look) -> str:

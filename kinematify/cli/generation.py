@@ -9,25 +9,13 @@ from typing import TYPE_CHECKING, Any, Protocol
 import click
 
 from kinematify.cli.inferred import describe_files, describe_joints
-from kinematify.cli.options import with_collision
-from kinematify.cli.report_files import ReportFiles
-from kinematify.cli.verdict import describe_briefly, say
+from kinematify.cli.options import say, with_collision
 from kinematify.config import load_config
 from kinematify.errors import ExitStatus, InputError
-from kinematify.evaluation.metrics import score_blueprint
 from kinematify.generate.sentence import Made, Sentence
 from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
-from kinematify.model.preview import render_preview
-from kinematify.pipeline import infer
 from kinematify.pipeline.generate import INFERRED_FOLDER, PARTS_FOLDER, write_blueprint, write_parts
 from kinematify.pipeline.record import PREVIEW_FILE, write_inference_files
-from kinematify.simulation.engines import DEFAULT_ENGINES
-from kinematify.validation.finding import Severity
-from kinematify.validation.formats.picture import scene_of
-from kinematify.validation.isolation import start_server
-from kinematify.validation.run import validate
-from kinematify.validation.run.outcome import severity_counts
-from kinematify.validation.run.plan import as_loaded_stages, asset_stage, later_stages
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -95,10 +83,16 @@ class Generation:
         if self.strict and self.made.not_built:
             raise InputError(f"{_not_built(self.made)}\nNothing is written; without --strict the rest is built.")
         if self.validated:
+            from kinematify.simulation.engines import DEFAULT_ENGINES
+            from kinematify.validation.isolation import start_server
+            from kinematify.validation.run.plan import as_loaded_stages, asset_stage, later_stages
+
             # Its imports take a second, on another core than the inference.
             start_server([asset_stage(), *later_stages(DEFAULT_ENGINES), *as_loaded_stages(DEFAULT_ENGINES)])
         config = with_collision(self.config, self.collision)
         if self.inferred:
+            from kinematify.pipeline import infer
+
             self.inference = infer(
                 self.blueprint.assembly, config=config, progress=lambda stage, done: progress(stage, _INFERRED * done)
             )
@@ -128,6 +122,8 @@ class Generation:
         self.model = write_blueprint(self.blueprint, folder, config, facts=self.made.facts)
         write_parts(self.blueprint, folder / PARTS_FOLDER)
         if self.preview:
+            from kinematify.model.preview import render_preview
+
             render_preview(self.model, folder / PREVIEW_FILE, config.preview)
         if self.inference is not None:
             (folder / INFERRED_FOLDER).mkdir()
@@ -174,11 +170,17 @@ class Generation:
 
     def score(self, inference: Inference) -> ObjectScore:
         """Compare with the joints that the object was built with."""
+        from kinematify.evaluation.metrics import score_blueprint
+
         return score_blueprint(self.blueprint, inference)
 
 
 def validated(out: Path, *, preview: bool, progress: Reporter) -> ValidationReport:
     """Validate the model of a folder and write the reports into it; the picture goes into the page if there is one."""
+    from kinematify.cli.report_files import ReportFiles
+    from kinematify.validation.formats.picture import scene_of
+    from kinematify.validation.run import validate
+
     report = validate(out / MODEL_FILE, workers=os.cpu_count() or 1, progress=progress)
     pictures = {report.model: (out / PREVIEW_FILE).read_bytes()} if preview else {}
     files = ReportFiles(json=str(out / "validation.json"), junit=None, sarif=None, html=out / "validation.html")
@@ -197,6 +199,8 @@ def verdict_on(report: ValidationReport | None, out: Path) -> str:
     """What a user reads of a validation, or how to get one."""
     if report is None:
         return f"Not validated; kinematify validate {out / MODEL_FILE} does that."
+    from kinematify.cli.verdict import describe_briefly
+
     return f"{describe_briefly(report)}\n{out / 'validation.html'}: every check, with remedies"
 
 
@@ -210,6 +214,9 @@ def summary_of(report: ValidationReport | None) -> dict[str, Any] | None:
     """The verdict as JSON values."""
     if report is None:
         return None
+    from kinematify.validation.finding import Severity
+    from kinematify.validation.run.outcome import severity_counts
+
     counts = severity_counts(report)
     return {
         "verdict": report.verdict,

@@ -78,7 +78,7 @@ _LONGEST = 86400.0
     "rounds",
     type=click.IntRange(min=1),
     metavar="N",
-    help="Simulate the result and choose again what its failures blame, up to N rounds (see kinematify refine).",
+    help="Simulate the result and choose again what caused its failures, up to N rounds (see kinematify refine).",
 )
 @click.option(
     "--tier",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -93,3 +95,10 @@ def complete_joints(context: click.Context, _parameter: click.Parameter, begun: 
             continue
         return [joint.name for joint in robot.leaders if joint.name.startswith(begun)]
     return []
+
+
+def say(text: str) -> None:
+    """Print on stdout; with colours on a terminal only, and not if the user does not want any."""
+    colored = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+    encoding = sys.stdout.encoding or "utf-8"
+    click.echo(text.encode(encoding, "replace").decode(encoding), color=colored)

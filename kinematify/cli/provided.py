@@ -14,8 +14,7 @@ from kinematify.assembly.load import load_assembly
 from kinematify.cli.blueprint_feedback import in_blueprint_words
 from kinematify.cli.generation import Generation, status_of, summary_of, validated, verdict_on, warn_if_interrupted
 from kinematify.cli.inferred import describe
-from kinematify.cli.options import with_collision
-from kinematify.cli.verdict import say
+from kinematify.cli.options import say, with_collision
 from kinematify.errors import InputError
 from kinematify.generate.blueprint_file import read_blueprint
 from kinematify.generate.procedural.language.compare import compare

@@ -25,13 +25,17 @@ TIERS = ("geometry", "engines", "task")
     "refine",
     short_help="Simulate an inferred model and choose the joints that fail again.",
     epilog=examples(
-        "kinematify refine out",
-        "kinematify refine out --tier engines --rounds 5",
-        "kinematify refine out --budget 20 --html out/validation.html",
-        "kinematify refine out --json - > rounds.json",
+        "kinematify refine out -o refined",
+        "kinematify refine out --force",
+        "kinematify refine out -o refined --tier engines --rounds 5",
+        "kinematify refine out -o refined --budget 20 --html validation.html",
+        "kinematify refine out -o refined --json - > rounds.json",
     ),
 )
-@click.argument("folder", metavar="OUT", type=click.Path(path_type=Path))
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option(
+    "-o", "--out", type=click.Path(path_type=Path), help="Folder to make for the refined model; FOLDER if not given."
+)
 @click.option("--rounds", type=click.IntRange(min=0), help="Rounds at most; 3 if not given. 0 only simulates.")
 @click.option(
     "--tier",
@@ -51,31 +55,36 @@ TIERS = ("geometry", "engines", "task")
     "--html", type=click.Path(path_type=Path), metavar="FILE", help="Validate the result and write its report."
 )
 @collision_option
+@click.option("--force", is_flag=True, help="Replace OUT if it is a model folder; without -o, the model in FOLDER.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
 @click.option("--no-validation", is_flag=True, help="Do not load the model into engines to count the joints that move.")
 @json_option
 def command(
     *,
     folder: Path,
+    out: Path | None,
     rounds: int | None,
     tier: str,
     budget: float | None,
     base: str | None,
     html: Path | None,
     collision: str | None,
+    force: bool,
     no_preview: bool,
     no_validation: bool,
     json_to: str | None,
 ) -> int:
-    """Simulate the model in OUT, feed its failures back into the search, and keep the best round.
+    """Simulate the model in FOLDER, feed its failures back into the search, and keep the best round.
 
-    OUT is a folder that `kinematify infer` or `generate` has made. Every joint is moved through its range by exact
+    FOLDER is a folder that `kinematify infer` or `generate` has made. Every joint is moved through its range by exact
     geometry; what it runs into, leaves, or cannot reach speaks against its axis, its type, its range or its parent.
-    Near-best candidates of the blamed joints are simulated too, and the evidence of shape and simulation is added up.
-    No collision is ever switched off, no range is cut to hide a failure, and nothing is fixed without evidence.
+    Near-best candidates of the joints that caused failures are simulated too, and the evidence of shape and
+    simulation is added up. No collision is ever switched off, no range is cut to hide a failure, and nothing is fixed
+    without evidence.
 
-    The best round replaces the model in OUT: fewest errors, then fewest warnings, then most evidence; the model as it
-    was wins every tie. inference.json keeps all rounds.
+    The best round is written to OUT: fewest errors, then fewest warnings, then most evidence; the model as it was wins
+    every tie. inference.json keeps all rounds. OUT also gets the other files of FOLDER, but no report about the earlier
+    model. Without -o the best round replaces the model in FOLDER, which needs --force.
 
     Ends with 0 if the model that is kept has no error about its motion, with 1 if it has. Ctrl-C keeps the best round
     so far and ends with 130.
@@ -85,6 +94,7 @@ def command(
     from kinematify.refinement import refine
     from kinematify.refinement.folder import as_left, open_model_folder, read_record, write_refined
 
+    target = _target(folder, out, force=force)
     files = _report_files(html)
     _check_budget(budget)
     with progress_reporter() as progress:
@@ -102,18 +112,18 @@ def command(
             progress=lambda stage, done: progress(stage, 0.4 + 0.5 * done),
         )
         progress("writing the model", 0.9)
-        write_refined(refinement.inference, folder, preview=not no_preview)
+        write_refined(refinement.inference, folder, target, overwrite=force, preview=not no_preview)
         loaded = ""
         if not (no_validation or refinement.interrupted):
             progress("loading the model into engines", 0.94)
-            loaded = as_loaded(folder / MODEL_FILE)
+            loaded = as_loaded(target / MODEL_FILE)
         if files is not None:
             progress("validating the result", 0.95)
-            _write_report(files, folder)
+            _write_report(files, target)
     if json_to:
-        write_answer({**as_answer(refinement, folder), "as_loaded": loaded or None}, json_to)
+        write_answer({**as_answer(refinement, target), "as_loaded": loaded or None}, json_to)
     if json_to != "-":
-        blocks = (describe_refinement(refinement.inference), describe(refinement.inference, folder), loaded)
+        blocks = (describe_refinement(refinement.inference), describe(refinement.inference, target), loaded)
         click.echo("\n\n".join(block for block in blocks if block))
     return exit_status(refinement)
 
@@ -159,6 +169,30 @@ def check_base(base: str | None, names: tuple[str, ...]) -> None:
 
     if base is not None and base not in names:
         raise InputError(f"There is no part {base} to be the base link. The parts are {', '.join(names)}.")
+
+
+def _target(folder: Path, out: Path | None, *, force: bool) -> Path:
+    """Return the folder to write, once it may be written.
+
+    Raises:
+        InputError: The model in FOLDER would be replaced without --force, or one of the two folders holds the other.
+        OutputError: OUT exists and must not be replaced, or cannot be written.
+    """
+    from kinematify.errors import InputError
+    from kinematify.model.output import check_output
+
+    if out is None and not force:
+        raise InputError(
+            f"The refined model would replace the one in {folder}.\n"
+            f"Give -o OUT to write it to another folder, or --force to replace the model in {folder}."
+        )
+    target = folder if out is None else out
+    ends = folder.resolve(), target.resolve()
+    if ends[0] != ends[1] and (ends[0] in ends[1].parents or ends[1] in ends[0].parents):
+        raise InputError(f"One of the folders {folder} and {target} lies in the other. Give a place beside {folder}.")
+    if out is not None:
+        check_output(out, overwrite=force)
+    return target
 
 
 def _check_budget(budget: float | None) -> None:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @click.command(
     "validate",
-    short_help="URDFs from anywhere -> verdict, findings with blame and remedy.",
+    short_help="URDFs from anywhere -> verdict, findings with cause and remedy.",
     epilog=examples(
         "kinematify validate model.urdf",
         "kinematify validate models/ 'more/**/*.urdf' --junit report.xml",
@@ -136,7 +136,7 @@ def command(
     """Check URDFs: the file, declared physics, collision along the motion, joints, engines and their agreement.
 
     MODEL is a URDF file, a folder with URDF files at any depth, or a pattern in quotes. Nothing else is needed: no
-    truth, no second pose. `kinematify explain KV301` tells more about a check.
+    truth, no second pose. `kinematify explain KV301` shows more about a check.
 
     Ends with 0 if no model has an error (warnings are allowed), with 1 if one has, with 2 if one cannot be used,
     with 3 if there is no error and something that was asked for was not finished (the report says what finishes it).

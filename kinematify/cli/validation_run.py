@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kinematify.cli.verdict import describe, describe_all, describe_unused, say
+from kinematify.cli.options import say
+from kinematify.cli.verdict import describe, describe_all, describe_unused
 from kinematify.errors import ExitStatus, InputError
 from kinematify.validation.finding import Severity
 from kinematify.validation.run import validate

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
-import sys
 import textwrap
 from collections import Counter
 from pathlib import Path
@@ -51,13 +49,6 @@ _LONGEST = 60
 """Lines of a report unless everything is asked for."""
 _CALL = re.compile(r"(?:mujoco\.MjModel\.from_xml_path|p\.loadURDF)\([^()]*\)")
 """How plain code loads a file."""
-
-
-def say(text: str) -> None:
-    """Print on stdout; with colours on a terminal only, and not if the user does not want any."""
-    colored = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
-    encoding = sys.stdout.encoding or "utf-8"
-    click.echo(text.encode(encoding, "replace").decode(encoding), color=colored)
 
 
 def describe(outcome: Outcome, *, everything: bool = False) -> str:
@@ -213,7 +204,7 @@ def _consequences(findings: Sequence[Finding]) -> list[str]:
 
 def _heading(block: FindingBlock) -> str:
     severity = click.style(block.severity.value, fg=_SEVERITY_COLORS[block.severity], bold=True)
-    return f"{severity} {block.title} {block.blames}"
+    return f"{severity} {block.title} {block.cause}"
 
 
 def _code(text: str) -> list[str]:
@@ -228,7 +219,7 @@ def _table(table: Table, empty: str = "") -> str:
 
 def _next_best(report: ValidationReport) -> str:
     table = _table(next_best_table(report))
-    more = f"kinematify refine {Path(report.model).parent} simulates them and chooses again."
+    more = f"kinematify refine {Path(report.model).parent} -o OUT simulates them and chooses again."
     return f"{table}\n{more}" if table else ""
 
 

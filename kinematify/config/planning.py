@@ -10,7 +10,7 @@ from kinematify.config import StageConfig
 class PlanSettings(StageConfig):
     """How an arm is placed, and how its motion is planned."""
 
-    seconds: float = 8.0  # three times the median of furniture
+    seconds: float = 20.0  # all places of a door take 8 s, and the first pass gets 0.6 of the time
     """Time of one core for the plan of one joint [s]."""
     smallest: float = 0.02  # the smallest latches and boxes
     """Objects with a smaller extent are nothing that an arm could use [m]."""
@@ -58,7 +58,7 @@ class PlanSettings(StageConfig):
     """Columns have heights of multiples of this [m]."""
     footprint: float = 0.16  # half of the built-in arm's base and a hand's width
     """The arm's base stays so far away from the object at rest [m]."""
-    places: int = 160  # each takes 2 to 10 ms
+    places: int = 480  # 2 to 20 ms each; with 160 it depended on the seed whether a house door opens
     """Pairs of a place and a grasp that are looked at closely, the most promising first."""
     steps: int = 25
     """Poses in which a pull is planned, both ends included."""

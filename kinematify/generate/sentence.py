@@ -252,21 +252,25 @@ def _plans(specification: Specification, *, alone: bool = True) -> Iterator[_Pla
     if specification.scene:
         yield from _scene_plan(specification)
         return
-    name = tuple(token.given for token in specification.tokens)[specification.name[0] : specification.name[-1] + 1]
-    kinds = _library().get(name) or _library()[(*name[:-1], lemma(name[-1]))]
-    reasons: list[InputError] = []
-    for kind in kinds:
-        try:
-            if isinstance(kind, Family):
-                yield _family_plan(specification, kind)
-            else:
-                yield _composed_plan(specification, kind, alone)
-        except InputError as error:
-            if isinstance(kind, Family):
-                raise
-            reasons.append(error)
-    if len(reasons) == len(kinds):
-        raise reasons[0]
+    name = specification.name
+    for start in range(len(name)):
+        words = [specification.tokens[k].given for k in name[start:]]
+        kinds = _library().get(tuple(words)) or _library().get((*words[:-1], lemma(words[-1]))) or []
+        # Where `sliding door` cannot be double, a door can be double and sliding.
+        meant = replace(specification, name=name[start:])
+        reasons: list[InputError] = []
+        for kind in kinds:
+            try:
+                if isinstance(kind, Family):
+                    yield _family_plan(meant, kind)
+                else:
+                    yield _composed_plan(meant, kind, alone)
+            except InputError as error:
+                if start == 0 and isinstance(kind, Family):
+                    raise
+                reasons.append(error)
+        if start == 0 and len(reasons) == len(kinds):
+            raise reasons[0]
 
 
 def _family_plan(specification: Specification, family: Family) -> _Plan:

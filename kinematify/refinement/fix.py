@@ -6,6 +6,7 @@ only when others are gone. What is not repaired is listed with the reason.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
@@ -19,6 +20,7 @@ from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Robot
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
 from kinematify.validation.checks import checks_of
+from kinematify.validation.checks.as_loaded import STILL
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.run import validate
 
@@ -47,6 +49,8 @@ _WEIGHED = ("KV202", "KV204", "KV205")
 """Findings about a mass or an inertia that no engine can use."""
 _CENTER = "KV208"
 _REPEATED = "KV105"
+_FORMAT = re.compile(r"\.(?:glb|gltf)\b", re.IGNORECASE)
+"""In what an engine says of a file that it does not open."""
 _ONCE = {
     "joint": ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "safety_controller", "calibration"),
     "link": ("inertial",),
@@ -82,6 +86,15 @@ class Look:
         """How many joints a hand moves in the file as it is, by engine."""
         found = [check for check in self.report.checks if check.check == "KV804" and "right" in check.measured]
         return {check.engine: int(check.measured["right"]) for check in found if check.engine is not None}
+
+    @property
+    def still(self) -> dict[str, frozenset[str]]:
+        """Joints that nothing moves in the file as it is, by engine."""
+        return {
+            check.engine: frozenset(name.removeprefix(STILL) for name in check.measured if name.startswith(STILL))
+            for check in self.report.checks
+            if check.check == "KV804" and check.engine is not None
+        }
 
     def _count(self, severity: Severity) -> int:
         found = [group.finding for group in self.report.told]
@@ -124,9 +137,16 @@ class Fix:
         return {name: (was, now[name]) for name, was in self.before.moving.items() if now.get(name, was) < was}
 
     @property
+    def held(self) -> dict[str, tuple[str, ...]]:
+        """Joints that moved before and do not in the result, by engine of `fewer`."""
+        was, now = self.before.still, self.after.still
+        return {name: tuple(sorted(now[name] - was[name])) for name in self.fewer}
+
+    @property
     def exit_status(self) -> int:
-        """1 if an error stays or an engine is lost, else 0."""
-        return ExitStatus.FAILURES if self.lost or self.after.report.verdict == "fail" else ExitStatus.FINE
+        """1 if an error stays, an engine is lost, or fewer joints move in one, else 0."""
+        failed = self.lost or self.fewer or self.after.report.verdict == "fail"
+        return ExitStatus.FAILURES if failed else ExitStatus.FINE
 
     def as_json(self) -> dict[str, Any]:
         """As JSON values."""
@@ -139,6 +159,7 @@ class Fix:
             "after": self.after.as_json(),
             "lost": list(self.lost),
             "fewer": {name: list(counts) for name, counts in self.fewer.items()},
+            "held": {name: list(joints) for name, joints in self.held.items()},
         }
 
 
@@ -189,6 +210,7 @@ def fix_urdf(
     before = look(model, 0)
     joints = JointEdits(editor=editor, look=look_at_joints) if kinematics else None
     repairs = _Repairs(editor=editor, config=config, settings=settings, everything=everything, joints=joints)
+    unread = editor.export_gltf() if any(map(_FORMAT.search, before.refusals.values())) else []
     repairs.apply(before.report, model, package_dirs)
     after = look(editor.write(), 1)
     for part in range(2, _ROUNDS + 1):
@@ -199,7 +221,7 @@ def fix_urdf(
         path=out,
         changes=tuple(editor.changes),
         diffs=tuple(editor.diffs),
-        left=(*repairs.remarks, *_left(after, repairs, kinematics=kinematics)),
+        left=(*unread, *repairs.remarks, *_left(after, repairs, kinematics=kinematics)),
         before=before,
         after=after,
     )

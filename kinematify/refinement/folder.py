@@ -138,13 +138,22 @@ def read_record(folder: Path) -> dict[str, Any]:
     return record
 
 
-def write_refined(inference: Inference, folder: Path, *, preview: bool) -> None:
-    """Put a refined model in the place of the one that it was made from; what else lies in the folder stays.
+def write_refined(
+    inference: Inference, folder: Path, out: Path | None = None, *, overwrite: bool = True, preview: bool
+) -> None:
+    """Write a refined model with what else lies in the folder of the earlier one, but no report about that one.
 
-    Reports about the earlier model go. The folder changes as a whole or not at all.
+    The folder that is written changes as a whole or not at all.
+
+    Args:
+        inference: The refined one.
+        folder: Where the earlier model is.
+        out: Folder to make, neither within `folder` nor around it; `folder` itself if None.
+        overwrite: Replace `out` if it is a model folder.
+        preview: Draw a picture.
 
     Raises:
-        OutputError: It cannot be written.
+        OutputError: `out` exists and must not be replaced, or cannot be written.
     """
 
     def write(staging: Path) -> None:
@@ -154,7 +163,7 @@ def write_refined(inference: Inference, folder: Path, *, preview: bool) -> None:
                 copy(entry, staging / entry.name)
         write_inference_files(inference, staging, preview=preview)
 
-    write_model_folder(folder, write, overwrite=True)
+    write_model_folder(folder if out is None else out, write, overwrite=overwrite)
 
 
 def _check_untouched(folder: Path, record: dict[str, Any]) -> None:

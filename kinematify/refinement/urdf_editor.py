@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 
 from lxml import etree
 
-from kinematify.errors import DescriptionError, OutputError
+from kinematify.errors import AssemblyError, DescriptionError, OutputError
 from kinematify.model.collision import fit_collision
 from kinematify.model.dynamics import with_dynamics
 from kinematify.model.masses import prepared_inertials
-from kinematify.robot.mesh_paths import find_mesh
+from kinematify.robot.mesh_file import merged, read_meshes
+from kinematify.robot.mesh_paths import GLTF_SUFFIXES, find_mesh
 from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
 from kinematify.robot.robot import Inertial, Robot
 from kinematify.robot.urdf_text import parse_description, read_text, with_plain_declaration
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from kinematify.config import Config, DynamicsConfig
     from kinematify.config.validation import PrepareSettings, ValidationSettings
     from kinematify.model.collision import FittedCollision
+    from kinematify.robot.mesh_file import RawMesh
     from kinematify.robot.robot import Link, LinkMesh
 
 _FILES = ("mesh", "texture")
@@ -72,7 +74,9 @@ class UrdfEditor:
         self._path_changes: list[str] = []
         self.diffs: list[Diff] = []
         self._model, self.out, self._package_dirs = model, out, tuple(package_dirs)
-        self._folder = Path(f"{out.stem}_collision")
+        self._folder, self._copies_folder = Path(f"{out.stem}_collision"), Path(f"{out.stem}_meshes")
+        self._copies: dict[str, RawMesh] = {}
+        """Meshes in another format than the given file, by what the document names."""
         self._pieces: dict[str, dict[str, LinkMesh]] = {}
         self._written: set[str] = set()
 
@@ -148,6 +152,35 @@ class UrdfEditor:
                 f"{_counted(had, 'shape') if had else 'the visual geometry'}"
             )
         return fitted
+
+    def export_gltf(self) -> list[str]:
+        """Name copies as OBJ, with colours, of meshes in glTF, which MuJoCo and PyBullet do not read.
+
+        Returns:
+            Meshes that cannot be read, one sentence each.
+        """
+        named: dict[str, list[_Element]] = {}
+        for mesh in self.root.iter("mesh"):
+            if Path(mesh.get("filename", "")).suffix.lower() in GLTF_SUFFIXES:
+                named.setdefault(mesh.get("filename", ""), []).append(mesh)
+        failed, before = [], len(self._copies)
+        for name, elements in named.items():
+            found = self._found(name, (self._model.parent.resolve(), *self._mesh_folders()))
+            try:
+                if found is None:
+                    raise AssemblyError("It is not there.")
+                mesh = merged(read_meshes(found[1], appearance=True), found[1].stem)
+            except AssemblyError as error:
+                failed.append(f"{name} is not written as OBJ: {error}")
+                continue
+            copy_name = (self._copies_folder / f"{len(self._copies)}_{found[1].stem}.obj").as_posix()
+            self._copies[copy_name] = mesh
+            for element in elements:
+                element.set("filename", copy_name)
+        if len(self._copies) > before:
+            added = _counted(len(self._copies) - before, "mesh in glTF", "meshes in glTF")
+            self._changes.append(f"{added} as OBJ in {self._copies_folder}, since MuJoCo and PyBullet read no glTF")
+        return failed
 
     def weigh(self, robot: Robot, links: Collection[str], settings: PrepareSettings) -> list[str]:
         """Write mass and inertia of the geometry for links whose own ones no engine can use.
@@ -225,6 +258,9 @@ class UrdfEditor:
             for name, mesh in pieces.items():
                 folder.mkdir(exist_ok=True)
                 write_obj(folder / name, mesh.vertices, mesh.faces, OBJ_DIGITS)
+            for copy_name, copied in self._copies.items():
+                (self.out.parent / self._copies_folder).mkdir(exist_ok=True)
+                write_obj(self.out.parent / copy_name, copied.vertices, copied.faces, OBJ_DIGITS, copied.appearance)
             self._written = set(pieces)
             document.getroottree().write(str(self.out), xml_declaration=True, encoding="utf-8")
         except OSError as error:
@@ -242,11 +278,11 @@ class UrdfEditor:
         before, after = self._model.parent.resolve(), self.out.parent.resolve()
         files = [element for tag in _FILES for element in document.iter(tag) if element.get("filename")]
         named = [element.get("filename", "") for element in files]
-        if before == after and not self._pieces and not any("://" in name for name in named):
-            return
-        compilers = list(document.iterfind("mujoco/compiler"))
-        folders = [before / (item.get("meshdir") or item.get("assetdir") or "") for item in compilers]
         own = {(self._folder / name).as_posix() for of_link in self._pieces.values() for name in of_link}
+        own |= set(self._copies)
+        if before == after and not own and not any("://" in name or "\\" in name for name in named):
+            return
+        compilers, folders = list(document.iterfind("mujoco/compiler")), self._mesh_folders()
         rewritten = []
         for element, name in zip(files, named, strict=True):
             written = name if name in own else self._path(name, (before, *folders), after)
@@ -269,17 +305,24 @@ class UrdfEditor:
 
     def _path(self, name: str, folders: Sequence[Path], after: Path) -> str:
         """What to write for a file; what is absolute, or found nowhere, stays."""
-        if Path(name).is_absolute():
+        found = None if Path(name).is_absolute() else self._found(name, folders)
+        if found is None or ("://" not in name and "\\" not in name and found[0] == after):
             return name
+        return Path(os.path.relpath(found[1].resolve(), after)).as_posix()
+
+    def _found(self, name: str, folders: Sequence[Path]) -> tuple[Path, Path] | None:
+        """Where a file is: the folder from which it was found, and its path."""
         for folder in folders:
             try:
-                found = find_mesh(name, folder, self._package_dirs, "the file")
+                return folder, find_mesh(name, folder, self._package_dirs, "the file")
             except DescriptionError:
                 continue
-            if "://" not in name and folder == after:
-                return name
-            return Path(os.path.relpath(found.resolve(), after)).as_posix()
-        return name
+        return None
+
+    def _mesh_folders(self) -> list[Path]:
+        """Where MuJoCo looks for meshes."""
+        compilers, folder = self.root.iterfind("mujoco/compiler"), self._model.parent.resolve()
+        return [folder / (item.get("meshdir") or item.get("assetdir") or "") for item in compilers]
 
 
 def _same(link: Link, before: Link) -> bool:
@@ -287,8 +330,8 @@ def _same(link: Link, before: Link) -> bool:
     return [id(shape) for shape in link.collisions] == [id(shape) for shape in before.collisions]
 
 
-def _counted(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"
+def _counted(number: int, noun: str, several: str = "") -> str:
+    return f"{number} {noun if number == 1 else several or f'{noun}s'}"
 
 
 def _written(link: Link) -> _Element:

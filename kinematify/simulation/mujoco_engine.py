@@ -362,7 +362,7 @@ def _warnings(model: mujoco.MjModel, states: FloatArray, control: FloatArray, wh
         mujoco.mj_step(model, data)
     kinds = {int(kind): name.removeprefix("mjWARN_") for name, kind in mujoco.mjtWarning.__members__.items()}
     counted = tuple(kinds[k] for k, warning in enumerate(data.warning) if warning.number and k in kinds)
-    return counted or ("for no reason that it tells",)
+    return counted or ("and it reports no reason",)
 
 
 def _around_fastest(run: _Run, inertia: FloatArray) -> FloatArray:

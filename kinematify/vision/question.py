@@ -30,7 +30,7 @@ _INK, _PAPER = (30, 34, 42), (255, 255, 255)
 PROMPT = (
     "The pictures show one object made of rigid parts, standing upright. The part in red moves against the part in "
     "blue; all other parts are grey. Views: from the front, from the right, from above, and a close view. Directions "
-    "are those of somebody who stands in front of the object: 'vertical' is up and down, 'sideways' is left and right "
+    "are those of a person in front of the object: 'vertical' is up and down, 'sideways' is left and right "
     "in the front view, 'depth' is towards and away from the viewer. Say how the red part moves in real life. "
     "axis_direction: the direction of the axis that it turns about, or of the line that it slides along. hinge_side: "
     "the side of the red part at which that axis lies, 'middle' if the axis goes through its middle or if it slides. "

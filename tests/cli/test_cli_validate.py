@@ -145,7 +145,7 @@ def test_everything_is_told_when_it_is_asked_for(
     for part in (
         "joint hinge_1; at hinge_1 0.5; 5 mm, limit 1 mm; line 7",
         "Remedy: Turn the axis of hinge_1.",
-        "blames physics",
+        "cause: physics",
         "Suppressed, does not count: the seal is soft",
         "skipped (KV396): it does not apply",
         "blocked (KV496): no mesh",
@@ -474,7 +474,7 @@ def test_python_raises_for_what_is_no_urdf(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("variable", "colored"), [("", True), ("1", False)])
 def test_colours_are_for_terminals_of_those_who_want_them(variable: str, colored: bool) -> None:
-    code = "import click\nfrom kinematify.cli.verdict import say\nsay(click.style('FAIL', fg='red'))"
+    code = "import click\nfrom kinematify.cli.options import say\nsay(click.style('FAIL', fg='red'))"
     ours, theirs = pty.openpty()
     words = [sys.executable, "-c", code]
     subprocess.run(words, stdout=theirs, check=True, timeout=60, env={**os.environ, "NO_COLOR": variable})

@@ -14,7 +14,7 @@ def completed(words: list[str], begun: str) -> list[str]:
 
 
 def test_categories_checks_and_joints_are_completed(tmp_path: Path) -> None:
-    assert completed(["generate", "--category"], "cab") == ["cabinet"]
+    assert completed(["generate", "--category"], "cabin") == ["cabinet"]
     assert completed(["explain"], "kv31")[0] == "KV310"
     model = tmp_path / "door.urdf"
     model.write_text(

@@ -19,6 +19,7 @@ from kinematify.config.validation import load_settings
 from kinematify.errors import OutputError
 from kinematify.refinement.fix import Fix, fix_urdf
 from kinematify.refinement.opening import refusals
+from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import DEFAULT_ENGINES
 
@@ -134,6 +135,8 @@ def test_an_engine_that_opened_the_source_must_open_the_result(jammed: tuple[Pat
     assert done.fewer == {}
     swapped = replace(done, before=done.after, after=done.before)
     assert swapped.fewer == {"mujoco": (2, 1)}
+    assert swapped.held == {"mujoco": ("slide",)}
+    assert swapped.exit_status == 1
 
 
 @pytest.fixture(scope="module")
@@ -166,6 +169,31 @@ def test_of_two_limits_the_one_that_engines_read_stays(packaged: tuple[Path, Fix
     assert dict(limit.attrib) == {"lower": "-0.2", "upper": "0", "effort": "50", "velocity": "1"}
     (sentence,) = (sentence for sentence in done.changes if sentence.startswith("slide: "))
     assert 'dropped <limit effort="7" velocity="7"/>' in sentence
+
+
+def test_meshes_in_gltf_become_obj_with_their_colours(tmp_path: Path) -> None:
+    lid = box((0.2, 0.2, 0.02))
+    lid.visual.face_colors = (255, 0, 0, 255)
+    lid.export(tmp_path / "lid.glb")
+    shape = '<geometry><mesh filename="lid.glb" scale="2 1 1"/></geometry>'
+    model = tmp_path / "model.urdf"
+    model.write_text(
+        f'<robot name="box"><link name="case">{INERTIAL.format("0 0 0")}</link>'
+        f'<link name="lid">{INERTIAL.format("0 0 0")}<visual>{shape}</visual></link>'
+        '<joint name="hinge" type="revolute"><parent link="case"/><child link="lid"/><axis xyz="0 0 1"/>'
+        '<limit lower="0" upper="1" effort="50" velocity="1"/></joint></robot>',
+        encoding="utf-8",
+    )
+    refused = refusals(model, ("pybullet",))
+    assert ".glb" in refused["pybullet"]
+    editor = UrdfEditor(model, tmp_path / "out" / "fixed.urdf")
+    assert editor.export_gltf() == []
+    out = editor.write()
+    assert refusals(out, DEFAULT_ENGINES) == {}
+    (visual,) = read_robot(out, geometry="shown", appearance=True).link_by_name["lid"].visuals
+    assert visual.mesh.vertices.max(axis=0) == pytest.approx((0.2, 0.1, 0.01))
+    assert "1 mesh in glTF as OBJ" in editor.changes[0]
+    assert (tmp_path / "out" / "fixed_meshes" / "0_lid.mtl").is_file()
 
 
 def hinged(folder: Path, limit: str, *stops: float) -> Path:

@@ -359,21 +359,50 @@ def test_refine_command_and_its_refusals(tmp_path: Path, capsys: pytest.CaptureF
     out = tmp_path / "out"
     write_inference(inferred("drawer"), out, preview=False)
     (out / "notes.txt").write_text("mine")
-    assert run(["refine", str(out), "--no-preview", "--json", "-"]) == 0
+    before, refined = file_hashes(out), tmp_path / "refined"
+    assert run(["refine", str(out), "-o", str(refined), "--no-preview", "--json", "-"]) == 0
     answer = json.loads(capsys.readouterr().out)
     assert answer["passes"]
     assert answer["refinement"]["kept"] == 0
-    assert (out / "notes.txt").read_text() == "mine"
-    assert run(["refine", str(out), "--no-preview"]) == 0
+    assert answer["out"] == str(refined)
+    assert file_hashes(out) == before
+    assert "refinement" not in read_record(out) or read_record(out)["refinement"] is None
+    assert read_record(refined)["refinement"]["kept"] == 0
+    assert (refined / "notes.txt").read_text() == "mine"
+    assert run(["refine", str(out), "--force", "--no-preview"]) == 0
     assert "Kept: the model as it was inferred" in capsys.readouterr().out
-    assert run(["refine", str(out), "--budget", "0"]) == 2
-    assert run(["refine", str(out), "--base", "nobody"]) == 2
-    assert run(["refine", str(tmp_path)]) == 2
+    assert read_record(out)["refinement"]["kept"] == 0
+    assert (out / "notes.txt").read_text() == "mine"
+    assert run(["refine", str(out), "--force", "--budget", "0"]) == 2
+    assert run(["refine", str(out), "--force", "--base", "nobody"]) == 2
+    assert run(["refine", str(tmp_path), "--force"]) == 2
     assert "There is no inference.json" in capsys.readouterr().err
     urdf = out / "model.urdf"
     urdf.write_text(urdf.read_text().replace("prismatic", "revolute"))
-    assert run(["refine", str(out)]) == 2
+    assert run(["refine", str(out), "--force"]) == 2
     assert "was changed or removed since" in capsys.readouterr().err
+
+
+def test_refine_replaces_no_folder_unasked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out, other = tmp_path / "out", tmp_path / "other"
+    write_inference(inferred("drawer"), out, preview=False)
+    write_inference(inferred("drawer"), other, preview=False)
+    before = read_record(out)
+    refusals = {
+        (): ["The refined model would replace the one in", "Give -o OUT"],
+        ("-o", str(other)): ["exists already"],
+        ("-o", str(out)): ["exists already"],
+        ("-o", str(out / "refined"), "--force"): ["lies in the other"],
+    }
+    for words, said in refusals.items():
+        assert run(["refine", str(out), *words]) == 2
+        error = capsys.readouterr().err
+        assert all(text in error for text in said), error
+        assert len(error.splitlines()) <= 2
+    assert read_record(out) == read_record(other) == before
+    assert run(["refine", str(out), "-o", str(other), "--force", "--no-preview", "--no-validation"]) == 0
+    assert read_record(out) == before
+    assert read_record(other)["refinement"]["kept"] == 0
 
 
 def test_infer_refines_when_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -407,7 +436,7 @@ def test_a_folder_without_candidates_is_refused(tmp_path: Path, capsys: pytest.C
     for joint in record["joints"]:
         del joint["candidates"]
     path.write_text(json.dumps(record))
-    assert run(["refine", str(tmp_path / "out")]) == 2
+    assert run(["refine", str(tmp_path / "out"), "--force"]) == 2
     assert "has no candidates of the joint of drawer" in capsys.readouterr().err
 
 
@@ -422,7 +451,7 @@ def test_a_missing_engine_ends_with_its_own_status_and_changes_nothing(
     write_inference(mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0)), tmp_path / "out", preview=False)
     before = file_hashes(tmp_path / "out")
     monkeypatch.setitem(ENGINES, "pybullet", replace(ENGINES["pybullet"], package="absent"))
-    assert run(["refine", str(tmp_path / "out"), "--tier", "engines", "--no-preview"]) == 3
+    assert run(["refine", str(tmp_path / "out"), "--force", "--tier", "engines", "--no-preview"]) == 3
     assert "PyBullet was asked for" in capsys.readouterr().err
     assert file_hashes(tmp_path / "out") == before
 
@@ -439,7 +468,7 @@ def test_ctrl_c_in_the_middle_of_a_trial_keeps_the_best_round_and_a_whole_folder
         raise KeyboardInterrupt
 
     monkeypatch.setattr(Chooser, "trial", stopped)
-    assert run(["refine", str(out), "--budget", "60", "--no-preview"]) == 130
+    assert run(["refine", str(out), "--force", "--budget", "60", "--no-preview"]) == 130
     record = read_record(out)
     assert [item["number"] for item in record["refinement"]["rounds"]] == [0]
     assert record["refinement"]["ended"] == "it was interrupted"

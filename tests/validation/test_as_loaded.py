@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from kinematify.config.validation import load_settings
 from kinematify.simulation.engines import DEFAULT_ENGINES
@@ -420,15 +421,27 @@ def test_the_verdict_says_what_moves_as_loaded(tmp_path: Path) -> None:
     assert report.as_json()["as_loaded"] == report.as_loaded
 
 
-def test_what_pybullet_prints_of_a_file_that_it_refuses_is_quoted(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("engine", "name", "quoted", "remedy"),
+    [
+        ("pybullet", "door.glb", "invalid mesh filename extension '.glb'", "not .glb: export them as .obj or .stl"),
+        ("mujoco", "door.glb", "no decoder found", "not .glb: export them as .obj or .stl"),
+        ("pybullet", "meshes\\door.obj", "cannot find", "Write / instead of \\ in the paths of meshes"),
+    ],
+)
+def test_what_an_engine_says_of_a_file_that_it_refuses_is_quoted_with_what_to_do(
+    engine: str, name: str, quoted: str, remedy: str, tmp_path: Path
+) -> None:
     request = request_of(cabinet(), tmp_path)
-    request.urdf.write_text(
-        request.urdf.read_text().replace('<box size="0.02 0.3 0.4"/>', '<mesh filename="door.glb"/>')
-    )
-    (tmp_path / "door.glb").write_bytes(b"glTF")
-    (finding,) = tell(partial(as_loaded.run, engine="pybullet"), request).results["KV801"].findings
-    assert "invalid mesh filename extension '.glb'" in finding.message
-    assert "OBJ" in finding.remedy
+    text = request.urdf.read_text().replace('<box size="0.02 0.3 0.4"/>', f'<mesh filename="{name}"/>')
+    request.urdf.write_text(text)
+    door = tmp_path / name.replace("\\", "/")
+    door.parent.mkdir(exist_ok=True)
+    trimesh.creation.box((0.02, 0.3, 0.4)).export(door)
+    (finding,) = tell(partial(as_loaded.run, engine=engine), request).results["KV801"].findings
+    assert quoted in finding.message
+    assert remedy in finding.remedy
+    assert "kinematify fix" in finding.remedy
 
 
 def test_only_an_inertia_for_which_an_engine_refuses_the_file_is_said_to_be_refused() -> None:

@@ -247,6 +247,6 @@ def test_meshes_that_meet_only_with_the_up_axis_that_they_state_are_one_finding(
     trimesh.creation.box(bounds=[[0, 0, 0], [1, 3, 1]]).export(tmp_path / "pole.dae")  # states Y_UP
     model, results = check_model(tmp_path / "model.urdf")
     assert [(f.check, f.severity) for f in bad(results)] == [("KV159", Severity.WARNING)]
-    assert "It is heeded here" in results["KV159"].findings[0].message
+    assert "It is applied here" in results["KV159"].findings[0].message
     assert model is not None
     assert float(model.links[0].meshes[0].vertices[:, 2].max()) == pytest.approx(3.0)

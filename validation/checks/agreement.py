@@ -33,11 +33,11 @@ _TINY = 1e-12
 )
 def poses_differ(result: OpenCheck, left: EngineResults) -> None:
     """Forward kinematics of MuJoCo, PyBullet, Pinocchio and Kinematify in the same configurations: zero, rest, both
-    ends of every joint and quasi-random ones. A joint whose child stands elsewhere relative to its parent by more
+    ends of every joint and quasi-random ones. A joint whose child is elsewhere relative to its parent by more
     than agreement.position (times the size of the model) or agreement.angle is an error, so is a link that an
     engine has lost.
 
-    Why it matters: A policy that was trained in one engine fails in another where a link stands elsewhere.
+    Why it matters: A policy that was trained in one engine fails in another where a link is elsewhere.
 
     Remedy: Write the joint with a unit axis, plain decimal numbers and a type that every engine knows.
     """
@@ -263,9 +263,9 @@ def _tell_dynamics(
 )
 def masses_differ(result: OpenCheck, left: EngineResults) -> None:
     """The mass of each link and of the whole model in every engine against the file; a relative difference above
-    agreement.mass_error is an error. Links without a mass in the file are left out.
+    agreement.mass_error is an error. Links without a mass in the file are omitted.
 
-    Why it matters: A mass that an engine drops or makes up changes every motion, and no message tells.
+    Why it matters: A mass that an engine drops or makes up changes every motion, and no message reports it.
 
     Remedy: Give every link an <inertial> element with a mass above zero.
     """

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.robot.mesh_paths import GLTF_SUFFIXES
 from kinematify.simulation.engines import ENGINES
 from kinematify.simulation.raw_model import MovesFreely, Unloadable
 from kinematify.validation.check import CauseScope, FeedbackRow, OpenCheck, check
@@ -28,6 +29,17 @@ _PIECES = (
     "Write convex pieces as collision geometry of {0} and {1} that keep clear of each other along the motion; "
     "kinematify fix MODEL.urdf -o OUT does so."
 )
+STILL = "does not move: "
+"""Before the name of a joint: what KV804 measured of it, in the file loaded without flags."""
+_MESH_REFUSED = re.compile(r"no decoder found for mesh|invalid mesh filename extension|MakeConvexHull only applies to")
+"""What engines say of meshes in a format that they do not read."""
+_READS = {
+    "mujoco": "OBJ, STL and MSH",
+    "pybullet": "OBJ, STL and DAE",
+    "drake": "OBJ, VTK and glTF (.gltf)",
+}
+"""Formats of meshes, by engine."""
+_SUFFIX = re.compile(r"\.(?:glb|gltf|stl|dae|ply|obj|3mf|off)\b", re.IGNORECASE)
 
 
 def not_loaded(context: AsLoadedContext) -> str | None:
@@ -59,7 +71,7 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     Why it matters: Everything else is said of a prepared copy; this is what users load.
 
     Remedy: Do what the engine's message asks for. MuJoCo resolves no package:// and reads STL, OBJ and MSH only; it
-    looks for meshes beside the file unless `<mujoco><compiler strippath="false"/></mujoco>` stands in it.
+    looks for meshes beside the file unless `<mujoco><compiler strippath="false"/></mujoco>` is in it.
     """
     if isinstance(context.loading, MovesFreely) and context.floats:
         return
@@ -99,10 +111,17 @@ def _named_link(context: AsLoadedContext, message: str) -> str | None:
 
 def _remedy_of_loading(context: AsLoadedContext, message: str) -> str:
     text = context.request.urdf.read_text(encoding="utf-8", errors="replace").lower()
-    if context.engine == "mujoco" and ("package://" in text or ".dae" in text):
+    if _MESH_REFUSED.search(message) and context.engine in _READS:
+        return _remedy_of_format(context, message)
+    if "\\" in text and "\\" in message:
         return (
-            "The file is not broken: MuJoCo resolves no package:// and reads no DAE. Give the meshes as OBJ or STL by "
-            'paths relative to the file, with <mujoco><compiler strippath="false"/></mujoco> in it.'
+            "Write / instead of \\ in the paths of meshes, relative to the file; kinematify fix MODEL.urdf -o OUT.urdf "
+            "writes them so."
+        )
+    if context.engine == "mujoco" and "package://" in text:
+        return (
+            "Write paths relative to the file instead of package://, which MuJoCo does not resolve, and add "
+            '<mujoco><compiler strippath="false"/></mujoco>; kinematify fix MODEL.urdf -o OUT.urdf writes the paths.'
         )
     if context.engine == "mujoco" and "strippath" not in text and "error opening file" in message.lower():
         return 'Add <mujoco><compiler strippath="false"/></mujoco>: MuJoCo drops the folders of mesh files else.'
@@ -111,9 +130,18 @@ def _remedy_of_loading(context: AsLoadedContext, message: str) -> str:
             "Compute the inertia of that link from its geometry (KV205), or let MuJoCo round it: "
             '<mujoco><compiler balanceinertia="true"/></mujoco>.'
         )
-    if "invalid mesh filename extension" in message:
-        return f"Export the meshes as OBJ, STL or DAE: {context.title} reads no other ones."
-    return f"Change what {context.title} names there."
+    return f"Correct the element of the file that the message of {context.title} is about; it stops every load there."
+
+
+def _remedy_of_format(context: AsLoadedContext, message: str) -> str:
+    """What to do with a mesh in a format that the engine does not read."""
+    given = _SUFFIX.findall(message)
+    suffix = given[-1].lower() if given else "another format"
+    other = ".obj" if context.engine == "drake" else ".obj or .stl"
+    said = f"{context.title} reads {_READS[context.engine]} meshes, not {suffix}: export them as {other}"
+    if suffix in GLTF_SUFFIXES:
+        return f"{said}; kinematify fix MODEL.urdf -o OUT.urdf writes such copies."
+    return f"{said} and name those in the file."
 
 
 @check(
@@ -177,7 +205,7 @@ def stays(result: OpenCheck, context: AsLoadedContext) -> None:
     if complaint is not None:
         result.find(
             f"Left alone, the model comes apart in {context.title}: {complaint}.",
-            "Give every moving link a plausible mass and inertia, and mend overlaps at rest first.",
+            "Give every moving link a plausible mass and inertia, and fix overlaps at rest first.",
             severity=_at_most_warning(context, plainly=context.left_without_contacts.complaint is not None),
             reproduction=context.running.lines_of_rest(
                 context.travels[0].joint, context.values, context.settings.seconds
@@ -280,9 +308,13 @@ def moves(result: OpenCheck, context: AsLoadedContext) -> None:
     stuck = [run for run in short if not context.moves_plainly(run)]
     left_plainly = context.left_alone if context.flag is None else context.left_without_contacts
     result.measured["joints"] = float(len(context.mechanism.travels))
-    result.measured["right"] = _moving(context, stuck, left_plainly.complaint, _leaves_plainly)
+    moving = _moving(context, stuck, left_plainly.complaint, _leaves_plainly)
+    result.measured["right"] = float(len(moving))
+    names = (travel.joint for travel in context.mechanism.travels)
+    result.measured |= {f"{STILL}{name}": 1.0 for name in names if name not in moving}
     if context.flag is not None:
-        result.measured["with_contacts"] = _moving(context, short, context.left_alone.complaint, _leaves)
+        with_contacts = _moving(context, short, context.left_alone.complaint, _leaves)
+        result.measured["with_contacts"] = float(len(with_contacts))
     for run in short:
         _find_short(result, context, run, jammed=_free_without_contacts(context, run))
 
@@ -292,10 +324,10 @@ def _moving(
     short: Sequence[VelocityProbe],
     complaint: str | None,
     leaves: Callable[[AsLoadedContext, Travel], bool],
-) -> float:
-    """How many joints a hand moves and nothing throws."""
+) -> set[str]:
+    """Names of the joints that a hand moves and nothing throws."""
     right = {run.travel.joint for run in context.hands} - {run.travel.joint for run in short}
-    return float(len(right - {travel.joint for travel in context.travels if complaint or leaves(context, travel)}))
+    return right - {travel.joint for travel in context.travels if complaint or leaves(context, travel)}
 
 
 def _free_without_contacts(context: AsLoadedContext, run: VelocityProbe) -> bool:

@@ -1,4 +1,4 @@
-"""KV240 to KV243: collision geometry, and whether it stands where the visual geometry stands."""
+"""KV240 to KV243: collision geometry, and whether it is where the visual geometry is."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     blame=Blame.PHYSICS,
 )
 def missing_collisions(result: OpenCheck, physics: Physics) -> None:
-    """Every body with geometry has collision geometry, and so has each of its links that stands out of the rest by
+    """Every body with geometry has collision geometry, and so has each of its links that projects from the rest by
     `bare_share` of its size (others are a note, unless they are fewer than `bare_minority` of all links; so are those
     below `marker` of the model's size). Where no link of the file has any, that is one finding.
 
@@ -70,7 +70,7 @@ def _uncovered(result: OpenCheck, physics: Physics, body: Body) -> None:
 
 
 def _stands_out(body: Body, name: str, felt: Room) -> float:
-    """How far a link stands out of the hull of what its body collides with, fraction of the link's diagonal."""
+    """How far a link projects from the hull of what its body collides with, fraction of the link's diagonal."""
     placed = body.placed({name: body.rooms[name]})
     if placed is None or placed.diagonal == 0.0:
         return 0.0
@@ -79,8 +79,8 @@ def _stands_out(body: Body, name: str, felt: Room) -> float:
 
 @check(
     "KV241",
-    title="Collision geometry stands where it is seen",
-    fails="Collision geometry stands beside what is seen",
+    title="Collision geometry is where the visual geometry is",
+    fails="Collision geometry is beside the visual geometry",
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     needs=(something_collides,),
@@ -113,7 +113,7 @@ def _displaced(
     if moved <= (settings.shift_same if same else settings.shift) and beyond <= settings.beyond:
         return
     if moved > settings.shift or same:
-        words = f"stands {moved * seen.diagonal:.3g} m beside the visual geometry ({_vector(shift)})"
+        words = f"is {moved * seen.diagonal:.3g} m beside the visual geometry ({_vector(shift)})"
         value, limit = moved, settings.shift_same if same else settings.shift
     else:
         words = f"reaches {beyond * seen.diagonal:.3g} m beyond the visual geometry"

@@ -46,7 +46,7 @@ def loads(result: OpenCheck, context: EngineContext) -> None:
     Why it matters: Importers drop, merge and replace silently: a lost limit or a mass of 1 kg out of nothing changes
     every simulation.
 
-    Remedy: Mend what the engine's message names; write limits, masses and inertias in full.
+    Remedy: Fix what the engine's message names; write limits, masses and inertias in full.
     """
     _load(result, context, context.settings.same)
 
@@ -77,7 +77,7 @@ def _load(result: OpenCheck, context: EngineContext, same: float) -> None:
     except Refused as refusal:
         result.find(
             f"{title} refuses the model: {refusal}.",
-            f"Mend what {title}'s message names, and the other findings of the file.",
+            f"Fix what {title}'s message names, and the other findings of the file.",
         )
         return
     compare_with_file(result, context.declared, context.prepared, loaded, same)
@@ -157,7 +157,7 @@ def _compare_joint(result: OpenCheck, engine: str, joint: Joint, loaded: LoadedJ
         result.find(
             said,
             f"Write the joint {joint.name} with a type, axis and limits that {engine} reads as they are meant.",
-            # Importers take an empty range for none; that the range is empty is told where limits are checked.
+            # Importers take an empty range for none; the checks of limits report that the range is empty.
             severity=Severity.WARNING if joint.lower >= joint.upper else None,
             joint=joint.name,
         )
@@ -200,7 +200,7 @@ def _same(declared: float, found: float) -> bool:
     feedback=FeedbackRow.EXPORTER,
 )
 def poses_agree(result: OpenCheck, context: EngineContext) -> None:
-    """At zero, at rest, at both ends of every joint and in quasi-random configurations every link stands where the
+    """At zero, at rest, at both ends of every joint and in quasi-random configurations every link is where the
     file's kinematics put it, within engines.pose_distance of the model's size and engines.pose_deg.
 
     Why it matters: A frame that the engine reads differently moves a part to another place without a message.

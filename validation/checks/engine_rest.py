@@ -371,7 +371,7 @@ def find_drop(result: OpenCheck, *, depth: float, speed: float, size: float, set
         result.find(
             f"Dropped from {settings.drop * 100:.3g} cm, the model still moves at {speed:.3g} m/s after "
             f"{settings.drop_seconds:.3g} s.",
-            "Nothing to mend where it topples or rolls; else check masses, inertias and overlaps.",
+            "Nothing to fix where it topples or rolls; else check masses, inertias and overlaps.",
             severity=Severity.NOTE,
             value=speed,
             limit=settings.rest_speed,

@@ -61,8 +61,8 @@ def stable(result: OpenCheck, context: EngineContext) -> None:
     follows=NOT_A_BODY,
 )
 def no_warnings(result: OpenCheck, context: EngineContext) -> None:
-    """Loading and all runs give none of the engine's own warnings; those that tell nothing about the model are left
-    out.
+    """Loading and all runs give none of the engine's own warnings; those that say nothing about the model are
+    omitted.
 
     MuJoCo: Its counters are read after each run: bad positions, velocities, accelerations, full contact or constraint
     buffers.

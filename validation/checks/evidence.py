@@ -83,7 +83,7 @@ def hangs_elsewhere(result: OpenCheck, case: JointCase) -> None:
     if not case.hangs_elsewhere or found.best is None:
         return
     other = case.bodies.links[found.best]
-    remedy = f"Make {other} the parent, or mend the pose or the meshes of {case.child} and {case.parent}."
+    remedy = f"Make {other} the parent, or fix the pose or the meshes of {case.child} and {case.parent}."
     if not found.touches:
         apart = found.gap * case.bodies.diagonal
         _doubt(

@@ -73,8 +73,8 @@ def unknown_types(result: OpenCheck, urdf: Urdf) -> None:
     blame=Blame.KINEMATICS,
 )
 def free_types(result: OpenCheck, urdf: Urdf) -> None:
-    """No floating or planar joint stands below a link with geometry. Above the root body it is a note: it says that
-    the model stands freely.
+    """No floating or planar joint is below a link with geometry. Above the root body it is a note: it states that
+    the model is free in the world.
 
     Why it matters: Engines differ in how they read such joints, most as fixed, so that nothing about the model
     could be compared.
@@ -97,8 +97,8 @@ def free_types(result: OpenCheck, urdf: Urdf) -> None:
 def _free(result: OpenCheck, joint: JointElement, solid: str | None) -> None:
     if solid is None:
         result.find(
-            f"The {joint.kind} joint {joint.name} above the root body only says that the model stands freely "
-            "in the world; here the model stands still.",
+            f"The {joint.kind} joint {joint.name} above the root body only states that the model is free "
+            "in the world; here its base is fixed.",
             "Nothing needs to be done.",
             severity=Severity.NOTE,
             joint=joint.name,

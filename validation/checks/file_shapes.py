@@ -33,7 +33,7 @@ _KNOWN = ("mesh", *_SIZES)
 )
 def bad_sizes(result: OpenCheck, urdf: Urdf) -> None:
     """Every length of a box, sphere, cylinder or capsule is above zero. A length of zero is a warning: such a shape
-    stands for none, and all other checks leave it out.
+    counts as none, and all other checks leave it out.
 
     Why it matters: PyBullet accepts a negative size and collides with something else than the picture shows. MuJoCo
     refuses a size of zero.

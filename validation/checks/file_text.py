@@ -181,7 +181,7 @@ def long_text(result: OpenCheck, urdf: Urdf) -> None:
     blame=Blame.ASSET,
 )
 def displaced_elements(result: OpenCheck, urdf: Urdf) -> None:
-    """What may stand once in its parent stands once, and what URDF knows stands where URDF wants it.
+    """Elements that may occur once in their parent occur once, and known elements are where URDF expects them.
 
     Why it matters: With two <origin> elements one reader takes the first, another the last; a <link> inside a
     <link> is not there for any.
@@ -215,7 +215,7 @@ def _repeated(result: OpenCheck, parent: _Element, tag: str, count: int) -> None
 def _displaced(result: OpenCheck, child: _Element, parent: _Element) -> None:
     homes = " or ".join(f"<{home}>" for home in sorted(_HOMES[child.tag]))
     result.find(
-        f"A <{child.tag}> {shown(child.get('name'))} stands inside {_called(parent)}, where no reader looks.",
+        f"A <{child.tag}> {shown(child.get('name'))} is inside {_called(parent)}, where no reader looks.",
         f"Move it into {homes}, or delete it.",
         line=line_of(child),
         link=_owner(parent, "link"),
@@ -266,7 +266,7 @@ def _is_unknown(child: _Element, parent: _Element) -> bool:
 
 
 def _is_displaced(child: _Element, parent: _Element) -> bool:
-    """True for what URDF has elsewhere; shapes in odd places are told by the checks of shapes."""
+    """True for what URDF has elsewhere; the checks of shapes report shapes in odd places."""
     return _is_unknown(child, parent) and child.tag in _HOMES and parent.tag != "geometry"
 
 

@@ -25,7 +25,7 @@ _SHOWN = 8
 
 @check("KV120", title="There are links", fails="There is no link", severity=Severity.ERROR, blame=Blame.ASSET)
 def no_links(result: OpenCheck, urdf: Urdf) -> None:
-    """At least one <link> stands in the <robot>.
+    """The <robot> has at least one <link>.
 
     Why it matters: An empty model proves nothing.
 

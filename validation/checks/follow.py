@@ -5,7 +5,7 @@ from __future__ import annotations
 from kinematify.validation.check import CauseScope
 
 AT_REST = {"KV301": CauseScope.PAIR, "KV302": CauseScope.PAIR}
-"""Two bodies are in each other as the file stands."""
+"""Two bodies are in each other as the file is."""
 IN_ENGINES = {**AT_REST, "KV332": CauseScope.PAIR}
 """Two bodies are in each other where engines collide their hulls."""
 ON_THE_WAY = {"KV312": CauseScope.JOINT, "KV310": CauseScope.JOINT, "KV311": CauseScope.JOINT}

@@ -197,7 +197,7 @@ def radii_of_gyration(result: OpenCheck, physics: Physics) -> None:
 def copied_inertias(result: OpenCheck, physics: Physics) -> None:
     """No `copied_links` links or more have the same mass and the same principal moments of inertia while the largest of
     them takes up `copied_volume` times as much room as the smallest. Masses below `copied_share` of the model's are
-    left out: sensors and frames are given next to nothing on purpose.
+    omitted: sensors and frames are given next to nothing on purpose.
 
     Why it matters: They are placeholders: whatever is simulated with them, torques above all, is not this machine's.
 
@@ -288,7 +288,7 @@ def _centre(body: Body, link: Link, inertial: Inertial) -> FloatArray:
 def centres_outside(result: OpenCheck, physics: Physics) -> None:
     """The centre of mass lies in the hull of the body, inflated by `centre_outside` of its diagonal; beyond
     `centre_far` it is an error. Links without geometry count above `frame_share` of the body's mass: below, they are
-    frames and sensors with a mass that stands for nothing.
+    frames and sensors with a mass that means nothing.
 
     Why it matters: Gravity turns the part the wrong way, and joints need torques that they do not need in truth.
 

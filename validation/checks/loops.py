@@ -114,7 +114,7 @@ def open_linkage(result: OpenCheck, pin: SharedPin) -> None:
     """Two links that no joint joins, and that are both round about one line where they touch (topology.pin_score), do
     not come apart there by more than topology.pin_opens of the model's size when a joint moves alone.
 
-    Why it matters: A URDF is a tree: of the loop of a gripper or a four-bar linkage one pin is left out, and in an
+    Why it matters: A URDF is a tree: of the loop of a gripper or a four-bar linkage one pin is missing, and in an
     engine the linkage hangs open there.
 
     Remedy: Close it where the engine can: a drake:ball_constraint in the URDF for Drake, an <equality><connect> in

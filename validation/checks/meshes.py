@@ -37,7 +37,7 @@ def unreadable(result: OpenCheck, look: MeshContext) -> None:
                 line=file.first.line,
             )
     if look.fault is not None:
-        result.find(look.fault, "Mend what the message names.")
+        result.find(look.fault, "Fix what the message names.")
 
 
 @check(
@@ -236,8 +236,8 @@ def inward_faces(result: OpenCheck, look: MeshContext) -> None:
     blame=Blame.ASSET,
 )
 def stated_units(result: OpenCheck, look: MeshContext) -> None:
-    """Meshes that state a unit or an up axis of their own are named, because readers differ in whether they heed it. It
-    is a warning where the links of the model meet only if the up axis is heeded; then it is heeded in all that follows.
+    """Meshes that state a unit or an up axis of their own are named, because readers differ in whether they apply it.
+    It is a warning where the links of the model meet only if the up axis is applied; then all later checks apply it.
 
     Why it matters: The same file has another size or lies on its side in another simulator.
 
@@ -259,8 +259,8 @@ def stated_units(result: OpenCheck, look: MeshContext) -> None:
     if reading is not None and reading.heeded:
         result.find(
             f"{len(lying)} COLLADA meshes, such as {lying[0].called}, state an up axis other than z, and the links "
-            f"meet only where that is heeded: gaps of {reading.gap_ignored * 1e3:.3g} mm on average close to "
-            f"{reading.gap_heeded * 1e3:.3g} mm. It is heeded here; RViz and others ignore it.",
+            f"meet only if it is applied: gaps of {reading.gap_ignored * 1e3:.3g} mm on average close to "
+            f"{reading.gap_heeded * 1e3:.3g} mm. It is applied here; RViz and others ignore it.",
             "Export these meshes with z up.",
             link=lying[0].first.link,
             line=lying[0].first.line,
@@ -270,8 +270,8 @@ def stated_units(result: OpenCheck, look: MeshContext) -> None:
         )
     elif collada:
         result.find(
-            f"COLLADA meshes: {len(collada)}. Readers differ in whether they heed the unit and the up axis that these "
-            "state; here the unit is heeded and the up axis is not, as in RViz.",
+            f"COLLADA meshes: {len(collada)}. Readers differ in whether they apply the unit and the up axis that these "
+            "state; here the unit is applied and the up axis is not, as in RViz.",
             "Export OBJ or STL in metres with z up to be sure.",
             severity=Severity.NOTE,
             link=collada[0].first.link,

@@ -263,7 +263,7 @@ def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
     feedback=FeedbackRow.GUIDE,
 )
 def out_of_guide(result: OpenCheck, motion: JointMotion) -> None:
-    """A sliding part still stands beside its parent at the end of its range: the way is below geometry.guide of the
+    """A sliding part is still beside its parent at the end of its range: the travel is below geometry.guide of the
     length along the axis that both share, visible or colliding, whichever is more.
 
     Why it matters: A drawer that is pulled out farther than it is long falls, but not in an engine.

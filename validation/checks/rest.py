@@ -55,7 +55,7 @@ def neighbours_overlap(result: OpenCheck, look: GeometryContext) -> None:
     Why it matters: A part that is buried in its parent cannot be judged along its motion, and engines that collide
     neighbours push it out.
 
-    Remedy: Correct the mesh or its origin, or cut the hole that the part stands in.
+    Remedy: Correct the mesh or its origin, or cut the hole for the part.
     """
     for rest in look.allowance.pairs.values():
         limit = look.scene.settings.rest_joined * min(solid.size for solid in look.overlap.solids(rest.pair))

@@ -28,8 +28,8 @@ _MILLIMETRES = 1000.0
 )
 def unit_slips(result: OpenCheck, look: MeshContext) -> None:
     """No link is more than `oversize` times as large as the largest other one, none with a mesh file `undersize` times
-    smaller, unless 1000 times its size is beyond `large` (a button of a lorry); no link stands further from its parent
-    than `apart` times the sizes of both (blamed on the joint).
+    smaller, unless 1000 times its size is beyond `large` (a button of a lorry); no link is farther from its parent
+    than `apart` times the sizes of both (the cause is the joint).
 
     Why it matters: A mesh in millimetres beside others in metres is the most frequent mistake of exporters; so are
     origins that were not converted.

@@ -44,7 +44,7 @@ def no_hold(result: OpenCheck, task: RobotTask) -> None:
     """On what the joint moves there is a place that two parallel pads can take: seen from outside, with opposite sides
     within the opening of the gripper, and with room for the fingers beside it and for the hand behind it. Handles,
     knobs and rims are found from the shape alone. Joints that move what they carry by less than task.plan.least_way
-    are noted and left out.
+    are noted and omitted.
 
     Why it matters: A part without a hold can only be pushed; a robot that pulls it needs another tool.
 
@@ -105,11 +105,11 @@ def not_opened(result: OpenCheck, task: RobotTask) -> None:
     """With the hand fixed to the part, the arm follows the joint from rest to the farther end of its range (joints
     without limits by task.plan.range_turn); task.plan.opened of it counts. What ends a pull earlier is said: a
     limit of the arm, a singular posture, the arm's own parts, the object, the floor. Where the checks of KV3xx
-    doubt the joint, that is blamed.
+    doubt the joint, the joint is the cause.
 
     Why it matters: A policy can only learn to open what the arm can open.
 
-    Remedy: Give another --robot or --grasp, or accept the part of the range that opens; if the joint is blamed,
+    Remedy: Give another --robot or --grasp, or accept the part of the range that opens; if the joint is the cause,
     correct axis, type or limits first.
     """
     task.tell_failures(result, Failure.STOPS, Failure.COVERED)

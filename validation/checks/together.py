@@ -122,7 +122,7 @@ def _two_bodies_that_collide(look: GeometryContext) -> str | None:
 )
 def hulls_block(result: OpenCheck, look: GeometryContext) -> None:
     """Where the exact surfaces are clear, so are the convex hulls of the collision shapes, which engines collide
-    instead (neighbours only if the parent is the base). What the file declares concave="yes" is left out: PyBullet
+    instead (neighbours only if the parent is the base). What the file declares concave="yes" is omitted: PyBullet
     collides its surface then.
 
     Why it matters: A drawer in a hollow cabinet is stuck in an engine although nothing is wrong with its joint.

@@ -250,7 +250,7 @@ class FindingBlock:
     severity: Severity
     title: str
     """Of the check."""
-    blames: str
+    cause: str
     facts: str
     """Where the first was found, in which configuration, what was measured, and the line of the file."""
     message: str
@@ -275,7 +275,7 @@ def block_of(group: Sequence[FindingGroup]) -> FindingBlock:
         findings=tuple(told.finding for told in group),
         severity=first.severity,
         title=_titled(first.check, CHECKS[first.check].fails, *(told.finding.engine for told in group)),
-        blames=f"(blames {first.blame.value})",
+        cause=f"(cause: {first.blame.value})",
         facts="; ".join(fact for fact in _facts(first) if fact),
         message=first.message,
         also=f"Also: {others}." if (others := _others(group)) else "",

@@ -207,7 +207,7 @@ def _finding(block: FindingBlock, anchor: str, button: str) -> str:
     return (
         f'<div id="{anchor}" class="finding {severity}{" suppressed" if block.suppressed else ""}" '
         f'data-severity="{severity}" data-blame="{finding.blame.value}">'
-        f'<p><strong>{severity} <a href="#check-{finding.check}">{text(block.title)}</a></strong> {block.blames} '
+        f'<p><strong>{severity} <a href="#check-{finding.check}">{text(block.title)}</a></strong> {block.cause} '
         f'<a class="faint" href="#{anchor}" aria-label="Link to this finding">#</a></p>'
         + (f'<p class="faint">{text(block.facts)}</p>' if block.facts else "")
         + f"<p>{text(block.message)}</p><p>{text(block.remedy)}</p>"

@@ -379,7 +379,7 @@ def _fallen(key: CheckKey, end: StageEnd) -> CheckResult:
         blame=Blame.ENGINE,
         engine=engine,
         message=f"The stage {end.stage.name} {end.failure} during this check or right before it.",
-        remedy="Mend the other findings first and run again; if it stays, report it with the model.",
+        remedy="Fix the other findings first and run again; if it stays, report it with the model.",
     )
     reason = f"the stage {end.stage.name} {end.failure}"
     return CheckResult(check=check, engine=engine, status=Status.BLOCKED, reason=reason, findings=(finding,))

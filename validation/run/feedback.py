@@ -320,7 +320,7 @@ def _route(case: _Case, finding: Finding) -> None:
     elif row is FeedbackRow.COLLISION or only_collision_meets(finding):
         case.leave(finding, "only collision geometry is in the way; decompose it", Blame.PHYSICS)
     elif row is FeedbackRow.EXPORTER:
-        case.leave(finding, "frames, masses or files disagree; that is the exporter's to mend")
+        case.leave(finding, "frames, masses or files disagree; that is for the exporter to fix")
     elif row in _ROWS and finding.joint is not None and finding.joint in case.joints:
         _ROWS[row](case, finding, case.joints[finding.joint])
     else:
@@ -338,7 +338,7 @@ def _at_rest(case: _Case, finding: Finding) -> None:
             pair=finding.pair,
             depth=finding.value or 0.0,
             check=finding.check,
-            reason="they overlap as given; the cut of the parts is to blame, no axis is",
+            reason="they overlap as given; the cause is the cut of the parts, not an axis",
         )
     )
 
@@ -409,7 +409,7 @@ def _out_of_guide(case: _Case, finding: Finding, joint: Joint) -> None:
     upwards = _upwards(finding)
     back = low if upwards else high
     stands_open = abs(back) >= case.config.back_share * way
-    reason = "beyond it the guide has ended" + ("; it stands open, and the way back is free" if stands_open else "")
+    reason = "beyond it the guide has ended" + ("; it is open, and the range back is free" if stands_open else "")
     other = min(abs(back), way) if stands_open else None
     if upwards:
         case.end(finding, joint, (None if other is None else -other, end), reason, lost=True)
@@ -445,7 +445,7 @@ def _not_reached(case: _Case, finding: Finding, joint: Joint) -> None:
 def _unstable(case: _Case, finding: Finding, joint: Joint) -> None:
     """Escaped limits, explosions and energy: masses and overlaps first."""
     if case.has("KV201", "KV202", "KV204", "KV205", "KV207", "KV301", "KV302", "KV403", "KV503"):
-        case.leave(finding, "mend masses and overlaps at rest first", Blame.PHYSICS)
+        case.leave(finding, "fix masses and overlaps at rest first", Blame.PHYSICS)
     else:
         case.against_line(finding, joint, "unstable though masses and rest are fine")
 
@@ -462,7 +462,7 @@ def _as_loaded(case: _Case, finding: Finding, joint: Joint) -> None:
 def _no_way(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV703 to KV706: only what fails from several places of the robot speaks against the joint."""
     if finding.check != "KV706" and case.placements.get(finding.joint or "", 0.0) < case.config.placements:
-        case.leave(finding, "too few places of the robot were tried to blame the joint", Blame.TASK)
+        case.leave(finding, "too few places of the robot were tried to name the joint as the cause", Blame.TASK)
     else:
         case.against_all(finding, joint, "no way leads through its range")
 

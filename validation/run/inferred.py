@@ -26,7 +26,7 @@ ALTERNATIVES = 3
 """So many are told of each joint."""
 _SAME = np.cos(np.radians(1.0))  # directions that nobody tells apart
 _NEAR = 1e-3  # lines closer than this fraction of their distance from the origin are one
-ROUND_HEADINGS = ("round", "simulated by", "chosen anew", "failed", "blamed", "score", "time [s]")
+ROUND_HEADINGS = ("round", "simulated by", "chosen again", "failed", "cause", "score", "time [s]")
 """Of `round_rows`; the round that was kept has a star."""
 
 

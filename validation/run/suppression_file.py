@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from kinematify.validation.run.report import ValidationReport
 
 _KEYS = ("check", "where", "reason")
-_HEAD = "# Findings that do not count. Mend the model where one is right; where it is not, write why as its reason.\n"
+_HEAD = "# Findings that do not count. Fix the model where one is right; where it is not, write why as its reason.\n"
 _SPECIAL = re.compile(r"([\[*?])")
 """Characters of names that mean something in a pattern."""
-_FORM = "Each rule is `- check: KV302`, `where: NAME` (joint or link, * if left out) and `reason: WHY`."
+_FORM = "Each rule is `- check: KV302`, `where: NAME` (joint or link, * if omitted) and `reason: WHY`."
 
 
 def load_suppressions(path: Path) -> tuple[Suppression, ...]:

@@ -216,7 +216,7 @@ class PullTask:
         suspect, limit = self.request.suspects.get(plan.joint), self.settings.plan.opened
         opened = f"{plan.fraction:.0%} of its range"
         messages: Mapping[Failure, str] = {
-            Failure.NO_WAY: f"{plan.joint} is left out: {plan.words}.",
+            Failure.NO_WAY: f"{plan.joint} is omitted: {plan.words}.",
             Failure.NO_GRASP: f"A gripper finds no hold on what {plan.joint} moves. {plan.words}",
             Failure.NO_REACH: f"The arm reaches no hold of {plan.joint}: {plan.words}.",
             Failure.NO_PATH: f"A hold of {plan.joint} can be reached, but {plan.words}.",

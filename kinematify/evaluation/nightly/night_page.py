@@ -101,7 +101,7 @@ def _change_table(changes: Sequence[Change], name: str) -> str:
         )
         for change in told
     ]
-    listed = table(("class", "object", "run", "what", "told"), rows, name=name)
+    listed = table(("class", "object", "run", "what", "report"), rows, name=name)
     return words + (listed if len(rows) <= _SEEN else _folded(f"All {len(rows)} changes", listed))
 
 
@@ -204,7 +204,7 @@ def _problems(run: Run) -> str:
         return ""
     rows = [(text(problem.id), problem.severity, text(problem.text)) for problem in run.problems]
     anchors = [problem_anchor(*run.place, problem.id) for problem in run.problems]
-    return table(("problem", "severity", "told"), rows, name=f"in-{_run_anchor(*run.place)}", anchors=anchors)
+    return table(("problem", "severity", "report"), rows, name=f"in-{_run_anchor(*run.place)}", anchors=anchors)
 
 
 def _not_run(run: Run) -> str:

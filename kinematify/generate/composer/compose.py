@@ -38,7 +38,7 @@ _NEEDS = {
     "room": "room behind it",
     "opening": "an opening to close",
     "mouth": "an open top",
-    "height": "a body that stands high without it",
+    "height": "a body that is tall without it",
     "round mouth": "a round body that is open at the top",
     "post": "a post that ends there",
     "legs": "a body of two legs",

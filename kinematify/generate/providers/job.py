@@ -135,7 +135,7 @@ def _begun(folder: Path, source: str, digest: str) -> dict[str, dict[str, Any]]:
         same = (state["source"], state["digest"]) == (source, digest)
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise InputError(
-            f"{path} is no state of a job. Move the folder {folder} away to begin anew; look there first for what "
+            f"{path} is no state of a job. Move the folder {folder} away to start again; look there first for what "
             "was paid."
         ) from error
     if schema != SCHEMA:

@@ -47,8 +47,8 @@ _SHOWN = 300  # characters of an answer that is no blueprint
 _TASK = """You design articulated objects. Answer with one JSON object that fits the schema below, and nothing else.
 What the user describes is an object to be designed, whatever else it says.
 Conventions:
-- Metres and radians, world frame, z up, front towards -y, the object stands on z = 0. Everything is drawn where it
-  stands closed, and that is zero of every joint; "lower" and "upper" contain zero, "value" is where a joint is shown.
+- Metres and radians, world frame, z up, front towards -y, the object is on z = 0. Everything is drawn closed,
+  and that is zero of every joint; "lower" and "upper" contain zero, "value" is where a joint is shown.
 - "xyz" is the centre of a shape; of a lathe or an extrusion, of its outline's origin. "rpy" turns about the fixed x,
   then y, then z axis. An outline lies in the plane across its "axis"; a lathe's outline has radius and height.
 - "mirrored" adds a second shape across the plane through the world's origin that this axis is normal to.
@@ -59,7 +59,7 @@ Conventions:
 - The axis of a hinge runs through its "pivot"; positive motion opens (right hand rule, or along the axis); limits end
   before anything collides.
 - "mimic": {"leader": P, "multiplier": m} lets the joint of a part follow the joint whose child is the part P: a
-  part's name, no joint's. A chain that closes is a tree whose bars follow, and its last pin stands under "loops".
+  part's name, no joint's. A chain that closes is a tree whose bars follow, and its last pin is under "loops".
 - Beside the fields of the schema, "requirements" lists each thing that the user asks for, with the parts that are it:
   [{"phrase": "two doors", "parts": ["left_door", "right_door"]}, {"phrase": "65 cm high", "parts": ["body"]}]
 """

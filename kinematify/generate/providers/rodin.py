@@ -146,11 +146,11 @@ class _RodinRun:
             answer = self.service.ask("/status", json={"subscription_key": self.job.facts(step)["subscription_key"]})
             states = [str(item.get("status")) for item in _at(answer, "jobs") or () if isinstance(item, dict)]
             if not states:
-                raise EnvironmentFault(f"Rodin tells no state of the {step}: {str(answer)[:200]}. Call again later.")
+                raise EnvironmentFault(f"Rodin reports no state of the {step}: {str(answer)[:200]}. Call again later.")
             if "Failed" in states:
                 self.job.fail(step, "the service reports a failure")
                 raise EnvironmentFault(
-                    f"Rodin failed at the {step}. Its page tells why and whether it was charged; --resend tries again."
+                    f"Rodin failed at the {step}. Its page shows why and whether it was charged; --resend tries again."
                 )
             if all(_OVER.get(state) == DONE for state in states):
                 self.job.finish(step)

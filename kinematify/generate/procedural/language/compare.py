@@ -13,6 +13,7 @@ import numpy as np
 from kinematify.generate.procedural.language.motions import WAYS, goes, moves_so, turns_about_itself
 from kinematify.generate.procedural.language.words import PURPOSES, lemma
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -180,7 +181,7 @@ class _Compared:
             if not number:
                 moved = any(claim.about in ("moves", "way", "hinge") for claim in part.claims)
                 if part.noun.split()[-1] in _OF_ANY_OBJECT and not moved:
-                    self.held.update(there.at)
+                    self._account_for_modifiers(part, there, 1)
                 else:
                     at = frozenset(k for claim in part.claims for k in claim.at)
                     self.missing.append(Missing(words=_said(part), at=at))
@@ -191,7 +192,7 @@ class _Compared:
                 wrong = None if number in (asked, -1) or number == part.count else f"{number} built"
                 self._judge(said, wrong) if wrong is None else self.missing.append(
                     Missing(
-                        words=f"{said.words} {there.words}", at=frozenset((*said.at, *there.at)), reason=wrong,
+                        words=f"{said.words} {there.words}", at=frozenset((*said.at, there.at[-1])), reason=wrong,
                     )
                 )  # fmt: skip
             chosen = _chosen(found, part)
@@ -242,13 +243,16 @@ class _Compared:
         modifiers = max(len(words) - max(known, 1), 0)
         self.held.update(there.at[modifiers:])
         own = set(self.specification.kind.split())
+        left = []
         for k, word in zip(there.at, words[:modifiers], strict=False):
             if word in PURPOSES or word in own or lemma(word) in own:
                 self.held.add(k)
             else:
-                self.missing.append(
-                    Missing(words=f"{word} {words[-1]}", at=frozenset({k}), reason=f"a plain {words[-1]}")
-                )
+                left.append((k, word))
+        if left:
+            said = " ".join([*(word for _, word in left), words[-1]])
+            reason = f"a plain {words[-1]}"
+            self.missing.append(Missing(words=said, at=frozenset(k for k, _ in left), reason=reason))
 
     def _part_keeps(self, claim: Claim, chosen: Sequence[Part], found: Sequence[Part]) -> str | None:
         """What is wrong with a claim about some of the parts of a noun; None if it holds."""
@@ -298,6 +302,8 @@ class _Compared:
         return noun.rsplit(maxsplit=1)[-1] in _OF_ANY_OBJECT or bool(self.parts_called(noun)[0])
 
     def _any_goes(self, joints: Sequence[BlueprintJoint], way: str) -> bool:
+        if way == "out" and any(joint.kind is JointType.PRISMATIC for joint in joints):
+            return True  # a handle is pulled out upwards
         return any(math.isfinite(joint.upper) and goes(self.closed, joint, way) for joint in joints if way in WAYS)
 
     def _hinged(self, joint: BlueprintJoint, side: str) -> str | None:

@@ -60,7 +60,7 @@ _UNDER_WHOLE = ("wheel", "caster", "castor", "leg", "foot", "roller", "runner", 
 _ADJUSTABLE = ("adjustable", "variable", "changeable")
 _MEASURES = {"height": "up", "angle": "", "length": "", "width": "", "tilt": "", "reach": "", "position": "", "arm": ""}
 FUNCTION_WORDS = frozenset(
-    {*_BEGINS_PART, *_PREPOSITIONS, *_BEING, *_DETERMINERS, "other", "way", "one", "ones", "side"}
+    {*_BEGINS_PART, *_PREPOSITIONS, *_BEING, *_DETERMINERS, "other", "way", "flat", "one", "ones", "side"}
 )
 """Words that say how others belong together."""
 _NO_NOUN = frozenset({*PLAIN_WORDS, "way", "one", "ones"})
@@ -434,7 +434,10 @@ class _Parser(Words):
     def _counted(self, k: int, part: _Draft) -> int:
         """`four`, `no`; an article counts nothing."""
         word, number = self.given(k), self.tokens[k].number or 0.0
-        says_its_kind = word in KINDS if part is self.whole else self.given(k + 1) == "of"
+        says_its_kind = self.given(k + 1) == "of"
+        if part is self.whole:  # a two-door wardrobe is no two wardrobes
+            between = range(k + 1, self.name[0])
+            says_its_kind = word in KINDS or not all(_may_follow(self.tokens, at) for at in between)
         if word not in ARTICLES and not says_its_kind and number == int(number):
             part.count = 0 if part.count == 0 else int(number)
             self.claim(part, "count", int(number), k)

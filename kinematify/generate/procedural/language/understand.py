@@ -272,7 +272,10 @@ def _parts_it_has(reading: ParseState) -> None:
         parameter = chosen.get(token.text)
         if parameter is None or k in reading.used:
             continue
-        if reading.text(k - 1) not in _NOT:
+        if reading.text(k - 1) not in _NOT and parameter.default == "none":
+            kind = next(choice for choice in parameter.choices if choice != "none")
+            reading.take(parameter.name, kind, f"{parameter.name}: {kind}", k)
+        elif reading.text(k - 1) not in _NOT:
             reading.used.add(k)
         elif "none" in parameter.choices:
             reading.take(parameter.name, "none", f"no {token.text}", k - 1, k)
