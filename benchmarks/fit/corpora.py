@@ -178,7 +178,7 @@ def _key(source: CorpusSource, seed: int) -> str:
 
 def _measure(source: CorpusSource, path: Path, seed: int) -> None:
     """Measure one object; one that cannot be built or read gives no example."""
-    opened = _opened(source, seed)
+    opened = opened_object(source, seed)
     if opened is None:
         write_examples(path, [])
         return
@@ -205,7 +205,7 @@ def _measure(source: CorpusSource, path: Path, seed: int) -> None:
 
 def _measure_tree(source: CorpusSource, path: Path, seed: int) -> None:
     """The same of the contacts of an object."""
-    opened = _opened(source, seed)
+    opened = opened_object(source, seed)
     if opened is None:
         write_tree_examples(path, [])
         return
@@ -226,7 +226,7 @@ def _name(source: CorpusSource) -> str:
     return f"{source.name}_{source.number}" if source.folder is None else source.name
 
 
-def _opened(source: CorpusSource, seed: int) -> _Opened | None:
+def opened_object(source: CorpusSource, seed: int) -> _Opened | None:
     """The object; None where it cannot be built or read."""
     try:
         return _generated(source, seed) if source.folder is None else _read(source.folder)

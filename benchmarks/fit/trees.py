@@ -115,8 +115,8 @@ def fit_rigidity(examples: Sequence[Example], *, seeds: Sequence[int], provenanc
     fixed = np.array([is_fixed(example) for example in examples])
     weights = _weights(examples)
     weights[fixed] *= _FIXED_SHARE * weights[~fixed].sum() / max(float(weights[fixed].sum()), 1e-12)
-    boosters = _boost_logistic(columns, fixed, weights, _RIGIDITY, seeds=seeds, rounds=_RIGIDITY_ROUNDS)
-    return _trees_alone(names, boosters, provenance)
+    boosters = boosted_logistic(columns, fixed, weights, _RIGIDITY, seeds=seeds, rounds=_RIGIDITY_ROUNDS)
+    return trees_alone(names, boosters, provenance)
 
 
 def fit_opening(examples: Sequence[Example], *, seeds: Sequence[int], provenance: Mapping[str, Any]) -> Scorer:
@@ -129,8 +129,8 @@ def fit_opening(examples: Sequence[Example], *, seeds: Sequence[int], provenance
     columns = np.concatenate([side_columns(example.sides, names) for example in examples])
     opens = np.tile([True, False], len(examples))
     weights = np.repeat(_weights(examples), 2)
-    boosters = _boost_logistic(columns, opens, weights, _OPENING, seeds=seeds, rounds=_OPENING_ROUNDS)
-    return _trees_alone(names, boosters, provenance)
+    boosters = boosted_logistic(columns, opens, weights, _OPENING, seeds=seeds, rounds=_OPENING_ROUNDS)
+    return trees_alone(names, boosters, provenance)
 
 
 def fit_turning(examples: Sequence[Example], *, seeds: Sequence[int], provenance: Mapping[str, Any]) -> Scorer:
@@ -143,8 +143,8 @@ def fit_turning(examples: Sequence[Example], *, seeds: Sequence[int], provenance
     columns = turns_of(examples, names)
     rounds = np.array([example.is_continuous for example in examples], dtype=np.float64)
     weights = _weights(examples)
-    boosters = _boost_logistic(columns, rounds, weights, _TURNING, seeds=seeds, rounds=_TURNING_ROUNDS)
-    return _trees_alone(names, boosters, provenance)
+    boosters = boosted_logistic(columns, rounds, weights, _TURNING, seeds=seeds, rounds=_TURNING_ROUNDS)
+    return trees_alone(names, boosters, provenance)
 
 
 def turning_names(examples: Sequence[Example]) -> tuple[str, ...]:
@@ -279,7 +279,7 @@ def _boost(
     return lightgbm.train({**_PARAMETERS, "objective": objective, "seed": seed}, data, _ROUNDS)
 
 
-def _boost_logistic(
+def boosted_logistic(
     columns: NDArray[Any],
     answers: NDArray[Any],
     weights: FloatArray,
@@ -292,7 +292,7 @@ def _boost_logistic(
     lightgbm = _lightgbm()
     return [
         lightgbm.train(
-            {**_PARAMETERS, **options, "objective": "binary", "seed": seed},
+            {**_PARAMETERS, "objective": "binary", **options, "seed": seed},
             lightgbm.Dataset(columns, answers, weight=weights, params={"max_bin": _PARAMETERS["max_bin"]}),
             rounds,
         )
@@ -300,7 +300,7 @@ def _boost_logistic(
     ]
 
 
-def _trees_alone(names: tuple[str, ...], boosters: Sequence[Any], provenance: Mapping[str, Any]) -> Scorer:
+def trees_alone(names: tuple[str, ...], boosters: Sequence[Any], provenance: Mapping[str, Any]) -> Scorer:
     """A scorer that is the average of the boosters."""
     return Scorer(
         measurements=names, base=np.zeros(3), temperature=1.0, provenance=dict(provenance), **_arrays(boosters)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.assemble import assemble, check_finite, natural_key
-from kinematify.assembly.pieces import baked, connected_pieces, labelled_parts
+from kinematify.assembly.pieces import baked, connected_sheets, labelled_parts
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
 from kinematify.robot.lengths import length_text
@@ -40,6 +40,7 @@ _TO_Z_UP = {
 }
 """Axis that points up in the input -> rotation that turns it to z."""
 UP_CHOICES = ("auto", *_TO_Z_UP)
+PIECES_CHOICES = ("auto", "group", "keep")
 PART_SUFFIXES = (".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".3mf", ".dae", *CAD_SUFFIXES)
 """Files that an assembly can be given as."""
 _SILENT_SUFFIXES = (".mtl", ".bin", ".png", ".jpg", ".jpeg", ".json", ".txt", ".md")
@@ -62,6 +63,8 @@ class _Given:
     meshes: tuple[RawMesh, ...]
     """One per part, in the frame and unit of the file but z up."""
     warnings: tuple[str, ...] = ()
+    segmented: bool = True
+    """The meshes are rigid parts, not pieces of them."""
     up_by_standard: bool = False
     """y was taken for up because glTF says so, and nobody else did."""
 
@@ -72,6 +75,7 @@ class _Reading:
 
     up: str
     labels: Path | None
+    pieces: str
     config: AssemblyConfig
 
 
@@ -82,13 +86,17 @@ def load_assembly(
     up: str = "auto",
     scale: float = 1.0,
     labels: Path | None = None,
+    pieces: str = "auto",
 ) -> Assembly:
     """Load an object in one static configuration as rigid parts.
 
     One part is: a node of a GLB, glTF or COLLADA file, an instance of a part in a STEP file, a file of a folder, a
-    group or object of an OBJ, an object of a 3MF, a label of a mesh with labels, a connected piece of a mesh without,
-    or a rigid group of links of a URDF, whose joints are not looked at. A ZIP may hold any of these. Parts are in
-    natural order of their names. Ground truth written by `erase` is never opened.
+    group or object of an OBJ, an object of a 3MF, a label of a mesh with labels, or a rigid group of links of a URDF,
+    whose joints are not looked at. A ZIP may hold any of these. Parts are in natural order of their names. Ground truth
+    written by `erase` is never opened.
+
+    A mesh without labels is split into connected pieces, of which several may be one rigid part: the assembly is then
+    not `segmented`, and `kinematify.infer` groups its pieces.
 
     Args:
         path: File or folder.
@@ -97,6 +105,8 @@ def load_assembly(
             points up: ``x``, ``y``, ``z``, ``-x``, ``-y`` or ``-z`` (upside down). The input is turned to z up.
         scale: Metres per unit of the input.
         labels: Labels per triangle of a single mesh.
+        pieces: ``auto`` as described; ``group`` splits a file of several nodes or groups into pieces as well, where
+            those are not the rigid parts; ``keep`` takes every node, group or connected piece for a rigid part.
 
     Raises:
         AssemblyError: The input cannot become an assembly; the message names the file and the remedy.
@@ -106,7 +116,9 @@ def load_assembly(
     path = Path(path)
     config = config or load_config().assembly
     _check_arguments(up, scale)
-    given = _given(path, _Reading(up=up, labels=labels, config=config))
+    if pieces not in PIECES_CHOICES:
+        raise InputError(f"The word {pieces!r} for pieces is unknown. Choose one of {', '.join(PIECES_CHOICES)}.")
+    given = _given(path, _Reading(up=up, labels=labels, pieces=pieces, config=config))
     meshes = sorted(given.meshes, key=lambda mesh: natural_key(mesh.name))
     scaled = meshes if scale == 1.0 else [mesh.moved(scale * np.eye(3)) for mesh in meshes]
     stated = _unit_warnings(given.meshes) if scale == 1.0 else ()
@@ -114,7 +126,7 @@ def load_assembly(
     doubts = () if stated else _size_warnings(assembly, scale, config)
     if given.up_by_standard:
         doubts += _up_warnings(assembly)
-    return replace(assembly, warnings=(*assembly.warnings, *doubts))
+    return replace(assembly, segmented=given.segmented, warnings=(*assembly.warnings, *doubts))
 
 
 def _check_arguments(up: str, scale: float) -> None:
@@ -234,12 +246,14 @@ def _single_file(path: Path, reading: _Reading) -> _Given:
     meshes = _read(path, reading, empty_ok=False)
     if reading.labels is not None:
         return _Given(meshes=labelled_parts(merged(meshes, path.stem), reading.labels))
-    if len(meshes) > 1:
-        meshes = tuple(mesh if mesh.name else replace(mesh, name=path.stem) for mesh in meshes)
-    else:
-        check_finite(meshes[0], str(path))
-        meshes = connected_pieces(meshes[0], reading.config.weld)
-    return _Given(meshes=meshes, up_by_standard=_up_by_standard([path], reading))
+    by_standard = _up_by_standard([path], reading)
+    if len(meshes) > 1 and reading.pieces != "group":
+        named = tuple(mesh if mesh.name else replace(mesh, name=path.stem) for mesh in meshes)
+        return _Given(meshes=named, up_by_standard=by_standard)
+    whole = merged(meshes, path.stem) if len(meshes) > 1 else meshes[0]
+    check_finite(whole, str(path))
+    sheets = connected_sheets(whole, reading.config.weld)
+    return _Given(meshes=sheets, segmented=reading.pieces == "keep", up_by_standard=by_standard)
 
 
 def _read(path: Path, reading: _Reading, *, empty_ok: bool) -> tuple[RawMesh, ...]:

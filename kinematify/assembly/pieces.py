@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from kinematify.errors import AssemblyError
 from kinematify.robot.appearance import joined
 from kinematify.robot.mesh_file import RawMesh, compacted
+from kinematify.robot.vectors import crossed, lengths_of
 from kinematify.robot.weld import weld
 
 if TYPE_CHECKING:
@@ -111,7 +112,25 @@ def connected_pieces(mesh: RawMesh, tolerance: float) -> tuple[RawMesh, ...]:
         tolerance: Fraction of the mesh's diagonal below which vertices are one.
     """
     vertices, faces, kept = weld(mesh.vertices, mesh.faces, tolerance)
-    _, first, piece = np.unique(_piece_of_face(faces, len(vertices)), return_index=True, return_inverse=True)
+    corners = _components(faces[:, :2].reshape(-1), faces[:, 1:].reshape(-1), len(vertices))
+    return _pieces(mesh, (vertices, faces, kept), corners[faces[:, 0]])
+
+
+def connected_sheets(mesh: RawMesh, tolerance: float) -> tuple[RawMesh, ...]:
+    """Return the connected sheets of a mesh, in the order of their first triangle; arguments as above.
+
+    Faces are connected across edges that two of them share. An edge of more faces is where two shells touch or boards
+    meet, and separates them; a sheet that is too small to be a part joins the one with which it shares most of them.
+    Coincident faces (double-sided meshes) count as one.
+    """
+    vertices, faces, kept = weld(mesh.vertices, mesh.faces, tolerance)
+    return _pieces(mesh, (vertices, faces, kept), sheet_of_faces(vertices, faces))
+
+
+def _pieces(mesh: RawMesh, welded: tuple[FloatArray, IntArray, IntArray], label: IntArray) -> tuple[RawMesh, ...]:
+    """One mesh per label of the faces of a welded mesh, in the order of their first triangle."""
+    vertices, faces, kept = welded
+    _, first, piece = np.unique(label, return_index=True, return_inverse=True)
     rank = np.argsort(np.argsort(first))
     names = [f"piece_{k:03d}" for k in range(len(first))]
     return _split(replace(mesh.of_faces(kept), vertices=vertices, faces=faces), rank[piece], names)
@@ -127,8 +146,68 @@ def _split(mesh: RawMesh, index: IntArray, names: Sequence[str]) -> tuple[RawMes
     )
 
 
-def _piece_of_face(faces: IntArray, n_vertices: int) -> IntArray:
-    ends = np.concatenate([faces[:, :2], faces[:, 1:]])
-    links = coo_array((np.ones(len(ends), dtype=np.int8), (ends[:, 0], ends[:, 1])), shape=(n_vertices, n_vertices))
-    label: IntArray = connected_components(links, directed=False)[1].astype(np.int64)
-    return label[faces[:, 0]]
+_SMALL_SHEET = 0.01
+"""Share of the whole surface below which a sheet that others share edges with is none of its own."""
+
+
+def sheet_of_faces(vertices: FloatArray, faces: IntArray) -> IntArray:
+    """Connected sheet of every face, shape (F,), as described in `connected_sheets`.
+
+    Args:
+        vertices: Welded, shape (V, 3).
+        faces: Shape (F, 3).
+    """
+    if not len(faces):
+        return np.empty(0, dtype=np.int64)
+    _, first, same = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_inverse=True)
+    single = faces[first]
+    ends = np.sort(np.concatenate([single[:, :2], single[:, 1:], single[:, ::2]]), axis=1)
+    key = ends[:, 0] * (int(faces.max()) + 1) + ends[:, 1]
+    order = np.argsort(key, kind="stable")
+    face = np.concatenate([np.arange(len(single))] * 3)[order]
+    begins = np.append(True, np.diff(key[order]) != 0)
+    starts = np.flatnonzero(begins)
+    counts = np.diff(np.append(starts, len(key)))
+    pairs = starts[counts == 2]
+    sheet = _components(face[pairs], face[pairs + 1], len(single))
+    corners = vertices[single]
+    areas = 0.5 * lengths_of(crossed(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+    later = np.flatnonzero(~begins & (np.repeat(counts, counts) > 2))
+    earliest = np.repeat(starts, counts)[later]
+    one, other = sheet[face[np.concatenate([later - 1, earliest])]], sheet[face[np.concatenate([later, later])]]
+    lengths = np.tile(lengths_of(vertices[ends[order][later, 0]] - vertices[ends[order][later, 1]]), 2)
+    joined_to = _small_ones_joined(one, other, lengths, np.bincount(sheet, areas).astype(np.float64))
+    return np.asarray(joined_to[sheet][same.reshape(-1)], dtype=np.int64)
+
+
+def _small_ones_joined(one: IntArray, other: IntArray, lengths: FloatArray, areas: FloatArray) -> IntArray:
+    """Sheet that every sheet becomes when small ones join the neighbour with which they share the longest edges.
+
+    Args:
+        one: Sheet at each common edge, shape (n,).
+        other: Another sheet there, shape (n,).
+        lengths: Of the edges [m], shape (n,).
+        areas: Of the sheets [m^2], shape (k,).
+    """
+    count = len(areas)
+    root = np.arange(count)
+    while True:
+        a, b = root[one], root[other]
+        apart = a != b
+        key, place = np.unique(np.minimum(a, b)[apart] * count + np.maximum(a, b)[apart], return_inverse=True)
+        shared = np.bincount(place.reshape(-1), lengths[apart])
+        a, b = key // count, key % count
+        small = np.bincount(root, areas, minlength=count) < _SMALL_SHEET * areas.sum()
+        source = np.concatenate([a[small[a]], b[small[b]]])
+        if not len(source):
+            return root
+        target = np.concatenate([b[small[a]], a[small[b]]])
+        order = np.lexsort((-np.concatenate([shared[small[a]], shared[small[b]]]), source))
+        best = order[np.append(True, np.diff(source[order]) != 0)]
+        root = _components(source[best], target[best], count)[root]
+
+
+def _components(one: IntArray, other: IntArray, count: int) -> IntArray:
+    """Component of each of `count` nodes that edges connect, shape (count,)."""
+    links = coo_array((np.ones(len(one), dtype=np.int8), (one, other)), shape=(count, count))
+    return np.asarray(connected_components(links, directed=False)[1], dtype=np.int64)

@@ -14,12 +14,14 @@ from kinematify.cli.inferred import as_loaded, confidences, describe, load_as_lo
 from kinematify.cli.options import collision_option, examples, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS, describe_refinement, exit_status
-from kinematify.errors import EnvironmentFault, KinematifyError
+from kinematify.errors import EnvironmentFault, InputError, KinematifyError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from kinematify.assembly.part import Assembly
     from kinematify.config import Config
+    from kinematify.grouping.groups import Grouping
     from kinematify.pipeline import Inference
     from kinematify.processes.pool import WorkerProcess
     from kinematify.refinement.hints import Hint
@@ -39,6 +41,8 @@ _LONGEST = 86400.0
         "kinematify infer robot.glb -o out/robot --up z --base torso",
         "kinematify infer examples/cabinet -o out/cabinet --hint knob=prismatic --hint door_left:axis=z",
         "kinematify infer scan.ply --labels labels.npy -o out/scan --scale 0.001",
+        "kinematify infer whole.glb --pieces group -o out/whole",
+        "kinematify infer whole.glb --pieces group --groups out/whole/groups.json -o out/corrected",
         "kinematify infer parts.zip -o out/parts --config paper --seed 7",
         "kinematify infer parts/ -o out/parts --refine 3 --tier engines",
         "kinematify infer examples/cabinet -o out/cabinet --force --json - > answer.json",
@@ -58,6 +62,19 @@ _LONGEST = 86400.0
     "--labels",
     type=click.Path(path_type=Path),
     help="NPY or JSON file with the part of every face, if ASSEMBLY is one mesh.",
+)
+@click.option(
+    "--pieces",
+    type=click.Choice(["auto", "group", "keep"]),
+    default="auto",
+    show_default=True,
+    help="How parts come about. auto: the pieces of one mesh are grouped into rigid parts, other files have a part per "
+    "node or group; group: nodes and groups are split and grouped too; keep: every piece is a part.",
+)
+@click.option(
+    "--groups",
+    type=click.Path(path_type=Path),
+    help="groups.json of an earlier model of the same mesh, corrected: the pieces of every part.",
 )
 @click.option("--base", metavar="NAME", help="Part that the tree is rooted at, if the choice made is wrong.")
 @click.option(
@@ -106,6 +123,8 @@ def command(
     up: str,
     scale: float,
     labels: Path | None,
+    pieces: str,
+    groups: Path | None,
     base: str | None,
     hints: tuple[str, ...],
     config: str,
@@ -123,7 +142,8 @@ def command(
 
     ASSEMBLY is the object in one pose, as rigid parts: a folder with a mesh file per part (OBJ, STL, PLY, GLB, OFF,
     DAE), a GLB, glTF or DAE with a node per part, an OBJ with groups, a 3MF, a STEP, a ZIP of these, one mesh with
-    --labels, one mesh of several pieces, or a URDF, whose joints are then not looked at.
+    --labels, or a URDF, whose joints are then not looked at. The pieces of a mesh that is not segmented are grouped
+    into rigid parts; groups.json in OUT has them, to be corrected and given back with --groups.
 
     OUT gets model.urdf, meshes/, inference.json (every alternative with its evidence) and preview.png.
 
@@ -137,6 +157,7 @@ def command(
     with environment_variables(ONE_THREAD):
         from kinematify.assembly.load import load_assembly
         from kinematify.config import load_config
+        from kinematify.grouping.groups import Grouping
         from kinematify.model.output import check_output
         from kinematify.pipeline import infer
 
@@ -152,9 +173,10 @@ def command(
         progress = stack.enter_context(progress_reporter())
         use_one_thread(settings)
         progress("reading the parts", 0.0)
-        given = load_assembly(assembly, config=settings.assembly, up=up, scale=scale, labels=labels)
-        told = _told(hints, given.names, base)
-        inference = infer(given, config=settings, base=base, progress=_share(progress, 0.0, _INFERRED))
+        given = load_assembly(assembly, config=settings.assembly, up=up, scale=scale, labels=labels, pieces=pieces)
+        parts = grouped_parts(given, groups, settings, progress)
+        told = _told(hints, parts.assembly.names if isinstance(parts, Grouping) else parts.names, base)
+        inference = infer(parts, config=settings, base=base, progress=_share(progress, 0.0, _INFERRED))
         inference, heard = _with_votes(inference, vlm, progress)
         status = 0
         if rounds is not None:
@@ -169,6 +191,22 @@ def command(
         blocks = (heard, describe_refinement(inference), describe(inference, out), loaded)
         click.echo("\n\n".join(block for block in blocks if block))
     return status
+
+
+def grouped_parts(
+    given: Assembly, groups: Path | None, settings: Config, progress: Callable[[str, float], None]
+) -> Assembly | Grouping:
+    """The parts as they were given, or pieces grouped as a file says or as it is likely."""
+    from kinematify.grouping.groups import group_pieces, read_groups
+
+    if groups is not None:
+        if given.segmented:
+            raise InputError(f"--groups needs a mesh of pieces, but {given.source} has parts. Add --pieces group.")
+        return read_groups(groups, given)
+    if given.segmented:
+        return given
+    progress("grouping the pieces", 0.0)
+    return group_pieces(given, settings.grouping)
 
 
 def _told(hints: Sequence[str], parts: Sequence[str], base: str | None) -> Sequence[Hint]:

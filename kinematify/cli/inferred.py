@@ -103,6 +103,7 @@ def describe_files(out: Path) -> list[str]:
     purposes = {
         "model.urdf": "what a simulator loads, with meshes/ beside it",
         "inference.json": "every alternative with its evidence, seed and timings",
+        "groups.json": "the pieces of every part, to be corrected and given with --groups",
         "preview.png": "the object as given, and with every joint moved",
     }
     present = [name for name in purposes if (out / name).is_file()]

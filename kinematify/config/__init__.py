@@ -30,6 +30,7 @@ from kinematify.config.services import RodinConfig, ServiceConfig, SourcesConfig
 from kinematify.config.shapes import (
     AssemblyConfig,
     ContactConfig,
+    GroupingConfig,
     NeuralSdfConfig,
     SdfConfig,
     SeamConfig,
@@ -57,6 +58,7 @@ __all__ = [
     "FramesConfig",
     "FrontCuesConfig",
     "GateConfig",
+    "GroupingConfig",
     "JointsConfig",
     "JournalConfig",
     "KindConfig",
@@ -98,6 +100,7 @@ class Config(StageConfig):
     assembly: AssemblyConfig = section()
     surface: SurfaceConfig = section()
     contact: ContactConfig = section()
+    grouping: GroupingConfig = section()
     seam: SeamConfig = section()
     bearing: BearingConfig = section()
     model: ModelConfig = section()

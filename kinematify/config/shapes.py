@@ -60,6 +60,15 @@ class ContactConfig(StageConfig):
     """Largest Chamfer distance of congruent parts, as a fraction of the part's diagonal."""
 
 
+class GroupingConfig(StageConfig):
+    """Which pieces of a mesh that is not segmented are one rigid part."""
+
+    threshold: float = 0.2  # the best F1 of moving parts on what was left out (results/pieces.md)
+    """Probability from which a set of pieces is a moving part."""
+    crumb: float = 0.012  # screws and letters; the smallest button of the benchmark is twice as large
+    """Pieces with a smaller diagonal, as a fraction of the assembly's, ride on the nearest one."""
+
+
 class SeamConfig(StageConfig):
     """Where one part was cut in two."""
 

@@ -6,6 +6,7 @@ import resource
 import sys
 import time
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -17,6 +18,7 @@ from kinematify.contact.build import build_contact_graph
 from kinematify.contact.seams import find_cuts, joined, rigid_pieces
 from kinematify.errors import InputError
 from kinematify.geometry.surface import part_surfaces
+from kinematify.grouping.groups import Grouping, group_pieces
 from kinematify.joints.bearings.fit import fit_bearings
 from kinematify.pipeline.heading import heading_of, turned, with_heading
 from kinematify.pipeline.inference import Inference
@@ -63,7 +65,7 @@ def peak_mb() -> float:
 
 
 def infer(
-    assembly: Assembly | str | Path,
+    assembly: Assembly | Grouping | str | Path,
     *,
     config: Config | None = None,
     base: str | None = None,
@@ -72,9 +74,12 @@ def infer(
 ) -> Inference:
     """Infer the kinematic tree and all joints of an assembly (paper, Algorithm 1).
 
+    Pieces of a mesh that is not segmented become rigid parts first (`kinematify.grouping`).
+
     Args:
-        assembly: Rigid parts in one configuration, world frame, z up, metres; or the file or folder that
-            `kinematify.load_assembly` reads them from, whose arguments say what is up and how long the unit is.
+        assembly: Rigid parts in one configuration, world frame, z up, metres, or pieces of a mesh or their grouping;
+            or the file or folder that `kinematify.load_assembly` reads them from, whose arguments say what is up and
+            how long the unit is.
         config: All stages, the default ones if absent; `config.seed` makes the answer reproducible.
         base: Name of the part that is the base link, where it is known.
         graph: The contacts, where they are known already.
@@ -85,15 +90,22 @@ def infer(
         AssemblyError: The file or folder cannot become an assembly.
     """
     config = config or load_config()
-    if not isinstance(assembly, Assembly):
+    if isinstance(assembly, str | Path):
         assembly = load_assembly(assembly, config=config.assembly)
+    clock = StageClock(progress)
+    if isinstance(assembly, Assembly) and not assembly.segmented:
+        with clock.stage("groups", 0.0):
+            assembly = group_pieces(assembly, config.grouping)
+    if isinstance(assembly, Grouping):
+        found = infer(assembly.assembly, config=config, base=base, graph=graph, progress=progress)
+        seconds = MappingProxyType({**clock.seconds, **found.timings})
+        return replace(found, grouping=assembly, timings=seconds, warnings=(*assembly.told, *found.warnings))
     if base is not None and base not in assembly.names:
         raise InputError(f"There is no part {base} to be the base link. The parts are {', '.join(assembly.names)}.")
     angle = heading_of(assembly) if graph is None and config.joints.method == "geometry" else 0.0
     if angle != 0.0:
         square = infer(turned(assembly, -angle), config=config, base=base, progress=progress)
         return with_heading(square, assembly, angle)
-    clock = StageClock(progress)
     with clock.stage("contacts", 0.0):
         surfaces = part_surfaces(assembly, config=config.surface)
         cuts = find_cuts(assembly, surfaces, config.seam) if graph is None and config.seam.join else {}

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from kinematify.config import Config, TopologyConfig
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.contact.tree import KinematicTree
+    from kinematify.grouping.groups import Grouping
     from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
     from kinematify.joints.candidate import JointEstimate
     from kinematify.model.kinematic_model import KinematicModel
@@ -134,6 +135,8 @@ class Inference:
     """Rounds of simulation and choosing again (`kinematify.refine`), as JSON values; None where there were none."""
     hints: tuple[str, ...] = ()
     """What the user said of joints, as it is typed behind ``--hint``; in force already."""
+    grouping: Grouping | None = None
+    """How pieces became the parts; None where the parts were given."""
     provenance: Mapping[str, Any] | None = None
     """Who made the parts, from what (`kinematify.generate.providers`), as JSON values; None where that is not known."""
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinematify import __version__
+from kinematify.grouping.groups import GROUPS_FILE
 from kinematify.model.output import MODEL_FILE, RECORD_FILE, write_model_folder
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import MESH_FOLDER, write_model
@@ -58,6 +59,8 @@ def write_inference_files(inference: Inference, folder: Path, *, preview: bool =
     record = {**inference_record(inference), "collision": model.record(), "files": file_hashes(folder)}
     text = json.dumps(record, indent=1, allow_nan=False)
     (folder / RECORD_FILE).write_text(text + "\n", encoding="utf-8")
+    if inference.grouping is not None:
+        (folder / GROUPS_FILE).write_text(inference.grouping.to_json(), encoding="utf-8")
     if preview:
         write_preview(inference, folder)
 
@@ -115,6 +118,7 @@ def inference_record(inference: Inference) -> dict[str, Any]:
         "doubtful_below": DOUBTFUL,
         "closed_chains": [_closed_chain(chain) for chain in inference.closed_chains],
         "hints": list(inference.hints),
+        "groups": None if inference.grouping is None else inference.grouping.record(),
         "refinement": inference.refinement,
         "provenance": inference.provenance,
         "seconds": dict(inference.timings),

@@ -24,6 +24,7 @@ from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from importlib.resources.abc import Traversable
 
     from numpy.typing import NDArray
 
@@ -35,11 +36,15 @@ WEIGHTS = "weights.npz"
 RIGID_WEIGHTS = "rigid.npz"
 OPENING_WEIGHTS = "opening.npz"
 TURNING_WEIGHTS = "turning.npz"
+PIECES_WEIGHTS = "pieces.npz"
+MOVING_WEIGHTS = "moving.npz"
 _SCORED = {
     WEIGHTS: "the choice of joints",
     RIGID_WEIGHTS: "what is fixed",
     OPENING_WEIGHTS: "the opening direction",
     TURNING_WEIGHTS: "what goes round",
+    PIECES_WEIGHTS: "which pieces are one part",
+    MOVING_WEIGHTS: "which pieces move together",
 }
 NETWORK, POINTS = "network_", "points_"
 """Before the names of the arrays of either network in a file of weights."""
@@ -175,7 +180,16 @@ def shipped_scorer(name: str = WEIGHTS) -> Scorer:
     Raises:
         EnvironmentFault: Its file is missing, damaged or of another version.
     """
-    path = files("kinematify.joints.choice") / name
+    return read_scorer(files("kinematify.joints.choice") / name)
+
+
+def read_scorer(path: Traversable) -> Scorer:
+    """Read what the fit wrote (`benchmarks/fit/trees.py`).
+
+    Raises:
+        EnvironmentFault: The file is missing, damaged or of another version.
+    """
+    name = path.name
     remedy = "Install kinematify again, or write the weights with 'kinematify fit'."
     try:
         with path.open("rb") as file, np.load(file) as stored:

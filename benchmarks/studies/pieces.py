@@ -1,0 +1,259 @@
+"""What does `kinematify infer` make of a mesh that nobody segmented?
+
+Objects of the benchmark are merged into one PLY (float32) and inferred from it alone. A predicted moving part, with
+what is fixed to it, is matched with the true part of the highest IoU of their triangles, above .5 (the protocol of
+S2O). *Parts* counts matches alone; M asks for the right type as well (continuous counts as revolute), MA for the axis
+within 5 deg, MAO for the line of a turning joint within 10 % of the part's diagonal. All are F1: 2 * right / (true +
+predicted). *Whole* objects have every moving part with MA and no other. PartNet objects never enter weights that ship,
+and with --weights the category of every object is held out of the weights that group its pieces.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+import trimesh
+from pydantic import Field
+from scipy.spatial import cKDTree
+
+from benchmarks.fit.corpora import may_be_fitted_to
+from benchmarks.fit.pieces import HeldOut, category_of_piece
+from benchmarks.study import Options, Study, explained
+from kinematify.assembly.erase import erase
+from kinematify.assembly.load import load_assembly
+from kinematify.assembly.part import Part
+from kinematify.config import load_config
+from kinematify.errors import KinematifyError
+from kinematify.evaluation.datasets import bench_folder, find_objects
+from kinematify.evaluation.metrics import CLOSE_ANGLE, CLOSE_ORIGIN, axis_angle, axis_line_distance
+from kinematify.evaluation.record import grouped, table
+from kinematify.grouping.groups import group_pieces
+from kinematify.pipeline import infer
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.read import read_robot
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from benchmarks.study import Measured, Record, Work
+    from kinematify.assembly.erase import ErasedModel
+    from kinematify.assembly.truth import TrueJoint
+    from kinematify.evaluation.datasets import BenchObject
+    from kinematify.evaluation.record import Report
+    from kinematify.joints.candidate import JointEstimate
+    from kinematify.pipeline import Inference
+    from kinematify.robot.arrays import FloatArray, IntArray
+
+_ENOUGH = 0.5
+"""IoU of triangles above which two parts are the same."""
+_KINDS = ("parts", "M", "MA", "MAO")
+
+
+class PiecesOptions(Options):
+    """Which objects, and with which weights."""
+
+    data: tuple[str, ...] = Field(
+        ("everyday", "everyday2", "articraft", "infinigen"), description="Sets of the benchmark folder, or folders."
+    )
+    every: int = Field(1, ge=1, description="Only every n-th object of each set.")
+    weights: str | None = Field(None, description="Folder of held-out weights that `benchmarks.fit.pieces` wrote.")
+    pieces: Literal["auto", "keep"] = Field("auto", description="keep: every piece is a part, as before grouping.")
+    seconds: float = Field(240.0, gt=0.0, description="Wall time for one object.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class MergedObject:
+    """One object to merge and infer."""
+
+    item: BenchObject
+    group: str
+    weights: str | None
+    pieces: str
+
+
+def measure(options: PiecesOptions, work: Work) -> Measured:
+    """Merge every object and infer it."""
+    folder = bench_folder()
+    asked = {}
+    for data in options.data:
+        place = folder / data if (folder / data).is_dir() else Path(data)
+        for item in find_objects(place)[:: options.every]:
+            asked[f"{place.name}/{item.name}"] = MergedObject(
+                item=item, group=place.name, weights=options.weights, pieces=options.pieces
+            )
+
+    def failed(name: str, failure: object) -> Record:
+        return {**_facts(asked[name]), **_counts(erased_object(asked[name].item), None), "status": str(failure)}
+
+    records = work.each(run_case, asked, timeout=options.seconds, reuse=10, failed=failed)
+    return list(records.values()), {}
+
+
+def erased_object(item: BenchObject) -> ErasedModel:
+    """The parts of an object at rest, parents first."""
+    return erase(read_robot(item.urdf, geometry="shown"), shuffle=False)
+
+
+def run_case(case: MergedObject) -> Record:
+    """Merge one object, infer it and count what is right."""
+    erased = erased_object(case.item)
+    started = time.process_time()
+    found, status, pieces = None, "ok", 0
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "object.ply"
+        write_merged(erased, path)
+        try:
+            config = load_config()
+            given = load_assembly(path, config=config.assembly, pieces=case.pieces)
+            pieces = len(given.parts)
+            if not given.segmented:
+                weights = None if case.weights is None else HeldOut(Path(case.weights)).weights_of(_category(case.item))
+                found = infer(group_pieces(given, config.grouping, weights), config=config)
+            else:
+                found = infer(given, config=config)
+        except KinematifyError as error:
+            status = str(error)
+    seconds = time.process_time() - started
+    return {**_facts(case), **_counts(erased, found), "status": status, "pieces": pieces, "seconds": seconds}
+
+
+def write_merged(erased: ErasedModel, path: Path) -> None:
+    """Write all parts as one mesh in single precision."""
+    starts = np.cumsum([0, *(len(part.vertices) for part in erased.parts)])
+    vertices = np.concatenate([part.vertices for part in erased.parts])
+    faces = np.concatenate([part.faces + start for part, start in zip(erased.parts, starts, strict=False)])
+    trimesh.Trimesh(vertices, faces, process=False).export(path)
+
+
+def _facts(case: MergedObject) -> Record:
+    facts = json.loads((case.item.urdf.parent / "source.json").read_text(encoding="utf-8"))
+    of_partnet = "partnet" in str(facts.get("license", "")).lower()
+    group = "PartNet" if of_partnet else case.group
+    return {"object": case.item.name, "group": group, "category": case.item.category, "fits": may_be_fitted_to(facts)}
+
+
+def _category(item: BenchObject) -> str:
+    return category_of_piece(item.category)
+
+
+def _counts(erased: ErasedModel, found: Inference | None) -> Record:
+    """True and predicted moving parts, and how many are right in each sense."""
+    of_part: dict[int, list[TrueJoint]] = grouped(erased.truth.joints, by=lambda joint: joint.child)
+    counts = {"true": len(of_part), "predicted": 0, **dict.fromkeys(_KINDS, 0), "whole": False}
+    if found is None:
+        return counts
+    bodies, joints = moving_bodies(found)
+    counts["predicted"] = len(joints)
+    overlap = _overlaps(erased.parts, found, bodies)
+    right = dict.fromkeys(_KINDS, 0)
+    for part, true in of_part.items():
+        best = int(np.argmax(overlap[part])) if overlap.shape[1] else -1
+        if best < 0 or overlap[part, best] <= _ENOUGH or best not in joints:
+            continue
+        marks = [_marks(joint, joints[best], erased.parts[part]) for joint in true]
+        for kind, met in zip(_KINDS, (True, *map(any, zip(*marks, strict=True))), strict=True):
+            right[kind] += met
+    whole = right["MA"] == counts["true"] == counts["predicted"]
+    return {**counts, **right, "whole": whole}
+
+
+def moving_bodies(found: Inference) -> tuple[IntArray, dict[int, JointEstimate]]:
+    """Rigid body of every part, fixed joints fused, shape (n,), and the joint above each body that moves."""
+    body = np.arange(len(found.assembly.parts))
+    joint_of = {joint.child: joint for joint in found.joints}
+    for parent, child in found.trees[0].edges():  # parents first
+        if joint_of[child].kind is JointType.FIXED:
+            body[child] = body[parent]
+    return body, {child: joint for child, joint in joint_of.items() if joint.kind is not JointType.FIXED}
+
+
+def _overlaps(parts: Sequence[Part], found: Inference, bodies: IntArray) -> FloatArray:
+    """IoU of the triangles of every true part with every body, shape (parts, predicted parts)."""
+    assembly = found.assembly
+    shown = [assembly.originals.get(part.name, part) for part in assembly.parts]
+    shown += [item.part for item in assembly.set_aside]
+    body = [*bodies, *(bodies[assembly.names.index(item.nearest)] for item in assembly.set_aside)]
+    centres = np.concatenate([part.vertices[part.faces].mean(axis=1) for part in shown])
+    owner = np.repeat(body, [len(part.faces) for part in shown])
+    tree = cKDTree(centres)
+    counts = np.zeros((len(parts), len(bodies)))
+    for row, part in enumerate(parts):
+        nearest = tree.query(part.vertices[part.faces].mean(axis=1))[1]
+        counts[row] = np.bincount(owner[nearest], minlength=len(bodies))
+    union = counts.sum(axis=1, keepdims=True) + counts.sum(axis=0, keepdims=True) - counts
+    return np.asarray(counts / np.maximum(union, 1.0))
+
+
+def _marks(true: TrueJoint, guess: JointEstimate, part: Part) -> tuple[bool, bool, bool]:
+    """M, MA and MAO."""
+    kind = true.kind.turns == guess.kind.turns
+    axis = kind and axis_angle(true.axis, guess.axis) <= CLOSE_ANGLE
+    if not axis or not true.kind.turns:
+        return kind, axis, axis
+    distance = axis_line_distance(
+        true_axis=true.axis, true_pivot=true.pivot, axis=guess.axis, pivot=guess.pivot, near=part.centroid
+    )
+    return kind, axis, distance <= CLOSE_ORIGIN * part.diagonal
+
+
+def report(found: Report[Record]) -> list[str]:
+    """F1 of every set, and every object."""
+    records = found.records
+    sets = {**grouped(records, by=lambda record: str(record["group"])), "**all**": list(records)}
+    rows = [_row(name, group) for name, group in sets.items()]
+    columns = (
+        "set",
+        "objects",
+        "move",
+        "predicted",
+        "precision",
+        "recall",
+        *(f"F1 {kind}" for kind in _KINDS),
+        "whole",
+    )
+    held_out = found.header.configuration.get("weights") is not None
+    seconds = [record["seconds"] for record in records if "seconds" in record]
+    return [
+        explained(__doc__),
+        (
+            f"Weights of the grouping: {'category held out' if held_out else 'those that ship'}. Precision and recall "
+            f"are those of MA. Processor time: median {np.median(seconds):.1f} s, longest {max(seconds):.1f} s."
+        ),
+        table((*columns,), rows),
+        "## Objects",
+        table(
+            ("object", "set", "pieces", "move", "predicted", *_KINDS, "seconds", "status"),
+            [
+                (
+                    r["object"], r["group"], str(r.get("pieces", "")), str(r["true"]), str(r["predicted"]),
+                    *(str(r[kind]) for kind in _KINDS), f"{r.get('seconds', float('nan')):.1f}", r["status"][:60],
+                )
+                for r in records
+            ],
+        ),
+    ]  # fmt: skip
+
+
+def _row(name: str, records: Sequence[Record]) -> tuple[str, ...]:
+    true, predicted = (sum(record[key] for record in records) for key in ("true", "predicted"))
+    right = {kind: sum(record[kind] for record in records) for kind in _KINDS}
+    whole = np.mean([record["whole"] for record in records])
+    return (
+        name,
+        str(len(records)),
+        str(true),
+        str(predicted),
+        f"{right['MA'] / max(predicted, 1):.2f}",
+        f"{right['MA'] / max(true, 1):.2f}",
+        *(f"{2 * right[kind] / max(true + predicted, 1):.2f}" for kind in _KINDS),
+        f"{whole:.0%}",
+    )
+
+
+STUDY = Study(title="Meshes that nobody segmented", options=PiecesOptions, measure=measure, report=report)

@@ -1,0 +1,1 @@
+"""Pieces of a mesh that nobody segmented become rigid parts."""

@@ -1,0 +1,298 @@
+"""Pieces that nobody segmented become rigid parts, with how sure each is, and the file in which that is corrected."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinematify.assembly.part import Assembly, Part
+from kinematify.errors import AssemblyError, InputError
+from kinematify.grouping.candidates import Candidate, measure_candidates, propose
+from kinematify.grouping.measure import measure_pieces
+from kinematify.joints.choice.scorer import MOVING_WEIGHTS, PIECES_WEIGHTS, shipped_scorer
+from kinematify.robot.appearance import joined
+from kinematify.robot.exact_faces import joined_faces
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from kinematify.config import GroupingConfig
+    from kinematify.joints.choice.scorer import Scorer
+    from kinematify.robot.arrays import FloatArray, IntArray
+
+GROUPS_FILE = "groups.json"
+"""Beside the model of an unsegmented mesh: the pieces of every part."""
+_SCHEMA = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Group:
+    """Pieces that are one rigid part."""
+
+    name: str
+    """Of the part: that of its largest piece."""
+    pieces: tuple[str, ...]
+    moves: float | None = None
+    """How likely they are one moving part; None for what is left when all moving parts are found, and where the user
+    said it."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Grouping:
+    """Rigid parts made of pieces."""
+
+    assembly: Assembly
+    """One part per group."""
+    groups: tuple[Group, ...]
+    """In the order of the parts."""
+    rejected: tuple[Group, ...] = ()
+    """The likeliest sets of pieces that were not taken for moving parts, the likeliest first."""
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """What was made of the pieces, one sentence each."""
+        count = sum(len(group.pieces) for group in self.groups)
+        doubtful = [_said(group) for group in self.groups if group.moves is not None and group.moves < _DOUBTFUL]
+        said = [f"The mesh is not segmented: {count} pieces were grouped into {len(self.groups)} rigid parts."]
+        if doubtful:
+            said.append(f"Parts that may be fixed: {', '.join(doubtful[:_MOST_NAMED])}.")
+        if self.rejected:
+            said.append(f"Taken for fixed, but may move: {', '.join(map(_said, self.rejected[:_MOST_NAMED]))}.")
+        if doubtful or self.rejected:
+            said.append(f"Correct {GROUPS_FILE} beside the model and give it with --groups.")
+        return tuple(said)
+
+    def record(self) -> dict[str, Any]:
+        """The grouping as JSON values."""
+        parts, rejected = (
+            [{"name": group.name, "pieces": list(group.pieces), "moves": group.moves} for group in groups]
+            for groups in (self.groups, self.rejected)
+        )
+        return {"schema": _SCHEMA, "parts": parts, "rejected": rejected}
+
+    def to_json(self) -> str:
+        """Return the text of the groups file."""
+        return json.dumps(self.record(), indent=1) + "\n"
+
+
+def _said(group: Group) -> str:
+    others = len(group.pieces) - 1
+    more = f" with {others} other piece{'s' if others > 1 else ''}" if others else ""
+    return f"{group.name}{more} ({group.moves:.0%})"
+
+
+_DOUBTFUL = 0.7
+_LIKELY = 0.25
+"""Rejected sets that are likelier than this are named."""
+_MOST_NAMED = 8
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PieceWeights:
+    """What was fitted to objects whose parts are known."""
+
+    pairs: Scorer
+    """Which two pieces are one part."""
+    moving: Scorer
+    """Which sets of pieces are one moving part."""
+
+
+def shipped_weights() -> PieceWeights:
+    """The weights that come with the package."""
+    return PieceWeights(pairs=shipped_scorer(PIECES_WEIGHTS), moving=shipped_scorer(MOVING_WEIGHTS))
+
+
+def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeights | None = None) -> Grouping:
+    """Decide which pieces are one rigid part.
+
+    Args:
+        assembly: Pieces, world frame, z up.
+        config: How likely a moving part must be, and the size of crumbs.
+        weights: Those that ship by default.
+
+    Raises:
+        AssemblyError: All pieces are one part.
+    """
+    parts = assembly.parts
+    owner = crumb_owners(parts, config.crumb * assembly.diagonal)
+    kept = np.flatnonzero(owner == np.arange(len(parts)))
+    if len(kept) < 2:
+        raise one_part(assembly)
+    candidates, likely = judged([parts[k] for k in kept], weights or shipped_weights())
+    chosen, rejected = select(candidates, likely, config.threshold)
+    if not chosen:
+        raise one_part(assembly)
+    label = np.full(len(parts), -1)
+    for number, row in enumerate(chosen):
+        label[kept[list(candidates[row])]] = number
+    label = label[owner]
+    indices = [np.flatnonzero(label == number) for number in range(-1, len(chosen))]
+    moves = [None, *(round(float(likely[row]), 3) for row in chosen)]
+    if not len(indices[0]):
+        indices, moves = indices[1:], moves[1:]
+    if len(indices) < 2:
+        raise one_part(assembly)
+    return Grouping(
+        assembly=joined_pieces(assembly, indices),
+        groups=tuple(_group(assembly, index, chance) for index, chance in zip(indices, moves, strict=True)),
+        rejected=tuple(
+            _group(assembly, kept[sorted(candidates[row])], round(float(likely[row]), 3))
+            for row in rejected
+            if likely[row] > _LIKELY
+        ),
+    )
+
+
+def judged(parts: Sequence[Part], weights: PieceWeights) -> tuple[list[Candidate], FloatArray]:
+    """Sets of pieces that may be a moving part, and how likely each is, shape (c,)."""
+    measured = measure_pieces(parts)
+    odds = odds_of(weights.pairs, measured.columns, measured.names)
+    candidates = propose(measured, odds)
+    if not candidates:
+        return [], np.empty(0)
+    areas = np.array([part.area for part in parts])
+    columns, names = measure_candidates(measured, odds, areas, candidates)
+    return candidates, 1.0 / (1.0 + np.exp(-odds_of(weights.moving, columns, names)))
+
+
+def odds_of(scorer: Scorer, columns: FloatArray, names: tuple[str, ...]) -> FloatArray:
+    """Log odds that fitted trees give to rows of named columns, shape (n,)."""
+    place = [names.index(name) for name in scorer.measurements]
+    return scorer.sums(columns[:, place].astype(np.float32)).astype(np.float64)
+
+
+def select(candidates: Sequence[Candidate], likely: FloatArray, threshold: float) -> tuple[list[int], list[int]]:
+    """The likeliest candidates that have no piece in common, and the likeliest of those that were not taken.
+
+    Args:
+        candidates: Sets of pieces.
+        likely: How likely each is a moving part, shape (c,).
+        threshold: What is less likely is not taken.
+    """
+    taken: set[int] = set()
+    chosen: list[int] = []
+    rejected: list[int] = []
+    for row in np.argsort(-likely, kind="stable").tolist():
+        if taken.isdisjoint(candidates[row]):
+            taken |= candidates[row]
+            (chosen if likely[row] >= threshold else rejected).append(row)
+    return chosen, rejected
+
+
+def crumb_owners(parts: Sequence[Part], size: float) -> IntArray:
+    """Piece that each piece rides on: itself, or the nearest larger one where its diagonal is below `size` [m].
+
+    Args:
+        parts: The pieces.
+        size: Screws, letters and slivers are smaller.
+    """
+    owner = np.arange(len(parts))
+    diagonals = np.array([part.diagonal for part in parts])
+    large = np.flatnonzero(diagonals >= size).tolist()
+    if not large:
+        return np.full(len(parts), int(diagonals.argmax()))
+    low = np.array([parts[k].bounds[0] for k in large])
+    high = np.array([parts[k].bounds[1] for k in large])
+    for k in np.flatnonzero(diagonals < size).tolist():
+        middle = parts[k].bounds.mean(axis=0)
+        gaps = np.linalg.norm(np.maximum(np.maximum(low - middle, middle - high), 0.0), axis=1)
+        near = np.flatnonzero(gaps <= gaps.min() + size).tolist()
+        reach = [float(np.linalg.norm(parts[large[n]].vertices - middle, axis=1).min()) for n in near]
+        owner[k] = large[near[int(np.argmin(reach))]]
+    return owner
+
+
+def _group(assembly: Assembly, index: IntArray, moves: float | None) -> Group:
+    return Group(
+        name=assembly.names[_largest(assembly, index)], pieces=tuple(assembly.names[k] for k in index), moves=moves
+    )
+
+
+def one_part(assembly: Assembly) -> AssemblyError:
+    """The error for a mesh of which no part moves."""
+    return AssemblyError(
+        f"The {len(assembly.parts)} pieces of {assembly.source} look like one rigid part, so that nothing moves. Give "
+        "--groups or --labels if parts of it move, or --pieces keep to take every piece for a part."
+    )
+
+
+def joined_pieces(assembly: Assembly, groups: Sequence[IntArray]) -> Assembly:
+    """The assembly with each group of pieces as one part, named after its largest piece."""
+    parts = tuple(_joined([assembly.parts[k] for k in group], _largest(assembly, group), assembly) for group in groups)
+    originals = {}
+    for part, group in zip(parts, groups, strict=True):
+        if any(assembly.names[k] in assembly.originals for k in group):
+            whole = [assembly.originals.get(assembly.names[k], assembly.parts[k]) for k in group]
+            originals[part.name] = _joined(whole, _largest(assembly, group), assembly)
+    into = {assembly.names[k]: part.name for part, group in zip(parts, groups, strict=True) for k in group}
+    return replace(
+        assembly,
+        parts=parts,
+        set_aside=tuple(replace(item, nearest=into[item.nearest]) for item in assembly.set_aside),
+        originals=originals,
+        segmented=True,
+    )
+
+
+def _largest(assembly: Assembly, group: IntArray) -> int:
+    return int(max(group, key=lambda k: (assembly.parts[k].area, -k)))
+
+
+def _joined(pieces: Sequence[Part], largest: int, assembly: Assembly) -> Part:
+    main = assembly.parts[largest]
+    if len(pieces) == 1:
+        return pieces[0]
+    starts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
+    return Part(
+        name=main.name,
+        vertices=np.concatenate([piece.vertices for piece in pieces]),
+        faces=np.concatenate([piece.faces + start for piece, start in zip(pieces, starts, strict=False)]),
+        color=main.color,
+        appearance=joined([piece.appearance for piece in pieces], [len(piece.faces) for piece in pieces]),
+        density=main.density,
+        exact=joined_faces([piece.exact for piece in pieces]),
+    )
+
+
+# ---- the file ------------------------------------------------------------------------------------------------------
+
+
+def read_groups(path: Path, assembly: Assembly) -> Grouping:
+    """Group pieces as a groups file says; pieces that it does not name are parts of their own.
+
+    Args:
+        path: What `Grouping.to_json` wrote, perhaps edited: ``{"parts": [{"name": ..., "pieces": [...]}]}``.
+        assembly: The pieces.
+
+    Raises:
+        InputError: The file cannot be read, or names a piece twice or one that does not exist.
+    """
+    try:
+        stated = json.loads(path.read_text(encoding="utf-8"))
+        groups = [tuple(str(name) for name in part["pieces"]) for part in stated["parts"] if part["pieces"]]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise InputError(
+            f"The groups {path} cannot be read ({error!r}). Expected is JSON as in the {GROUPS_FILE} of a model: "
+            '{"parts": [{"pieces": ["piece_000", "piece_004"]}]}.'
+        ) from error
+    index = {name: k for k, name in enumerate(assembly.names)}
+    names = [name for group in groups for name in group]
+    unknown = [name for name in dict.fromkeys(names) if name not in index]
+    twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
+    if unknown or twice:
+        wrong = f"names {unknown[0]}, which is no piece" if unknown else f"names {twice[0]} twice"
+        raise InputError(
+            f"The file {path} {wrong} of {assembly.source}. It has {len(index)} pieces, from {assembly.names[0]} to "
+            f"{assembly.names[-1]}; each belongs to one part."
+        )
+    left = [(name,) for name in assembly.names if name not in set(names)]
+    indices = [np.array(sorted(index[name] for name in group)) for group in (*groups, *left)]
+    indices.sort(key=lambda group: int(group[0]))
+    if len(indices) < 2:
+        raise one_part(assembly)
+    found = tuple(_group(assembly, group, None) for group in indices)
+    return Grouping(assembly=joined_pieces(assembly, indices), groups=found)

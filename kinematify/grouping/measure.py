@@ -1,0 +1,297 @@
+"""What is measured of two pieces that touch: sizes, contact, room to move, what is seen, twins and neighbours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
+from kinematify.grouping.lattice import Lattice, lattice, square_turn
+from kinematify.robot.weld import is_closed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.assembly.part import Part
+    from kinematify.robot.arrays import FloatArray, IntArray
+
+_NEAR, _TOUCH = 0.012, 0.003
+"""Of the longest side: pieces this near are neighbours, and in contact."""
+_PROBES = 160
+"""Samples of a piece whose distance to another is measured."""
+_FLUSH = 0.004
+"""Of the longest side: planes of two boxes nearer than this are one plane."""
+_TWIN = 0.02
+"""Relative difference of sizes and areas of twins."""
+FREE = 0.02
+"""Share of the cells of what moves that may meet others without being stopped."""
+_HANDLE = 0.35
+"""A neighbour smaller than this share of a piece may ride on it."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MeasuredPieces:
+    """Neighbours among pieces and what is measured of each pair."""
+
+    pairs: IntArray
+    """Ends of every pair, the smaller piece first, shape (m, 2)."""
+    gaps: FloatArray
+    """Distance between them, as a share of the longest side, shape (m,)."""
+    columns: FloatArray
+    """Shape (m, len(names))."""
+    names: tuple[str, ...]
+    grid: Lattice
+    sizes: FloatArray
+    """Diagonal of every piece's box, as a share of the longest side, shape (n,)."""
+
+
+def measure_pieces(parts: Sequence[Part]) -> MeasuredPieces:
+    """Measure every pair of neighbours.
+
+    Args:
+        parts: Two or more pieces with area, world frame, z up.
+    """
+    grid = lattice(parts)
+    sizes = np.linalg.norm(grid.bounds[:, 1] - grid.bounds[:, 0], axis=1)
+    pairs, contact = _contacts(parts, grid, sizes)
+    of_piece = _of_pieces(parts, grid)
+    of_piece |= _of_neighbours(pairs, contact, sizes, len(parts))
+    blocked = _blocked(grid, pairs)
+    of_pair = {**contact, **_of_boxes(grid, pairs, sizes), **blocked}
+    of_pair |= _of_twins(of_piece, pairs)
+    small, large = pairs.T
+    names = [*of_pair, *(f"{name}_{which}" for which in ("small", "large") for name in of_piece)]
+    values = [*of_pair.values(), *(column[ends] for ends in (small, large) for column in of_piece.values())]
+    return MeasuredPieces(
+        pairs=pairs, gaps=contact["gap"], columns=np.column_stack(values), names=tuple(names), grid=grid, sizes=sizes
+    )
+
+
+def _contacts(parts: Sequence[Part], grid: Lattice, sizes: FloatArray) -> tuple[IntArray, dict[str, FloatArray]]:
+    """Pairs of neighbours, the smaller one first, and how they touch."""
+    low, high = grid.bounds[:, 0], grid.bounds[:, 1]
+    apart = np.maximum(low[:, None] - high[None], low[None] - high[:, None]).max(axis=2)
+    rows, columns = np.nonzero(np.triu(apart <= _NEAR, k=1))
+    probes = _probes(grid)
+    turn, offset, scale = _frame(parts)
+    trees = [_Trees(part, turn, offset, scale) for part in parts]
+    kept, found = [], []
+    for a, b in zip(rows.tolist(), columns.tolist(), strict=True):
+        small, large = (a, b) if (sizes[a], a) <= (sizes[b], b) else (b, a)
+        measured = _contact(probes[small], probes[large], trees[small], trees[large])
+        if measured is not None:
+            kept.append((small, large))
+            found.append(measured)
+    names = (
+        "gap", "touch_small", "near_small", "touch_large", "near_large", "patch_long", "patch_wide", "patch_thin",
+        "inside_small", "inside_large", "patch_of_small",
+    )  # fmt: skip
+    table = np.array(found).reshape(-1, len(names))
+    return np.array(kept, dtype=np.int64).reshape(-1, 2), dict(zip(names, table.T, strict=True))
+
+
+class _Trees:
+    """Trees of one piece, built when first asked for."""
+
+    def __init__(self, part: Part, turn: FloatArray, offset: FloatArray, scale: float) -> None:
+        self.vertices = (part.vertices @ turn.T - offset) / scale
+        self.faces = part.faces
+        self._distances: DistanceTree | None = None
+        self._winding: WindingTree | None = None
+        self.closed: bool | None = None
+
+    def distances(self, points: FloatArray) -> FloatArray:
+        if self._distances is None:
+            self._distances = DistanceTree(self.vertices, self.faces)
+        return self._distances.distances(points)
+
+    def inside(self, points: FloatArray) -> float:
+        """Share of the points inside; missing where the piece is open."""
+        if self.closed is None:
+            self.closed = is_closed(self.vertices, self.faces)
+        if not self.closed:
+            return float("nan")
+        if self._winding is None:
+            self._winding = WindingTree(self.vertices, self.faces)
+        return float((np.abs(self._winding.numbers(points)) > 0.5).mean())
+
+
+def _frame(parts: Sequence[Part]) -> tuple[FloatArray, FloatArray, float]:
+    """Turn, offset and length of the lattice's frame."""
+    used = np.concatenate([part.vertices[np.unique(part.faces)] for part in parts])
+    turn = square_turn(used[:, :2])
+    used = used @ turn.T
+    return turn, used.min(axis=0), float(np.ptp(used, axis=0).max())
+
+
+def _probes(grid: Lattice) -> list[FloatArray]:
+    starts = np.searchsorted(grid.piece, np.arange(grid.count + 1))
+    found = []
+    for k in range(grid.count):
+        points = grid.points[starts[k] : starts[k + 1]]
+        found.append(points[np.unique(np.linspace(0, len(points) - 1, _PROBES).astype(int))])
+    return found
+
+
+def _contact(small: FloatArray, large: FloatArray, tree_small: _Trees, tree_large: _Trees) -> tuple[float, ...] | None:
+    there, back = tree_large.distances(small), tree_small.distances(large)
+    gap = float(min(there.min(), back.min()))
+    if gap > _NEAR:
+        return None
+    patch = np.concatenate([small[there <= gap + _TOUCH], large[back <= gap + _TOUCH]])
+    spread = np.sort(np.linalg.eigvalsh(np.cov(patch.T)))[::-1] if len(patch) > 2 else np.zeros(3)
+    spread = np.sqrt(np.maximum(spread, 0.0)) * np.sqrt(12.0)
+    extent = float(np.linalg.norm(np.ptp(small, axis=0)))
+    return (
+        gap,
+        float((there <= _TOUCH).mean()),
+        float((there <= _NEAR).mean()),
+        float((back <= _TOUCH).mean()),
+        float((back <= _NEAR).mean()),
+        *(spread / max(extent, 1e-9)).tolist(),
+        tree_large.inside(small),
+        tree_small.inside(large),
+        float(np.linalg.norm(np.ptp(patch, axis=0)) / max(extent, 1e-9)),
+    )
+
+
+def _of_pieces(parts: Sequence[Part], grid: Lattice) -> dict[str, FloatArray]:
+    """Columns of every piece by itself."""
+    low, high = grid.bounds[:, 0], grid.bounds[:, 1]
+    extents = high - low
+    end = grid.end
+    ordered = np.sort(extents, axis=1)
+    areas = np.array([part.area for part in parts])
+    scaled = areas / areas.sum()
+    boxes = 2.0 * (extents * np.roll(extents, 1, axis=1)).sum(axis=1)
+    unit = areas / _frame(parts)[2] ** 2
+    sides = np.stack([low[:, 0], end[0] - high[:, 0], low[:, 1], end[1] - high[:, 1]], axis=1)
+    nearest = np.sort(sides, axis=1)
+    thin = np.argmin(extents, axis=1)
+    seen = grid.seen / grid.sizes[:, None]
+    around = np.sort(seen[:, 2:], axis=1)
+    rank = np.argsort(np.argsort(-areas)) / len(parts)
+    columns = {
+        "thin": ordered[:, 0],
+        "middle": ordered[:, 1],
+        "long": ordered[:, 2],
+        "height": extents[:, 2],
+        "slender": ordered[:, 1] / np.maximum(ordered[:, 2], 1e-9),
+        "flat": ordered[:, 0] / np.maximum(ordered[:, 1], 1e-9),
+        "thin_up": (thin == 2).astype(float),
+        "area": scaled,
+        "rank": rank,
+        "largest": (rank == 0).astype(float),
+        "box_share": extents.prod(axis=1) / max(float(end.prod()), 1e-12),
+        "fill": unit / np.maximum(boxes, 1e-9),
+        "faces": np.log10([len(part.faces) for part in parts]),
+        "bottom": low[:, 2],
+        "top": end[2] - high[:, 2],
+        "side_1": nearest[:, 0],
+        "side_2": nearest[:, 1],
+        "side_3": nearest[:, 2],
+        "of_height": extents[:, 2] / max(end[2], 1e-9),
+        "of_width": (extents[:, :2] / np.maximum(end[:2], 1e-9)).max(axis=1),
+        "of_depth": (extents[:, :2] / np.maximum(end[:2], 1e-9)).min(axis=1),
+        "seen_up": seen[:, 0],
+        "seen_down": seen[:, 1],
+        "seen_side_1": around[:, 3],
+        "seen_side_2": around[:, 2],
+        "seen": seen.sum(axis=1),
+        "pieces": np.full(len(parts), np.log10(len(parts))),
+        "object_height": np.full(len(parts), end[2]),
+        "object_depth": np.full(len(parts), end[:2].min()),
+    }
+    return {**columns, **_freedom(grid)}
+
+
+def _freedom(grid: Lattice) -> dict[str, FloatArray]:
+    """What every piece meets when it moves along each axis, as shares of its cells beyond what it meets at rest."""
+    met = grid.met.sum(axis=3) / grid.sizes
+    columns: dict[str, FloatArray] = {"held": grid.at_rest.sum(axis=1) / grid.sizes}
+    for r, name in enumerate(("short", "middle", "far")):
+        around = np.sort(met[r, 2:], axis=0)
+        columns |= {
+            f"up_{name}": met[r, 0],
+            f"down_{name}": met[r, 1],
+            f"side_1_{name}": around[0],
+            f"side_2_{name}": around[1],
+            f"side_4_{name}": around[3],
+            f"free_{name}": (met[r] < FREE).sum(axis=0).astype(float),
+        }
+    return columns
+
+
+def _of_neighbours(
+    pairs: IntArray, contact: dict[str, FloatArray], sizes: FloatArray, count: int
+) -> dict[str, FloatArray]:
+    """How many neighbours every piece has, and how many small ones that touch nothing else."""
+    small, large = pairs.T
+    touches = contact["gap"] <= _TOUCH
+    degree = np.bincount(pairs.reshape(-1), minlength=count).astype(float)
+    touching = np.bincount(pairs[touches].reshape(-1), minlength=count).astype(float)
+    riding = (degree[small] == 1) & (sizes[small] < _HANDLE * sizes[large])
+    bigger = np.bincount(small, minlength=count).astype(float)
+    return {
+        "degree": degree,
+        "touching": touching,
+        "riders": np.bincount(large[riding], minlength=count).astype(float),
+        "bigger": bigger,
+    }
+
+
+def _of_boxes(grid: Lattice, pairs: IntArray, sizes: FloatArray) -> dict[str, FloatArray]:
+    """How the boxes of a pair lie."""
+    low, high = grid.bounds[:, 0], grid.bounds[:, 1]
+    small, large = pairs.T
+    extents = high - low + 1e-9
+    common = np.minimum(high[small], high[large]) - np.maximum(low[small], low[large])
+    share = np.clip(common, 0.0, None) / extents[small]
+    planes = np.concatenate([low, high], axis=1)
+    flush = np.abs(planes[small] - planes[large]) <= _FLUSH
+    centre = 0.5 * (low + high)
+    away = np.abs(centre[small] - centre[large])
+    sides = np.sort(away[:, :2], axis=1)
+    around = np.sort(share[:, :2], axis=1)
+    return {
+        "size_ratio": sizes[small] / np.maximum(sizes[large], 1e-9),
+        "common": np.clip(share, 0, 1).prod(axis=1),
+        "common_up": share[:, 2],
+        "common_side_1": around[:, 0],
+        "common_side_2": around[:, 1],
+        "flush": flush.sum(axis=1).astype(float),
+        "flush_up": flush[:, [2, 5]].sum(axis=1).astype(float),
+        "away_up": centre[small, 2] - centre[large, 2],
+        "away_side_1": sides[:, 0],
+        "away_side_2": sides[:, 1],
+    }
+
+
+def _blocked(grid: Lattice, pairs: IntArray) -> dict[str, FloatArray]:
+    """What of the smaller piece meets the larger one along each axis, beyond what meets it at rest."""
+    small, large = pairs.T
+    columns: dict[str, FloatArray] = {"rest_common": grid.at_rest[small, large] / grid.sizes[small]}
+    for r, name in enumerate(("short", "middle")):
+        hits = grid.met[r][:, small, large] / grid.sizes[small]
+        around = np.sort(hits[2:], axis=0)
+        columns |= {
+            f"blocked_up_{name}": hits[0],
+            f"blocked_down_{name}": hits[1],
+            **{f"blocked_side_{k + 1}_{name}": around[k] for k in range(4)},
+            f"ways_{name}": (hits < FREE).sum(axis=0).astype(float),
+        }
+    return columns
+
+
+def _of_twins(of_piece: dict[str, FloatArray], pairs: IntArray) -> dict[str, FloatArray]:
+    """Whether the pair is congruent, as far as sizes tell; also adds how many twins each piece has."""
+    shape = np.stack([of_piece[name] for name in ("thin", "middle", "long", "fill")], axis=1)
+    length = shape[:, 2]
+    alike = np.ones((len(shape), len(shape)), dtype=bool)
+    for k in range(3):
+        alike &= np.abs(shape[:, None, k] - shape[None, :, k]) <= _TWIN * np.maximum(length[:, None], length[None])
+    alike &= np.abs(shape[:, None, 3] - shape[None, :, 3]) <= 0.05 * np.maximum(shape[:, None, 3], shape[None, :, 3])
+    of_piece["twins"] = alike.sum(axis=1) - 1.0
+    return {"twin": alike[pairs[:, 0], pairs[:, 1]].astype(float)}

@@ -1,0 +1,71 @@
+"""Pieces of a mesh that nobody segmented."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from kinematify.assembly.load import load_assembly
+from kinematify.assembly.pieces import connected_sheets
+from kinematify.config import load_config
+from kinematify.errors import InputError
+from kinematify.grouping.groups import group_pieces, read_groups
+from kinematify.robot.mesh_file import RawMesh
+
+
+def box(size: tuple[float, float, float], centre: tuple[float, float, float]) -> trimesh.Trimesh:
+    return trimesh.creation.box(size, trimesh.transformations.translation_matrix(centre))
+
+
+@pytest.fixture
+def bin_with_lid(tmp_path: Path) -> Path:
+    """Five boards, a lid on top with a knob, as one mesh."""
+    boards = [
+        box((0.4, 0.4, 0.02), (0, 0, 0.01)),
+        *(box((0.02, 0.4, 0.5), (side * 0.19, 0, 0.27)) for side in (-1, 1)),
+        *(box((0.36, 0.02, 0.5), (0, side * 0.19, 0.27)) for side in (-1, 1)),
+    ]
+    lid = [box((0.4, 0.4, 0.02), (0, 0, 0.532)), box((0.05, 0.05, 0.03), (0, 0, 0.557))]
+    path = tmp_path / "bin.ply"
+    trimesh.util.concatenate([*boards, *lid]).export(path)
+    return path
+
+
+def test_a_mesh_without_labels_is_pieces_unless_they_are_kept(bin_with_lid: Path) -> None:
+    assert not load_assembly(bin_with_lid).segmented
+    assert load_assembly(bin_with_lid, pieces="keep").segmented
+    with pytest.raises(InputError, match="Choose one of auto, group, keep"):
+        load_assembly(bin_with_lid, pieces="some")
+
+
+def test_every_piece_is_in_one_group_and_the_file_brings_the_groups_back(bin_with_lid: Path, tmp_path: Path) -> None:
+    pieces = load_assembly(bin_with_lid)
+    found = group_pieces(pieces, load_config().grouping)
+    assert sorted(name for group in found.groups for name in group.pieces) == list(pieces.names)
+    assert 2 <= len(found.groups) < len(pieces.names), "boards are joined"
+    assert sum(len(part.faces) for part in found.assembly.parts) == sum(len(part.faces) for part in pieces.parts)
+    path = tmp_path / "groups.json"
+    path.write_text(found.to_json(), encoding="utf-8")
+    again = read_groups(path, pieces)
+    assert {group.pieces for group in again.groups} == {group.pieces for group in found.groups}
+
+
+def test_a_groups_file_with_an_unknown_or_repeated_piece_is_refused(bin_with_lid: Path, tmp_path: Path) -> None:
+    pieces, path = load_assembly(bin_with_lid), tmp_path / "groups.json"
+    for named, said in ((["piece_000", "nothing"], "which is no piece"), (["piece_000", "piece_000"], "twice")):
+        path.write_text(json.dumps({"parts": [{"pieces": named}]}), encoding="utf-8")
+        with pytest.raises(InputError, match=said):
+            read_groups(path, pieces)
+
+
+def test_boxes_that_share_an_edge_are_two_sheets_and_coincident_faces_are_one() -> None:
+    both = trimesh.util.concatenate([box((1, 1, 1), (0, 0, 0)), box((1, 1, 1), (1, 0, 1))])
+    mesh = RawMesh(name="both", vertices=both.vertices, faces=both.faces)
+    assert [len(sheet.faces) for sheet in connected_sheets(mesh, 1e-7)] == [12, 12]
+    one = box((1, 1, 1), (0, 0, 0))
+    doubled = RawMesh(name="double", vertices=one.vertices, faces=np.concatenate([one.faces, one.faces[:, ::-1]]))
+    assert len(connected_sheets(doubled, 1e-7)) == 1
