@@ -6,7 +6,9 @@ from pathlib import Path
 
 import click
 
+from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.options import examples, listed, package_dirs_option, sampling_seed_option
+from kinematify.cli.table import format_table
 
 
 @click.command(
@@ -14,6 +16,7 @@ from kinematify.cli.options import examples, listed, package_dirs_option, sampli
     short_help="URDF -> MJCF, USD, SDF, GLB, SRDF, URDF.",
     epilog=examples(
         "kinematify export model.urdf --to mjcf -o model.xml",
+        "kinematify export out/cabinet --to mjcf -o cabinet.xml --json losses.json",
         "kinematify export model.urdf --to usd -o model.usda",
         "kinematify export model.urdf --to urdf -o for_engines.urdf",
         "kinematify export dog/model.urdf --to sdf -o dog.sdf --free",
@@ -35,6 +38,7 @@ from kinematify.cli.options import examples, listed, package_dirs_option, sampli
 @click.option(
     "--gripper", metavar="JOINTS", help="Joints of the fingers, separated by commas; found on the tool if not given."
 )
+@json_option
 @package_dirs_option
 @sampling_seed_option
 def command(
@@ -45,10 +49,13 @@ def command(
     free: bool,
     tool: str | None,
     gripper: str | None,
+    json_to: str | None,
     package_dirs: tuple[Path, ...],
     seed: int | None,
 ) -> None:
-    """Write the URDF MODEL in another format.
+    """Write the URDF MODEL, or that of a model folder, in another format.
+
+    The answer ends with what the format does not hold as it is, and what became of it.
 
     mjcf, usd, sdf: links, joints, limits, masses, colours and collision pieces for MuJoCo, Isaac Sim and Gazebo. Where
     the meshes that collide are not convex, the pieces are those that `kinematify fix` makes, carved by the motion.
@@ -72,6 +79,14 @@ def command(
     joints = listed(gripper)
     settings = load_settings() if seed is None else load_settings(seed=seed)
     done = export(model, form, out, free=free, tool=tool, gripper=joints, package_dirs=package_dirs, settings=settings)
+    if json_to == "-":
+        write_answer(done.as_json(), json_to)
+        return
     click.echo(f"Wrote {done.path}")
-    for sentence in (*done.notes, *done.lost):
+    for sentence in done.notes:
         click.echo(f"  {sentence}")
+    if done.lost:
+        rows = [(loss.what, str(loss.count), loss.became) for loss in done.lost]
+        click.echo("\n" + format_table((f"not as it is in {form}", "count", "what became of it"), rows))
+    if json_to:
+        write_answer(done.as_json(), json_to)

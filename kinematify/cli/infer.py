@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
+from kinematify.cli.asking import Asking, asking_options, with_answers
 from kinematify.cli.inferred import as_loaded, confidences, describe, load_as_loaded
 from kinematify.cli.options import collision_option, examples, with_collision
 from kinematify.cli.progress import progress_reporter
@@ -45,6 +46,8 @@ _LONGEST = 86400.0
         "kinematify infer whole.glb --pieces group --groups out/whole/groups.json -o out/corrected",
         "kinematify infer parts.zip -o out/parts --config paper --seed 7",
         "kinematify infer parts/ -o out/parts --refine 3 --tier engines",
+        "kinematify infer parts/ -o out/parts --vlm http://localhost:11434/v1",
+        "kinematify infer parts/ -o out/parts --ask",
         "kinematify infer examples/cabinet -o out/cabinet --force --json - > answer.json",
     ),
 )
@@ -104,13 +107,7 @@ _LONGEST = 86400.0
     show_default=True,
     help="How far --refine simulates: exact sweeps; engines too; an arm that pulls as well.",
 )
-@click.option(
-    "--vlm",
-    default="off",
-    show_default=True,
-    metavar="off|auto|URL",
-    help="Ask a vision-language model about the joints: a chat interface, or that of KINEMATIFY_VLM_URL.",
-)
+@asking_options
 @collision_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
@@ -132,6 +129,9 @@ def command(
     rounds: int | None,
     tier: str,
     vlm: str,
+    vlm_all: bool,
+    vlm_first: bool,
+    ask: bool,
     collision: str | None,
     force: bool,
     no_preview: bool,
@@ -147,7 +147,8 @@ def command(
 
     OUT gets model.urdf, meshes/, inference.json (every alternative with its evidence) and preview.png.
 
-    With --refine it ends with 1 if the model that is kept still has an error about its motion.
+    With --refine it ends with 1 if the model that is kept still has an error about its motion; with --vlm it ends with
+    3 if the model answered nothing. The model folder is written in both cases.
     """
     from contextlib import ExitStack
 
@@ -177,10 +178,13 @@ def command(
         parts = grouped_parts(given, groups, settings, progress)
         told = _told(hints, parts.assembly.names if isinstance(parts, Grouping) else parts.names, base)
         inference = infer(parts, config=settings, base=base, progress=_share(progress, 0.0, _INFERRED))
-        inference, heard = _with_votes(inference, vlm, progress)
-        status = 0
+        asking = Asking(vlm=vlm, everything=vlm_all, types_first=vlm_first, person=ask)
+        inference, heard, status = with_answers(
+            inference, asking, {hint.part for hint in told}, lambda stage: progress(stage, _INFERRED)
+        )
         if rounds is not None:
-            inference, status = _refined(inference, rounds, tier, base, _share(progress, _INFERRED, _REFINED))
+            inference, failed = _refined(inference, rounds, tier, base, _share(progress, _INFERRED, _REFINED))
+            status = status or failed
         inference = _with_hints(inference, told)
         progress("writing the model", _REFINED)
         loaded = _written(inference, out, overwrite=force, preview=not no_preview, beside=beside)
@@ -228,20 +232,6 @@ def _with_hints(inference: Inference, told: Sequence[Hint]) -> Inference:
 def _share(progress: Callable[[str, float], None], start: float, end: float) -> Callable[[str, float], None]:
     """Progress of a step that is a share of the whole; that it is done, only the whole says."""
     return lambda stage, done: progress(stage, start + (end - start) * done) if done < 1.0 else None
-
-
-def _with_votes(inference: Inference, vlm: str, progress: Callable[[str, float], None]) -> tuple[Inference, str]:
-    """The joints chosen again with the votes of a model, and what it said; unchanged where none is asked."""
-    from kinematify.vision.client import oracle_of
-
-    oracle = oracle_of(vlm, inference.config.vision)
-    if oracle is None:
-        return inference, ""
-    from kinematify.vision.votes import describe_votes, with_votes
-
-    progress("asking a vision model about the joints", _INFERRED)
-    inference, heard = with_votes(inference, oracle)
-    return inference, describe_votes(heard)
 
 
 def _refined(
@@ -321,6 +311,7 @@ def _as_answer(inference: Inference, out: Path) -> dict[str, Any]:
         "closed_chains": [chain.told for chain in inference.closed_chains],
         "seconds": dict(inference.timings),
         "refinement": None if inference.refinement is None else dict(inference.refinement),
+        "vision": None if inference.vision is None else dict(inference.vision),
     }
 
 

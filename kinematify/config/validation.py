@@ -76,6 +76,8 @@ class FileSettings(StageConfig):
 class PhysicsSettings(StageConfig):
     """KV2xx: declared physics."""
 
+    loop_gap: float = 1.0e-3  # clearances of pins are larger
+    """Loops that are open by more are a warning, in sizes of the model."""
     tiny_mass: float = 1.0e-5  # 10 mg: the smallest screws of robots have 100 mg
     """Lighter bodies are a warning [kg]."""
     huge_mass: float = 10000.0  # the heaviest industrial arms

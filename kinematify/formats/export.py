@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import importlib
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError, OutputError
-from kinematify.formats.content import read_content
+from kinematify.formats.content import read_content, told_renaming
+from kinematify.formats.losses import losses
+from kinematify.model.output import MODEL_FILE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.config.validation import ValidationSettings
+    from kinematify.formats.losses import Loss
 
 _WRITERS = {
     "mjcf": ("kinematify.formats.mjcf", "write_mjcf"),
@@ -34,8 +37,12 @@ class Exported:
     path: Path
     notes: tuple[str, ...]
     """What was made up or changed, one sentence each."""
-    lost: tuple[str, ...]
-    """What the format cannot hold, one sentence each."""
+    lost: tuple[Loss, ...]
+    """What the format does not hold as it is, and what became of it."""
+
+    def as_json(self) -> dict[str, Any]:
+        """Path, notes and losses as plain values."""
+        return {"path": str(self.path), "notes": list(self.notes), "lost": [asdict(loss) for loss in self.lost]}
 
 
 def export(
@@ -52,7 +59,7 @@ def export(
     """Write a URDF in another format.
 
     Args:
-        model: The URDF file.
+        model: The URDF file, or a model folder of `kinematify infer` or `generate`.
         to: One of `FORMATS`.
         out: File to write; meshes go into a folder beside it where the format names files.
         free: The root link floats instead of being fixed to the world (mjcf, usd, sdf).
@@ -67,7 +74,7 @@ def export(
     """
     if to not in FORMATS:
         raise InputError(f"There is no format {to!r} to export to. Give one of {', '.join(FORMATS)}.")
-    urdf, path = Path(model), Path(out)
+    urdf, path = urdf_of(Path(model)), Path(out)
     chosen = load_settings() if settings is None else settings
     try:
         if to == "srdf":
@@ -75,11 +82,28 @@ def export(
         if to == "urdf" and path.resolve() == urdf.resolve():
             raise InputError(f"{path} is the model itself. Give another file with -o.")
         content = read_content(urdf, chosen, package_dirs=package_dirs)
-        lost = _writer(to)(content, path, free=free)
-        return Exported(path=path, notes=content.notes if to != "glb" else (), lost=lost)
+        _writer(to)(content, path, free=free)
+        notes = content.notes if to != "glb" else ()
+        renamed = told_renaming(content) if to in ("mjcf", "sdf") else []
+        return Exported(path=path, notes=(*notes, *renamed), lost=losses(content.robot, to))
     except OSError as error:
         reason = error.strerror or str(error)
         raise OutputError(f"{path} cannot be written: {reason}. Give a file in a folder that exists.") from error
+
+
+def urdf_of(model: Path) -> Path:
+    """Return the URDF of a model folder; a file is itself.
+
+    Raises:
+        InputError: The folder has none, or several.
+    """
+    if not model.is_dir():
+        return model
+    found = [model / MODEL_FILE] if (model / MODEL_FILE).is_file() else sorted(model.glob("*.urdf"))
+    if len(found) != 1:
+        what = f"{len(found)} URDF files" if found else "no URDF file"
+        raise InputError(f"The folder {model} has {what} and no {MODEL_FILE}. Give the URDF file itself.")
+    return found[0]
 
 
 def _srdf(

@@ -24,8 +24,8 @@ _UP = np.array([[1.0, 0, 0, 0], [0, 0, 1.0, 0], [0, -1.0, 0, 0], [0, 0, 0, 1.0]]
 """From z up to glTF's y up."""
 
 
-def write_glb(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
-    """Write a GLB file; arguments, result and errors as for `write_mjcf`."""
+def write_glb(content: Content, out: Path, *, free: bool) -> None:
+    """Write a GLB file; arguments and errors as for `write_mjcf`."""
     del free  # nothing is fixed where nothing is simulated
     scene = trimesh.Scene(base_frame=_OUTSIDE)
     graph: Any = scene.graph
@@ -40,8 +40,6 @@ def write_glb(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
             scene.add_geometry(_mesh(surface), geom_name=name, node_name=f"{name}_mesh", parent_node_name=link.name)
     exported: Any = scene.export  # untyped in trimesh
     out.write_bytes(exported(file_type="glb"))
-    moving = sum(joint.kind is not JointType.FIXED for joint in content.robot.joints)
-    return (f"glTF has no joints: the nodes of {moving} have theirs in extras.kinematify; physics is not written.",)
 
 
 def _described(joint: Joint) -> dict[str, object]:

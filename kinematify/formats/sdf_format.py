@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.formats.content import GREY, WORLD, MeshFiles, body_name, told_renaming
+from kinematify.formats.content import GREY, WORLD, MeshFiles, body_name
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rpy_of
 from kinematify.robot.write import numbers
@@ -25,8 +25,8 @@ _VERSION = "1.11"  # the first that knows followers
 _ENDLESS = 1e16  # the value that SDFormat takes for no limit
 
 
-def write_sdf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
-    """Write an SDF file and a folder with its meshes; arguments, result and errors as for `write_mjcf`."""
+def write_sdf(content: Content, out: Path, *, free: bool) -> None:
+    """Write an SDF file and a folder with its meshes; arguments and errors as for `write_mjcf`."""
     meshes = MeshFiles(out)
     document = etree.Element("sdf", version=_VERSION)
     model = etree.SubElement(document, "model", name=content.robot.name)
@@ -46,7 +46,6 @@ def write_sdf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
         etree.SubElement(closing, "parent").text = body_name(first)
         etree.SubElement(closing, "child").text = body_name(second)
     etree.ElementTree(document).write(out, pretty_print=True, xml_declaration=True, encoding="utf-8")
-    return tuple(told_renaming(content))
 
 
 def _at_zero(content: Content) -> dict[str, FloatArray]:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Link
 
 
-def write_urdf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
+def write_urdf(content: Content, out: Path, *, free: bool) -> None:
     """Write a URDF file and a folder with its meshes.
 
     Links, joints and what is seen stay as they are; what collides becomes primitives and convex pieces. Masses that
@@ -27,9 +27,6 @@ def write_urdf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
         out: The file.
         free: Not used: a URDF does not say whether its root is fixed.
 
-    Returns:
-        What the format cannot hold: nothing.
-
     Raises:
         OSError: It cannot be written.
     """
@@ -38,7 +35,6 @@ def write_urdf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
     links = tuple(_link(link, meshes) for link in content.robot.links)
     joints = tuple(prepared_joint(joint, content.settings) for joint in content.robot.joints)
     write_robot(replace(content.robot, links=links, joints=joints), out)
-    return ()
 
 
 def _link(link: Link, meshes: MeshFiles) -> Link:

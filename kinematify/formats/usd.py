@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 SUFFIXES = (".usd", ".usda", ".usdc")
 
 
-def write_usd(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
+def write_usd(content: Content, out: Path, *, free: bool) -> None:
     """Write a USD file, text (``.usda``) or binary (``.usd``, ``.usdc``).
 
-    Arguments, result and errors as for `write_mjcf`; another suffix is an `OutputError`.
+    Arguments and errors as for `write_mjcf`; another suffix is an `OutputError`.
     """
     if out.suffix.lower() not in SUFFIXES:
         raise OutputError(f"USD cannot be written to {out}: its name has to end with {', '.join(SUFFIXES)}.")
@@ -38,15 +38,6 @@ def write_usd(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
     writer.add_all(free=free)
     if not writer.stage.GetRootLayer().Export(str(out)):
         raise OSError(f"USD could not write {out}")
-    followers = [joint.name for joint in content.robot.joints if joint.mimic is not None]
-    fast = [joint.name for joint in content.robot.joints if joint.velocity is not None]
-    lost = []
-    if followers:
-        lost.append(f"The physics schema has no followers: {', '.join(followers)} move freely; customData states "
-                    "which joint they should follow.")  # fmt: skip
-    if fast:
-        lost.append(f"Speed limits of {len(fast)} joints are not written: the physics schema has none.")
-    return tuple(lost)
 
 
 class _UsdWriter:

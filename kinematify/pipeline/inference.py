@@ -135,6 +135,8 @@ class Inference:
     """Rounds of simulation and choosing again (`kinematify.refine`), as JSON values; None where there were none."""
     hints: tuple[str, ...] = ()
     """What the user said of joints, as it is typed behind ``--hint``; in force already."""
+    vision: Mapping[str, Any] | None = None
+    """Answers of a vision-language model about joints (`kinematify.vision`), as JSON values; None if none was asked."""
     grouping: Grouping | None = None
     """How pieces became the parts; None where the parts were given."""
     provenance: Mapping[str, Any] | None = None

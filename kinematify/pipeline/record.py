@@ -120,6 +120,7 @@ def inference_record(inference: Inference) -> dict[str, Any]:
         "hints": list(inference.hints),
         "groups": None if inference.grouping is None else inference.grouping.record(),
         "refinement": inference.refinement,
+        **({} if inference.vision is None else {"vision": inference.vision}),
         "provenance": inference.provenance,
         "seconds": dict(inference.timings),
         "peak_mb": inference.peak_mb,

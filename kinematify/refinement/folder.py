@@ -75,7 +75,12 @@ def as_left(inference: Inference, record: dict[str, Any]) -> Inference:
     same = tree.parents == inference.trees[0].parents
     trees = inference.trees if same else (tree, *inference.trees)
     return replace(
-        inference, trees=trees, joints=joints, hints=tuple(record.get("hints", ())), refinement=record.get("refinement")
+        inference,
+        trees=trees,
+        joints=joints,
+        hints=tuple(record.get("hints", ())),
+        refinement=record.get("refinement"),
+        vision=record.get("vision"),
     )
 
 

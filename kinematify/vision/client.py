@@ -12,12 +12,12 @@ import json
 import os
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import EnvironmentFault, InputError
 from kinematify.geometry.cut_cache import cache_folder
-from kinematify.vision.answer import JointVotes, read_answer, schema
+from kinematify.vision.question import Answer, read_answer
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,70 +25,82 @@ if TYPE_CHECKING:
 
     from kinematify.config import VisionConfig
     from kinematify.generate.providers.service import Service
-    from kinematify.vision.answer import JointQuestion
+    from kinematify.vision.question import JointQuestion
 
 ADDRESS, KEY, MODEL = "KINEMATIFY_VLM_URL", "KINEMATIFY_VLM_KEY", "KINEMATIFY_VLM_MODEL"
 OFF, AUTO = "off", "auto"
 
 
-@dataclass(frozen=True)
+@dataclass
 class ChatOracle:
-    """Asks a model about joints, several at a time; what goes wrong with one is an abstention with its reason."""
+    """Asks a model about joints, several at a time; what goes wrong counts as unsure, with its reason.
+
+    A service that refuses one question, or does not answer it in time, is not asked any further.
+    """
 
     url: str
     model: str
-    key: str
+    key: str = field(repr=False)
     config: VisionConfig
     cache: Path
+    fault: str = ""
+    """Why the service is not asked any further."""
 
-    def ask(self, questions: Sequence[JointQuestion]) -> list[JointVotes]:
-        """See `JointOracle`.
+    @property
+    def name(self) -> str:
+        """Of the model and where it is, for the record."""
+        return f"{self.model} at {self.url}"
 
-        Raises:
-            InputError: The address cannot be used, or the key or the request is not accepted: no question would be
-                answered.
-        """
+    @property
+    def at_once(self) -> int:
+        """See `JointOracle`."""
+        return self.config.concurrency
+
+    @property
+    def record_path(self) -> Path:
+        """Where its record is kept."""
+        return self.cache / f"record-{hashlib.sha256(self.name.encode()).hexdigest()[:16]}.json"
+
+    def ask(self, questions: Sequence[JointQuestion]) -> list[Answer]:
+        """See `JointOracle`."""
         from kinematify.generate.providers.service import Service  # noqa: PLC0415 - most calls ask nobody
 
-        service = Service(name="The vision model", url=self.url, key=self.key, settings=self.config, key_name=KEY)
-        with closing(service), ThreadPoolExecutor(self.config.concurrency) as pool:
-            return list(pool.map(lambda question: self._votes(service, question), questions))
-
-    def _votes(self, service: Service, question: JointQuestion) -> JointVotes:
-        request = self._request(question)
         try:
-            answer = self._cached(service, request)
-        except EnvironmentFault as error:
-            return JointVotes(note=str(error))
-        return read_answer(answer, self.config.least_confidence)
+            service = Service(name="The vision model", url=self.url, key=self.key, settings=self.config, key_name=KEY)
+        except InputError as error:
+            self.fault = str(error)
+            return [Answer(fault=self.fault)] * len(questions)
+        with closing(service), ThreadPoolExecutor(self.config.concurrency) as pool:
+            return list(pool.map(lambda question: self._answer(service, question), questions))
 
-    def _cached(self, service: Service, request: dict[str, Any]) -> Any:
+    def _answer(self, service: Service, question: JointQuestion) -> Answer:
+        request = self._request(question)
         digest = hashlib.sha256(json.dumps([self.url, request], sort_keys=True).encode()).hexdigest()
         path = self.cache / f"{digest}.json"
-        if path.is_file():
+        said = read_kept(path)
+        if said is None and self.fault:
+            return Answer(fault=self.fault)
+        if said is None:
             try:
-                return json.loads(path.read_text(encoding="utf-8"))
-            except (OSError, ValueError):
-                path.unlink(missing_ok=True)  # it was cut off
-        answer = _content(service.ask("/chat/completions", json=request))
-        if isinstance(answer, dict):
-            self.cache.mkdir(parents=True, exist_ok=True)
-            partly = path.with_suffix(f".{os.getpid()}")
-            partly.write_text(json.dumps(answer), encoding="utf-8")
-            partly.replace(path)
+                said = _said(service.ask("/chat/completions", json=request))
+            except (EnvironmentFault, InputError) as error:
+                self.fault = str(error)
+                return Answer(fault=self.fault)
+        answer = read_answer(str(said.get("text")), question.choices, tokens=int(said.get("tokens") or 0))
+        if not answer.fault:
+            write_kept(path, said)
         return answer
 
     def _request(self, question: JointQuestion) -> dict[str, Any]:
-        from kinematify.vision.question import PROMPT  # noqa: PLC0415 - it draws, and most calls ask nobody
-
         file = io.BytesIO()
         question.picture.save(file, format="PNG")
         picture = f"data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}"
-        content = [{"type": "text", "text": PROMPT}, {"type": "image_url", "image_url": {"url": picture}}]
-        form = {"name": "joint", "strict": True, "schema": schema()}
+        content = [{"type": "text", "text": question.text}, {"type": "image_url", "image_url": {"url": picture}}]
+        form = {"name": "joint", "strict": True, "schema": question.schema()}
         return {
             "model": self.model,
             "temperature": 0,
+            "max_tokens": self.config.answer_tokens,
             "messages": [{"role": "user", "content": content}],
             "response_format": {"type": "json_schema", "json_schema": form},
         }
@@ -115,10 +127,31 @@ def oracle_of(choice: str, config: VisionConfig) -> ChatOracle | None:
     return ChatOracle(url.rstrip("/"), model, key, config, cache_folder().parent / "vlm")
 
 
-def _content(answer: Any) -> Any:
-    """The JSON inside of a chat answer; None where there is none."""
+def _said(answer: Any) -> dict[str, Any]:
+    """Text and tokens of a chat answer, which may be anything."""
     try:
-        text = answer["choices"][0]["message"]["content"]
-        return json.loads(text)
-    except (KeyError, IndexError, TypeError, ValueError):
+        text = answer["choices"][0]["message"].get("content") or ""
+        tokens = (answer.get("usage") or {}).get("total_tokens") or 0
+        return {"text": str(text), "tokens": int(tokens)}
+    except (AttributeError, KeyError, IndexError, TypeError, ValueError):
+        return {"text": "", "tokens": 0}
+
+
+def read_kept(path: Path) -> dict[str, Any] | None:
+    """JSON values from the cache; None where there are none, or they were cut off."""
+    try:
+        kept = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
         return None
+    return kept if isinstance(kept, dict) else None
+
+
+def write_kept(path: Path, said: dict[str, Any]) -> None:
+    """Keep JSON values in the cache, whole or not at all; without a cache the same is paid for again."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        partly = path.with_suffix(f".{os.getpid()}")
+        partly.write_text(json.dumps(said), encoding="utf-8")
+        partly.replace(path)
+    except OSError:
+        path.with_suffix(f".{os.getpid()}").unlink(missing_ok=True)

@@ -1,96 +1,167 @@
-"""Pictures of a joint for somebody who knows everyday things: from the front, the side, above, and at an angle.
-
-They are ray cast, so that no OpenGL is needed. A small opening angle makes them nearly orthographic: what is parallel
-looks parallel.
-"""
+"""What is asked of a joint, in words, and what an answer may be."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
 
-import numpy as np
-from PIL import Image, ImageDraw, ImageFont
-
-from kinematify.render.camera import fit_camera
-from kinematify.render.picture import PictureScene, PosedMesh, render_scene
-from kinematify.vision.answer import JointQuestion
+from kinematify.joints.candidate import JointCandidate
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import Assembly
-    from kinematify.config import PreviewConfig, VisionConfig
+    from PIL.Image import Image
 
-_CHILD, _PARENT, _REST = np.array([0.85, 0.13, 0.12]), np.array([0.45, 0.62, 0.9]), np.array([0.8, 0.8, 0.8])
-_VIEWS = (("front", -90.0, 2.0), ("from the right", 0.0, 2.0), ("from above", -90.0, 84.0))
-_CLOSE = ("the moving part, close", -60.0, 30.0)
-_CAPTION, _MARGIN = 22, 12  # [pixels]
-_INK, _PAPER = (30, 34, 42), (255, 255, 255)
+FIXED, NONE, UNSURE = "fixed", "none of these", "unsure"
+TURNS = "turns"
+TYPES = (TURNS, "slides")
+"""What may be answered where the type alone is asked for (paper section III-D)."""
+_LONGEST_REASON = 400  # characters
 
-PROMPT = (
-    "The pictures show one object made of rigid parts, standing upright. The part in red moves against the part in "
-    "blue; all other parts are grey. Views: from the front, from the right, from above, and a close view. Directions "
-    "are those of a person in front of the object: 'vertical' is up and down, 'sideways' is left and right "
-    "in the front view, 'depth' is towards and away from the viewer. Say how the red part moves in real life. "
-    "axis_direction: the direction of the axis that it turns about, or of the line that it slides along. hinge_side: "
-    "the side of the red part at which that axis lies, 'middle' if the axis goes through its middle or if it slides. "
-    "Answer 'unsure' to whatever the pictures do not show."
+_SHOWN = (
+    "The picture shows one object that is made of rigid parts and stands upright. The red part is the one in question; "
+    "what it carries is pink. The blue part holds it; all other parts are grey{through}. The first row shows the whole "
+    "object, with a frame around the red part, and two close views."
+)
+_MOTIONS = (
+    "The numbered pictures below show {count} possible motions of the red part against the blue part. The green line "
+    "is the axis: with a ring around it, the part turns about this line; with a head at both ends, it slides along "
+    "it. The part in orange is the same part after some of the motion. {list} Only the type of the motion and the "
+    "place and direction of the line matter; how far and to which side it moves does not.\n\n"
+    "Say first what the object and the red part are. Then choose the motion that the red part has in the real object. "
+    "Answer 'fixed' if it does not move against the blue part, 'none of these' if it moves but no picture shows how, "
+    "and 'unsure' if the pictures do not allow you to decide."
+)
+_TYPES = (
+    "Say first what the object and the red part are. Then say whether the red part 'turns' against the blue part or "
+    "'slides' in the real object. Answer 'fixed' if it does neither, and 'unsure' if the pictures do not allow you to "
+    "decide."
+)
+_FORM = (
+    'Answer with one JSON object and nothing else: {{"reason": "one or two sentences", "choice": {choices}, '
+    '"confidence": a number from 0 to 1}}.'
 )
 
 
-def joint_question(
-    assembly: Assembly, parent: int, child: int, *, config: VisionConfig, preview: PreviewConfig
-) -> JointQuestion:
-    """Draw a joint.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class JointQuestion:
+    """A joint that somebody is asked about."""
+
+    parent: str
+    child: str
+    options: tuple[JointCandidate, ...]
+    """Motions in the order of their numbers; none where the type alone is asked for."""
+    picture: Image
+    """The object, close views, and a picture of every option."""
+    pixels: int
+    """Of the moving part, in the picture of it that shows the fewest."""
+    see_through: bool = False
+    """Other parts are drawn translucent, since they hide the moving one."""
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """What may be answered."""
+        if not self.options:
+            return (*TYPES, FIXED, UNSURE)
+        return (*(str(number + 1) for number in range(len(self.options))), FIXED, NONE, UNSURE)
+
+    @property
+    def text(self) -> str:
+        """What is asked, in words; it names no part."""
+        through = ", and shown see-through where they hide the red part" if self.see_through else ""
+        said = [f"{number}: {'turns' if item.kind.turns else 'slides'}." for number, item in enumerate(self.options, 1)]
+        asked = _MOTIONS.format(count=len(said), list=" ".join(said)) if said else _TYPES
+        form = _FORM.format(choices=" | ".join(json.dumps(choice) for choice in self.choices))
+        return f"{_SHOWN.format(through=through)} {asked}\n\n{form}"
+
+    def schema(self) -> dict[str, Any]:
+        """JSON schema of an answer; the reason comes before the choice."""
+        properties = {
+            "reason": {"type": "string"},
+            "choice": {"type": "string", "enum": list(self.choices)},
+            "confidence": {"type": "number", "minimum": 0, "maximum": 1},
+        }
+        return {
+            "type": "object", "properties": properties, "required": list(properties), "additionalProperties": False,
+        }  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer:
+    """What somebody says of one joint."""
+
+    choice: str = UNSURE
+    """One of `JointQuestion.choices`."""
+    confidence: float = 0.0
+    """What the voter says of itself, in [0, 1]; a low one makes the answer count as unsure."""
+    reason: str = ""
+    fault: str = ""
+    """Why there is no usable answer, where there is none; the choice is then `UNSURE`."""
+    tokens: int = 0
+    """That the service counted for question and answer; 0 where it does not say."""
+
+    @property
+    def option(self) -> int | None:
+        """Place of the option that was chosen, from 0; None if none was."""
+        return int(self.choice) - 1 if self.choice.isdecimal() else None
+
+    def counts(self, least: float) -> bool:
+        """Whether it is an answer at all, and its voter at least this sure."""
+        return self.choice != UNSURE and self.confidence >= least
+
+
+class JointOracle(Protocol):
+    """Somebody who looks at pictures of joints."""
+
+    @property
+    def name(self) -> str:
+        """For messages and the record."""
+        ...
+
+    @property
+    def at_once(self) -> int:
+        """Questions that are asked together."""
+        ...
+
+    def ask(self, questions: Sequence[JointQuestion]) -> list[Answer]:
+        """Return the answer to each question, in their order; who has none says why."""
+        ...
+
+
+def read_answer(text: str, choices: Sequence[str], *, tokens: int = 0) -> Answer:
+    """Read an answer that may be anything: JSON, JSON inside of other text, or neither.
 
     Args:
-        assembly: The parts, z up; its front looks along -y.
-        parent: Part that the other one hangs on.
-        child: Part that moves.
-        config: Size and opening angle.
-        preview: Quality of the pictures.
+        text: What was answered.
+        choices: What may be answered.
+        tokens: What it cost.
     """
-    colors = {child: _CHILD, parent: _PARENT}
-    whole = [
-        PosedMesh(vertices=part.vertices, faces=part.faces, color=colors.get(index, _REST))
-        for index, part in enumerate(assembly.parts)
-    ]
-    scene = PictureScene(meshes=tuple(whole))
-    points = np.concatenate([part.bounds for part in assembly.parts])
-    corners = _corners(points.min(axis=0), points.max(axis=0))
-    views = [_view(scene, corners, (azimuth, elevation), config, preview) for _, azimuth, elevation in _VIEWS]
-    low, high = assembly.parts[child].bounds
-    room = 0.35 * (high - low) + 0.02 * assembly.diagonal
-    views.append(_view(scene, _corners(low - room, high + room), _CLOSE[1:], config, preview))
-    names = [name for name, _, _ in (*_VIEWS, _CLOSE)]
-    return JointQuestion(
-        parent=assembly.names[parent], child=assembly.names[child], picture=_sheet(views, names, config.view_pixels)
+    found = _object_in(text)
+    if found is None:
+        return Answer(fault="the answer holds no JSON object", tokens=tokens)
+    choice, confidence = found.get("choice"), found.get("confidence", 0.0)
+    if isinstance(choice, int) and not isinstance(choice, bool):
+        choice = str(choice)
+    said = " ".join(str(found.get("reason", "")).split())[:_LONGEST_REASON]
+    if not isinstance(choice, str) or choice.strip().lower() not in choices:
+        return Answer(reason=said, fault=f"the answer {str(choice)[:40]!r} was not offered", tokens=tokens)
+    usable = isinstance(confidence, int | float) and not isinstance(confidence, bool) and 0.0 <= confidence <= 1.0
+    return Answer(
+        choice=choice.strip().lower(), confidence=float(confidence) if usable else 0.0, reason=said, tokens=tokens
     )
 
 
-def _corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    picks = np.array(np.meshgrid([0, 1], [0, 1], [0, 1])).reshape(3, -1).T
-    return np.where(picks, high, low)
-
-
-def _view(
-    scene: PictureScene, points: np.ndarray, place: tuple[float, float], config: VisionConfig, preview: PreviewConfig
-) -> Image.Image:
-    """Draw from an azimuth and an elevation [deg]."""
-    azimuth, elevation = place
-    camera = fit_camera(
-        points, azimuth=float(np.radians(azimuth)), elevation=float(np.radians(elevation)),
-        field_of_view=float(np.radians(config.field_of_view)), size=(config.view_pixels, config.view_pixels),
-        margin=_MARGIN,
-    )  # fmt: skip
-    return render_scene(scene, camera, preview)
-
-
-def _sheet(views: Sequence[Image.Image], names: Sequence[str], side: int) -> Image.Image:
-    sheet = Image.new("RGB", (2 * side, 2 * (side + _CAPTION)), _PAPER)
-    draw = ImageDraw.Draw(sheet)
-    for index, (view, name) in enumerate(zip(views, names, strict=True)):
-        x, y = side * (index % 2), (side + _CAPTION) * (index // 2)
-        sheet.paste(view, (x, y + _CAPTION))
-        draw.text((x + side // 2, y + _CAPTION // 2), name, fill=_INK, font=ImageFont.load_default(14), anchor="mm")
-    return sheet
+def _object_in(text: str) -> dict[str, Any] | None:
+    """The last JSON object with a choice that a text holds."""
+    decoder, start, found = json.JSONDecoder(), text.find("{"), None
+    while start >= 0:
+        try:
+            value, end = decoder.raw_decode(text, start)
+        except (ValueError, RecursionError):
+            end = start + 1
+        else:
+            if isinstance(value, dict) and (found is None or "choice" in value):
+                found = value
+        start = text.find("{", end)
+    return found

@@ -74,7 +74,7 @@ def test_a_glb_keeps_its_colours_in_the_urdf_and_as_glb(seed: int, tmp_path: Pat
     given = seen_of_glb(path)
     urdf = write_urdf(_model(load_assembly(path)), tmp_path)
     out = tmp_path / "out.glb"
-    assert not any("colour" in lost for lost in export(urdf, "glb", out).lost)
+    assert not any("materials" in loss.what for loss in export(urdf, "glb", out).lost)
     assert unlike(given, seen_of_glb(out)) < 0.01
     assert unlike(given, seen_of_urdf(urdf)) < 0.03, "rounded places in a picture"
 

@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import mujoco
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from lxml import etree
 from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
+from kinematify.cli.app import cli
 from kinematify.config import load_config
-from kinematify.errors import DescriptionError
+from kinematify.errors import DescriptionError, InputError
 from kinematify.formats.export import export
+from kinematify.formats.losses import losses_markdown
 from kinematify.generate.sentence import from_text
 from kinematify.pipeline.generate import write_blueprint
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
+from kinematify.validation.run import validate
 
 
 @pytest.fixture(scope="module")
@@ -54,6 +61,31 @@ def test_mujoco_closes_the_loop_by_itself(toolbox, tmp_path):
     moved = float(data.qpos[leader.qposadr[0]])
     assert moved > 0.5
     assert float(data.qpos[follower.qposadr[0]]) == pytest.approx(moved, abs=0.05)
+
+
+def test_the_command_ends_with_what_the_format_does_not_hold_and_takes_a_folder(toolbox, tmp_path):
+    out, answer = tmp_path / "toolbox.xml", tmp_path / "answer.json"
+    done = CliRunner().invoke(
+        cli, ["export", str(toolbox.parent), "--to", "mjcf", "-o", str(out), "--json", str(answer)]
+    )
+    assert done.exit_code == 0, done.output
+    lost = {item["what"]: item for item in json.loads(answer.read_text())["lost"]}
+    robot = read_robot(toolbox, geometry="none")
+    assert lost["closed loops"]["count"] == len(robot.loops) == 2
+    assert lost["speed limits"]["count"] == len(robot.joints)
+    motors = etree.parse(out).findall(".//actuator/motor")
+    assert len(motors) == len(robot.leaders), "one for every joint that moves by itself"
+    assert all(item["became"] in done.output for item in lost.values())
+
+
+def test_a_folder_without_a_model_is_refused(tmp_path):
+    with pytest.raises(InputError, match="no URDF file"):
+        export(tmp_path, "mjcf", tmp_path / "out.xml")
+
+
+def test_the_docs_have_the_table_of_the_code():
+    page = Path(__file__).parents[2] / "docs" / "formats.md"
+    assert losses_markdown() in page.read_text(encoding="utf-8")
 
 
 def test_sdf_has_a_ball_joint(toolbox, tmp_path):
@@ -104,3 +136,33 @@ def test_a_loop_of_a_link_that_is_not_there_is_refused(toolbox, tmp_path):
     document.write(broken)
     with pytest.raises(DescriptionError, match="nowhere"):
         read_robot(broken)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"), [("nothing", None), ("point", "at rest"), ("third", "no motion"), ("limit", "stopped by")]
+)
+def test_validate_reports_a_loop_that_is_open_rigid_or_stopped(toolbox, change, said):
+    document = etree.parse(toolbox)
+    root = document.getroot()
+    loop = root.find("{*}ball_constraint")
+    point = loop.find("{*}ball_constraint_p_BQ")
+    if change == "point":
+        point.set("value", "0.0 0.1 0.0")
+    elif change in ("third", "limit"):
+        for mimic in root.findall("joint/mimic"):
+            mimic.getparent().remove(mimic)
+    if change == "limit":
+        root.find("joint[@name='cantilever_tray_1_arm_2_joint']/limit").set("upper", "0.3")
+    elif change == "third":
+        other = etree.fromstring(etree.tostring(loop))
+        other.set("name", "third")
+        for place in ("AP", "BQ"):
+            given = other.find(f"{{*}}ball_constraint_p_{place}")
+            start = [float(part) for part in given.get("value").split()]
+            given.set("value", " ".join(str(a + b) for a, b in zip(start, (0.0, 0.03, 0.02), strict=True)))
+        root.append(other)
+    changed = toolbox.with_name(f"{change}.urdf")
+    document.write(changed)
+    check = next(item for item in validate(changed, selected=["KV230"], engines=()).checks if item.check == "KV230")
+    said_so = [finding.message for finding in check.findings]
+    assert not said_so if said is None else any(said in message for message in said_so)

@@ -1,0 +1,316 @@
+"""Are closed chains found, exported, and closed while they move?
+
+Linkages are drawn, cut into their parts, and inferred from these alone. *Found*: the model has as many loop joints as
+the linkage has independent loops, and the chain moves as freely as the true one. *Exported*: the MJCF and the URDF hold
+all of them. *Closed*: in the engine, the joint that drives the chain is moved from rest to both ends by its own motor
+(MuJoCo, from the exported MJCF) or by a force of the same size (Drake, from the URDF), gravity and contacts on, and
+neither end of a pin is ever farther from the other than 0.1 % of the diagonal; the way must be made to 90 %.
+
+The linkages are ours: they were drawn for this study, with modelled pins and holes, and seen while the code was
+written: in-sample.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pydantic import Field
+
+from benchmarks.linkages import KINDS, linkage
+from benchmarks.study import Options, Study, explained
+from kinematify.config import load_config
+from kinematify.evaluation.record import table
+from kinematify.formats.export import export
+from kinematify.model.dynamics import mass_matrix
+from kinematify.model.output import MODEL_FILE
+from kinematify.pipeline import infer, write_inference
+from kinematify.pipeline.generate import true_model
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.linkage import linkages
+from kinematify.robot.read import read_robot
+from kinematify.robot.robot import joint_ends, rest_configuration
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from benchmarks.study import Measured, Record, Work
+    from kinematify.evaluation.record import Report
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import Robot
+
+_CLOSED = 1.0e-3
+"""Largest gap of a pin, in diagonals."""
+_REACHED = 0.9
+"""Least share of its way that the driver makes."""
+_SECONDS = 3.0
+"""From rest to an end."""
+_STEP = 1.0e-3
+"""Of Drake [s]; MuJoCo has that of the file."""
+_PACE = 2.0 * np.pi * 3.0
+"""Of the servo [rad/s]."""
+
+
+class LoopOptions(Options):
+    """Which linkages."""
+
+    seeds: int = Field(3, ge=1, description="Draws of each kind.")
+    kinds: tuple[str, ...] = Field(tuple(KINDS), description="Kinds of linkages.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drawn:
+    """One linkage to be inferred."""
+
+    kind: str
+    seed: int
+    folder: str
+
+
+def measure(options: LoopOptions, work: Work) -> Measured:
+    """Infer and move every linkage."""
+    asked = {
+        f"{kind} {seed}": Drawn(kind=kind, seed=seed, folder=str(work.folder))
+        for kind in options.kinds
+        for seed in range(options.seeds)
+    }
+    records = list(work.each(measured, asked, timeout=900.0).values())
+    return records, {}
+
+
+def measured(asked: Drawn) -> Record:
+    """Infer one linkage from its parts, write it, and move it in both engines."""
+    start = time.perf_counter()
+    blueprint = linkage(asked.kind, asked.seed)
+    true = true_model(blueprint, load_config())
+    inference = infer(blueprint.assembly)
+    folder = Path(asked.folder, f"{asked.kind}_{asked.seed}")
+    write_inference(inference, folder, overwrite=True, preview=False)
+    urdf = folder / MODEL_FILE
+    robot = read_robot(urdf, geometry="none")
+    exported = folder / "model.xml"
+    export(urdf, "mjcf", exported)
+    found = len(robot.loops) >= len(true.loops) and _freedom(robot) == _freedom(true.robot)
+    record = {
+        "kind": asked.kind,
+        "seed": asked.seed,
+        "loops": len(true.loops),
+        "written": len(robot.loops),
+        "refused": sum(chain.closing.loop is None for chain in inference.closed_chains),
+        "freedom": _freedom(robot),
+        "true_freedom": _freedom(true.robot),
+        "mimic": sum(joint.mimic is not None for joint in robot.joints),
+        "found": found,
+    }
+    diagonal = inference.assembly.diagonal
+    for engine, runs in (("mujoco", _in_mujoco(exported, robot)), ("drake", _in_drake(urdf, robot))):
+        ways = list(runs)
+        record[engine] = {
+            "pins": max((way.pins for way in ways), default=0),
+            "gap": max((way.gap for way in ways), default=float("nan")) / diagonal,
+            "reached": min((way.reached for way in ways), default=0.0),
+        }
+    return {**record, "seconds": round(time.perf_counter() - start, 1)}
+
+
+def _freedom(robot: Robot) -> int:
+    """Motions of the joints that loops hold, all loops together."""
+    free = tuple(
+        replace(joint, kind=JointType.CONTINUOUS, lower=-np.inf, upper=np.inf, mimic=None)
+        if joint.kind.turns
+        else replace(joint, mimic=None)
+        for joint in robot.joints
+    )
+    return sum(found.mobility for found in linkages(replace(robot, joints=free)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Way:
+    """One driver on its way to one end."""
+
+    pins: int
+    gap: float
+    """Largest of a pin [m]."""
+    reached: float
+    """Share of the way."""
+
+
+def _ways(robot: Robot) -> Iterator[tuple[str, float, float]]:
+    """Drivers of loops with rest and end."""
+    driving = {found.driver for found in linkages(robot)} | {
+        joint.mimic.joint for joint in robot.joints if joint.mimic is not None
+    }
+    rest = rest_configuration(robot)
+    leaders = [joint for joint in robot.leaders if joint.name in driving]
+    for joint, *ends in zip(leaders, *joint_ends(leaders), strict=True):
+        for end in map(float, ends):
+            if abs(end - rest[joint.name]) > 1e-3:  # 0.06 deg, or 1 mm
+                yield joint.name, rest[joint.name], end
+
+
+def _in_mujoco(xml: Path, robot: Robot) -> Iterator[Way]:
+    import mujoco  # noqa: PLC0415 - one process for both engines, each loaded when its turn comes
+
+    model = mujoco.MjModel.from_xml_path(str(xml))
+    pins = [k for k in range(model.neq) if model.eq_type[k] == mujoco.mjtEq.mjEQ_CONNECT]
+
+    def gap(data: Any) -> float:
+        worst = 0.0
+        for pin in pins:
+            ends = [
+                data.xpos[body] + data.xmat[body].reshape(3, 3) @ model.eq_data[pin, 3 * k : 3 * k + 3]
+                for k, body in enumerate((model.eq_obj1id[pin], model.eq_obj2id[pin]))
+            ]
+            worst = max(worst, float(np.linalg.norm(ends[0] - ends[1])))
+        return worst
+
+    joints = {model.joint(k).name: model.joint(k) for k in range(model.njnt)}
+    places = {name: (int(joint.qposadr[0]), int(joint.dofadr[0])) for name, joint in joints.items()}
+    held = [joint.name for joint in robot.leaders if joint.name in joints]
+    for driver, rest, end in _ways(robot):
+        data = mujoco.MjData(model)
+        resting = rest_configuration(robot)
+        for name, (place, _) in places.items():
+            data.qpos[place] = resting[name]
+        mujoco.mj_forward(model, data)
+        inertia = np.zeros((model.nv, model.nv))
+        mujoco.mj_fullM(model, data, inertia)
+        at_rest = data.qpos.copy()
+        worst, steps = gap(data), round(_SECONDS / model.opt.timestep)
+        for step in range(steps):
+            mujoco.mj_step1(model, data)
+            for name in held:
+                place, dof = places[name]
+                aim, speed = _aim(rest, end, step / steps) if name == driver else (at_rest[place], 0.0)
+                stiffness, damping = _gains(float(inertia[dof, dof]))
+                push = stiffness * (aim - data.qpos[place]) + damping * (speed - data.qvel[dof])
+                data.ctrl[model.actuator(name).id] = push + data.qfrc_bias[dof]
+            mujoco.mj_step2(model, data)
+            worst = max(worst, gap(data))
+        made = (float(data.qpos[places[driver][0]]) - rest) / (end - rest)
+        yield Way(pins=len(pins), gap=worst, reached=made)
+
+
+def _gains(inertia: float) -> tuple[float, float]:
+    """Stiffness and damping of a servo of the frequency `_PACE`.
+
+    For ten times the driver's own inertia, since the chain that it moves adds to that.
+    """
+    stiffness = 10.0 * inertia * _PACE**2
+    return stiffness, 2.0 * stiffness / _PACE
+
+
+def _aim(rest: float, end: float, share: float) -> tuple[float, float]:
+    """Where the driver is to be, and how fast: it arrives after four fifths of the time."""
+    phase = np.pi * min(share / 0.8, 1.0)
+    speed = 0.5 * (end - rest) * np.sin(phase) * np.pi / (0.8 * _SECONDS)
+    return rest + 0.5 * (end - rest) * (1.0 - float(np.cos(phase))), float(speed)
+
+
+def _in_drake(urdf: Path, robot: Robot) -> Iterator[Way]:
+    from pydrake.multibody.parsing import Parser  # noqa: PLC0415 - one process for both engines
+    from pydrake.multibody.plant import AddMultibodyPlantSceneGraph  # noqa: PLC0415
+    from pydrake.multibody.tree import PdControllerGains  # noqa: PLC0415
+    from pydrake.systems.analysis import Simulator  # noqa: PLC0415
+    from pydrake.systems.framework import DiagramBuilder  # noqa: PLC0415
+
+    inertia = mass_matrix(robot)
+    diagonal = {joint.name: float(inertia[k, k]) for k, joint in enumerate(robot.joints)}
+    held = [joint.name for joint in robot.leaders]
+    for driver, rest, end in _ways(robot):
+        builder = DiagramBuilder()
+        plant, _ = AddMultibodyPlantSceneGraph(builder, _STEP)
+        (instance,) = Parser(plant).AddModels(str(urdf))
+        plant.WeldFrames(plant.world_frame(), plant.GetBodyByName(robot.root).body_frame())
+        for name in held:
+            effort = robot.joint_by_name[name].effort or np.inf
+            servo = plant.AddJointActuator(f"{name} servo", plant.GetJointByName(name), effort)
+            stiffness, damping = _gains(diagonal[name])
+            servo.set_controller_gains(PdControllerGains(p=stiffness, d=damping))
+        plant.Finalize()
+        simulator = Simulator(builder.Build())
+        root = simulator.get_mutable_context()
+        context = plant.GetMyMutableContextFromRoot(root)
+        at_rest = rest_configuration(robot)
+        places = plant.GetPositions(context)
+        for name in (joint.name for joint in robot.joints if joint.kind is not JointType.FIXED):
+            places[plant.GetJointByName(name).position_start()] = at_rest[name]
+        plant.SetPositions(context, places)
+        wished = plant.get_desired_state_input_port(instance)
+        worst, steps, stride = 0.0, round(_SECONDS / _STEP), 5
+        for step in range(0, steps, stride):
+            aim, speed = _aim(rest, end, step / steps)
+            aims = [aim if name == driver else at_rest[name] for name in held]
+            wished.FixValue(context, [*aims, *(speed if name == driver else 0.0 for name in held)])
+            simulator.AdvanceTo((step + stride) * _STEP)
+            poses = {name: plant.GetBodyByName(name).EvalPoseInWorld(context).GetAsMatrix4() for name in _ends(robot)}
+            worst = max(worst, largest_gap(robot, poses))
+        made = (float(plant.GetJointByName(driver).GetOnePosition(context)) - rest) / (end - rest)
+        yield Way(pins=plant.num_constraints() - sum(joint.mimic is not None for joint in robot.joints),
+                  gap=worst, reached=made)  # fmt: skip
+
+
+def _ends(robot: Robot) -> set[str]:
+    return {link for loop in robot.loops for link in loop.links}
+
+
+def largest_gap(robot: Robot, poses: Mapping[str, FloatArray]) -> float:
+    """How far the ends of a pin are apart at most [m], links standing at `poses`."""
+    ends = [
+        [(poses[link] @ np.append(point, 1.0))[:3] for link, point in zip(loop.links, loop.points, strict=True)]
+        for loop in robot.loops
+    ]
+    return max((float(np.linalg.norm(one - other)) for one, other in ends), default=0.0)
+
+
+def report(found: Report[Record]) -> list[str]:
+    """One row a kind, and what failed."""
+    records = found.records
+    kinds = dict.fromkeys(record["kind"] for record in records)
+    rows = [_row(kind, [record for record in records if record["kind"] == kind]) for kind in kinds]
+    rows.append(_row("**all**", records))
+    return [
+        explained(__doc__),
+        table(("linkage", "drawn", "loops found", "exported", "closed in MuJoCo", "closed in Drake"), rows),
+        "## What failed",
+        "\n".join(_failures(records)) or "Nothing.",
+    ]
+
+
+def _row(name: str, records: Sequence[Record]) -> tuple[str, ...]:
+    counts = [
+        sum(record["found"] for record in records),
+        sum(_exported(record) for record in records),
+        *(sum(_holds(record, engine) for record in records) for engine in ("mujoco", "drake")),
+    ]
+    return name, str(len(records)), *(f"{count} ({count / len(records):.0%})" for count in counts)
+
+
+def _exported(record: Record) -> bool:
+    return bool(record["found"] and min(record["mujoco"]["pins"], record["drake"]["pins"]) >= record["loops"])
+
+
+def _holds(record: Record, engine: str) -> bool:
+    run = record[engine]
+    return bool(_exported(record) and run["gap"] <= _CLOSED and run["reached"] >= _REACHED)
+
+
+def _failures(records: Sequence[Record]) -> Iterator[str]:
+    for record in records:
+        what = f"- {record['kind']} {record['seed']}: "
+        if not record["found"]:
+            yield (
+                f"{what}{record['written']} of {record['loops']} loops written, {record['refused']} refused; "
+                f"{record['freedom']} motions instead of {record['true_freedom']}."
+            )
+            continue
+        for engine in ("mujoco", "drake"):
+            if not _holds(record, engine):
+                run = record[engine]
+                yield f"{what}{engine}: largest gap {run['gap']:.2%} of the diagonal, {run['reached']:.0%} of the way."
+
+
+STUDY = Study(title="Closed chains", options=LoopOptions, measure=measure, report=report)
