@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Joint, Robot
 
 KEPT = "kept"
-_NONE = "left out"
+_NONE = "omitted"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,7 +56,7 @@ _COUNTS: Mapping[str, Callable[[Robot], int]] = {
 
 TREATMENT: Mapping[str, Mapping[str, str]] = {
     "urdf": {
-        "closed loops": "drake:ball_constraint, which Drake closes; readers that know trees alone leave it out",
+        "closed loops": "drake:ball_constraint, which Drake closes; readers of trees alone ignore it",
         "materials and textures": "in the OBJ files; the URDF has one mean colour a shape",
     },
     "mjcf": {

@@ -20,7 +20,7 @@ TYPES = (TURNS, "slides")
 _LONGEST_REASON = 400  # characters
 
 _SHOWN = (
-    "The picture shows one object that is made of rigid parts and stands upright. The red part is the one in question; "
+    "The picture shows one upright object made of rigid parts. The red part is the one in question; "
     "what it carries is pink. The blue part holds it; all other parts are grey{through}. The first row shows the whole "
     "object, with a frame around the red part, and two close views."
 )
