@@ -159,7 +159,8 @@ def _size(made: Blueprint, closed: Blueprint, wanted: dict[str, float]) -> list[
     axes = {"width": 0, "depth": 1, "height": 2, "x": 0, "y": 1, "z": 2}
     found = []
     for name, size in wanted.items():
-        extents = (base[axes[name.split()[-1]]], every[axes[name.split()[-1]]])
+        axis = axes.get(name.split()[-1], int(np.argmax(every[:2])))  # a length lies along the longer side
+        extents = (base[axis], every[axis])
         if all(abs(extent / size - 1.0) > _SIZE for extent in extents):
             found.append(f"{name} {extents[0]:.3f} m")
     return found

@@ -163,6 +163,7 @@ word that is not understood is refused. Words that have no effect on shape or mo
 Each of these {len(described)} has a file of its own in `kinematify/generate/objects/`: parts made of primitives,
 the joints between them, and words. A sentence may use any of the words, count the parts, and name colour, material,
 size and how far it is open. The first words are under each picture.
+`kinematify generate --list` names the others, which are built in steps and have no picture here.
 
 {_pictures(asked, 3)}
 
@@ -217,10 +218,19 @@ def _table(parameters: Sequence[Parameter]) -> str:
     return "\n".join(f"| {' | '.join(cell.replace('|', _BAR) for cell in row)} |" for row in rows)
 
 
+def pictured() -> dict[str, Family]:
+    """The objects with a file of their own; those that are built in steps would be hundreds of pictures more."""
+    return {
+        name: family
+        for name, family in known_families().items()
+        if name not in FAMILIES and all(parameter.name != "modeling" for parameter in family.all_parameters)
+    }
+
+
 def main() -> None:
-    """Draw the page of all sentences, described objects and families."""
+    """Draw the page of all sentences, objects with a file of their own, and families."""
     folder = Path(sys.argv[1])
-    described = {name: family for name, family in known_families().items() if name not in FAMILIES}
+    described = pictured()
     command = f"python -m tools.draw_gallery {folder.as_posix()}"
 
     def told(name: str, done: float) -> None:

@@ -87,7 +87,7 @@ def parse_robot(element: _Element, path: Path, source: GeometrySource, geometry:
         name=element.get("name") or path.stem,
         links=_links(element, source, geometry),
         joints=joints,
-        loops=tuple(_loop(item, names) for item in element if etree.QName(item).localname in _LOOPS),
+        loops=tuple(_loop(item, names) for item in element.iterchildren("*") if etree.QName(item).localname in _LOOPS),
         path=path.resolve(),
         notes=tuple(note for joint in joints if (note := _note(joint))),
     )

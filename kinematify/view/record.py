@@ -137,8 +137,8 @@ def _no_record(path: Path, error: Exception) -> InputError:
 
 
 def _possible_parents(record: dict[str, Any]) -> dict[str, tuple[str, ...]]:
-    names = [item["name"] for item in record["parts"]]
-    touching = {frozenset((item["a"], item["b"])) for item in record["contacts"]}
+    names = [item["name"] for item in record.get("parts", ())]
+    touching = {frozenset((item["a"], item["b"])) for item in record.get("contacts", ())}
     return {
         child: tuple(sorted((name for name in names if name != child), key=lambda name: {child, name} not in touching))
         for child in (joint["child"] for joint in record["joints"])

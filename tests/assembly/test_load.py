@@ -110,7 +110,8 @@ def cabinet(z: float, front: float) -> trimesh.Scene:
 
 
 @pytest.mark.parametrize(
-    ("z", "front", "words"), [(0.0, -0.25, "stands on z = 0"), (-0.4, -0.25, "broad foot"), (0.7, 0.2, "broad foot")]
+    ("z", "front", "words"),
+    [(0.0, -0.25, "lowest point is at z = 0"), (-0.4, -0.25, "broad foot"), (0.7, 0.2, "broad foot")],
 )
 def test_a_gltf_file_that_looks_z_up_is_told_with_the_remedy(
     z: float, front: float, words: str, tmp_path: Path

@@ -223,15 +223,13 @@ def test_nothing_leaks_over_a_thousand_resets(engine: str) -> None:
 
 
 def test_close_frees_the_engine() -> None:
-    import pybullet
-
     worlds = [OpenPartEnv("bundled:box", engine="pybullet") for _ in range(3)]
     clients = [env._world.client for env in worlds]
-    assert all(pybullet.isConnected(client) for client in clients)
+    assert all(client.isConnected() for client in clients)
     for env in worlds:
         env.close()
         env.close()
-    assert not any(pybullet.isConnected(client) for client in clients)
+    assert not any(client.isConnected() for client in clients)
 
 
 @pytest.mark.parametrize(

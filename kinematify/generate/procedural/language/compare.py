@@ -195,6 +195,8 @@ class _Compared:
                         words=f"{said.words} {there.words}", at=frozenset((*said.at, there.at[-1])), reason=wrong,
                     )
                 )  # fmt: skip
+            elif part.count == 1 and len(parts) == 1 and not part.of and len(found) > 1:  # "a door"
+                self.missing.append(Missing(words=_said(part), at=frozenset(there.at), reason=f"{len(found)} built"))
             chosen = _chosen(found, part)
             for claim in part.claims[1:]:
                 if claim.about != "count":
