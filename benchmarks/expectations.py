@@ -41,6 +41,7 @@ SETS = {
     "heldout_5": "sixty more of people who walk in, committed after that was mended and before they were tried",
     "heldout_6": "sixty more of people who walk in, committed before more objects were added, tried after",
     "heldout_7": "sixty written by somebody without sight of the library, committed before anything was added",
+    "heldout_8": "sixty more, committed before the grammar of that day was opened",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }
