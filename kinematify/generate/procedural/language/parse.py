@@ -21,6 +21,7 @@ from kinematify.generate.procedural.language.words import (
     NUMBERS,
     OPENNESS,
     PLAIN_WORDS,
+    PURPOSES,
     STOP_WORDS,
     UNITS,
     Words,
@@ -63,10 +64,12 @@ FUNCTION_WORDS = frozenset(
     {*_BEGINS_PART, *_PREPOSITIONS, *_BEING, *_DETERMINERS, "other", "way", "flat", "one", "ones", "side"}
 )
 """Words that say how others belong together."""
-_NO_NOUN = frozenset({*PLAIN_WORDS, "way", "one", "ones"})
+_NO_NOUN = frozenset({*PLAIN_WORDS, "way", "one", "ones", "stacked"})
 _DONE_ENDS = ("ed", "ing")
 _QUOTED = 15  # words of a sentence in a message
-_SHORTEST_DONE, _NOT_DONE = 5, ("spring", "string", "bearing", "railing", "awning", "ceiling", "building", "painting")
+_SHORTEST_DONE = 5
+NOT_DONE = frozenset({"spring", "string", "bearing", "railing", "awning", "ceiling", "building", "painting"})
+"""Nouns that end as verbs do."""
 _STATES = (
     "half",
     "way",
@@ -212,7 +215,7 @@ def _may_follow(tokens: Sequence[Token], k: int) -> bool:
     )
     known = known or token.number is not None or token.is_sign or word in MOTIONS or word in DONE or word in GOING
     known = known or any(word in words for words in DIMENSIONS.values()) or word in PLACES or word in SIZE_WORDS
-    done = word.endswith(_DONE_ENDS) and len(word) > _SHORTEST_DONE and word not in _NOT_DONE
+    done = word.endswith(_DONE_ENDS) and len(word) > _SHORTEST_DONE and word not in NOT_DONE
     return known or done or word in _STATES
 
 
@@ -463,7 +466,8 @@ class _Parser(Words):
         if word == "mirrored" and not self._noun_behind(k):
             self.claim(part, "like", "mirrored", k)
             return 1
-        if word in _MATERIAL_WORDS and not (part is not self.whole and word == "mirror"):
+        is_purpose = word in PURPOSES and self._noun_behind(k)  # a paper tray
+        if word in _MATERIAL_WORDS and not is_purpose and not (part is not self.whole and word == "mirror"):
             self.claim(part, "material", _MATERIAL_WORDS[word], k)
             return 1
         return self._size(k, part)
@@ -534,9 +538,10 @@ class _Parser(Words):
         ):
             at += 1
         word = self.given(at)
-        if word in PLACES and not self._noun_behind(at) and self.given(k) in _AT:
+        sided = self.given(at + 1) in ("side", "hand", "end", "edge")
+        if word in PLACES and (sided or not self._noun_behind(at)) and self.given(k) in _AT:
             self.claim(self.current, "place", word, *range(k, at + 1))
-            return at + (2 if self.given(at + 1) in ("side", "hand", "end", "edge") else 1)
+            return at + (2 if sided else 1)
         if word in _MATERIAL_WORDS and self.given(k) in ("of", "in", "from"):
             return k + 1
         target = _Draft()

@@ -303,7 +303,7 @@ class PartReader:
                 return ()
             if not word or word in STOP_WORDS or self.reading.tokens[at].is_sign:
                 break
-            if self.reading.number(at) is None and word not in UNITS:
+            if self.reading.number(at) is None and word not in UNITS and at > min(self.reading.named):
                 return None
         at = k - 1
         while self.reading.text(at) in _OF:

@@ -5,8 +5,11 @@ Driven by what the families declare: nothing here knows a family.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.family import build, checked
@@ -18,6 +21,7 @@ from kinematify.generate.procedural.language.parts import PartReader
 from kinematify.generate.procedural.language.reading import ParseState, nouns_of
 from kinematify.generate.procedural.language.sizes import (
     DIMENSIONS,
+    OVERALL,
     SIZE_WORDS,
     read_bare_length,
     read_overall,
@@ -44,6 +48,7 @@ _PLACES = {
 }
 _NOT = ("no", "without")
 _SWINGS = {"hinged", "hinge", "hinges", "opens", "opening", "swings"}
+_SIZE = 0.02  # of a size, by which it may be off
 _ABSURD = 4.0  # times out of its range, something is no such object
 
 
@@ -100,6 +105,7 @@ def understand(specification: Specification, family: Family) -> Understanding:
     read_openness(reading, parts)
     parts.read()
     read_copies(reading)
+    _fit_sizes(reading, parts)
     return Understanding(
         family=family.name,
         values=dict(reading.values),
@@ -109,6 +115,26 @@ def understand(specification: Specification, family: Family) -> Understanding:
         overall=reading.overall,
         copies=reading.copies,
     )
+
+
+def _fit_sizes(reading: ParseState, parts: PartReader) -> None:
+    """Where a frame makes the whole larger than its opening, the whole is as large as is asked for."""
+    for axis, name in enumerate(OVERALL):
+        value, base = reading.values.get(name), parts.made.parts[0].bounds
+        said = reading.said.get(name, "").split()
+        if not set(DIMENSIONS[name]) & set(said) or not isinstance(value, float):
+            continue
+        there = [float(np.ptp(bounds, axis=0)[axis]) for bounds in (base, parts.made.assembly.bounds)]
+        fits = reading.copies > 1 or any(math.isclose(size, value, rel_tol=_SIZE) for size in there)
+        for size in () if fits else there[::-1]:
+            values = {**reading.values, name: value + value - size}
+            try:
+                made = build(reading.family, values)
+            except InputError:
+                continue
+            if math.isclose(float(np.ptp(made.assembly.bounds, axis=0)[axis]), value, rel_tol=_SIZE):
+                reading.values, parts.made = values, made
+                break
 
 
 def _usual_of_its_kind(reading: ParseState) -> None:
