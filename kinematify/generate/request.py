@@ -13,7 +13,7 @@ from kinematify.generate.composer.attached import attached
 from kinematify.generate.composer.compose import compose
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.language.parts import PartRequirement
+from kinematify.generate.procedural.language.parts import PartRequirement, looking
 from kinematify.generate.procedural.language.sizes import OVERALL
 from kinematify.robot.transforms import rotation_about
 
@@ -51,6 +51,8 @@ class Request:
     """Of mechanisms on a body, where no family builds it."""
     added: tuple[MechanismSpec, ...] = ()
     """Mechanisms that such an object has not, and that are put on it where there is a place."""
+    looks: tuple[tuple[tuple[str, ...], str, str], ...] = ()
+    """Names of parts, and the material or the colour of these alone."""
     overall: tuple[str, float] | None = None
     """A size of the whole [m] that it is scaled to."""
     copies: int = 1
@@ -69,6 +71,8 @@ class Request:
             InputError: A value is out of its bounds, or the parts are not as they are asked for.
         """
         blueprint = self._single(seed)
+        for names, material, color in self.looks:
+            blueprint = looking(blueprint, names, material, color)
         if self.copies > 1:
             width = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[0])
             blueprint = blueprint.repeated(self.copies, width + _GAP)

@@ -318,9 +318,10 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
     )
     made = request.build()
     nouns = {" ".join(words): names for words, names in part_nouns(family, made).items()}
-    absent = compare(specification, made, nouns).absent
-    if added := tuple(item for part in absent if (item := mechanism_for(part)) is not None):
-        request = replace(request, added=added)
+    compared = compare(specification, made, nouns)
+    added = tuple(item for part in compared.absent if (item := mechanism_for(part)) is not None)
+    if added or compared.looks:
+        request = replace(request, added=added, looks=compared.looks)
         made = request.build()
     return _Plan(
         specification=specification,
@@ -334,6 +335,7 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
 
 def _composed_plan(specification: Specification, body: BodyKind, alone: bool) -> _Plan:
     from kinematify.generate.composer.sentence import read_composition  # noqa: PLC0415 - with solids
+    from kinematify.generate.procedural.language.compare import compare  # noqa: PLC0415
     from kinematify.generate.request import Request  # noqa: PLC0415
 
     meant = read_composition(specification, body, may_stand_still=not alone)
@@ -347,10 +349,14 @@ def _composed_plan(specification: Specification, body: BodyKind, alone: bool) ->
         how="" if alone else "in a scene",
     )
     nouns = {word: (item.stem,) for item in composition.wanted for word in item.mechanism.words}
+    made = request.build()
+    if looks := compare(specification, made, nouns).looks:
+        request = replace(request, looks=looks)
+        made = request.build()
     return _Plan(
         specification=specification,
         request=request,
-        blueprint=request.build(),
+        blueprint=made,
         used=meant.used,
         dropped=meant.dropped,
         nouns=nouns,
@@ -392,7 +398,7 @@ def _missing(plan: _Plan, blueprint: Blueprint) -> tuple[str, ...]:
     specification, tokens = plan.specification, plan.specification.tokens
     compared = compare(specification, blueprint, plan.nouns)
     taken = {*specification.name, *plan.used} - {k for item in plan.dropped for k in item.at}
-    found = list(plan.dropped)
+    found = [item for item in plan.dropped if not item.at or not item.at <= compared.held]
     for item in compared.missing:
         if item.at <= taken and not item.is_sure:
             continue

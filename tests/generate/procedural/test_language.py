@@ -61,11 +61,11 @@ def test_what_is_built_instead_counts_as_wrong():
 
 
 def test_what_is_not_built_is_listed_and_the_rest_is_built():
-    made = from_text("a red cabinet with two doors and a holographic display, 80 cm wide").made()
-    assert made.not_built == ("holographic display",)
+    made = from_text("a red cabinet with two doors and a holographic projector, 80 cm wide").made()
+    assert made.not_built == ("holographic projector",)
     assert len(made.blueprint.joints) == 2
     assert made.facts["understood"]["parts"][0] == {"noun": "door", "count": 2}
-    assert made.facts["not_built"] == ["holographic display"]
+    assert made.facts["not_built"] == ["holographic projector"]
 
 
 def test_parsing_builds_nothing_and_says_what_it_understood():

@@ -62,6 +62,7 @@ _MOVING = frozenset({
 })  # fmt: skip
 """Parts that move wherever they are."""
 _NUMBERED = re.compile(r"(?:_(?:\d+|left|right))+$")
+_LOOKS = ("color", "material")
 _CHAIN = re.compile(r"(.*_\d+)_\d+$")
 _MEASURED = ("size", "moves", "way", "hinge", "place", "relation", "color", "material", "open", "like", "count")
 """What is said of a part that is there, and can be measured of it."""
@@ -96,6 +97,8 @@ class Comparison:
     """Parts that the sentence calls otherwise, by their names -> as it calls them."""
     absent: tuple[PartSpecification, ...]
     """Parts that are not there."""
+    looks: tuple[tuple[tuple[str, ...], str, str], ...]
+    """Parts that look otherwise than asked for: their names, and the material or the colour, the other one empty."""
 
 
 @dataclass(kw_only=True)
@@ -110,6 +113,7 @@ class _Compared:
     missing: list[Missing] = field(default_factory=list)
     names: dict[str, str] = field(default_factory=dict)
     absent: list[PartSpecification] = field(default_factory=list)
+    looks: list[tuple[tuple[str, ...], str, str]] = field(default_factory=list)
 
     # ---- parts by their nouns --------------------------------------------------------------------------------------
 
@@ -126,6 +130,10 @@ class _Compared:
                 return found, len(words) - k
         return [], 0
 
+    @cached_property
+    def _nouns_asked(self) -> frozenset[str]:
+        return frozenset(part.noun.rsplit(maxsplit=1)[-1] for part in self.specification.parts)
+
     def _called(self, stem: str) -> list[Part]:
         """Parts whose names say a word: as the builder calls them, exactly, at their end, by another word for it."""
         names = set(self.nouns.get(stem.replace("_", " "), ()))
@@ -134,6 +142,8 @@ class _Compared:
         def matches() -> Iterator[Callable[[str], bool]]:
             yield lambda name: name in names or _stem(name) in names
             for word in (stem, *others):
+                if word in self._nouns_asked and word != stem:
+                    continue  # it is asked for, too
                 yield lambda name, word=word: word in (_stem(name), lemma(_stem(name)))  # type: ignore[misc]
                 yield lambda name, word=word: _ends_with(name, word)  # type: ignore[misc]
             yield lambda name: _stem(name).startswith(f"{stem}_")
@@ -178,7 +188,11 @@ class _Compared:
         for parts in groups.values():
             self._check_group(parts)
         return Comparison(
-            held=frozenset(self.held), missing=tuple(self.missing), names=self.names, absent=tuple(self.absent)
+            held=frozenset(self.held),
+            missing=tuple(self.missing),
+            names=self.names,
+            absent=tuple(self.absent),
+            looks=tuple(self.looks),
         )
 
     def _judge(self, claim: Claim, wrong: str | None) -> None:
@@ -195,7 +209,7 @@ class _Compared:
         placed = [part for part in parts if any(claim.about == "place" for claim in part.claims)]
         apart = len(placed) == len(parts) and len(parts) > 1
         asked = (sum(numbers) if apart else max(numbers)) if numbers else None
-        for part in parts:
+        for part in sorted(parts, key=_is_one):
             there = part.claims[0]
             found, known = self.parts_called(part.noun)
             number = len(found) if found else self.counted(part.noun)
@@ -210,7 +224,8 @@ class _Compared:
                     self._account_for_modifiers(part, there, 1)
                 else:
                     at = frozenset(k for claim in part.claims for k in claim.at)
-                    self.missing.append(Missing(words=_said(part), at=at))
+                    words = " ".join(self.specification.tokens[k].given for k in sorted(at))
+                    self.missing.append(Missing(words=words, at=at))
                     self.absent.append(part)
                 continue
             self._account_for_modifiers(part, there, known)
@@ -218,8 +233,17 @@ class _Compared:
             self._check_number(part, found, {asked, -1, part.count}, alone=len(parts) == 1)
             chosen = _chosen(found, part)
             for claim in part.claims[1:]:
-                if claim.about != "count":
-                    self._judge_part(part, claim, self._part_keeps(part, claim, chosen, found), is_there=bool(chosen))
+                if claim.about == "count":
+                    continue
+                meant = chosen
+                if claim.about in _LOOKS and len(chosen) == len(found):  # but for those of which is said otherwise
+                    ones = [_chosen(found, other) for other in parts if other is not part and _is_one(other)]
+                    meant = [item for item in chosen if not any(item in one for one in ones)] or chosen
+                wrong = self._part_keeps(part, claim, meant, found)
+                if wrong is not None and claim.about in _LOOKS and meant:
+                    look = (claim.value, "") if claim.about == "material" else ("", claim.value)
+                    self.looks.append((tuple(item.name for item in meant), *look))
+                self._judge_part(part, claim, wrong, is_there=bool(chosen))
             if not self._joints_of(found) and self._would_move(part):
                 self._miss(there.words, there.at, "it does not move")
             if len(self.missing) == before and len(chosen) == len(found) and part.count in (None, len(found)):
@@ -236,14 +260,14 @@ class _Compared:
         there, numbers = part.claims[0], self._numbers(part.noun, found)
         said = next((claim for claim in part.claims if claim.about == "count"), None)
         built = f"{len(found) or self.counted(part.noun)} built"
-        if said is not None and numbers & {*asked, said.value}:
+        if said is not None and (_is_one(part) or numbers & {*asked, said.value}):
             self.held.update(said.at)
         elif said is not None:
             words, at = f"{said.words} {there.words}", frozenset((*said.at, there.at[-1]))
             self.missing.append(Missing(words=words, at=at, reason=built, is_sure=bool(found)))
         elif part.count is None and len(found) == 1 and not self.counted(part.noun):
             self._miss(_said(part), there.at, "in one part")
-        elif part.count == 1 and alone and not part.of and found and 1 not in numbers:
+        elif part.count == 1 and alone and not part.of and found and 1 not in numbers and not _on_sides(part):
             self._miss(_said(part), there.at, built)
 
     def _call(self, found: Sequence[Part], noun: str, said: str) -> None:
@@ -412,7 +436,7 @@ class _Compared:
             every = self.closed.parts if name not in ("width", "height", "depth") else self.closed.parts[:1]
             boxes = [np.ptp(part.bounds, axis=0) for part in every]
             boxes += [np.ptp(self.closed.assembly.bounds, axis=0), np.ptp(self.made.assembly.bounds, axis=0)]
-        axes = (0, 1, 2) if chosen else _AXES.get(name, (0, 1, 2))
+        axes = _AXES.get(name, (0, 1, 2))
         sizes = [float(box[axis]) for box in boxes for axis in axes]
         sizes += [distance for part in chosen for distance in self._between_pins(part)]
         is_exact = bool(chosen) or name in ("width", "height", "depth")
@@ -476,6 +500,16 @@ def compare(
         nouns: How its parts are called, besides by their names: noun, singular -> names, or names without numbers.
     """
     return _Compared(made=made, nouns=nouns or {}, specification=specification).check()
+
+
+def _is_one(part: PartSpecification) -> bool:
+    """Whether it is one of several, by its place."""
+    return part.count == 1 and any(claim.about == "place" for claim in part.claims)
+
+
+def _on_sides(part: PartSpecification) -> bool:
+    """Whether one is asked for on either side."""
+    return any(claim.value == "side" and claim.about == "place" for claim in part.claims)
 
 
 def _covers(name: str, own: Sequence[str]) -> bool:

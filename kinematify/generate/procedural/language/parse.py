@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.language.words import Token
 
 _WITH = ("with", "having", "has", "have", "featuring", "including", "containing", "plus", "carrying", "holding")
-_JOINERS = ("and", ",", ";", ":", ".", "or", "but", "also", "as", "well", "then")
+_JOINERS = ("and", ",", ";", ":", ".", "or", "but", "also", "as", "well", "then", "except")
 _RELATIVE = ("that", "which", "who")
 _PREPOSITIONS = (
     "on", "at", "in", "inside", "under", "underneath", "below", "beneath", "above", "over", "behind", "beside",
@@ -50,7 +50,22 @@ _BEING = ("is", "are", "can", "could", "be", "may", "will", "each", "all", "both
 _CAN = ("be", "can", "to", "may")
 _PULLED = ("pulled", "slid", "swung")
 """With `out` they are as good as opened."""
-_DETERMINERS = ("a", "an", "the", "its", "their", "some", "any", "each", "every", "both", "all", "other", "another")
+_DETERMINERS = (
+    "a",
+    "an",
+    "the",
+    "its",
+    "their",
+    "some",
+    "any",
+    "each",
+    "every",
+    "both",
+    "all",
+    "other",
+    "another",
+    "either",
+)
 PLACES = (
     "left", "right", "top", "bottom", "front", "back", "rear", "upper", "lower", "middle", "side", "underside",
     "inside",
@@ -396,6 +411,8 @@ class _Parser(Words):
             if part.nouns and (word in _BEING or word in _PULLED or self._verb_at(k) or word in WAYS or word in PLACES):
                 break
             taken = self._look_or_size(k, part) or self._described(k, part)
+            if word in ("every", "each", "either") and part is not self.whole:
+                part.count = None
             if not taken and word.isalpha() and word not in _DETERMINERS and word not in _NO_NOUN:
                 if word in STOP_WORDS and part.nouns:
                     break
@@ -467,10 +484,14 @@ class _Parser(Words):
             self.claim(part, "like", "mirrored", k)
             return 1
         is_purpose = word in PURPOSES and self._noun_behind(k)  # a paper tray
-        if word in _MATERIAL_WORDS and not is_purpose and not (part is not self.whole and word == "mirror"):
+        if word in _MATERIAL_WORDS and not is_purpose and not self._is_mirror(k, part):
             self.claim(part, "material", _MATERIAL_WORDS[word], k)
             return 1
         return self._size(k, part)
+
+    def _is_mirror(self, k: int, part: _Draft) -> bool:
+        """Whether a mirror is meant, and not what something is made of."""
+        return self.given(k) == "mirror" and (part is not self.whole or not self._noun_behind(k))
 
     def _size(self, k: int, part: _Draft) -> int:
         """`60 cm wide`, `a height of 2 m`, `15 cm`; how many words."""
@@ -553,6 +574,8 @@ class _Parser(Words):
         elif target.nouns:
             how = "each" if self.given(k + 1) in ("each", "every") else self.given(k)
             self.claim(self.current, "relation", (how, noun), *range(k, end))
+            if any(claim.about == "count" for claim in target.claims):
+                self.parts.append(target)
         else:
             self.current.claims += target.claims
         return max(end, k + 1)

@@ -28,7 +28,7 @@ from kinematify.generate.procedural.language.sizes import (
     read_size_words,
     read_sizes,
 )
-from kinematify.generate.procedural.language.words import CHOICES, OPENNESS, singular, tokens_of
+from kinematify.generate.procedural.language.words import CHOICES, KINDS, NUMBERS, OPENNESS, singular, tokens_of
 from kinematify.generate.procedural.layout import CELLS
 from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS
 
@@ -48,6 +48,7 @@ _PLACES = {
 }
 _NOT = ("no", "without")
 _SWINGS = {"hinged", "hinge", "hinges", "opens", "opening", "swings"}
+_DOUBLED = ("leaves", "sashes", "doors")
 _SIZE = 0.02  # of a size, by which it may be off
 _ABSURD = 4.0  # times out of its range, something is no such object
 
@@ -92,6 +93,7 @@ def understand(specification: Specification, family: Family) -> Understanding:
         read_grids,
         read_counts,
         read_counted_name,
+        _double,
         _choices,
         _parts_it_has,
         read_bare_length,
@@ -115,6 +117,14 @@ def understand(specification: Specification, family: Family) -> Understanding:
         overall=reading.overall,
         copies=reading.copies,
     )
+
+
+def _double(reading: ParseState) -> None:
+    """`a double gate` has two leaves."""
+    for k in range(min(reading.named)):
+        parameter = next((p for p in reading.family.parameters if p.name in _DOUBLED), None)
+        if reading.text(k) in KINDS and k not in reading.used and parameter and parameter.name not in reading.values:
+            reading.take(parameter.name, NUMBERS[reading.text(k)], reading.text(k), k)
 
 
 def _fit_sizes(reading: ParseState, parts: PartReader) -> None:

@@ -87,7 +87,7 @@ _WRITTEN = (
     (r"\bw/", "with"),
     ("&", "and"),
     (r"\b(?:one|each)? ?(?:above|below|under|over|on top of) (?:the|each|one) (?:other|another)\b", "stacked"),
-    (r"\b(in|on|of|for|to) both\b(?= \w+s\b)", r"\1 each"),
+    (r"\b(in|on|of|for|to) both\b(?! sides)(?= \w+s\b)", r"\1 each"),
     *((rf"\b{body}[ -](?:high|tall)\b", f"{cm} cm tall") for body, cm in _BODY_CM.items()),
     (r"\b(?<!garage )(doors?|shutters?) (?:that|which) (?:can )?rolls? up\b", r"roll up \1"),
     (r"\b(?:that|which) stays? open\b", ""),
