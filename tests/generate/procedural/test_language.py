@@ -68,6 +68,45 @@ def test_what_is_not_built_is_listed_and_the_rest_is_built():
     assert made.facts["not_built"] == ["holographic projector"]
 
 
+def test_a_mechanism_that_the_object_lacks_is_put_on_a_free_side():
+    made = from_text("a dishwasher with a red knob").made()
+    knob = made.blueprint.joint_above["knob"]
+    assert (made.not_built, knob.parent, knob.kind) == ((), "knob_plate", JointType.REVOLUTE)
+    parts = {part.name: part for part in made.blueprint.parts}
+    assert parts["knob"].color == COLORS["red"]
+    body = parts[made.blueprint.root].bounds
+    assert np.abs(parts["knob_plate"].bounds[:, None] - body[None]).min() < 0.002  # flush with one of its sides
+    assert said_of("a dishwasher with a bell") == "bell"
+
+
+def test_one_part_may_look_otherwise_than_its_siblings():
+    made = from_text("a chest of drawers where every drawer is white except the bottom one, which is oak").made()
+    drawers = {part.name: part for part in made.blueprint.parts if part.name.startswith("drawer")}
+    bottom = min(drawers, key=lambda name: drawers[name].bounds[0, 2])
+    assert drawers.pop(bottom).density == MATERIALS["oak"].density
+    assert {part.color for part in drawers.values()} == {COLORS["white"]}
+    assert made.not_built == ()
+
+
+def test_parts_are_called_as_the_sentence_calls_them():
+    made = from_text("an IV pole with a telescopic rod").made()
+    assert made.blueprint.joint_above["rod"].kind is JointType.PRISMATIC
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("a parasol that tilts", "tilts"),
+        ("a bicycle with pedals", "pedals"),
+        ("a cabinet without a front", "without"),
+        ("an ironing board with folding legs", "in one part"),
+        ("an office chair with armrests that go up and down", "armrests"),
+    ],
+)
+def test_what_was_measured_and_does_not_hold_is_listed(text, words):
+    assert words in said_of(text)
+
+
 def test_parsing_builds_nothing_and_says_what_it_understood():
     sentence = from_text("a pedal bin 65 cm high where the lid opens, with a red pedal")
     assert str(sentence.specifications[0]) == "pedal bin (height 0.65 m); lid (opens); pedal (red)"

@@ -51,21 +51,8 @@ _CAN = ("be", "can", "to", "may")
 _PULLED = ("pulled", "slid", "swung")
 """With `out` they are as good as opened."""
 _DETERMINERS = (
-    "a",
-    "an",
-    "the",
-    "its",
-    "their",
-    "some",
-    "any",
-    "each",
-    "every",
-    "both",
-    "all",
-    "other",
-    "another",
-    "either",
-)
+    "a", "an", "the", "its", "their", "some", "any", "each", "every", "both", "all", "other", "another", "either",
+)  # fmt: skip
 PLACES = (
     "left", "right", "top", "bottom", "front", "back", "rear", "upper", "lower", "middle", "side", "underside",
     "inside",
@@ -574,7 +561,7 @@ class _Parser(Words):
         elif target.nouns:
             how = "each" if self.given(k + 1) in ("each", "every") else self.given(k)
             self.claim(self.current, "relation", (how, noun), *range(k, end))
-            if any(claim.about == "count" for claim in target.claims):
+            if noun.split()[-1] not in PLACES and any(claim.about == "count" for claim in target.claims):
                 self.parts.append(target)
         else:
             self.current.claims += target.claims
