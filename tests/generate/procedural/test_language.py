@@ -21,11 +21,9 @@ from kinematify.robot.joint_type import JointType
 from tests.sentences import said_of
 
 EXACT_SHARE = 0.9
-SENSELESS_SHARE = 0.8
-"""The library has a door handle, a laptop bag and a box truck since that list was written."""
 KNOWN_WRONG = {
-    "written": 4, "fresh": 1, "heldout_2": 3, "heldout_6": 1, "composed": 3, "other_words": 1, "new": 3, "heldout_1": 5,
-    "heldout_3": 1, "heldout_5": 2, "heldout_7": 10, "senseless": 4,
+    "fresh": 1, "heldout_2": 2, "heldout_6": 1, "composed": 3, "new": 1, "heldout_1": 1, "heldout_5": 1, "heldout_7": 3,
+    "heldout_8": 1,
 }  # fmt: skip
 """Sentences of each list that build something else without a word; they only decrease. The aim is none."""
 
@@ -41,8 +39,7 @@ def test_sentences_come_out_as_a_reader_expects_or_are_refused(name):
     wrong = [record for record in records if record["came"] == WRONG]
     assert len(wrong) <= KNOWN_WRONG.get(name, 0), wrong
     if name in ("written", "other_words", "senseless"):
-        share = SENSELESS_SHARE if name == "senseless" else EXACT_SHARE
-        assert sum(record["came"] == RIGHT for record in records) >= share * len(records)
+        assert sum(record["came"] == RIGHT for record in records) >= EXACT_SHARE * len(records)
 
 
 def test_every_name_of_an_object_names_it():

@@ -63,7 +63,6 @@ _MOVING = frozenset({
 """Parts that move wherever they are."""
 _NUMBERED = re.compile(r"(?:_(?:\d+|left|right))+$")
 _LOOKS = ("color", "material")
-_CHAIN = re.compile(r"(.*_\d+)_\d+$")
 _MEASURED = ("size", "moves", "way", "hinge", "place", "relation", "color", "material", "open", "like", "count")
 """What is said of a part that is there, and can be measured of it."""
 _ABOVE = {"above": 1, "over": 1, "below": -1, "under": -1, "beneath": -1, "underneath": -1}
@@ -170,8 +169,10 @@ class _Compared:
         """How many there are: all that are called so, those of one name, or as many as a parameter says."""
         stems = Counter(_stem(part.name) for part in found)
         words = {word for group in _SYNONYMS if noun.rsplit(maxsplit=1)[-1] in group for word in group} | {noun}
-        chains = [_CHAIN.match(part.name) for part in found]  # of a finger with three links
-        numbers: set[int | None] = {len(found), *stems.values(), len({chain[1] for chain in chains if chain})}
+        names = {part.name for part in found}  # a finger has three links
+        chains = [name for name in names if name in self.made.joint_above]
+        chains = [name for name in chains if self.made.joint_above[name].parent not in names]
+        numbers: set[int | None] = {len(found), *stems.values(), len(chains)}
         return numbers if noun.rsplit(maxsplit=1)[-1] in stems else numbers | set(map(self.counted, sorted(words)))
 
     # ---- what is said of them --------------------------------------------------------------------------------------
@@ -265,6 +266,8 @@ class _Compared:
         elif said is not None:
             words, at = f"{said.words} {there.words}", frozenset((*said.at, there.at[-1]))
             self.missing.append(Missing(words=words, at=at, reason=built, is_sure=bool(found)))
+        elif _on_sides(part) and len(found) == 1:
+            self._miss(f"{there.words} on each side", there.at, built)
         elif part.count is None and len(found) == 1 and not self.counted(part.noun):
             self._miss(_said(part), there.at, "in one part")
         elif part.count == 1 and alone and not part.of and found and 1 not in numbers and not _on_sides(part):

@@ -60,6 +60,8 @@ PLACES = (
 )  # fmt: skip
 _MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word in material.words}
 _UNDER_WHOLE = ("wheel", "caster", "castor", "leg", "foot", "roller", "runner", "base", "stand", "track", "skid")
+_GROUPS = ("row", "column", "stack", "grid", "pair", "set", "bank", "line")
+"""What is counted behind them is counted in each."""
 _ADJUSTABLE = ("adjustable", "variable", "changeable")
 _MEASURES = {"height": "up", "angle": "", "length": "", "width": "", "tilt": "", "reach": "", "position": "", "arm": ""}
 FUNCTION_WORDS = frozenset(
@@ -561,7 +563,8 @@ class _Parser(Words):
         elif target.nouns:
             how = "each" if self.given(k + 1) in ("each", "every") else self.given(k)
             self.claim(self.current, "relation", (how, noun), *range(k, end))
-            if noun.split()[-1] not in PLACES and any(claim.about == "count" for claim in target.claims):
+            counted = any(claim.about == "count" for claim in target.claims)
+            if counted and noun.split()[-1] not in PLACES and self.noun(self.current) not in _GROUPS:
                 self.parts.append(target)
         else:
             self.current.claims += target.claims
