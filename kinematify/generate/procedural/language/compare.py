@@ -173,6 +173,8 @@ class _Compared:
         chains = [name for name in names if name in self.made.joint_above]
         chains = [name for name in chains if self.made.joint_above[name].parent not in names]
         numbers: set[int | None] = {len(found), *stems.values(), len(chains)}
+        copies = self.specification.whole.count or 1
+        numbers |= {number // copies for number in numbers if number is not None and number % copies == 0}
         return numbers if noun.rsplit(maxsplit=1)[-1] in stems else numbers | set(map(self.counted, sorted(words)))
 
     # ---- what is said of them --------------------------------------------------------------------------------------
