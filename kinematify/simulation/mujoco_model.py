@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 _RESERVED = "world"
 """MuJoCo's name of the outside; a link of this name is loaded under another one."""
+PIN_SOLREF, PIN_SOLIMP = (0.004, 1.0), (0.99, 0.999, 1.0e-4)
+"""Of pins, as MJCF exports have them (`kinematify.formats.mjcf`)."""
 _ROWS_PER_THREAD = 150
 """Fewer rows are done before a thread has started."""
 
@@ -104,7 +106,19 @@ def parse(urdf: Path, mechanism: LeaderMechanism, *, step: float) -> ParsedModel
     for number, geom in enumerate(spec.geoms):
         geom.name = f"kinematify geom {number}"
     names = tuple(stand_in if name == _RESERVED else name for name in mechanism.links)
+    _close_loops(spec, names, mechanism)
     return ParsedModel(spec=spec, names=names, mechanism=mechanism, step=step)
+
+
+def _close_loops(spec: mujoco.MjSpec, names: tuple[str, ...], mechanism: LeaderMechanism) -> None:
+    """Hold both ends of every loop together, which a URDF cannot tell MuJoCo."""
+    for loop in mechanism.robot.loops:
+        first, second = (names[mechanism.links.index(link)] for link in loop.links)
+        pin = spec.add_equality(
+            name=loop.name, type=mujoco.mjtEq.mjEQ_CONNECT, objtype=mujoco.mjtObj.mjOBJ_BODY, name1=first, name2=second
+        )
+        pin.data[:3] = loop.points[0]
+        pin.solref[:2], pin.solimp[:3] = PIN_SOLREF, PIN_SOLIMP
 
 
 def set_options(spec: mujoco.MjSpec, step: float) -> None:

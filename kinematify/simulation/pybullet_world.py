@@ -37,6 +37,8 @@ _HULL_MARGIN = 1e-3
 _LARGE_INERTIA = 0.1
 """Principal moments [kg m^2] below it are never refused."""
 _BASE = -1
+_PIN_FORCE = 1e6
+"""Of a pin that closes a loop [N]: it never gives way."""
 
 
 class Client:
@@ -201,6 +203,33 @@ class PybulletBody:
         state = self.client.getLinkState(self.body, index, computeForwardKinematics=1)
         return pose_of(state[0], state[1])
 
+    def close_loops(self) -> None:
+        """Hold both ends of every loop together (`createConstraint`), and free the joints that a loop moves."""
+        robot = self.mechanism.robot
+        for loop in robot.loops:
+            ends = [
+                (self.index_of(link), self._from_centre(link, point).tolist())
+                for link, point in zip(loop.links, loop.points, strict=True)
+            ]
+            (parent, at), (child, its) = ends
+            pin = self.client.createConstraint(
+                self.body, parent, self.body, child, bullet.JOINT_POINT2POINT, [0.0, 0.0, 0.0], at, its
+            )
+            self.client.changeConstraint(pin, maxForce=_PIN_FORCE)
+        for index in self.passive:
+            self.client.setJointMotorControl2(self.body, index, bullet.VELOCITY_CONTROL, force=0.0)
+
+    @cached_property
+    def passive(self) -> tuple[int, ...]:
+        """PyBullet's indices of the joints that loops move, and no motor."""
+        joints = zip(self.mechanism.joints, self.indices, strict=True)
+        return tuple(index for name, index in joints if self.mechanism.robot.joint_by_name[name].closure is not None)
+
+    def _from_centre(self, link: str, point: FloatArray) -> FloatArray:
+        """A point of a link's frame in the frame of its centre of mass, which constraints are stated in [m], (3,)."""
+        info = self.client.getDynamicsInfo(self.body, self.index_of(link))
+        return np.asarray((np.linalg.inv(pose_of(info[3], info[4])) @ np.append(point, 1.0))[:3])
+
     def release(self, *, ideal: bool = False) -> None:
         """Switch all motors off, which are on from the start; `ideal`: damping and friction too."""
         for index in self.indices:
@@ -266,6 +295,8 @@ def load(
     loaded = _loaded(connect(step), mechanism, urdf, useFixedBase=fixed, flags=_FLAGS)
     if looking:
         loaded = replace(loaded, mass_scale=_scaled_down(loaded))
+    elif loaded.complete:
+        loaded.close_loops()
     if loaded.complete:
         loaded.act(_welded_pairs(mechanism), on=False)
     return loaded
