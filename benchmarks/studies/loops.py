@@ -4,7 +4,8 @@ Linkages are drawn, cut into their parts, and inferred from these alone. *Found*
 the linkage has independent loops, and the chain moves as freely as the true one. *Exported*: the MJCF and the URDF hold
 all of them. *Closed*: in the engine, the joint that drives the chain is moved from rest to both ends by its own motor
 (MuJoCo, from the exported MJCF) or by a force of the same size (Drake, from the URDF), gravity and contacts on, weight
-and friction of the whole chain made up for, and neither end of a pin is ever farther from the other than 0.1 % of the diagonal; the way must be made to 90 %.
+and friction of the whole chain made up for, and neither end of a pin is ever farther from the other than 0.1 % of the
+diagonal; the way must be made to 90 %.
 
 The linkages are ours: they were drawn for this study, with modelled pins and holes, and seen while the code was
 written: in-sample.
@@ -52,8 +53,6 @@ _STEP = 1.0e-3
 """Of Drake [s]; MuJoCo has that of the file."""
 _PACE = 2.0 * np.pi * 10.0
 """Of the servo [rad/s]."""
-_NEAR = 1.0e-3
-"""Over which slopes of chains are taken [rad or m]."""
 
 
 class LoopOptions(Options):
@@ -183,7 +182,7 @@ def _in_mujoco(xml: Path, robot: Robot) -> Iterator[Way]:
             mujoco.mj_step1(model, data)
             mujoco.mj_fullM(model, data, inertia)
             aim, speed = chain.aims(driver, rest, end, step / steps)
-            leads = chain.leads(data.qpos[qpos][chain.columns])
+            leads = chain.mechanism.leads_at(data.qpos[qpos][chain.columns])
             stiffness, damping = _gains(np.diag(leads.T @ inertia[np.ix_(dof, dof)] @ leads))
             push = stiffness * (aim - data.qpos[qpos][chain.columns]) + damping * (
                 speed - data.qvel[dof][chain.columns]
@@ -204,12 +203,6 @@ class _Chain:
         self.leaders = [travel.joint for travel in self.mechanism.travels]
         self.columns = [self.mechanism.joints.index(name) for name in self.leaders]
         self.start = self.mechanism.all_values(self.mechanism.rest[None])[0]
-
-    def leads(self, values: FloatArray) -> FloatArray:
-        """Motion of every joint per motion of each leader where the leaders are at `values`, shape (joints, leaders)."""
-        steps = _NEAR * np.eye(len(values))
-        ahead, behind = (self.mechanism.all_values(values + sign * steps) for sign in (1.0, -1.0))
-        return np.asarray((ahead - behind).T / (2.0 * _NEAR))
 
     def aims(self, driver: str, rest: float, end: float, share: float) -> tuple[FloatArray, FloatArray]:
         """Where the leaders are to be, and how fast; all but the driver are held."""
@@ -257,7 +250,7 @@ def _in_drake(urdf: Path, robot: Robot) -> Iterator[Way]:
         none = np.zeros(len(chain.leaders))
         plant, _, _ = built(none, none)
         dofs = [plant.GetJointByName(name).velocity_start() for name in chain.mechanism.joints]
-        stiffness, damping = _gains(_largest_inertia(plant, chain, dofs, driver, rest, end))
+        stiffness, damping = _gains(_largest_inertia(plant, chain, driver, np.linspace(rest, end, 9)))
         plant, instance, diagram = built(stiffness, damping)
         simulator = Simulator(diagram)
         root = simulator.get_mutable_context()
@@ -270,7 +263,7 @@ def _in_drake(urdf: Path, robot: Robot) -> Iterator[Way]:
         worst, steps, stride = 0.0, round(_SECONDS / _STEP), 5
         for step in range(0, steps, stride):
             aim, speed = chain.aims(driver, rest, end, step / steps)
-            leads = chain.leads(plant.GetPositions(context)[places][chain.columns])
+            leads = chain.mechanism.leads_at(plant.GetPositions(context)[places][chain.columns])
             weight = leads.T @ -plant.CalcGravityGeneralizedForces(context)[dofs]
             wished.FixValue(context, [*(aim + weight / stiffness), *speed])
             simulator.AdvanceTo((step + stride) * _STEP)
@@ -281,19 +274,18 @@ def _in_drake(urdf: Path, robot: Robot) -> Iterator[Way]:
                   gap=worst, reached=made)  # fmt: skip
 
 
-def _largest_inertia(
-    plant: Any, chain: _Chain, dofs: Sequence[int], driver: str, rest: float, end: float
-) -> FloatArray:
-    """What each leader moves at most on the way of a driver [kg or kg m^2], shape (leaders,)."""
+def _largest_inertia(plant: Any, chain: _Chain, driver: str, way: FloatArray) -> FloatArray:
+    """What each leader moves at most where a driver has the values of its way [kg or kg m^2], shape (leaders,)."""
     context, most = plant.CreateDefaultContext(), np.zeros(len(chain.leaders))
-    for value in np.linspace(rest, end, 9):
+    dofs = [plant.GetJointByName(name).velocity_start() for name in chain.mechanism.joints]
+    for value in way:
         leaders = chain.mechanism.rest.copy()
         leaders[chain.leaders.index(driver)] = value
         places = plant.GetPositions(context)
         for name, one in zip(chain.mechanism.joints, chain.mechanism.all_values(leaders[None])[0], strict=True):
             places[plant.GetJointByName(name).position_start()] = one
         plant.SetPositions(context, places)
-        leads, inertia = chain.leads(leaders), plant.CalcMassMatrix(context)
+        leads, inertia = chain.mechanism.leads_at(leaders), plant.CalcMassMatrix(context)
         most = np.maximum(most, np.diag(leads.T @ inertia[np.ix_(dofs, dofs)] @ leads))
     return most
 

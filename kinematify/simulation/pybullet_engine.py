@@ -276,7 +276,7 @@ class _Run:
         """Place the model at rest."""
         self._model, self._world, self.mechanism = model, world, world.mechanism
         self._leaders = [self.mechanism.joints.index(travel.joint) for travel in self.mechanism.travels]
-        passive = {world.indices.index(index) for index in world.passive}
+        passive = {self.mechanism.joints.index(name) for name in world.passive}
         self._followers = [k for k in range(len(self.mechanism.joints)) if k not in {*self._leaders, *passive}]
         self.failure: tuple[str, ...] = ()
         world.place(model.values_at_rest)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pybullet as bullet
 
+from kinematify.robot.mechanism import LeaderMechanism, joints_between
 from kinematify.robot.transforms import quaternion_of
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import Contacts, deepest
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.mechanism import LeaderMechanism
+    from kinematify.robot.robot import Robot
 
 _FLAGS = (
     bullet.URDF_USE_SELF_COLLISION
@@ -44,12 +45,13 @@ _PIN_FORCE = 1e6
 class Client:
     """A world, with PyBullet's functions for it; it is freed when nothing refers to it any more."""
 
-    def __init__(self) -> None:
-        """Connect to a new world, in this process."""
-        number = bullet.connect(bullet.DIRECT)
+    def __init__(self, connected: int | None = None) -> None:
+        """Connect to a new world, in this process; `connected`: use a world of somebody else, and leave it open."""
+        number = bullet.connect(bullet.DIRECT) if connected is None else connected
         self._named = {"physicsClientId": number}
-        self.disconnect = weakref.finalize(self, bullet.disconnect, physicsClientId=number)
-        """Frees it now, once: PyBullet gives the same number to the next one."""
+        if connected is None:
+            self.disconnect = weakref.finalize(self, bullet.disconnect, physicsClientId=number)
+            """Frees it now, once: PyBullet gives the same number to the next one."""
 
     def __getattr__(self, name: str) -> Any:
         """A function of PyBullet in this world."""
@@ -203,32 +205,44 @@ class PybulletBody:
         state = self.client.getLinkState(self.body, index, computeForwardKinematics=1)
         return pose_of(state[0], state[1])
 
-    def close_loops(self) -> None:
-        """Hold both ends of every loop together (`createConstraint`), and free the joints that a loop moves."""
+    def close_loops(self, *, motors: bool = True) -> None:
+        """Hold both ends of every loop together (`createConstraint`), and free the joints that the loop moves.
+
+        Args:
+            motors: The motors of <mimic> joints are driven: no pin is added where they close the loop.
+        """
         robot = self.mechanism.robot
         for loop in robot.loops:
-            ends = [
-                (self.index_of(link), self._from_centre(link, point).tolist())
-                for link, point in zip(loop.links, loop.points, strict=True)
-            ]
-            (parent, at), (child, its) = ends
+            moved = [robot.joint_by_name[name] for name in joints_between(robot, loop.links)]
+            if motors and all(joint.closure is None for joint in moved):
+                continue
+            parent, child = map(self.index_of, loop.links)
+            at, its = (self._from_centre(link, point) for link, point in zip(loop.links, loop.points, strict=True))
             pin = self.client.createConstraint(
                 self.body, parent, self.body, child, bullet.JOINT_POINT2POINT, [0.0, 0.0, 0.0], at, its
             )
             self.client.changeConstraint(pin, maxForce=_PIN_FORCE)
-        for index in self.passive:
-            self.client.setJointMotorControl2(self.body, index, bullet.VELOCITY_CONTROL, force=0.0)
+            for joint in moved if not motors else ():
+                if not joint.leads:
+                    self._free_motor(joint.name)
+        for name in self.passive:
+            self._free_motor(name)
 
     @cached_property
-    def passive(self) -> tuple[int, ...]:
-        """PyBullet's indices of the joints that loops move, and no motor."""
-        joints = zip(self.mechanism.joints, self.indices, strict=True)
-        return tuple(index for name, index in joints if self.mechanism.robot.joint_by_name[name].closure is not None)
+    def passive(self) -> tuple[str, ...]:
+        """Joints that loops move along curves, and no motor."""
+        joints = self.mechanism.robot.joint_by_name
+        return tuple(name for name in self.mechanism.joints if joints[name].closure is not None)
 
-    def _from_centre(self, link: str, point: FloatArray) -> FloatArray:
-        """A point of a link's frame in the frame of its centre of mass, which constraints are stated in [m], (3,)."""
+    def _free_motor(self, joint: str) -> None:
+        index = self.indices[self.mechanism.joints.index(joint)]
+        self.client.setJointMotorControl2(self.body, index, bullet.VELOCITY_CONTROL, force=0.0)
+
+    def _from_centre(self, link: str, point: FloatArray) -> list[float]:
+        """A point of a link's frame in the frame of its centre of mass, in which constraints are stated [m]."""
         info = self.client.getDynamicsInfo(self.body, self.index_of(link))
-        return np.asarray((np.linalg.inv(pose_of(info[3], info[4])) @ np.append(point, 1.0))[:3])
+        found: list[float] = (np.linalg.inv(pose_of(info[3], info[4])) @ np.append(point, 1.0))[:3].tolist()
+        return found
 
     def release(self, *, ideal: bool = False) -> None:
         """Switch all motors off, which are on from the start; `ideal`: damping and friction too."""
@@ -300,6 +314,23 @@ def load(
     if loaded.complete:
         loaded.act(_welded_pairs(mechanism), on=False)
     return loaded
+
+
+def load_with_loops(client: int, robot: Robot, urdf: Path) -> int:
+    """Load a file into a world that is connected, its root fixed and its loops closed; returns PyBullet's number of it.
+
+    Args:
+        client: PyBullet's number of the world.
+        robot: What is in the file.
+        urdf: The file.
+
+    Raises:
+        Refused: PyBullet cannot.
+    """
+    loaded = _loaded(Client(client), LeaderMechanism(robot=robot), urdf, useFixedBase=True)
+    if loaded.complete:
+        loaded.close_loops(motors=False)
+    return loaded.body
 
 
 def load_at(
