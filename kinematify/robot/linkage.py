@@ -76,7 +76,7 @@ def loop_gaps(robot: Robot, q: dict[str, float]) -> dict[str, float]:
 
 
 def without_followers(robot: Robot) -> Robot:
-    """Return the robot with every joint free, so that `loop_gaps` takes the values of all joints as an engine has them."""
+    """Return the robot with every joint free: `loop_gaps` then takes the values of all joints that an engine has."""
     return replace(robot, joints=tuple(replace(joint, mimic=None, closure=None) for joint in robot.joints))
 
 
