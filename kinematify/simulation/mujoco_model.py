@@ -111,7 +111,7 @@ def parse(urdf: Path, mechanism: LeaderMechanism, *, step: float) -> ParsedModel
 
 
 def _close_loops(spec: mujoco.MjSpec, names: tuple[str, ...], mechanism: LeaderMechanism) -> None:
-    """Hold both ends of every loop together, which a URDF cannot tell MuJoCo."""
+    """Hold both ends of every loop together, which MuJoCo does not read in a URDF."""
     for loop in mechanism.robot.loops:
         first, second = (names[mechanism.links.index(link)] for link in loop.links)
         pin = spec.add_equality(

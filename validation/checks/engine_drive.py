@@ -144,7 +144,7 @@ def limits_hold(result: OpenCheck, context: EngineContext) -> None:
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     follows={"KV230": CauseScope.MODEL},
-    needs=(nothing_closes, not_driven),
+    needs=(nothing_moves, nothing_closes, not_driven),
 )
 def loops_stay_closed(result: OpenCheck, context: EngineContext) -> None:
     """On the way of each driven joint, both ends of every loop stay within physics.loop_gap of the model's size of each
