@@ -297,26 +297,29 @@ _Part = tuple["FloatArray", "IntArray", "IntArray", "FloatArray", "FloatArray", 
 
 def _measure_rows(loaded: CompiledModel, values: FloatArray, rows: IntArray, dynamic: int) -> _Part:
     model, data = loaded.model, mujoco.MjData(loaded.model)
-    qpos, bodies = loaded.qpos, loaded.body
-    poses = np.tile(np.eye(4), (len(rows), len(loaded.body), 1, 1))
-    gravity = np.zeros((len(rows), model.nv))
+    configurations = np.tile(data.qpos, (len(rows), 1))
+    configurations[:, loaded.qpos] = values[rows]
+    turns, places = np.empty((len(rows), model.nbody, 9)), np.empty((len(rows), model.nbody, 3))
+    gravity, counts = np.zeros((len(rows), model.nv)), np.zeros(len(rows), dtype=np.int64)
     matrices: list[FloatArray] = []
-    found: list[tuple[IntArray, IntArray, FloatArray]] = []
+    found: list[tuple[IntArray, FloatArray]] = []
     for k, row in enumerate(rows):
-        data.qpos[qpos] = values[row]
+        data.qpos[:] = configurations[k]
         mujoco.mj_fwdPosition(model, data)
         mujoco.mj_rne(model, data, 0, gravity[k])
-        poses[k, :, :3, :3] = data.xmat[bodies].reshape(-1, 3, 3)
-        poses[k, :, :3, 3] = data.xpos[bodies]
+        turns[k], places[k], counts[k] = data.xmat, data.xpos, data.ncon
         if data.ncon:
-            found.append((np.full(data.ncon, row), data.contact.geom.copy(), -data.contact.dist))
+            contact = data.contact
+            found.append((contact.geom.copy(), -contact.dist))
         if row < dynamic:
             matrices.append(_mass_matrix(loaded, data))
-    row_of, geoms, depth = (np.concatenate([item[k] for item in found] or [np.zeros(0)]) for k in range(3))
+    bodies, size = loaded.body, len(loaded.joint)
+    poses = np.tile(np.eye(4), (len(rows), len(bodies), 1, 1))
+    poses[..., :3, :3], poses[..., :3, 3] = turns[:, bodies].reshape(len(rows), -1, 3, 3), places[:, bodies]
+    geoms, depth = (np.concatenate([item[k] for item in found] or [np.zeros(0)]) for k in range(2))
     links = loaded.link_of_body[model.geom_bodyid][geoms.reshape(-1, 2).astype(np.int64)]
-    size = len(loaded.joint)
     inertia = np.array(matrices).reshape(len(matrices), size, size)
-    return poses, row_of.astype(np.int64), links, depth, gravity[:, loaded.dof], inertia
+    return poses, np.repeat(rows, counts), links, depth, gravity[:, loaded.dof], inertia
 
 
 def _mass_matrix(loaded: CompiledModel, data: mujoco.MjData) -> FloatArray:
