@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.options import collision_option, complete_categories, examples
+from kinematify.cli.options import collision_option, complete_categories, examples, scale_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 
@@ -89,7 +89,7 @@ if TYPE_CHECKING:
 )
 @click.option("--resend", is_flag=True, help="Send steps again that failed, or of which no answer is known.")
 @click.option("--up", type=click.Choice(["auto", "y", "z"]), default="auto", help="Axis that points up in the parts.")
-@click.option("--scale", type=float, default=1.0, metavar="FACTOR", help="Metres per unit of the parts.")
+@scale_option
 @click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder to make.")
 @click.option("--strict", is_flag=True, help="Write nothing unless all that the sentence asks for is built.")
 @click.option("--infer", "inferred", is_flag=True, help="Find the joints again from the parts alone, and compare.")
@@ -121,7 +121,7 @@ def command(
     replay: Path | None,
     resend: bool,
     up: str,
-    scale: float,
+    scale: float | None,
     out: Path | None,
     strict: bool,
     inferred: bool,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -32,6 +32,29 @@ collision_option = click.option(
     type=click.Choice(["auto", "mesh"]),
     help="Collision geometry: boxes and convex pieces carved by the motion (auto, the configuration's), or the visual "
     "meshes, of which engines take the hulls.",
+)
+
+
+class _Scale(click.ParamType):
+    """``auto``, which is None, or metres per unit."""
+
+    name = "auto|metres"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float | None:
+        """Return metres per unit; None: what the file states."""
+        try:
+            return None if value == "auto" else float(value)
+        except ValueError:
+            self.fail(f"{value!r} is no number. Give auto, or metres per unit: 0.001 for millimetres.", param, ctx)
+
+
+scale_option = click.option(
+    "--scale",
+    type=_Scale(),
+    default="auto",
+    show_default=True,
+    metavar="auto|NUMBER",
+    help="Metres per unit of the input; auto: the unit that a file states, else metres.",
 )
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import colorsys
 import math
 from typing import TYPE_CHECKING, Any
 
@@ -26,15 +25,15 @@ _STEPS = 65535
 _SMALLEST = 1e-9
 _ASIDE = 0.6
 """Camera beside the direction in which parts move [rad]: a drawer seen from its front hides its own way."""
-_GOLDEN = 0.61803398875  # turns of hue: neighbours in order differ
 
 
-def view_data(robot: Robot, *, faces: int) -> dict[str, Any] | None:
+def view_data(robot: Robot, *, faces: int, colors: Mapping[str, FloatArray]) -> dict[str, Any] | None:
     """Return the object as JSON values; None if it has no geometry.
 
     Args:
         robot: As described; meshes in link frames.
         faces: About how many triangles the whole may have.
+        colors: Of every body by its top link, sRGB in [0, 1], shape (3,).
     """
     groups = rigid_groups(robot)
     T_root_link = forward_kinematics(robot, {joint.name: 0.0 for joint in robot.joints if joint.mimic is None})
@@ -47,7 +46,7 @@ def view_data(robot: Robot, *, faces: int) -> dict[str, Any] | None:
     bodies = [
         {
             "links": list(group.links),
-            "color": _color(index),
+            "color": np.round(colors[group.top], 3).tolist(),
             **_placed(robot, groups, index, T_root_link),
             **_packed(*_decimated(vertices, triangles, share=faces / total)),
         }
@@ -184,10 +183,3 @@ def _packed(vertices: FloatArray, faces: IntArray) -> dict[str, Any]:
 
 def _base64(values: np.ndarray[Any, Any]) -> str:
     return base64.b64encode(values.tobytes()).decode("ascii")
-
-
-def _color(index: int) -> list[float]:
-    """A light grey for the root, then hues that differ from one body to the next, sRGB in [0, 1]."""
-    if index == 0:
-        return [0.78, 0.77, 0.75]
-    return [round(value, 3) for value in colorsys.hls_to_rgb((0.08 + index * _GOLDEN) % 1.0, 0.62, 0.5)]

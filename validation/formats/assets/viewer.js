@@ -137,10 +137,12 @@ class Viewer {
     for (const slider of this.sliders) if (slider.dataset.joint === name) slider.value = value;
     this.draw();
   }
-  show(q, links) {
+  show(q, links, joint = null) {
     this.stop();
     for (const joint of this.scene.joints) this.set(joint.name, joint.name in q ? q[joint.name] : joint.rest);
-    this.marked = new Set(links);
+    const names = this.scene.joints.map(item => item.name);
+    const moved = this.scene.bodies.filter(body => joint !== null && names[body.joint] === joint);
+    this.marked = new Set([...links, ...moved.flatMap(body => body.links)]);
     this.selected = null;
     this.draw();
   }
@@ -266,7 +268,7 @@ document.addEventListener('click', event => {
   if (!button) return;
   const viewer = viewers.find(v => v.root.dataset.scene === button.dataset.scene), told = JSON.parse(button.dataset.show);
   if (!viewer || !viewer.gl) return;
-  viewer.show(told.q, told.links);
+  viewer.show(told.q, told.links, told.joint);
   viewer.canvas.scrollIntoView({ block: 'center' });
   viewer.canvas.focus({ preventScroll: true });
 });
