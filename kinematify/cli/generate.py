@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
     from kinematify.cli.provided import ProvidedGeneration
     from kinematify.generate.composer.bodies import BodyKind
     from kinematify.generate.composer.mechanisms import MechanismKind
+
+_WIDTH = 100
+"""Characters of a line of --list."""
 
 
 @click.command(
@@ -274,10 +278,12 @@ def _categories() -> str:
         (family.name, family.title, ", ".join(p.name for p in family.parameters))
         for family in known_families().values()
     ]
-    table = format_table(("category", "what it is", "parameters"), rows)
+    table = format_table(("category", "what it is", "parameters"), rows, width=_WIDTH)
+    composed = (("bodies", _named(BODIES)), ("mechanisms", _named(MECHANISMS)))
     return (
         f"{table}\n\nWhat no category builds is composed, as in --text 'a cart with four casters and two drawers':\n"
-        f"bodies: {_named(BODIES)}\nmechanisms: {_named(MECHANISMS)}\n\n"
+        + "".join(textwrap.fill(f"{kind}: {names}", _WIDTH, subsequent_indent="  ") + "\n" for kind, names in composed)
+        + "\n"
         "Parameters with units and ranges: kinematify generate --list --category NAME"
     )
 

@@ -23,6 +23,8 @@ package_dirs_option = click.option(
     help="Package, or folder of packages, for package:// paths; may be given more than once.",
 )
 
+force_file_option = click.option("--force", is_flag=True, help="Replace the file of -o if it exists.")
+
 sampling_seed_option = click.option(
     "--seed", type=int, help="Seed of the sampled configurations, instead of the configuration's."
 )

@@ -55,7 +55,7 @@ def test_a_joint_is_set_by_hand_kept_and_taken_back_while_a_second_browser_watch
         leaving.close()
         for seen in (page, second):
             seen.get_by_text(f"{joint.name} moves").first.wait_for(timeout=PATIENCE)
-        press(page, "Set by hand")
+        press(page, "Edit")
         second.get_by_text("Limits [deg]").first.wait_for(timeout=PATIENCE)
         window.viewer.set_limits(-10.0, 50.0)
         press(page, "Keep this")
@@ -64,7 +64,7 @@ def test_a_joint_is_set_by_hand_kept_and_taken_back_while_a_second_browser_watch
         (found,) = read_robot(folder / "model.urdf").joints
         assert (found.lower, found.upper) == pytest.approx(np.radians([-10.0, 50.0]), abs=1e-5)
         assert np.allclose(found.axis, joint.axis, atol=1e-5)
-        press(second, "Take the last choice back")
+        press(second, "Undo")
         page.get_by_text("The same from the command line").wait_for(state="detached", timeout=PATIENCE)
         assert not mistakes(told)
     (again,) = read_robot(folder / "model.urdf").joints
