@@ -37,7 +37,7 @@ collision_option = click.option(
 )
 
 
-class _Scale(click.ParamType):
+class _Scale(click.ParamType["float | None"]):
     """``auto``, which is None, or metres per unit."""
 
     name = "auto|metres"

@@ -67,7 +67,7 @@ class Viewer {
     this.marked = new Set(); this.selected = null; this.playing = null;
     this.gl = this.canvas.getContext('webgl', { antialias: true, preserveDrawingBuffer: true });
     if (!this.gl) {
-      root.querySelector('.status').textContent = 'This browser draws no WebGL; the pictures above show the object.';
+      root.querySelector('.status').textContent = 'This browser draws no WebGL; the picture below shows the object.';
       return;
     }
     this.upload();
@@ -185,7 +185,7 @@ class Viewer {
 
   axes() {
     const ct = Math.cos(this.turn), st = Math.sin(this.turn), cl = Math.cos(this.lift), sl = Math.sin(this.lift);
-    return [[ct, st, 0], [st * sl, -ct * sl, cl], [st * cl, -ct * cl, -sl].map(v => -v)];  // right, up, towards the eye
+    return [[-ct, -st, 0], [st * sl, -ct * sl, cl], [st * cl, -ct * cl, -sl].map(v => -v)];  // right, up, towards the eye
   }
   camera(aspect) {
     const [right, up, back] = this.axes(), eye = this.center.map((c, a) => c + this.far * 1.6 * back[a]);
