@@ -15,7 +15,7 @@ from kinematify.cli.inferred import as_loaded, confidences, describe, load_as_lo
 from kinematify.cli.options import collision_option, examples, scale_option, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS, describe_refinement, exit_status
-from kinematify.errors import EnvironmentFault, InputError, KinematifyError
+from kinematify.errors import EnvironmentFault, KinematifyError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -77,7 +77,7 @@ _LONGEST = 86400.0
 @click.option(
     "--groups",
     type=click.Path(path_type=Path),
-    help="groups.json of an earlier model of the same mesh, corrected: the pieces of every part.",
+    help="groups.json of an earlier model of the same mesh, corrected: the pieces (or parts) of every part.",
 )
 @click.option("--base", metavar="NAME", help="Part that the tree is rooted at, if the choice made is wrong.")
 @click.option(
@@ -204,8 +204,6 @@ def grouped_parts(
     from kinematify.grouping.groups import group_pieces, read_groups
 
     if groups is not None:
-        if given.segmented:
-            raise InputError(f"--groups needs a mesh of pieces, but {given.source} has parts. Add --pieces group.")
         return read_groups(groups, given)
     if given.segmented:
         return given
