@@ -52,12 +52,15 @@ _MOVES = {
     "num_leaves": 7,
     "min_data_in_leaf": 30,
     "min_sum_hessian_in_leaf": 1e-3,
+    "feature_fraction": 0.15,
+    "bagging_fraction": 0.5,
+    "lambda_l2": 30.0,
     "objective": "cross_entropy",
 }
-_SAME_ROUNDS, _MOVES_ROUNDS = 150, 200
+_SAME_ROUNDS, _MOVES_ROUNDS = 150, 250
 _SEEDS = (0, 1, 2, 3)
 """Of the trees for sets of pieces, which are averaged."""
-_GENERATED_SHARE = 0.25
+_GENERATED_SHARE = 0.5
 """Weight of a generated object beside a real one."""
 _OF_NAME = {name: category for category, names in ALIKE.items() for name in names} | {
     "refrigerator": "fridge",
