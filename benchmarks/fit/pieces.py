@@ -9,6 +9,7 @@ weights with categories held out, and a table of both.
 from __future__ import annotations
 
 import json
+import pickle
 from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
@@ -51,10 +52,15 @@ _MOVES = {
     "num_leaves": 7,
     "min_data_in_leaf": 30,
     "min_sum_hessian_in_leaf": 1e-3,
+    "feature_fraction": 0.15,
+    "bagging_fraction": 0.5,
+    "lambda_l2": 30.0,
     "objective": "cross_entropy",
 }
-_SAME_ROUNDS, _MOVES_ROUNDS = 150, 200
-_GENERATED_SHARE = 0.25
+_SAME_ROUNDS, _MOVES_ROUNDS = 150, 250
+_SEEDS = (0, 1, 2, 3)
+"""Of the trees for sets of pieces, which are averaged."""
+_GENERATED_SHARE = 0.5
 """Weight of a generated object beside a real one."""
 _OF_NAME = {name: category for category, names in ALIKE.items() for name in names} | {
     "refrigerator": "fridge",
@@ -174,7 +180,7 @@ def fit_moving(examples: Sequence[PiecesExample], proposed: Sequence[_Proposed])
     right = np.concatenate([_rightness(of.overlaps) for _, of in used])
     items = [item for item, _ in used]
     weights = _weights(items, [len(of.candidates) for _, of in used])
-    boosters = boosted_logistic(columns, right, weights, _MOVES, seeds=(0,), rounds=_MOVES_ROUNDS)
+    boosters = boosted_logistic(columns, right, weights, _MOVES, seeds=_SEEDS, rounds=_MOVES_ROUNDS)
     return trees_alone(used[0][1].names, boosters, _provenance(items))
 
 
@@ -303,6 +309,20 @@ def _found(item: PiecesExample, of: _Proposed, likely: FloatArray, threshold: fl
     return moving, len(chosen), hit
 
 
+def _kept_example(source: CorpusSource, cache: Path | None) -> PiecesExample | None:
+    """The example of an object, measured once where there is a cache; an emptied folder measures again."""
+    if cache is None:
+        return pieces_example(source)
+    path = cache / f"{source.origin}__{source.name}__{source.number}.pkl"
+    if path.exists():
+        kept: PiecesExample | None = pickle.loads(path.read_bytes())
+        return kept
+    cache.mkdir(parents=True, exist_ok=True)
+    example = pieces_example(source)
+    path.write_bytes(pickle.dumps(example))
+    return example
+
+
 def _some(sources: Sequence[CorpusSource], most: int) -> list[CorpusSource]:
     places = np.linspace(0, len(sources) - 1, min(most, len(sources))).round().astype(int)
     return [sources[k] for k in places]
@@ -312,12 +332,13 @@ def _some(sources: Sequence[CorpusSource], most: int) -> list[CorpusSource]:
 @click.argument("folders", nargs=-1, type=click.Path(path_type=Path, exists=True))
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="Folder for weights and table.")
 @click.option("--rounds", type=int, default=1, help="Objects of every family, recipe and blueprint.")
-@click.option("--most", type=int, default=80, help="Objects of a folder; of more, evenly drawn ones.")
-def main(folders: tuple[Path, ...], out: Path, rounds: int, most: int) -> None:
+@click.option("--most", type=int, default=90, help="Objects of a folder; of more, evenly drawn ones.")
+@click.option("--cache", type=click.Path(path_type=Path), help="Folder that keeps what was measured of each object.")
+def main(folders: tuple[Path, ...], out: Path, rounds: int, most: int, cache: Path | None) -> None:
     """Fit to FOLDERS of objects and to generated ones."""
     real = [source for folder in folders for source in _some(real_sources(folder), most)]
     sources = [*real, *generated_sources(rounds, 0)]
-    examples = [example for source in sources if (example := pieces_example(source)) is not None]
+    examples = [example for source in sources if (example := _kept_example(source, cache)) is not None]
     blocks = write_all(examples, out)
     (out / "pieces.md").write_text("\n\n".join(blocks) + "\n", encoding="utf-8")
     click.echo("\n\n".join(blocks))

@@ -14,6 +14,7 @@ import numpy as np
 
 from kinematify.assembly.assemble import assemble, check_finite, natural_key
 from kinematify.assembly.pieces import baked, connected_sheets, labelled_parts
+from kinematify.assembly.scenes import one_object
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
 from kinematify.robot.lengths import length_text
@@ -87,6 +88,7 @@ def load_assembly(
     scale: float = 1.0,
     labels: Path | None = None,
     pieces: str = "auto",
+    number: int | None = None,
 ) -> Assembly:
     """Load an object in one static configuration as rigid parts.
 
@@ -107,6 +109,7 @@ def load_assembly(
         labels: Labels per triangle of a single mesh.
         pieces: ``auto`` as described; ``group`` splits a file of several nodes or groups into pieces as well, where
             those are not the rigid parts; ``keep`` takes every node, group or connected piece for a rigid part.
+        number: Of the object, from left to right, where a mesh that is not segmented shows several.
 
     Raises:
         AssemblyError: The input cannot become an assembly; the message names the file and the remedy.
@@ -126,7 +129,8 @@ def load_assembly(
     doubts = () if stated else _size_warnings(assembly, scale, config)
     if given.up_by_standard:
         doubts += _up_warnings(assembly)
-    return replace(assembly, segmented=given.segmented, warnings=(*assembly.warnings, *doubts))
+    loaded = replace(assembly, segmented=given.segmented, warnings=(*assembly.warnings, *doubts))
+    return loaded if given.segmented and number is None else one_object(loaded, number)
 
 
 def _check_arguments(up: str, scale: float) -> None:

@@ -105,6 +105,7 @@ def _do_steps(
             known["parts"] = len(assembly.parts)
             known["faces"] = sum(len(part.faces) for part in assembly.parts)
             inference = infer(assembly, config=config)
+            known["parts"] = len(inference.assembly.parts)  # pieces of a mesh are fewer parts
         if "refine" in steps:
             with clock.stage("refine", 0.0):
                 inference = refine(inference, settings=conversion.settings).inference

@@ -233,6 +233,8 @@ class SteppedDescription(Spoken):
     """An object that a file writes down in steps, with parameters; see `kinematify.generate.library.steps`."""
 
     name: Name
+    file: str
+    """Its file without the ending: ``kitchen``."""
     about: str = ""
     """One sentence for readers of the file."""
     parameters: dict[Name, ParameterDescription] = Field({})
@@ -357,16 +359,18 @@ def library() -> Mapping[str, ObjectDescription | SteppedDescription]:
             described = ObjectDescription.model_validate(parse_table(text))
             found[described.category] = described
         else:
-            found |= {item.name: item for item in _in_steps(text)}
+            found |= {item.name: item for item in _in_steps(text, file.stem)}
     return found
 
 
-def _in_steps(text: str) -> Iterator[SteppedDescription]:
+def _in_steps(text: str, file: str) -> Iterator[SteppedDescription]:
     """Objects of a file of objects; their steps come last and stay text, since they are most of it."""
     for chunk in re.split(r"^(?=\w+:$)", text, flags=re.MULTILINE):
         head, _, steps = chunk.partition("\n  steps:\n")
         for name, said in (parse_table(head) or {}).items():
-            yield SteppedDescription.model_validate({"name": name, **said, "written_steps": textwrap.dedent(steps)})
+            yield SteppedDescription.model_validate(
+                {"name": name, "file": file, **said, "written_steps": textwrap.dedent(steps)}
+            )
 
 
 @cache

@@ -79,6 +79,12 @@ class Grouping:
         return json.dumps(self.record(), indent=1) + "\n"
 
 
+def stated_groups(record: dict[str, Any], key: str) -> tuple[Group, ...]:
+    """The groups under `key`, ``parts`` or ``rejected``, of what `Grouping.record` made; none where nobody grouped."""
+    stated = (record.get("groups") or {}).get(key, ())
+    return tuple(Group(name=item["name"], pieces=tuple(item["pieces"]), moves=item["moves"]) for item in stated)
+
+
 def _said(group: Group) -> str:
     others = len(group.pieces) - 1
     more = f" with {others} other piece{'s' if others > 1 else ''}" if others else ""

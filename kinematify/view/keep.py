@@ -1,24 +1,27 @@
-"""A candidate or a parent of the viewer becomes that of the model folder, as a hint would make it."""
+"""A candidate, a parent or other parts of the viewer become those of the model folder."""
 
 from __future__ import annotations
 
 import shlex
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinematify.errors import InputError
+from kinematify.grouping.groups import GROUPS_FILE
 from kinematify.model.output import check_output
 from kinematify.pipeline import infer
 from kinematify.refinement.folder import as_left, open_model_folder, read_record, write_refined
-from kinematify.refinement.hints import AXES, Hint, with_hints
+from kinematify.refinement.hints import AXES, Hint, parse_hints, with_hints
 from kinematify.robot.joint_type import JointType
+from kinematify.view.regroup import merge_parts, split_part, stated_grouping
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from kinematify.grouping.groups import Grouping
     from kinematify.pipeline import Inference
     from kinematify.robot.arrays import FloatArray
     from kinematify.view.alternatives import JointAlternative
@@ -60,20 +63,58 @@ class ModelFolder:
         """Let a part hang on another one, and write the model; errors as those of `keep`."""
         return self._keep(lambda _: Hint(part=part, parent=parent))
 
+    def merge(self, one: str, other: str) -> Kept:
+        """Make one part of two, infer again and write the model; errors as those of `keep`."""
+        return self._regroup(lambda grouping, _: merge_parts(grouping, (one, other)))
+
+    def split(self, part: str) -> Kept:
+        """Make the connected pieces of a part parts, infer again and write the model; errors as those of `keep`."""
+        return self._regroup(lambda grouping, weld: split_part(grouping, part, tolerance=weld))
+
+    def free(self, pieces: Sequence[str]) -> Kept:
+        """Make one part of pieces of a larger part, infer again and write the model; errors as those of `keep`."""
+
+        def freed(grouping: Grouping, weld: float) -> Grouping:
+            owner = next((group.name for group in grouping.groups if set(pieces) <= set(group.pieces)), None)
+            if owner is None:
+                raise InputError("These pieces are of several parts now. Merge or split those parts instead.")
+            return split_part(grouping, owner, tolerance=weld, apart=pieces)
+
+        return self._regroup(freed)
+
+    def _regroup(self, change: Callable[[Grouping, float], Grouping]) -> Kept:
+        """Infer with other parts; what was said of parts that are still there is kept."""
+        before = self._present()
+        found = before.grouping or stated_grouping(before.assembly, read_record(self.folder))
+        grouping = change(found, before.config.assembly.weld)
+        root = before.assembly.names[before.trees[0].root]
+        after = infer(grouping, config=before.config, base=root if root in grouping.assembly.names else None)
+        known = [text for text in before.hints if text.partition("=")[0].partition(":")[0] in after.assembly.names]
+        if known:
+            after = with_hints(after, parse_hints(known, after.assembly.names))
+        return self._write(before, after, ())
+
     def _keep(self, hint_for: Callable[[Inference], Hint]) -> Kept:
+        before = self._present()
+        hint = hint_for(before)
+        return self._write(before, with_hints(before, [hint]), hint.texts)
+
+    def _present(self) -> Inference:
+        """The model as it is in the folder."""
         check_output(self.folder, overwrite=True)
         if not self._steps:
             assembly, config = open_model_folder(self.folder)
             record = read_record(self.folder)
             inference = infer(assembly, config=config, base=record["trees"][0]["root"])
-            self._steps.append(as_left(inference, record))
-        before = self._steps[-1]
-        hint = hint_for(before)
-        after = with_hints(before, [hint])
+            left = as_left(inference, record)
+            self._steps.append(replace(left, grouping=stated_grouping(assembly, record)) if record["groups"] else left)
+        return self._steps[-1]
+
+    def _write(self, before: Inference, after: Inference, hints: tuple[str, ...]) -> Kept:
         write_refined(after, self.folder, preview=True)
         self._steps.append(after)
         new = tuple(warning for warning in after.warnings if warning not in before.warnings)
-        return Kept(hints=hint.texts, command=self._command(after), warnings=new)
+        return Kept(hints=hints, command=self._command(after), warnings=new)
 
     @property
     def can_undo(self) -> bool:
@@ -95,7 +136,8 @@ class ModelFolder:
     def _command(self, inference: Inference) -> str:
         hints = [word for text in inference.hints for word in ("--hint", text)]
         source, out = inference.assembly.source, str(self.folder)
-        return shlex.join(["kinematify", "infer", source, "-o", out, "--force", *hints])
+        groups = [] if inference.grouping is None else ["--groups", str(self.folder / GROUPS_FILE)]
+        return shlex.join(["kinematify", "infer", source, "-o", out, "--force", *groups, *hints])
 
 
 def hint_of(part: str, chosen: JointAlternative, before: JointType) -> Hint:

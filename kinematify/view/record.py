@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.errors import InputError
+from kinematify.grouping.groups import stated_groups
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics
 from kinematify.view.alternatives import JointAlternative
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
+    from kinematify.grouping.groups import Group
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
     from kinematify.view.scene import ViewScene
@@ -78,6 +80,8 @@ class Shown:
     """Where chains of joints close."""
     parents: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """What each part but the base could hang on: the parts that it touches first, then all others."""
+    rejected: tuple[Group, ...] = ()
+    """Pieces of a mesh that was not segmented that were taken for fixed, but may move."""
 
 
 def _dashed(start: FloatArray, end: FloatArray) -> FloatArray:
@@ -109,6 +113,7 @@ def shown_with(scene: ViewScene, path: Path) -> Shown:
                 *(_chain(item, scene.robot) for item in record.get("closed_chains", ()) if not item.get("loop")),
             ),
             parents=_possible_parents(record),
+            rejected=stated_groups(record, "rejected"),
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise _no_record(path, error) from error

@@ -18,6 +18,7 @@ from kinematify.robot.transforms import rotation_from_quaternion
 from kinematify.view.alternatives import JointAlternative, described, distinct
 from kinematify.view.drawn import DrawnModel
 from kinematify.view.panel import Panel, said_of, said_of_failure, said_of_kept, said_of_touches
+from kinematify.view.regroup import GroupPanel
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -92,6 +93,15 @@ class ModelViewer:
                 can_keep=self._open_folder is not None,
                 can_undo=self._folder is not None and self._folder.can_undo,
             )
+            self._groups: GroupPanel | None = None
+            if self._open_folder is not None:
+                self._groups = GroupPanel(
+                    self._server.gui,
+                    merge=lambda one, other: self.regroup(lambda folder: folder.merge(one, other)),
+                    split=lambda part: self.regroup(lambda folder: folder.split(part)),
+                    free=lambda pieces: self.regroup(lambda folder: folder.free(pieces)),
+                    rejected=shown.rejected,
+                )
             self._place()
 
     def _connected(self, client: viser.ClientHandle) -> None:
@@ -261,6 +271,12 @@ class ModelViewer:
             return None
         return self._written(partial(self._folder.keep, joint.child, tried))
 
+    def regroup(self, change: Callable[[ModelFolder], Kept]) -> Kept | None:
+        """Merge or split parts, infer again, and show the model anew; None if it could not be written."""
+        assert self._open_folder is not None
+        folder = self._folder = self._folder or self._open_folder()
+        return self._written(lambda: change(folder))
+
     def undo(self) -> None:
         """Write the model as it was before the last choice, and show it."""
         assert self._folder is not None
@@ -320,6 +336,8 @@ class ModelViewer:
     def _clicked(self, top: str) -> None:
         """Choose the joint that carries a part, or the one that leads it."""
         robot = self._scene.robot
+        if self._groups is not None:
+            self._groups.click(top)
         joint = robot.joint_above.get(top)
         while joint is not None and joint.mimic is not None:
             joint = robot.joint_by_name[joint.mimic.joint]

@@ -119,6 +119,13 @@ class ObjectBuilder:
         self._parts[name]["shapes"] += [self._handmade(shape) for shape in shapes]
         return name
 
+    def front(self, name: str, parent: str, *shapes: Shape, material: str | None = None) -> str:
+        """Add a part that looks like its parent, unless a material is given; returns its name."""
+        look = self._parts[parent]
+        if material or name in self._parts:
+            return self.part(name, *shapes, material=material or "")
+        return self.part(name, *shapes, material=look["material"], color=look["color"])
+
     def cut(self, name: str, *shapes: Shape) -> None:
         """Take shapes away from a part."""
         self._parts[name]["subtract"] += [self._handmade(shape) for shape in shapes]
@@ -199,11 +206,12 @@ class ObjectBuilder:
     # ---- the whole -------------------------------------------------------------------------------------------------
 
     def description(self) -> dict[str, Any]:
-        """The object as a blueprint file says it."""
+        """The object as a blueprint file says it; what stands on nothing comes first."""
+        children = {joint["child"] for joint in self._joints}
         return {
             "name": self.name,
             "category": self.name,
-            "parts": list(self._parts.values()),
+            "parts": sorted(self._parts.values(), key=lambda part: part["name"] in children),
             "joints": self._joints,
             "loops": self._loops,
         }

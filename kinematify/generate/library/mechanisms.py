@@ -107,7 +107,7 @@ def leaf(
     out: FloatArray,
     reach: float = 1.6,
     handle: bool = True,
-    material: str = "wood",
+    material: str | None = None,
 ) -> None:
     """A door, lid or flap: a plate between two corners, hinged at the edge that `hinge` points to, opening outward.
 
@@ -120,7 +120,7 @@ def leaf(
     gap = d.gap(float(min(wide, (high - low) @ along)))
     low, high = low + gap * (along + across) + gap * out, high - gap * (along + across) + gap * out
     thick = float((high - low) @ np.abs(out))
-    d.part(name, box(low, high), material=material)
+    d.front(name, parent, box(low, high), material=material)
     middle = 0.5 * (low + high)
     edge = middle + 0.5 * float((high - low) @ across) * hinge
     pivot = edge + (d.style.line - 0.5) * thick * out
@@ -147,7 +147,7 @@ def drawer(
     out: FloatArray,
     travel: float = 0.75,
     handle: bool = True,
-    material: str = "wood",
+    material: str | None = None,
 ) -> None:
     """A drawer in the bay between two corners, which ends at the front; it comes out."""
     low, high = np.minimum(lower, upper), np.maximum(lower, upper)
@@ -163,7 +163,7 @@ def drawer(
     reach = 0.5 * size * sides
     lap = 0.02 * least * sides
     front = face + (gap + thick) * out
-    d.part(name, box(face + gap * out - reach - lap, front + reach + lap), material=material)
+    d.front(name, parent, box(face + gap * out - reach - lap, front + reach + lap), material=material)
     if d.style.drawer != "front":
         back = middle - (0.5 * deep - gap) * out
         half = reach - gap * sides
@@ -322,7 +322,7 @@ def lever(
     level = at + d.draw(1.0, 2.0) * thick * out
     d.part(name, d.pick(rod, cylinder)(0.5 * thick, level, level + length * direction), material=material)
     d.part(name, cylinder(0.45 * thick, at + (d.gap(thick) - (2.0 * thick if d.style.has_bore else 0.0)) * out, level))
-    d.bore(parent, cylinder(0.45 * thick + 1.5 * d.gap(thick), at - 2.5 * thick * out, at + 0.01 * thick * out))
+    d.bore(parent, cylinder(0.45 * thick + 1.5 * d.gap(thick), at - 2.5 * thick * out, at + thick * out))
     d.hinge(name, parent, out, at, reach, lower)
 
 

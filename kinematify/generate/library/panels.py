@@ -141,7 +141,7 @@ def slab(
     inset: bool = False,
     handle: bool = True,
     glazed: float = 0.25,
-    material: str = "wood",
+    material: str | None = None,
 ) -> None:
     """A plain leaf between two corners that turns about an edge of its own.
 
@@ -158,7 +158,7 @@ def slab(
         inset: It stands in its parent, not before it.
         handle: It may have one.
         glazed: Share of the leaves that are a frame with a pane.
-        material: Of the leaf.
+        material: Of the leaf; its parent's if None.
     """
     low, high = np.minimum(lower, upper), np.maximum(lower, upper)
     along, across = np.abs(np.cross(hinge, out)), np.abs(hinge)
@@ -169,7 +169,8 @@ def slab(
     if not inset:
         low, high = low + play * out, high + play * out
     middle = 0.5 * (low + high)
-    _filled(d, name, low, high, out, "pane" if d.maybe(glazed) else d.pick("plain", "plain", "panel"), material)
+    d.front(name, parent, material=material)
+    _filled(d, name, low, high, out, "pane" if d.maybe(glazed) else d.pick("plain", "plain", "panel"))
     inward = 0.0 if d.style.has_bore else d.pick(0.0, 0.0, 0.0, d.draw(0.01, 0.05) * wide)
     half = 0.5 * float((high - low) @ across) - inward
     if handle:
@@ -187,18 +188,17 @@ def slab(
 def pane(d: ObjectBuilder, name: str, lower: Point, upper: Point, out: FloatArray = -Y, material: str = "wood") -> None:
     """A plate between two corners that is a plain slab, has a panel let in, or is a frame about a pane."""
     low, high = np.minimum(lower, upper), np.maximum(lower, upper)
-    _filled(d, name, low, high, out, d.pick("plain", "panel", "pane", "pane"), material)
+    d.part(name, material=material)
+    _filled(d, name, low, high, out, d.pick("plain", "panel", "pane", "pane"))
 
 
-def _filled(
-    d: ObjectBuilder, name: str, low: FloatArray, high: FloatArray, out: FloatArray, kind: str, material: str
-) -> None:
+def _filled(d: ObjectBuilder, name: str, low: FloatArray, high: FloatArray, out: FloatArray, kind: str) -> None:
     """Shapes of a plate: the same on both sides but for a panel."""
     flat = 1.0 - np.abs(out)
     thick = float((high - low) @ np.abs(out))
     edge = d.draw(0.08, 0.2) * float((high - low)[flat > 0.5].min()) * flat
     if kind == "panel":
-        d.part(name, box(low, high), material=material)
+        d.part(name, box(low, high))
         face = 0.5 * (low + high) + 0.5 * thick * out
         half = 0.5 * (high - low) * flat - edge
         if d.maybe():
@@ -207,11 +207,11 @@ def _filled(
             d.part(name, box(face - half - 0.1 * thick * out, face + half + d.draw(0.1, 0.3) * thick * out))
         return
     if kind == "plain":
-        d.part(name, box(low, high), material=material)
+        d.part(name, box(low, high))
         return
     first, second = np.eye(3)[np.flatnonzero(flat)]
     for axis in (first, second):
-        d.part(name, box(low, high - ((high - low) - edge) * axis), material=material)
+        d.part(name, box(low, high - ((high - low) - edge) * axis))
         d.part(name, box(low + ((high - low) - edge) * axis, high))
     filling = 0.5 * d.draw(0.1, 0.4) * thick * np.abs(out)
     middle = 0.5 * (low + high)
@@ -253,7 +253,7 @@ def box_drawer(
     cover = lap * (X + Z) if lap else -sides
     a, b = low - cover, high + cover
     a[1], b[1] = y, y + plate
-    d.part(name, box(a, b), material="wood")
+    d.front(name, parent, box(a, b))
     body_low, body_high = low + sides, high - sides - max(play, 0.0) * Y
     body_low[1] = y + 0.5 * plate
     if d.style.drawer != "front":

@@ -1,0 +1,71 @@
+"""Parts are merged and split in the viewer, and the command that is shown infers the same parts."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from typing import TYPE_CHECKING
+
+import pytest
+import trimesh
+
+from kinematify.cli.app import run
+from kinematify.errors import InputError
+from kinematify.view.keep import ModelFolder
+from kinematify.view.record import load_alternatives
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def box(size: tuple[float, float, float], centre: tuple[float, float, float]) -> trimesh.Trimesh:
+    return trimesh.creation.box(size, trimesh.transformations.translation_matrix(centre))
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A model of one mesh: a box of boards with a lid that has a knob; boards are one part, lid and knob another."""
+    boards = [
+        box((0.4, 0.4, 0.02), (0, 0, 0.01)),
+        *(box((0.02, 0.4, 0.5), (side * 0.19, 0, 0.27)) for side in (-1, 1)),
+        *(box((0.36, 0.02, 0.5), (0, side * 0.19, 0.27)) for side in (-1, 1)),
+    ]
+    lid = [box((0.4, 0.4, 0.02), (0, 0, 0.532)), box((0.05, 0.05, 0.03), (0, 0, 0.557))]
+    mesh, groups = tmp_path / "bin.ply", tmp_path / "groups.json"
+    trimesh.util.concatenate([*boards, *lid]).export(mesh)
+    parts = [[f"piece_{k:03d}" for k in range(5)], ["piece_005", "piece_006"]]
+    groups.write_text(json.dumps({"parts": [{"pieces": part} for part in parts]}), encoding="utf-8")
+    words = ["infer", mesh, "-o", tmp_path / "model", "--groups", groups, "--no-preview", "--no-validation"]
+    assert run([str(word) for word in words]) == 0
+    return tmp_path / "model"
+
+
+def pieces_of(folder: Path) -> set[frozenset[str]]:
+    stated = json.loads((folder / "groups.json").read_text(encoding="utf-8"))
+    return {frozenset(part["pieces"]) for part in stated["parts"]}
+
+
+def test_a_part_is_split_its_pieces_are_merged_and_the_command_does_the_same(folder: Path) -> None:
+    before = pieces_of(folder)
+    model = ModelFolder(folder)
+    model.split("piece_005")
+    lid, knob = frozenset({"piece_005"}), frozenset({"piece_006"})
+    assert {lid, knob} < pieces_of(folder)
+    assert {child for _, child in load_alternatives(folder / "inference.json")} == {"piece_005", "piece_006"}
+    told = ModelFolder(folder).merge("piece_005", "piece_006")
+    assert pieces_of(folder) == before
+    command = [*shlex.split(told.command)[1:], "--no-preview", "--no-validation"]
+    assert run(command) == 0
+    assert pieces_of(folder) == before
+    with pytest.raises(InputError, match="another one remains"):
+        ModelFolder(folder).merge(*{part for pair in load_alternatives(folder / "inference.json") for part in pair})
+
+
+def test_pieces_that_were_taken_for_fixed_become_a_part_and_that_can_be_undone(folder: Path) -> None:
+    before = pieces_of(folder)
+    model = ModelFolder(folder)
+    model.free(["piece_003", "piece_004"])
+    assert frozenset({"piece_003", "piece_004"}) in pieces_of(folder)
+    assert len(pieces_of(folder)) == 3
+    model.undo()
+    assert pieces_of(folder) == before
