@@ -91,8 +91,6 @@ _FILES = {
 
 _BESIDE_BUSY = ("jackal", "irb2400", "kr16_2", "so100", "erd/panda", "erd/ur5_robot", "cartpole", "r2d2")
 """Models that are validated once more while other processes keep the machine busy."""
-_BUSY = 8
-"""How many do."""
 
 
 class PublishedOptions(Options):
@@ -104,6 +102,7 @@ class PublishedOptions(Options):
         "benchmark's.",
     )
     models: tuple[str, ...] = Field((), description="Only these, patterns separated by commas.")
+    busy: int = Field(8, ge=0, description="Processes that keep the machine busy for the second look; 0: no such look.")
 
 
 class ExpertVerdict(StageConfig):
@@ -165,12 +164,12 @@ def measure(options: PublishedOptions, work: Work) -> Measured:
         except EnvironmentFault as fault:
             left_out[source] = str(fault)
     quiet = work.each(verdict_on, found, workers=1)
-    chosen = {name: found[name] for name in _BESIDE_BUSY if name in found}
-    with _busy(_BUSY if chosen else 0):
+    chosen = {name: found[name] for name in _BESIDE_BUSY if name in found and options.busy}
+    with _busy(options.busy if chosen else 0):
         busy = work.each(verdict_beside_others, chosen, workers=1)
     differ = [name for name, record in busy.items() if _told(record) != _told(quiet[name])]
-    beside = {"processes": _BUSY, "models": [*busy], "differ": differ}
-    return list(quiet.values()), {"left out": left_out, "busy": beside}
+    beside = {"busy": {"processes": options.busy, "models": [*busy], "differ": differ}} if busy else {}
+    return list(quiet.values()), {"left out": left_out, **beside}
 
 
 def _told(record: Record) -> list[tuple[object, ...]]:

@@ -64,7 +64,7 @@ class ProvidedOptions:
     replay: Path | None
     resend: bool
     up: str
-    scale: float
+    scale: float | None
     seed: int | None
     config: Config
 

@@ -214,8 +214,10 @@ def _repeated(result: OpenCheck, parent: _Element, tag: str, count: int) -> None
 
 def _displaced(result: OpenCheck, child: _Element, parent: _Element) -> None:
     homes = " or ".join(f"<{home}>" for home in sorted(_HOMES[child.tag]))
+    name = child.get("name")
+    called = f"<{child.tag}>" if name is None else f"<{child.tag}> {shown(name)}"
     result.find(
-        f"A <{child.tag}> {shown(child.get('name'))} is inside {_called(parent)}, where no reader looks.",
+        f"The {called} is inside {_called(parent)}, where no reader looks.",
         f"Move it into {homes}, or delete it.",
         line=line_of(child),
         link=_owner(parent, "link"),

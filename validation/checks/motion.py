@@ -46,9 +46,9 @@ def through_parent(result: OpenCheck, motion: JointMotion) -> None:
     """Each joint is moved alone, over its range and beyond. A child that gets deeper into its parent than at rest
     (geometry.tolerance) before geometry.early of the range is through, to both sides, says that axis, place or type is
     wrong; to the only permitted side, with the other one free, that the direction is. Above geometry.wrong it is an
-    error, unless the joint has no limits (a whole turn is none), the two are in each other at rest, or only the
-    collision geometry meets and not what is visible: that is a note where engines let the two pass by default, as they
-    do neighbours but for those of the base.
+    error, unless the joint has no limits (a whole turn is none), the two are in each other at rest (a note if both
+    hold: no range is claimed, and contact is no news), or only the collision geometry meets and not what is visible:
+    that is a note where engines let the two pass by default, as they do neighbours but for those of the base.
 
     Why it matters: The joint is stuck in every engine, or the part passes through the wall that carries it.
 
@@ -342,7 +342,7 @@ def _meet(
     buried = motion.look.allowance.at_rest(meeting.pair) > motion.look.allowance.tolerance(meeting.pair)
     collides = motion.look.collides(meeting.pair)
     wrong = min(meeting.depth, seen) > motion.scene.settings.wrong * motion.scene.size and not buried and collides
-    if unseen and not motion.look.felt_by_engines(meeting.pair):
+    if (unseen and not motion.look.felt_by_engines(meeting.pair)) or (buried and not motion.has_stops):
         severity = Severity.NOTE
     said = UNSEEN if unseen and motion.look.clear(meeting.pair, {motion.sweep.leader: meeting.at}) else BARELY
     result.find(

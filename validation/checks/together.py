@@ -1,4 +1,4 @@
-"""KV330 to KV332: several joints at once, and what engines see of the motion that collide convex hulls."""
+"""KV330 to KV333: several joints at once, what engines see that collide convex hulls, and joints of twins."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from kinematify.validation.check import CauseScope, FeedbackRow, check
 from kinematify.validation.checks.follow import AT_REST
 from kinematify.validation.finding import Blame, Severity, not_finished
 from kinematify.validation.geometry.formatting import configuration, joint_value, length
+from kinematify.validation.geometry.twins import twins_at_odds
 
 if TYPE_CHECKING:
     from kinematify.validation.check import OpenCheck
@@ -150,4 +151,36 @@ def hulls_block(result: OpenCheck, look: GeometryContext) -> None:
             value=found.depth,
             limit=found.tolerance,
             unit="m",
+        )
+
+
+@check(
+    "KV333",
+    title="Twins move alike",
+    fails="Twins do not move alike",
+    severity=Severity.WARNING,
+    blame=Blame.KINEMATICS,
+    needs=(_two_joints,),
+)
+def unlike_twins(result: OpenCheck, look: GeometryContext) -> None:
+    """Two parts of one size that mirror or repeat each other at rest, and so do their joints' lines, are of one type
+    and have ranges of about the same width that lead the same way. It is a finding only if no symmetry of the two
+    explains both joints.
+
+    Why it matters: One leg that bends the wrong way, or one door that opens inwards, is stopped by nothing in an
+    engine.
+
+    Remedy: Compare the two joints; reverse <axis>, correct the type or the limits of the one that is wrong.
+    """
+    for found in twins_at_odds(look.scene):
+        first, second = found.joints
+        ranges = " and ".join(
+            f"{joint.name} ({joint.kind} {joint.lower:.4g} to {joint.upper:.4g})" for joint in found.joints
+        )
+        result.find(
+            f"{first.child} and {second.child} mirror or repeat each other, and so do the axes of their joints, but "
+            f"{found.how}: {ranges}.",
+            "Compare the two: reverse <axis> of the one that is wrong, or correct its type or its limits.",
+            pair=(first.child, second.child),
+            line=second.line,
         )
