@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.errors import DescriptionError, EnvironmentFault, InputError
-from kinematify.model.output import MODEL_FILE
+from kinematify.model.output import urdf_of
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 
@@ -39,10 +39,7 @@ def load(path: str | Path, *, package_dirs: Sequence[str | Path] = ()) -> Loaded
     Raises:
         InputError: There is no such file, or it cannot be read.
     """
-    urdf = Path(path) / MODEL_FILE if Path(path).is_dir() else Path(path)
-    if not urdf.is_file():
-        raise InputError(f"There is no file {urdf}. Give a URDF, or a model folder that `kinematify infer` wrote.")
-    return LoadedModel(urdf, tuple(map(Path, package_dirs)))
+    return LoadedModel(urdf_of(Path(path)), tuple(map(Path, package_dirs)))
 
 
 class LoadedModel:
