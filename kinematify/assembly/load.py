@@ -14,6 +14,7 @@ import numpy as np
 
 from kinematify.assembly.assemble import assemble, check_finite, natural_key
 from kinematify.assembly.pieces import baked, connected_sheets, labelled_parts
+from kinematify.assembly.scenes import one_object
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
 from kinematify.robot.lengths import length_text
@@ -89,6 +90,7 @@ def load_assembly(
     scale: float | None = None,
     labels: Path | None = None,
     pieces: str = "auto",
+    number: int | None = None,
 ) -> Assembly:
     """Load an object in one static configuration as rigid parts.
 
@@ -109,6 +111,7 @@ def load_assembly(
         labels: Labels per triangle of a single mesh.
         pieces: ``auto`` as described; ``group`` splits a file of several nodes or groups into pieces as well, where
             those are not the rigid parts; ``keep`` takes every node, group or connected piece for a rigid part.
+        number: Of the object, from left to right, where a mesh that is not segmented shows several.
 
     Raises:
         AssemblyError: The input cannot become an assembly; the message names the file and the remedy.
@@ -127,7 +130,8 @@ def load_assembly(
     doubts = _size_warnings(assembly, lengths, 1.0 if scale is None else scale, config)
     if given.up_by_standard:
         doubts += _up_warnings(assembly)
-    return replace(assembly, lengths=lengths, segmented=given.segmented, warnings=(*assembly.warnings, *doubts))
+    loaded = replace(assembly, lengths=lengths, segmented=given.segmented, warnings=(*assembly.warnings, *doubts))
+    return loaded if given.segmented and number is None else one_object(loaded, number)
 
 
 def _check_arguments(up: str, scale: float | None) -> None:

@@ -118,6 +118,7 @@ def _do_steps(
             known["parts"] = len(assembly.parts)
             known["faces"] = sum(len(part.faces) for part in assembly.parts)
             inference = infer(assembly, config=config)
+            known["parts"] = len(inference.assembly.parts)  # pieces of a mesh are fewer parts
             known["lengths"], known["warnings"] = assembly.lengths, tuple(inference.warnings)
         if "refine" in steps:
             with clock.stage("refine", 0.0):

@@ -79,6 +79,13 @@ _LONGEST = 86400.0
     type=click.Path(path_type=Path),
     help="groups.json of an earlier model of the same mesh, corrected: the pieces (or parts) of every part.",
 )
+@click.option(
+    "--object",
+    "number",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Which object, from left to right, of a mesh that shows several.",
+)
 @click.option("--base", metavar="NAME", help="Part that the tree is rooted at, if the choice made is wrong.")
 @click.option(
     "--hint",
@@ -122,6 +129,7 @@ def command(
     labels: Path | None,
     pieces: str,
     groups: Path | None,
+    number: int | None,
     base: str | None,
     hints: tuple[str, ...],
     config: str,
@@ -174,7 +182,9 @@ def command(
         progress = stack.enter_context(progress_reporter())
         use_one_thread(settings)
         progress("reading the parts", 0.0)
-        given = load_assembly(assembly, config=settings.assembly, up=up, scale=scale, labels=labels, pieces=pieces)
+        given = load_assembly(
+            assembly, config=settings.assembly, up=up, scale=scale, labels=labels, pieces=pieces, number=number
+        )
         parts = grouped_parts(given, groups, settings, progress)
         told = _told(hints, parts.assembly.names if isinstance(parts, Grouping) else parts.names, base)
         inference = infer(parts, config=settings, base=base, progress=_share(progress, 0.0, _INFERRED))
