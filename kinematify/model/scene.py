@@ -32,7 +32,7 @@ GLYPH_COLORS = {
     JointType.PRISMATIC: np.array([0.07, 0.33, 0.86]),
 }
 """sRGB of the arrows by joint type."""
-_OTHER_GLYPH = {False: np.array([0.0, 0.62, 0.68]), True: np.array([0.66, 0.10, 0.70])}
+_OTHER_GLYPH = {False: np.array([0.95, 0.70, 0.05]), True: np.array([0.66, 0.10, 0.70])}
 """The same on a part of nearly that colour, by whether the joint turns."""
 _SAME_COLOR = 0.3
 """Distance of sRGB colours below which an arrow is lost on its part."""
