@@ -219,7 +219,7 @@ def command(
 
 def _requested(text: str | None, category: str | None, settings: tuple[str, ...], blueprint: Path | None) -> Requested:
     if blueprint is not None:
-        from kinematify.generate.blueprint_file import WrittenBlueprint
+        from kinematify.generate.procedural.blueprint_file import WrittenBlueprint
 
         return WrittenBlueprint(blueprint)
     if text is not None:

@@ -17,7 +17,7 @@ from kinematify.cli.inferred import describe
 from kinematify.cli.options import say, with_collision
 from kinematify.cli.report_files import generated_files, report_on
 from kinematify.errors import InputError
-from kinematify.generate.blueprint_file import read_blueprint
+from kinematify.generate.procedural.blueprint_file import read_blueprint
 from kinematify.generate.procedural.language.compare import compare
 from kinematify.generate.procedural.language.parse import parse_any
 from kinematify.generate.providers.command import CommandSource
