@@ -128,6 +128,7 @@ def merged(meshes: tuple[RawMesh, ...], name: str) -> RawMesh:
         name=name,
         vertices=np.concatenate([mesh.vertices for mesh in meshes]),
         faces=np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)]),
+        unit=meshes[0].unit if meshes else "",
         up=meshes[0].up if meshes else "",
         appearance=joined([mesh.appearance for mesh in meshes], [len(mesh.faces) for mesh in meshes]),
         exact=joined_faces([mesh.exact for mesh in meshes]),
