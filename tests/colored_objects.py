@@ -174,7 +174,7 @@ def seen_of_usd(path: Path) -> RawMesh:
             file = picture.GetInput("file").Get().resolvedPath
             texture = Texture(name=file, pixels=np.asarray(Image.open(file).convert("RGBA")))
             light = np.array(picture.GetInput("scale").Get())[:3]
-            uv = np.array(UsdGeom.PrimvarsAPI(mesh).GetPrimvar("st").Get(), dtype=float)[faces]
+            uv = np.array(UsdGeom.PrimvarsAPI(mesh).GetPrimvar("st").ComputeFlattened(), dtype=float)[faces]
         else:
             light = np.array(color.Get())
         red, green, blue = srgb_of(light).tolist()

@@ -8,6 +8,7 @@ weights with categories held out, and a table of both.
 
 from __future__ import annotations
 
+import datetime
 import json
 import pickle
 from collections import Counter
@@ -25,7 +26,7 @@ from benchmarks.fit.trees import boosted_logistic, trees_alone, write_scorer
 from kinematify.assembly.part import Part
 from kinematify.assembly.pieces import connected_sheets
 from kinematify.config import load_config
-from kinematify.evaluation.record import grouped, table
+from kinematify.evaluation.record import git_commit, grouped, table
 from kinematify.grouping.candidates import Candidate, measure_candidates, propose
 from kinematify.grouping.groups import PieceWeights, odds_of, select
 from kinematify.grouping.measure import MeasuredPieces, measure_pieces
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from kinematify.config import GroupingConfig
     from kinematify.joints.choice.scorer import Scorer
     from kinematify.robot.arrays import BoolArray, FloatArray
 
@@ -52,12 +54,15 @@ _MOVES = {
     "num_leaves": 7,
     "min_data_in_leaf": 30,
     "min_sum_hessian_in_leaf": 1e-3,
+    "feature_fraction": 0.15,
+    "bagging_fraction": 0.5,
+    "lambda_l2": 30.0,
     "objective": "cross_entropy",
 }
-_SAME_ROUNDS, _MOVES_ROUNDS = 150, 200
+_SAME_ROUNDS, _MOVES_ROUNDS = 150, 250
 _SEEDS = (0, 1, 2, 3)
 """Of the trees for sets of pieces, which are averaged."""
-_GENERATED_SHARE = 0.25
+_GENERATED_SHARE = 0.5
 """Weight of a generated object beside a real one."""
 _OF_NAME = {name: category for category, names in ALIKE.items() for name in names} | {
     "refrigerator": "fridge",
@@ -254,13 +259,13 @@ def write_all(examples: Sequence[PiecesExample], out: Path) -> list[str]:
     shipped = fit_moving(examples, proposed)
     _write(out, fit_pairs(examples), shipped)
     seen = [_likely(shipped, of) for of in proposed]
-    threshold = load_config().grouping.threshold
+    config = load_config().grouping
     return [
         (
             "Moving parts among the sets of pieces that are chosen, before joints are inferred (IoU of triangles > .5):"
             " precision, recall and F1 with the category held out, F1 in-sample beside it."
         ),
-        _table(examples, proposed, likely, seen, threshold),
+        _table(examples, proposed, likely, seen, config),
     ]
 
 
@@ -279,14 +284,14 @@ def _table(
     proposed: Sequence[_Proposed],
     likely: Sequence[FloatArray],
     seen: Sequence[FloatArray],
-    threshold: float,
+    config: GroupingConfig,
 ) -> str:
     rows = list(zip(examples, proposed, likely, seen, strict=True))
     sets = {**grouped(rows, by=lambda row: row[0].origin + ("" if row[0].fits else ", never fitted to")), "all": rows}
     lines = []
     for name, group in sets.items():
-        held_out = np.sum([_found(item, of, unseen, threshold) for item, of, unseen, _ in group], axis=0)
-        in_sample = np.sum([_found(item, of, fitted, threshold) for item, of, _, fitted in group], axis=0)
+        held_out = np.sum([_found(item, of, unseen, config) for item, of, unseen, _ in group], axis=0)
+        in_sample = np.sum([_found(item, of, fitted, config) for item, of, _, fitted in group], axis=0)
         true, chosen, hit = held_out
         lines.append(
             (
@@ -298,10 +303,10 @@ def _table(
     return table(("set", "objects", "move", "chosen", "precision", "recall", "F1", "F1 in-sample"), lines)
 
 
-def _found(item: PiecesExample, of: _Proposed, likely: FloatArray, threshold: float) -> tuple[int, int, int]:
+def _found(item: PiecesExample, of: _Proposed, likely: FloatArray, config: GroupingConfig) -> tuple[int, int, int]:
     """Parts that move, sets that are chosen, and parts that one of these matches."""
     moving = int(item.moving.sum())
-    chosen = select(of.candidates, likely, threshold)[0] if of.candidates else []
+    chosen = select(of.candidates, likely, config)[0] if of.candidates else []
     hit = int((of.overlaps[chosen].max(axis=0) > _ENOUGH).sum()) if chosen and moving else 0
     return moving, len(chosen), hit
 
@@ -337,8 +342,13 @@ def main(folders: tuple[Path, ...], out: Path, rounds: int, most: int, cache: Pa
     sources = [*real, *generated_sources(rounds, 0)]
     examples = [example for source in sources if (example := _kept_example(source, cache)) is not None]
     blocks = write_all(examples, out)
-    (out / "pieces.md").write_text("\n\n".join(blocks) + "\n", encoding="utf-8")
-    click.echo("\n\n".join(blocks))
+    commit = git_commit()[0]
+    made = (
+        f"- date: {datetime.datetime.now(tz=datetime.UTC).date().isoformat()}, commit {commit}, {len(examples)} objects"
+    )
+    text = "\n\n".join(["# Which pieces are one moving part", made, *blocks]) + "\n"
+    (out / "grouping.md").write_text(text, encoding="utf-8")
+    click.echo(text)
 
 
 if __name__ == "__main__":

@@ -61,6 +61,7 @@ def command(*, checks: tuple[str, ...], as_list: bool, markdown: bool, json_to: 
 def as_markdown(checks: Sequence[Check]) -> str:
     """Return the page `docs/checks.md`."""
     from kinematify.validation.check import FAMILIES
+    from kinematify.validation.simready import answered_markdown
 
     lines = [
         "# Checks of `kinematify validate`",
@@ -76,6 +77,7 @@ def as_markdown(checks: Sequence[Check]) -> str:
             lines += ["", f"## {prefix}xx: {family}", "", *_index(members)]
             lines += [line for check in members for line in ("", *_section(check))]
     lines += ["", "## What `kinematify refine` makes of findings", "", *_feedback(checks)]
+    lines += ["", *answered_markdown()]
     return "\n".join(lines) + "\n"
 
 
@@ -105,9 +107,7 @@ def _feedback(checks: Sequence[Check]) -> list[str]:
 def _section(check: Check) -> list[str]:
     return [
         f"### {check.id}",
-        "",
-        f"**{check.title}**; else: {check.fails}",
-        "",
+        f"- **{check.title}**; else: {check.fails}",
         f"- Verifies: {check.verifies}",
         f"- Why it matters: {check.matters}",
         f"- Remedy: {check.remedy}",

@@ -66,11 +66,11 @@ TREATMENT: Mapping[str, Mapping[str, str]] = {
         "speed limits": _NONE,
     },
     "usd": {
-        "followers (mimic)": "free; customData of the joint has leader, multiplier and offset",
+        "followers (mimic)": "NewtonMimicAPI, which Newton and nobody else reads",
         "closed loops": "a spherical joint outside of the articulation",
-        "friction": _NONE,
-        "effort": "the largest force of a drive without stiffness",
-        "speed limits": _NONE,
+        "friction": "mjc:frictionloss and newton:friction; USD's own schema has none",
+        "effort": "the largest force of a drive without stiffness, and the control range of a motor (MjcActuator)",
+        "speed limits": "newton:velocityLimit; USD's own schema has none",
     },
     "sdf": {
         "closed loops": "a ball joint; the link then has two parents, which not every engine of Gazebo takes",

@@ -13,7 +13,7 @@ from kinematify.robot.appearance import linear_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.material_files import write_texture
 from kinematify.robot.robot import forward_kinematics
-from kinematify.robot.transforms import quaternion_of, rotation_from_x
+from kinematify.robot.transforms import quaternion_of, rotation_from_x, rpy_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Joint, Link, LoopJoint, Shape
 
 SUFFIXES = (".usd", ".usda", ".usdc")
+_FRICTION = 1.0
+"""Of all surfaces: MuJoCo's default, which a URDF is simulated with; USD's own is 0."""
 
 
 def write_usd(content: Content, out: Path, *, free: bool) -> None:
@@ -46,20 +48,24 @@ class _UsdWriter:
     def __init__(self, content: Content, out: Path) -> None:
         self._content, self._out = content, out
         self._materials: dict[Material, Any] = {}
+        self._joints: dict[str, Any] = {}
         self.stage = Usd.Stage.CreateInMemory()
         UsdGeom.SetStageUpAxis(self.stage, UsdGeom.Tokens.z)
         UsdGeom.SetStageMetersPerUnit(self.stage, 1.0)
         UsdPhysics.SetStageKilogramsPerUnit(self.stage, 1.0)
         self._top = Sdf.Path.absoluteRootPath.AppendChild(_identifier(content.robot.name, set()))
-        taken: set[str] = {"joints", "materials"}
+        taken: set[str] = {"joints", "materials", "physics_scene"}
         self._paths = {link.name: self._top.AppendChild(_identifier(link.name, taken)) for link in content.robot.links}
 
     def add_all(self, *, free: bool) -> None:
         """Everything below one prim, which is the file's default."""
         top = UsdGeom.Xform.Define(self.stage, self._top)
         self.stage.SetDefaultPrim(top.GetPrim())
+        Usd.ModelAPI(top).SetKind("component")
         UsdPhysics.Scene.Define(self.stage, self._top.AppendChild("physics_scene"))
         UsdPhysics.ArticulationRootAPI.Apply(top.GetPrim())
+        _author(top.GetPrim(), "NewtonArticulationRootAPI", selfCollisionEnabled=(Sdf.ValueTypeNames.Bool, True))
+        self._surface_friction = self._friction()
         poses = forward_kinematics(self._content.robot, {})
         for link in self._content.robot.links:
             self._add_link(link, poses[link.name])
@@ -72,6 +78,9 @@ class _UsdWriter:
             joint.CreateBody1Rel().SetTargets([self._paths[self._content.robot.root]])
         for joint in self._content.robot.joints:
             self._add_joint(joint, joints.AppendChild(_identifier(joint.name, taken)))
+        self._add_followers()
+        self._add_motors()
+        self._add_roles(top.GetPrim(), [] if free else [joints.AppendChild("root_joint")])
         for loop in self._content.robot.loops:
             self._add_loop(loop, joints.AppendChild(_identifier(loop.name, taken)))
         self._keep_apart()
@@ -85,20 +94,46 @@ class _UsdWriter:
         self._add_mass(xform.GetPrim(), link)
         for folder, shapes in (("visuals", link.visuals), ("collisions", link.collisions)):
             above = path.AppendChild(folder)
-            scope = UsdGeom.Xform.Define(self.stage, above)
+            scope = UsdGeom.Scope.Define(self.stage, above)
             if folder == "collisions":
-                UsdGeom.Imageable(scope).CreatePurposeAttr(UsdGeom.Tokens.guide)
+                scope.CreatePurposeAttr(UsdGeom.Tokens.guide)
             for number, shape in enumerate(shapes):
                 name = f"{shape.kind}_{number}"
                 if folder == "visuals" and shape.kind == "mesh":
                     for index, surface in enumerate(shown_surfaces(shape)):
-                        self._add_surface(above.AppendChild(f"{name}_{index}"), surface)
+                        self._add_surface(self._frame(above.AppendChild(f"{name}_{index}"), np.eye(4)), surface)
                     continue
                 prim = self._add_shape(above.AppendChild(name), shape)
                 if folder == "collisions":
-                    UsdPhysics.CollisionAPI.Apply(prim)
-                    if shape.kind == "mesh":
-                        UsdPhysics.MeshCollisionAPI.Apply(prim).CreateApproximationAttr(UsdPhysics.Tokens.convexHull)
+                    self._let_collide(prim, is_mesh=shape.kind == "mesh")
+
+    def _let_collide(self, prim: Any, *, is_mesh: bool) -> None:
+        """USD's own schema, and the names under which MuJoCo and Newton look for it."""
+        UsdPhysics.CollisionAPI.Apply(prim)
+        prim.AddAppliedSchema("MjcCollisionAPI")
+        if is_mesh:
+            UsdPhysics.MeshCollisionAPI.Apply(prim).CreateApproximationAttr(UsdPhysics.Tokens.convexHull)
+            prim.AddAppliedSchema("NewtonMeshCollisionAPI")
+        UsdShade.MaterialBindingAPI.Apply(prim).Bind(
+            self._surface_friction, UsdShade.Tokens.weakerThanDescendants, "physics"
+        )
+
+    def _friction(self) -> Any:
+        """The one physics material, in the scope of all materials."""
+        path = self._top.AppendChild("materials")
+        UsdGeom.Scope.Define(self.stage, path)
+        found = UsdShade.Material.Define(self.stage, path.AppendChild("friction"))
+        physics = UsdPhysics.MaterialAPI.Apply(found.GetPrim())
+        physics.CreateStaticFrictionAttr(_FRICTION)
+        physics.CreateDynamicFrictionAttr(_FRICTION)
+        return found
+
+    def _frame(self, path: Any, T: FloatArray) -> Any:
+        """A frame of its own around one geometry; returns the path of the geometry."""
+        xform = UsdGeom.Xform.Define(self.stage, path)
+        xform.AddTranslateOp().Set(Gf.Vec3d(*map(float, T[:3, 3])))
+        xform.AddRotateXYZOp().Set(_vector(np.degrees(rpy_of(T[:3, :3]))))
+        return path.AppendChild("geometry")
 
     def _add_mass(self, prim: Any, link: Link) -> None:
         if link.inertial is None:
@@ -113,9 +148,9 @@ class _UsdWriter:
 
     def _add_shape(self, path: Any, shape: Shape) -> Any:
         if shape.kind == "mesh":
-            found = self._mesh(path, shape.mesh.vertices, shape.mesh.faces)
+            found = self._mesh(self._frame(path, np.eye(4)), shape.mesh.vertices, shape.mesh.faces)
         else:
-            found = _primitive(self.stage, path, shape)
+            found = _primitive(self.stage, self._frame(path, shape.T_link_shape), shape)
         _display(found, shape.color or GREY)
         return found.GetPrim()
 
@@ -125,6 +160,9 @@ class _UsdWriter:
         found.CreateFaceVertexCountsAttr([3] * len(faces))
         found.CreateFaceVertexIndicesAttr(faces.ravel().tolist())
         found.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+        found.CreateNormalsAttr([_vector(normal) for normal in _normals(vertices[faces])])
+        found.SetNormalsInterpolation(UsdGeom.Tokens.uniform)
+        _bound(found)
         return found
 
     def _add_surface(self, path: Any, surface: Surface) -> None:
@@ -135,16 +173,16 @@ class _UsdWriter:
             places = UsdGeom.PrimvarsAPI(found).CreatePrimvar(
                 "st", Sdf.ValueTypeNames.TexCoord2fArray, UsdGeom.Tokens.vertex
             )
-            places.Set([Gf.Vec2f(*map(float, place)) for place in surface.uv])
+            once, index = np.unique(surface.uv, axis=0, return_inverse=True)
+            places.Set([Gf.Vec2f(*map(float, place)) for place in once])
+            places.SetIndices(index.ravel().tolist())
         UsdShade.MaterialBindingAPI.Apply(found.GetPrim()).Bind(self._material(surface.material))
 
     def _material(self, material: Material) -> Any:
         """The material in the file, written when first asked for."""
         if material in self._materials:
             return self._materials[material]
-        path = self._top.AppendChild("materials")
-        UsdGeom.Scope.Define(self.stage, path)
-        path = path.AppendChild(f"material_{len(self._materials)}")
+        path = self._top.AppendChild("materials").AppendChild(f"material_{len(self._materials)}")
         found = UsdShade.Material.Define(self.stage, path)
         shader = UsdShade.Shader.Define(self.stage, path.AppendChild("surface"))
         shader.CreateIdAttr("UsdPreviewSurface")
@@ -178,11 +216,12 @@ class _UsdWriter:
         for side in ("wrapS", "wrapT"):
             picture.CreateInput(side, Sdf.ValueTypeNames.Token).Set("repeat")
         picture.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(reader.ConnectableAPI(), "result")
-        color.ConnectToSource(picture.ConnectableAPI(), "rgb")
+        color.ConnectToSource(picture.CreateOutput("rgb", Sdf.ValueTypeNames.Float3))
 
     def _add_joint(self, joint: Joint, path: Any) -> None:
         kind = {JointType.FIXED: UsdPhysics.FixedJoint, JointType.PRISMATIC: UsdPhysics.PrismaticJoint}
         found = kind.get(joint.kind, UsdPhysics.RevoluteJoint).Define(self.stage, path)
+        self._joints[joint.name] = found.GetPrim()
         found.GetPrim().SetDisplayName(joint.name)
         found.CreateBody0Rel().SetTargets([self._paths[joint.parent]])
         found.CreateBody1Rel().SetTargets([self._paths[joint.child]])
@@ -200,10 +239,42 @@ class _UsdWriter:
             found.CreateLowerLimitAttr(float(unit(joint.lower)))
             found.CreateUpperLimitAttr(float(unit(joint.upper)))
         self._add_drive(found.GetPrim(), joint)
-        if joint.mimic is not None:
-            found.GetPrim().SetCustomDataByKey("kinematify", {
-                "follows": joint.mimic.joint, "multiplier": joint.mimic.multiplier, "offset": joint.mimic.offset,
-            })  # fmt: skip
+
+    def _add_followers(self) -> None:
+        """Joints that follow: Newton's schema, whose offset is in the unit of the follower as all angles of USD."""
+        for joint in self._content.robot.joints:
+            if joint.mimic is None or joint.kind is JointType.FIXED:
+                continue
+            leader = self._content.robot.joint_by_name[joint.mimic.joint]
+            unit = np.degrees(1.0) if joint.kind.turns else 1.0
+            gain = joint.mimic.multiplier * unit / (np.degrees(1.0) if leader.kind.turns else 1.0)
+            _author(
+                self._joints[joint.name], "NewtonMimicAPI",
+                mimicCoef0=(Sdf.ValueTypeNames.Float, float(joint.mimic.offset * unit)),
+                mimicCoef1=(Sdf.ValueTypeNames.Float, float(gain)),
+            )  # fmt: skip
+            self._joints[joint.name].CreateRelationship("newton:mimicJoint").SetTargets(
+                [self._joints[leader.name].GetPath()]
+            )
+
+    def _add_motors(self) -> None:
+        """The motors of the MJCF export, under the names of MuJoCo's schema."""
+        for joint in self._content.robot.joints:
+            if joint.leads and joint.effort:
+                path = self._joints[joint.name].GetPath()
+                motor = self.stage.DefinePrim(path.AppendChild("motor"), "MjcActuator")
+                motor.CreateRelationship("mjc:target").SetTargets([path])
+                for side, sign in (("min", -1.0), ("max", 1.0)):
+                    name = f"mjc:ctrlRange:{side}"
+                    motor.CreateAttribute(name, Sdf.ValueTypeNames.Double).Set(sign * float(joint.effort))
+
+    def _add_roles(self, top: Any, pinned: list[Any]) -> None:
+        """What Isaac Sim lists as joints and links of a robot; what is fixed to the world counts as a manipulator."""
+        if pinned:
+            top.CreateAttribute("isaac:robotType", Sdf.ValueTypeNames.Token).Set("Manipulator")
+        joints = [joint.GetPath() for joint in self._joints.values()]
+        top.CreateRelationship("isaac:physics:robotJoints").SetTargets([*pinned, *joints])
+        top.CreateRelationship("isaac:physics:robotLinks").SetTargets(list(self._paths.values()))
 
     def _add_loop(self, loop: LoopJoint, path: Any) -> None:
         found = UsdPhysics.SphericalJoint.Define(self.stage, path)
@@ -222,6 +293,12 @@ class _UsdWriter:
         drive.CreateDampingAttr(float((joint.damping or 0.0) * per_degree))
         if joint.effort:
             drive.CreateMaxForceAttr(float(joint.effort))
+        friction, number = float(joint.friction or 0.0), Sdf.ValueTypeNames.Float
+        prim.AddAppliedSchema("MjcJointAPI")
+        prim.CreateAttribute("mjc:frictionloss", Sdf.ValueTypeNames.Double).Set(friction)
+        _author(prim, "NewtonJointAPI", friction=(number, friction))
+        if joint.velocity:
+            prim.CreateAttribute("newton:velocityLimit", number).Set(float(joint.velocity / per_degree))
 
     def _keep_apart(self) -> None:
         """Pairs that no joint connects; those that one connects do not collide anyway."""
@@ -252,28 +329,44 @@ def _identifier(name: str, taken: set[str]) -> str:
 
 
 def _primitive(stage: Any, path: Any, shape: Shape) -> Any:
+    """A geometry at the origin of the frame above it."""
     if shape.kind == "box":
         found = UsdGeom.Cube.Define(stage, path)
         found.CreateSizeAttr(1.0)
-        _place(found, shape.T_link_shape, shape.size)
-        return found
-    found = {"sphere": UsdGeom.Sphere, "cylinder": UsdGeom.Cylinder, "capsule": UsdGeom.Capsule}[shape.kind].Define(
-        stage, path
-    )
-    found.CreateRadiusAttr(float(shape.size[0]))
-    if shape.kind != "sphere":
+        found.AddScaleOp().Set(_vector(shape.size))
+    else:
+        kinds = {"sphere": UsdGeom.Sphere, "cylinder": UsdGeom.Cylinder, "capsule": UsdGeom.Capsule}
+        found = kinds[shape.kind].Define(stage, path)
+        found.CreateRadiusAttr(float(shape.size[0]))
+    if shape.kind in ("cylinder", "capsule"):
         found.CreateHeightAttr(float(shape.size[1]))
         found.CreateAxisAttr(UsdGeom.Tokens.z)
-    _place(found, shape.T_link_shape)
+    _bound(found)
     return found
 
 
-def _place(xform: Any, T: FloatArray, scale: Iterable[float] = ()) -> None:
+def _normals(corners: FloatArray) -> FloatArray:
+    """One unit normal a triangle; upwards where a triangle has no area."""
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.where(lengths > 0.0, normals / np.maximum(lengths, 1e-300), [0.0, 0.0, 1.0])
+
+
+def _bound(found: Any) -> None:
+    """State the box around a geometry, so that readers need not open its points."""
+    found.CreateExtentAttr(UsdGeom.Boundable.ComputeExtentFromPlugins(found, Usd.TimeCode.Default()))
+
+
+def _author(prim: Any, schema: str, **values: tuple[Any, Any]) -> None:
+    """Apply a schema of Newton, which USD does not bring with it, and author its attributes by type and value."""
+    prim.AddAppliedSchema(schema)
+    for name, (kind, value) in values.items():
+        prim.CreateAttribute(f"newton:{name}", kind).Set(value)
+
+
+def _place(xform: Any, T: FloatArray) -> None:
     xform.AddTranslateOp().Set(Gf.Vec3d(*map(float, T[:3, 3])))
     xform.AddOrientOp().Set(_turn(T[:3, :3]))
-    sides = tuple(scale)
-    if sides:
-        xform.AddScaleOp().Set(_vector(sides))
 
 
 def _vector(values: Iterable[float]) -> Any:

@@ -121,10 +121,25 @@ class LeaderMechanism:
             slopes[row] = self._slopes(row)
         return slopes
 
+    def leads_at(self, leaders: FloatArray) -> FloatArray:
+        """`leads` where the leaders have these values (leaders,): the slopes of curves there, (joints, leaders)."""
+        if not self._curved:
+            return self.leads
+        steps = _NEARBY * np.eye(len(leaders))
+        ahead, behind = (self.all_values(leaders + sign * steps) for sign in (1.0, -1.0))
+        slopes: FloatArray = (ahead - behind).T / (2.0 * _NEARBY)
+        return slopes
+
     @cached_property
     def rest(self) -> FloatArray:
         """Values of the leaders at rest [rad or m], shape (leaders,)."""
         return np.array([travel.rest for travel in self.travels])
+
+    @cached_property
+    def values_at_rest(self) -> FloatArray:
+        """Values of all `joints` at rest [rad or m], shape (joints,)."""
+        values: FloatArray = self.all_values(self.rest[None])[0]
+        return values
 
     def all_values(self, leaders: FloatArray) -> FloatArray:
         """Return the values of all `joints` [rad or m], shape (n, joints), for rows of leaders (n, leaders)."""
