@@ -130,34 +130,44 @@ class MujocoObject:
 
     def force(self, dynamics: JointDynamics, settings: EnvSettings) -> float:
         """Full force of a hand [N] (`full_force`)."""
-        rows = np.tile(self.articulated_object.scene.mechanism.rest, (_WAY_SAMPLES, 1))
-        rows[:, self.target.leader] = np.linspace(self.target.closed, self.target.opened, _WAY_SAMPLES)
-        loads = [self._loads(row) for row in rows]
-        k = int(self._leaders[self.target.leader])
+        mechanism, k = self.articulated_object.scene.mechanism, self.target.leader
+        rows = np.tile(mechanism.rest, (_WAY_SAMPLES, 1))
+        rows[:, k] = np.linspace(self.target.closed, self.target.opened, _WAY_SAMPLES)
+        loads, leads = [self._moved(row) for row in rows], mechanism.leads_at(mechanism.rest)[:, k]
         return full_force(
             self.target,
             settings.hand,
-            inertia=np.array([inertia[k] for inertia, _ in loads]),
-            gravity=np.array([gravity[k] for _, gravity in loads]),
-            damping=float(dynamics.damping[k]),
-            friction=float(dynamics.friction[k]),
+            inertia=np.array([inertia for inertia, _ in loads]),
+            gravity=np.array([gravity for _, gravity in loads]),
+            damping=float(leads**2 @ dynamics.damping),
+            friction=float(np.abs(leads) @ dynamics.friction),
         )
 
     def inertia(self) -> float:
         """Largest inertia that the joint moves, at both ends [kg m^2 or kg]."""
         rows = np.tile(self.articulated_object.scene.mechanism.rest, (2, 1))
         rows[:, self.target.leader] = self.target.closed, self.target.opened
-        k = int(self._leaders[self.target.leader])
-        return max(float(self._loads(row)[0][k]) for row in rows)
+        return max(self._moved(row)[0] for row in rows)
+
+    def _moved(self, leaders: FloatArray) -> tuple[float, float]:
+        """Inertia and holding torque of the joint that is opened and of all that follow it."""
+        matrix, bias = self._dynamics_at(leaders)
+        leads = self.articulated_object.scene.mechanism.leads_at(leaders)[:, self.target.leader]
+        return float(leads @ matrix @ leads), float(leads @ bias)
 
     def _loads(self, leaders: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Inertia and holding torque of every joint at a configuration of the leaders, shape (J,) each."""
+        matrix, bias = self._dynamics_at(leaders)
+        return np.diag(matrix).copy(), bias
+
+    def _dynamics_at(self, leaders: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Mass matrix (J, J) and holding torques (J,) of all joints at a configuration of the leaders."""
         model, data = self.model, mujoco.MjData(self.model)
         data.qpos[self.qpos] = self.articulated_object.scene.mechanism.all_values(leaders[None])[0]
         mujoco.mj_forward(model, data)
         matrix = np.zeros((model.nv, model.nv))
         mujoco.mj_fullM(model, data, matrix)
-        return np.diag(matrix)[self.dof].copy(), data.qfrc_bias[self.dof].copy()
+        return matrix[np.ix_(self.dof, self.dof)], data.qfrc_bias[self.dof].copy()
 
     def apply(self, drawn: Draw, data: mujoco.MjData) -> None:
         """Redraw the object (`kinematify.envs.dynamics.draw`)."""

@@ -58,7 +58,8 @@ class PybulletObject:
         self._leaders = [names.index(joint) for joint in articulated_object.joints]
         self._indices = self._loaded.indices
         self._leader_indices = [self._indices[k] for k in self._leaders]
-        self._followers = [k for k in range(len(names)) if k not in self._leaders]
+        passive = {names.index(name) for name in self._loaded.passive}
+        self._followers = [k for k in range(len(names)) if k not in {*self._leaders, *passive}]
         self._link = int(self._loaded.link[mechanism.links.index(target.link)])
         self._axis = articulated_object.declared.joint_by_name[target.joint].axis
         self._T_base = pose_of(*self.client.getBasePositionAndOrientation(self.body))

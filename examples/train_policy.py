@@ -16,20 +16,22 @@ from stable_baselines3.common.env_util import make_vec_env
 OPEN_PART = "kinematify.envs:kinematify/OpenPart-v0"
 
 
-def success_rate(policy: PPO, keywords: dict[str, object], seeds: range) -> float:
-    """Share of episodes that end open and at rest."""
+def evaluate(policy: PPO, keywords: dict[str, object], seeds: range) -> tuple[float, float]:
+    """Share of episodes that end open and at rest, and the mean return."""
     env = gymnasium.make(OPEN_PART, **keywords)
-    ends = []
+    ends, returns = [], []
     for seed in seeds:
         observation, _ = env.reset(seed=seed)
-        over = False
+        over, total = False, 0.0
         while not over:
             action, _ = policy.predict(observation, deterministic=True)
-            observation, _, terminated, truncated, info = env.step(action)
+            observation, reward, terminated, truncated, info = env.step(action)
+            total += float(reward)
             over = terminated or truncated
         ends.append(info["is_success"])
+        returns.append(total)
     env.close()
-    return float(np.mean(ends))
+    return float(np.mean(ends)), float(np.mean(returns))
 
 
 if __name__ == "__main__":
@@ -44,8 +46,8 @@ if __name__ == "__main__":
     policy = PPO("MlpPolicy", envs, n_steps=256, batch_size=512, gamma=0.97, learning_rate=1e-3, device="cpu", seed=0)
     for _ in range(arguments.rounds):
         policy.learn(2048, reset_num_timesteps=False)
-        rate = success_rate(policy, keywords, range(1000, 1020))
-        print(f"{policy.num_timesteps:6d} steps: {rate:.0%} of 20 episodes end open and at rest", flush=True)
+        rate, gained = evaluate(policy, keywords, range(1000, 1020))
+        print(f"{policy.num_timesteps:6d} steps: return {gained:7.2f}, success {rate:.0%} of 20 episodes", flush=True)
         if rate >= 0.95:
             break
     policy.save(arguments.output)

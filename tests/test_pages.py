@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 
 from kinematify.config.nightly import load_nightly
@@ -87,6 +88,8 @@ def test_sliders_move_the_model(report_page: Path) -> None:
         assert page.locator("button[data-play=hinge_1]").get_attribute("aria-pressed") == "true"
         page.locator("button[data-reset]").click()
         assert page.locator(".sliders output").inner_text() == "0.0 deg"
+        right, up, back = (np.array(axis) for axis in page.evaluate("viewers[0].axes()"))
+        assert np.allclose(np.cross(right, up), back), "the picture is not mirrored"
         assert page.evaluate("viewers[0].poses()[2][3]") == pytest.approx(0.4, abs=1e-6)  # latch, by its leader
         assert told == []
 

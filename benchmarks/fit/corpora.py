@@ -128,6 +128,21 @@ def gather_examples(
     return [example for path in paths for example in read_examples(path)]
 
 
+def with_spares(examples: Sequence[Example], most: int | None) -> list[Example]:
+    """The examples, of which those beyond the first `most` objects of a category of real ones only judge."""
+    if most is None:
+        return list(examples)
+    taken: dict[tuple[str, str], list[str]] = {}
+    found = []
+    for example in examples:
+        names = taken.setdefault((example.origin, example.category), [])
+        if example.object not in names:
+            names.append(example.object)
+        spare = example.origin not in GENERATED and names.index(example.object) >= most
+        found.append(replace(example, spare=spare))
+    return found
+
+
 def gather_trees(
     sources: Sequence[CorpusSource], cache: Path, *, seed: int, workers: int, progress: Callable[[str, float], None]
 ) -> list[TreeExample]:

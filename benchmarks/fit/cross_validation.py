@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -12,23 +12,29 @@ import numpy as np
 from benchmarks.fit.categories import category_of
 from benchmarks.fit.corpora import COMPOSED, DESCRIBED, FAMILY, GENERATED, PROGRAMMED
 from benchmarks.fit.edges import edges_row, fit_edges
+from benchmarks.fit.examples import content_key
 from benchmarks.fit.trees import (
     Seeds,
+    data_key,
     fit_opening,
     fit_rigidity,
     fit_scorer,
     fit_turning,
     is_fixed,
+    recipe_key,
     rigidity_odds,
     turns_known,
     turns_of,
+    write_scorer,
 )
 from kinematify.config import load_config
 from kinematify.joints.choice.judge import Posterior, agreed, lead_of
 from kinematify.joints.choice.opening import opening_odds
+from kinematify.joints.choice.scorer import read_scorer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -40,6 +46,7 @@ if TYPE_CHECKING:
 
 _Kind = TypeVar("_Kind", "Example", "TreeExample")
 _FOLDS = 5
+_ONE = Seeds()
 _GENERATED_SETS = {
     FAMILY: "families",
     DESCRIBED: "objects that files describe: never fitted to",
@@ -86,12 +93,15 @@ def row_of(examples: Sequence[Example], picks: Sequence[int]) -> Row:
 
 
 def judge_left_out(
-    examples: Sequence[Example], group: Callable[[Example], str], progress: Callable[[str, float], None]
-) -> list[FloatArray]:
+    examples: Sequence[Example],
+    group: Callable[[Example], str],
+    progress: Callable[[str, float], None],
+    folder: Path | None = None,
+) -> dict[int, FloatArray]:
     """Probabilities of the hypotheses of every example by trees whose fit had none of its group.
 
-    Groups (categories, sources or styles) fall into five folds; nothing of a fold is fitted to when it is judged. What
-    has no group is fitted to in all of them and not judged: all its hypotheses are alike.
+    Groups (categories or styles) fall into five folds; nothing of a fold is fitted to when it is judged. What
+    has no group is fitted to in all of them and not judged: all its hypotheses are alike. Fits are kept in `folder`.
     """
     found = {k: np.full(len(item.kinds), 1.0 / len(item.kinds)) for k, item in enumerate(examples) if not group(item)}
     folds = folds_of(examples, group)
@@ -101,10 +111,36 @@ def judge_left_out(
         if not judged:
             continue
         kept = [at != fold or k in found for k, at in enumerate(folds)]
-        fitted = [example for example, stays in zip(examples, kept, strict=True) if example.fits and stays]
-        scorer = fit_scorer(fitted, seeds=Seeds(), provenance={})
+        fitted = [example for example, stays in zip(examples, kept, strict=True) if example.teaches and stays]
+        scorer = kept_scorer(fitted, folder)
         found |= {k: _likely(scorer, examples[k]) for k in judged}
-    return agreed_examples(examples, [found[k] for k in range(len(examples))])
+    return dict(enumerate(agreed_examples(examples, [found[k] for k in range(len(examples))])))
+
+
+def judge_origins_held_out(
+    examples: Sequence[Example], origins: Sequence[str], folder: Path | None
+) -> dict[int, FloatArray]:
+    """Probabilities for the examples of these corpora, by one fit that has nothing of any of them."""
+    index = [k for k, example in enumerate(examples) if example.origin in origins]
+    if not index:
+        return {}
+    scorer = kept_scorer([item for item in examples if item.teaches and item.origin not in origins], folder)
+    some = [examples[k] for k in index]
+    return dict(zip(index, agreed_examples(some, [_likely(scorer, item) for item in some]), strict=True))
+
+
+def kept_scorer(fitted: Sequence[Example], folder: Path | None, seeds: Seeds = _ONE) -> Scorer:
+    """A fit of `seeds`; read from `folder` where an interrupted run has made it of the same data."""
+    if folder is None:
+        return fit_scorer(fitted, seeds=seeds, provenance={})
+    recipe = recipe_key(list({name for example in fitted for name in example.measured}))
+    path = folder / f"{content_key(data_key(fitted), recipe, asdict(seeds))}.npz"
+    if not path.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        aside = path.with_suffix(".part.npz")
+        write_scorer(fit_scorer(fitted, seeds=seeds, provenance={}), aside)
+        aside.replace(path)
+    return read_scorer(path)
 
 
 def _likely(scorer: Scorer, example: Example) -> FloatArray:
@@ -142,7 +178,7 @@ def judge_rigidity_left_out(examples: Sequence[Example]) -> dict[str, RigidityRo
     odds = np.zeros(len(examples))
     folds = np.array(folds_of(examples, category_of))
     for fold in sorted(set(folds.tolist())):
-        fitted = [example for example, at in zip(examples, folds, strict=True) if example.fits and at != fold]
+        fitted = [example for example, at in zip(examples, folds, strict=True) if example.teaches and at != fold]
         judged = np.flatnonzero(folds == fold).tolist()
         scorer = fit_rigidity(fitted, seeds=(0,), provenance={})
         odds[judged] = rigidity_odds(scorer, [examples[k] for k in judged])
@@ -187,7 +223,7 @@ def judge_opening_left_out(examples: Sequence[Example]) -> dict[str, OpeningRow]
     right = np.zeros(len(turning))
     folds = np.array(folds_of(turning, category_of))
     for fold in sorted(set(folds.tolist())):
-        fitted = [example for example, at in zip(turning, folds, strict=True) if example.fits and at != fold]
+        fitted = [example for example, at in zip(turning, folds, strict=True) if example.teaches and at != fold]
         scorer = fit_opening(fitted, seeds=(0,), provenance={})
         for k in np.flatnonzero(folds == fold):
             right[k] = opening_odds(scorer, turning[k].sides) > 0.0
@@ -214,7 +250,7 @@ def judge_turning_left_out(examples: Sequence[Example]) -> dict[str, TurningRow]
     taken = np.zeros(len(turning), dtype=bool)
     folds = np.array(folds_of(turning, category_of))
     for fold in sorted(set(folds.tolist())):
-        fitted = [example for example, at in zip(turning, folds, strict=True) if example.fits and at != fold]
+        fitted = [example for example, at in zip(turning, folds, strict=True) if example.teaches and at != fold]
         scorer = fit_turning(fitted, seeds=(0,), provenance={})
         judged = np.flatnonzero(folds == fold)
         taken[judged] = scorer.sums(turns_of([turning[k] for k in judged], scorer.measurements)) > 0.0

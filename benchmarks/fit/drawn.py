@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.blueprint_file import described_blueprint
 from kinematify.generate.described import SteppedDescription, library
 from kinematify.generate.library.builder import ModelingStyle
+from kinematify.generate.procedural.blueprint_file import described_blueprint
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:

@@ -81,6 +81,13 @@ class Example:
     each; empty where the joint slides, goes both ways or is a link in series."""
     is_continuous: bool | None = None
     """The true joint turns by a whole turn or without end; None where it does not turn."""
+    spare: bool = False
+    """Its category has enough objects to fit to without this one, which only judges."""
+
+    @property
+    def teaches(self) -> bool:
+        """Weights are fitted to it."""
+        return self.fits and not self.spare
 
     @property
     def kinds(self) -> IntArray:

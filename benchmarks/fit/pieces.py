@@ -8,6 +8,7 @@ weights with categories held out, and a table of both.
 
 from __future__ import annotations
 
+import datetime
 import json
 import pickle
 from collections import Counter
@@ -25,7 +26,7 @@ from benchmarks.fit.trees import boosted_logistic, trees_alone, write_scorer
 from kinematify.assembly.part import Part
 from kinematify.assembly.pieces import connected_sheets
 from kinematify.config import load_config
-from kinematify.evaluation.record import grouped, table
+from kinematify.evaluation.record import git_commit, grouped, table
 from kinematify.grouping.candidates import Candidate, measure_candidates, propose
 from kinematify.grouping.groups import PieceWeights, odds_of, select
 from kinematify.grouping.measure import MeasuredPieces, measure_pieces
@@ -52,12 +53,15 @@ _MOVES = {
     "num_leaves": 7,
     "min_data_in_leaf": 30,
     "min_sum_hessian_in_leaf": 1e-3,
+    "feature_fraction": 0.15,
+    "bagging_fraction": 0.5,
+    "lambda_l2": 30.0,
     "objective": "cross_entropy",
 }
-_SAME_ROUNDS, _MOVES_ROUNDS = 150, 200
+_SAME_ROUNDS, _MOVES_ROUNDS = 150, 250
 _SEEDS = (0, 1, 2, 3)
 """Of the trees for sets of pieces, which are averaged."""
-_GENERATED_SHARE = 0.25
+_GENERATED_SHARE = 0.5
 """Weight of a generated object beside a real one."""
 _OF_NAME = {name: category for category, names in ALIKE.items() for name in names} | {
     "refrigerator": "fridge",
@@ -337,8 +341,13 @@ def main(folders: tuple[Path, ...], out: Path, rounds: int, most: int, cache: Pa
     sources = [*real, *generated_sources(rounds, 0)]
     examples = [example for source in sources if (example := _kept_example(source, cache)) is not None]
     blocks = write_all(examples, out)
-    (out / "pieces.md").write_text("\n\n".join(blocks) + "\n", encoding="utf-8")
-    click.echo("\n\n".join(blocks))
+    commit = git_commit()[0]
+    made = (
+        f"- date: {datetime.datetime.now(tz=datetime.UTC).date().isoformat()}, commit {commit}, {len(examples)} objects"
+    )
+    text = "\n\n".join(["# Which pieces are one moving part", made, *blocks]) + "\n"
+    (out / "grouping.md").write_text(text, encoding="utf-8")
+    click.echo(text)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ import numpy as np
 
 from benchmarks.fit.categories import category_of
 from benchmarks.fit.corpora import (
+    DESCRIBED,
     GENERATED,
     broken_sources,
     gather_examples,
@@ -21,6 +22,7 @@ from benchmarks.fit.corpora import (
     generated_sources,
     real_sources,
     tree_sources,
+    with_spares,
 )
 from benchmarks.fit.cross_validation import (
     CAUSES,
@@ -30,8 +32,10 @@ from benchmarks.fit.cross_validation import (
     judge_edges_left_out,
     judge_left_out,
     judge_opening_left_out,
+    judge_origins_held_out,
     judge_rigidity_left_out,
     judge_turning_left_out,
+    kept_scorer,
     picked,
     row_of,
     sets_of,
@@ -43,7 +47,6 @@ from benchmarks.fit.trees import (
     data_key,
     fit_opening,
     fit_rigidity,
-    fit_scorer,
     fit_turning,
     is_fixed,
     opening_recipe_key,
@@ -56,7 +59,7 @@ from benchmarks.fit.trees import (
 from kinematify import __version__
 from kinematify.evaluation.record import git_commit, table
 from kinematify.joints.choice.edges import EDGE_WEIGHTS
-from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, WEIGHTS
+from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, WEIGHTS, shipped_scorer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -68,12 +71,13 @@ if TYPE_CHECKING:
     from kinematify.joints.choice.scorer import Scorer
     from kinematify.robot.arrays import FloatArray
 
-    Likely = Mapping[str, Sequence[FloatArray]]
+    Likely = Mapping[str, Mapping[int, FloatArray]]
 
+FIXED_HEAD, EDGES_HEAD, DESCRIBED_SET = "fixed", "edges", "described"
+"""What a fit can skip: weights that stay as they are, and objects that only judge."""
 _SEEDS = (0, 1, 2, 3)
-_SHIPPED = Seeds(trees=_SEEDS, networks=(0, 1, 2, 3, 4, 5), points=(0, 1))
+SHIPPED = Seeds(trees=_SEEDS, networks=(0, 1, 2, 3, 4, 5), points=(0, 1))
 _LEAST = 10  # joints below which calibration says nothing
-_FEWEST_STYLES = 5  # ways of modelling, so that leaving some out leaves others
 _LEARNING = (0.25, 0.5, 1.0)
 
 
@@ -86,10 +90,13 @@ def run_fit(
     seed: int,
     workers: int,
     cache: Path,
+    per_category: int | None,
+    hold_out: Sequence[str],
+    skip: Sequence[str],
     ablation: bool,
     progress: Callable[[str, float], None],
 ) -> dict[str, Any]:
-    """Fit the choice of joints, judge it left out, and write ``weights.npz``, ``choice.json`` and ``choice.md``.
+    """Fit the choice of joints, judge it held out, and write ``weights.npz``, ``choice.json`` and ``choice.md``.
 
     Args:
         folders: Of real objects.
@@ -98,7 +105,10 @@ def run_fit(
         composed: Random mechanisms.
         seed: Draws the generated objects.
         workers: Processes at a time.
-        cache: Folder of what was measured, so that an interrupted run goes on.
+        cache: Folder of what was measured and of held-out fits, so that an interrupted run goes on.
+        per_category: Objects of each category of a folder that are fitted to; the others judge. None for all.
+        hold_out: Folders of objects that are also judged by a fit that has nothing of any of them.
+        skip: Of `FIXED_HEAD`, `EDGES_HEAD` and `DESCRIBED_SET`: what is neither measured, fitted nor judged.
         ablation: Also fit without each group of measurements, and to a part of the objects.
         progress: Told what is done and the share of it.
 
@@ -110,11 +120,16 @@ def run_fit(
         EnvironmentFault: LightGBM is not installed.
     """
     sources = generated_sources(rounds, composed) + [source for folder in folders for source in real_sources(folder)]
-    sources += broken_sources(sources)
+    sources = [source for source in sources if source.origin != DESCRIBED or DESCRIBED_SET not in skip]
+    sources += [] if FIXED_HEAD in skip else broken_sources(sources)
     examples = gather_examples(sources, cache, seed=seed, workers=workers, progress=progress)
-    trees = gather_trees(tree_sources(sources), cache / "trees", seed=seed, workers=workers, progress=progress)
-    drawn = {"seed": seed, "rounds": rounds, "composed": composed}
-    return fit_and_judge(examples, trees, out, drawn=drawn, ablation=ablation, progress=progress)
+    of_trees = [] if EDGES_HEAD in skip else tree_sources(sources)
+    trees = gather_trees(of_trees, cache / "trees", seed=seed, workers=workers, progress=progress)
+    drawn = {"seed": seed, "rounds": rounds, "composed": composed, "per_category": per_category}
+    examples = with_spares(examples, per_category)
+    return fit_and_judge(
+        examples, trees, out, drawn=drawn, held_out=hold_out, skip=skip, ablation=ablation, progress=progress
+    )
 
 
 def fit_and_judge(
@@ -122,13 +137,15 @@ def fit_and_judge(
     trees: Sequence[TreeExample],
     out: Path,
     *,
-    drawn: Mapping[str, int],
+    drawn: Mapping[str, int | None],
+    held_out: Sequence[str],
+    skip: Sequence[str],
     ablation: bool,
     progress: Callable[[str, float], None],
 ) -> dict[str, Any]:
     """What `run_fit` does of examples that are measured; `drawn` says how many were generated."""
     everything, examples = examples, [example for example in examples if not example.broken]
-    fitted = [example for example in examples if example.fits]
+    fitted = [example for example in examples if example.teaches]
     provenance = {
         "kinematify": __version__,
         "lightgbm": _version(),
@@ -141,26 +158,30 @@ def fit_and_judge(
         "recipe": recipe_key(list({name for example in fitted for name in example.measured})),
         "real": sorted({example.object for example in fitted if example.origin not in GENERATED}),
     }
-    scorer = fit_scorer(fitted, seeds=_SHIPPED, provenance=provenance)
-    out.mkdir(parents=True, exist_ok=True)
+    fits = out / "fits"
+    scorer = replace(kept_scorer(fitted, fits, SHIPPED), provenance=provenance)
     write_scorer(scorer, out / WEIGHTS)
-    write_scorer(_rigidity(everything, provenance), out / RIGID_WEIGHTS)
+    if FIXED_HEAD not in skip:
+        write_scorer(_rigidity(everything, provenance), out / RIGID_WEIGHTS)
     write_scorer(_opening(examples, provenance), out / OPENING_WEIGHTS)
     write_scorer(_turning(examples, provenance), out / TURNING_WEIGHTS)
     edges = fit_edges([example for example in trees if example.fits], provenance)
-    write_edge_weights(edges, out / EDGE_WEIGHTS)
-    likely = {"left out by category": judge_left_out(examples, category_of, progress)}
-    if len({example.source for example in examples}) > 1:
-        likely["left out by source"] = judge_left_out(examples, lambda example: example.source, progress)
-    shipped = [scorer.probabilities(example.hypotheses, example.measured, example.cloud) for example in examples]
-    likely["shipped weights"] = agreed_examples(examples, shipped)
+    if EDGES_HEAD not in skip:
+        write_edge_weights(edges, out / EDGE_WEIGHTS)
+    likely = {"held out by category": judge_left_out(examples, category_of, progress, fits)}
+    likely["held out with its source"] = judge_origins_held_out(examples, held_out, fits)
+    before = shipped_scorer()
+    for name, each in (("weights before", before), ("these weights, in-sample", scorer)):
+        given = [each.probabilities(example.hypotheses, example.measured, example.cloud) for example in examples]
+        likely[name] = dict(enumerate(agreed_examples(examples, given)))
     report = {
         "schema": 2,
         "provenance": provenance,
         "sets": {name: _rows(examples, index, likely) for name, index in sets_of(examples).items()},
-        "styles": _styles(examples, likely, progress),
-        "calibration": _calibration(examples, likely["left out by category"]),
-        "rigidity": {name: asdict(row) for name, row in judge_rigidity_left_out(everything).items()},
+        "calibration": _calibration(examples, likely["held out by category"]),
+        "rigidity": {}
+        if FIXED_HEAD in skip
+        else {name: asdict(row) for name, row in judge_rigidity_left_out(everything).items()},
         "opening": {name: asdict(row) for name, row in judge_opening_left_out(examples).items()},
         "turning": {name: asdict(row) for name, row in judge_turning_left_out(examples).items()},
         "edges": _edges(trees, edges),
@@ -174,7 +195,7 @@ def fit_and_judge(
 
 def _rigidity(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scorer:
     """What tells fixed parts from others, fitted to all that may enter weights."""
-    fitted = [example for example in examples if example.fits]
+    fitted = [example for example in examples if example.teaches]
     facts = {
         "joints": len(fitted),
         "fixed": sum(map(is_fixed, fitted)),
@@ -186,7 +207,7 @@ def _rigidity(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Sco
 
 def _opening(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scorer:
     """What tells which way a turn opens, fitted to all that may enter weights."""
-    fitted = [example for example in examples if example.fits and example.sides]
+    fitted = [example for example in examples if example.teaches and example.sides]
     names = list({name for example in fitted for name in example.sides})
     facts = {"joints": len(fitted), "recipe": opening_recipe_key(names)}
     return fit_opening(fitted, seeds=_SEEDS, provenance={**provenance, **facts})
@@ -194,35 +215,21 @@ def _opening(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scor
 
 def _turning(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scorer:
     """What tells which turns go round, fitted to all that may enter weights."""
-    fitted = [example for example in examples if example.fits and turns_known(example)]
+    fitted = [example for example in examples if example.teaches and turns_known(example)]
     scorer = fit_turning(fitted, seeds=_SEEDS, provenance={})
     facts = {"joints": len(fitted), "recipe": turning_recipe_key(scorer.measurements)}
     return replace(scorer, provenance={**provenance, **facts})
 
 
-def _styles(
-    examples: Sequence[Example], likely: Likely, progress: Callable[[str, float], None]
-) -> dict[str, dict[str, Any]]:
-    """Figures of generated objects with a drawn way of modelling, left out by it too; nothing of too few ways."""
-    styled = [k for k, example in enumerate(examples) if example.style]
-    if len({examples[k].style for k in styled}) < _FEWEST_STYLES:
-        return {}
-    by_what = {**likely, "left out by style": judge_left_out(examples, lambda example: example.style, progress)}
-    return {
-        name: _rows(examples, [styled[k] for k in index], by_what)
-        for name, index in sets_of([examples[k] for k in styled]).items()
-    }
-
-
 def _edges(trees: Sequence[TreeExample], shipped: EdgeWeights) -> dict[str, Any]:
-    """True edges that the likeliest trees have, by set: left out by category, and with the weights that ship."""
+    """True edges that the likeliest trees have, by set: held out by category, and with the weights that ship."""
     left_out = judge_edges_left_out(trees)
     found = {}
     for name, index in sets_of(trees).items():
         some = [trees[k] for k in index]
         found[name] = {
-            "left out by category": asdict(left_out[name]),
-            "shipped weights": asdict(edges_row(some, [shipped.scores(example.measured) for example in some])),
+            "held out by category": asdict(left_out[name]),
+            "these weights, in-sample": asdict(edges_row(some, [shipped.scores(example.measured) for example in some])),
         }
     return found
 
@@ -231,7 +238,11 @@ def _rows(examples: Sequence[Example], index: Sequence[int], likely: Likely) -> 
     """Figures and causes of errors of one set by what chose."""
     some = [examples[k] for k in index]
     picks = {"weighted cues": [example.by_cues for example in some]}
-    picks |= {by: [picked(examples[k], given[k]) for k in index] for by, given in likely.items()}
+    picks |= {
+        by: [picked(examples[k], given[k]) for k in index]
+        for by, given in likely.items()
+        if all(k in given for k in index)
+    }
     return {
         by: asdict(row_of(some, chosen))
         | {"causes": Counter(cause for cause in map(cause_of, some, chosen) if cause is not None)}
@@ -239,7 +250,7 @@ def _rows(examples: Sequence[Example], index: Sequence[int], likely: Likely) -> 
     }
 
 
-def _calibration(examples: Sequence[Example], likely: Sequence[FloatArray]) -> dict[str, Any]:
+def _calibration(examples: Sequence[Example], likely: Mapping[int, FloatArray]) -> dict[str, Any]:
     """Of real objects, but of robots, which are all sure and right."""
     index = [k for k, example in enumerate(examples) if example.origin not in (*GENERATED, "robots")]
     return calibration_of([examples[k] for k in index], [likely[k] for k in index]) if len(index) >= _LEAST else {}
@@ -273,7 +284,7 @@ def _draw(example: Example) -> float:
 
 
 def _surprises(examples: Sequence[Example], progress: Callable[[str, float], None]) -> dict[str, float]:
-    """Of the sets of real objects, left out by category."""
+    """Of the sets of real objects, held out by category."""
     likely = judge_left_out(examples, category_of, progress)
     return {
         name: surprise_of([examples[k] for k in index], [likely[k] for k in index])
@@ -299,9 +310,10 @@ def as_markdown(report: dict[str, Any]) -> str:
     facts = report["provenance"]
     introduction = (
         f"Fitted to {facts['joints']} joints of {facts['objects']} objects by `kinematify fit` (seed {facts['seed']}, "
-        f"LightGBM {facts['lightgbm']}). The true tree is given. Left out by category: trees whose "
-        "fit had no object and no family of the category; by source: none of the same data set, package or "
-        "generator. Shipped weights: what ships, which has seen what it was fitted to. Errors: no right joint was "
+        f"LightGBM {facts['lightgbm']}){_sampled(facts)}. The true tree is given. Held out by category: the fit had no "
+        "object and no family of the category, and one seed; with its source: it had nothing of the sets that have "
+        "this row. Weights before: what shipped until this fit, which has seen other objects. In-sample: these "
+        "weights have seen what is called fitted to. Errors: no right joint was "
         "proposed; type; direction given the type; line beside the right one, which counts as right in the columns "
         "before."
     )
@@ -312,7 +324,7 @@ def as_markdown(report: dict[str, Any]) -> str:
         pairs = zip(found["confidence"], found["right"], strict=True)
         fifths = ", ".join(f"{sure:.2f} ({right:.2f})" for sure, right in pairs)
         blocks.append(
-            "Left out by category, real objects but robots: the least sure fifth holds "
+            "Held out by category, real objects but robots: the least sure fifth holds "
             f"{found['errors_in_least_sure']:.0%} of the errors. Mean confidence of each fifth, and share right: "
             f"{fifths}. Calibration error: {found['error']:.3f}."
         )
@@ -324,8 +336,6 @@ def as_markdown(report: dict[str, Any]) -> str:
             for name, by, row in edges
         ]
         blocks += ["Edges of the tree, whatever its root:", table(heading, shown)]
-    if report["styles"]:
-        blocks += ["Generated objects with a drawn way of modelling:", _choice_table(report["styles"])]
     rigidity = report["rigidity"]
     if any(row["fixed"] for row in rigidity.values()):
         columns = ("set", "moving parts", "taken for fixed", "pieces broken off", "found to be fixed")
@@ -333,10 +343,10 @@ def as_markdown(report: dict[str, Any]) -> str:
             (name, f"{row['moving']}", _percent(row["lost"]), f"{row['fixed']}", _percent(row["found"]))
             for name, row in rigidity.items()
         ]
-        blocks += ["Whether a part is fixed, left out by category:", table(columns, counted)]
+        blocks += ["Whether a part is fixed, held out by category:", table(columns, counted)]
     opening = report["opening"]
     if opening:
-        titles = ("set", "turns that open one way", "right, left out by category")
+        titles = ("set", "turns that open one way", "right, held out by category")
         rows_of_sets = [(name, f"{row['turns']}", f"{row['right']:.1%}") for name, row in opening.items()]
         blocks += ["Which way a turn opens, of the true line:", table(titles, rows_of_sets)]
     turning = report["turning"]
@@ -346,11 +356,11 @@ def as_markdown(report: dict[str, Any]) -> str:
             (name, f"{row['rounds']}", _percent(row["found"]), f"{row['stopped']}", _percent(row["lost"]))
             for name, row in turning.items()
         ]
-        blocks += ["Which turns go round, of the true line, left out by category:", table(columns, counted)]
+        blocks += ["Which turns go round, of the true line, held out by category:", table(columns, counted)]
     for key, title in (
         (
             "ablation",
-            "Surprise (mean of -log of the probability of what is right), left out by category, without",
+            "Surprise (mean of -log of the probability of what is right), held out by category, without",
         ),
         ("learning", "The same, fitted to a part of the objects"),
     ):
@@ -359,6 +369,13 @@ def as_markdown(report: dict[str, Any]) -> str:
             body = [(name, *(f"{row[of]:.3f}" for of in sets)) for name, row in report[key].items()]
             blocks += [f"{title}:", table((key, *sets), body)]
     return "\n\n".join(blocks) + "\n"
+
+
+def _sampled(facts: Mapping[str, Any]) -> str:
+    """How the corpora were sampled, as part of a sentence."""
+    most = facts["per_category"]
+    real = "" if most is None else f", at most {most} objects of a category of each folder; the others judge"
+    return f": {facts['rounds']} object of each kind of the library, {facts['composed']} random mechanisms{real}"
 
 
 def _choice_table(sets: Mapping[str, Any]) -> str:

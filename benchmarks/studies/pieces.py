@@ -61,7 +61,7 @@ class PiecesOptions(Options):
     data: tuple[str, ...] = Field(
         ("everyday", "everyday2", "articraft", "infinigen"), description="Sets of the benchmark folder, or folders."
     )
-    every: int = Field(1, ge=1, description="Only every n-th object of each set.")
+    most: int = Field(1000, ge=1, description="Objects of a set; of more, evenly drawn ones.")
     weights: str | None = Field(None, description="Folder of held-out weights that `benchmarks.fit.pieces` wrote.")
     pieces: Literal["auto", "keep"] = Field("auto", description="keep: every piece is a part, as before grouping.")
     seconds: float = Field(240.0, gt=0.0, description="Wall time for one object.")
@@ -83,7 +83,9 @@ def measure(options: PiecesOptions, work: Work) -> Measured:
     asked = {}
     for data in options.data:
         place = folder / data if (folder / data).is_dir() else Path(data)
-        for item in find_objects(place)[:: options.every]:
+        found = find_objects(place)
+        rows = np.linspace(0, len(found) - 1, min(options.most, len(found))).round().astype(int)
+        for item in (found[row] for row in rows):
             asked[f"{place.name}/{item.name}"] = MergedObject(
                 item=item, group=place.name, weights=options.weights, pieces=options.pieces
             )
@@ -145,12 +147,13 @@ def _category(item: BenchObject) -> str:
 def _counts(erased: ErasedModel, found: Inference | None) -> Record:
     """True and predicted moving parts, and how many are right in each sense."""
     of_part: dict[int, list[TrueJoint]] = grouped(erased.truth.joints, by=lambda joint: joint.child)
-    counts = {"true": len(of_part), "predicted": 0, **dict.fromkeys(_KINDS, 0), "whole": False}
+    counts = {"true": len(of_part), "predicted": 0, **dict.fromkeys(_KINDS, 0), "whole": False, "bodies": []}
     if found is None:
         return counts
     bodies, joints = moving_bodies(found)
     counts["predicted"] = len(joints)
     overlap = _overlaps(erased.parts, found, bodies)
+    counts["bodies"] = [_body(found, joint, overlap[list(of_part), child]) for child, joint in joints.items()]
     right = dict.fromkeys(_KINDS, 0)
     for part, true in of_part.items():
         best = int(np.argmax(overlap[part])) if overlap.shape[1] else -1
@@ -188,6 +191,17 @@ def _overlaps(parts: Sequence[Part], found: Inference, bodies: IntArray) -> Floa
         counts[row] = np.bincount(owner[nearest], minlength=len(bodies))
     union = counts.sum(axis=1, keepdims=True) + counts.sum(axis=0, keepdims=True) - counts
     return np.asarray(counts / np.maximum(union, 1.0))
+
+
+def _body(found: Inference, joint: JointEstimate, overlap: FloatArray) -> Record:
+    """How sure grouping and inference are of a body that moves, and how much of a true moving part it is."""
+    group = None if found.grouping is None else found.grouping.groups[joint.child].moves
+    return {
+        "moves": group,
+        "fixed": joint.evidence.get("probability_fixed"),
+        "confidence": joint.confidence,
+        "overlap": float(overlap.max(initial=0.0)),
+    }
 
 
 def _marks(true: TrueJoint, guess: JointEstimate, part: Part) -> tuple[bool, bool, bool]:

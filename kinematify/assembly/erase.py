@@ -7,6 +7,7 @@ cross of a universal joint) are no parts: the joints on both sides of them becom
 
 from __future__ import annotations
 
+import re
 import shutil
 import tempfile
 from collections import Counter
@@ -123,8 +124,13 @@ def erase(
     return ErasedModel(parts=tuple(parts), truth=truth)
 
 
-def write_erased(erased: ErasedModel, folder: Path) -> Path:
+def write_erased(erased: ErasedModel, folder: Path, *, overwrite: bool = False) -> Path:
     """Write ``part_000.obj`` and so on into a new folder, without loss, and the truth as ``FOLDER.truth.json``.
+
+    Args:
+        erased: What to write.
+        folder: Does not exist yet, or is empty.
+        overwrite: Replace the parts and the truth that an earlier call wrote there.
 
     Returns:
         The path of the truth.
@@ -132,6 +138,11 @@ def write_erased(erased: ErasedModel, folder: Path) -> Path:
     Raises:
         OutputError: The folder or the truth exists already, or cannot be written. Nothing is left half-written.
     """
+    if overwrite and truth_path(folder).is_file() and folder.is_dir():
+        if any(not re.fullmatch(r"part_\d+\.obj", item.name) for item in folder.iterdir()):
+            raise OutputError(f"The output {folder} holds more than erased parts, so --force leaves it. Remove it.")
+        shutil.rmtree(folder)
+        truth_path(folder).unlink()
     return write_parts(erased.parts, erased.truth, folder)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from kinematify.assembly.assemble import assemble, check_finite, natural_key
 from kinematify.assembly.pieces import baked, connected_sheets, labelled_parts
+from kinematify.assembly.scenes import one_object
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
 from kinematify.robot.lengths import length_text
@@ -53,7 +54,8 @@ _ON_GROUND, _BELOW_GROUND = 0.005, 0.1
 """Of the object's diagonal: what is nearer lies on the ground, what is lower is under it."""
 _STANDS, _LIES = 0.5, 0.1
 """Shares of a footprint with which an object stands for certain, and hardly can."""
-_UNITS = {"millimeter": 1e-3, "micron": 1e-6, "centimeter": 1e-2, "inch": 0.0254, "foot": 0.3048}
+_UNITS = {"micron": 1e-6, "millimeter": 1e-3, "centimeter": 1e-2, "meter": 1.0, "inch": 0.0254, "foot": 0.3048}
+"""Units that a 3MF may state, in metres."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,6 +76,7 @@ class _Reading:
     """How files are to be read."""
 
     up: str
+    scale: float | None
     labels: Path | None
     pieces: str
     config: AssemblyConfig
@@ -84,9 +87,10 @@ def load_assembly(
     *,
     config: AssemblyConfig | None = None,
     up: str = "auto",
-    scale: float = 1.0,
+    scale: float | None = None,
     labels: Path | None = None,
     pieces: str = "auto",
+    number: int | None = None,
 ) -> Assembly:
     """Load an object in one static configuration as rigid parts.
 
@@ -103,10 +107,11 @@ def load_assembly(
         config: Limits and tolerances; those of the default configuration if absent.
         up: ``auto`` (y for glTF as its standard says, what a COLLADA file states, z for all else), or the axis that
             points up: ``x``, ``y``, ``z``, ``-x``, ``-y`` or ``-z`` (upside down). The input is turned to z up.
-        scale: Metres per unit of the input.
+        scale: Metres per unit of the input; None takes the unit that a file states, else metres.
         labels: Labels per triangle of a single mesh.
         pieces: ``auto`` as described; ``group`` splits a file of several nodes or groups into pieces as well, where
             those are not the rigid parts; ``keep`` takes every node, group or connected piece for a rigid part.
+        number: Of the object, from left to right, where a mesh that is not segmented shows several.
 
     Raises:
         AssemblyError: The input cannot become an assembly; the message names the file and the remedy.
@@ -118,21 +123,21 @@ def load_assembly(
     _check_arguments(up, scale)
     if pieces not in PIECES_CHOICES:
         raise InputError(f"The word {pieces!r} for pieces is unknown. Choose one of {', '.join(PIECES_CHOICES)}.")
-    given = _given(path, _Reading(up=up, labels=labels, pieces=pieces, config=config))
+    given = _given(path, _Reading(up=up, scale=scale, labels=labels, pieces=pieces, config=config))
     meshes = sorted(given.meshes, key=lambda mesh: natural_key(mesh.name))
-    scaled = meshes if scale == 1.0 else [mesh.moved(scale * np.eye(3)) for mesh in meshes]
-    stated = _unit_warnings(given.meshes) if scale == 1.0 else ()
-    assembly = assemble(scaled, source=str(path), config=config, warnings=(*given.warnings, *stated))
-    doubts = () if stated else _size_warnings(assembly, scale, config)
+    lengths = _lengths(meshes, scale)
+    assembly = assemble(meshes, source=str(path), config=config, warnings=given.warnings)
+    doubts = _size_warnings(assembly, lengths, 1.0 if scale is None else scale, config)
     if given.up_by_standard:
         doubts += _up_warnings(assembly)
-    return replace(assembly, segmented=given.segmented, warnings=(*assembly.warnings, *doubts))
+    loaded = replace(assembly, lengths=lengths, segmented=given.segmented, warnings=(*assembly.warnings, *doubts))
+    return loaded if given.segmented and number is None else one_object(loaded, number)
 
 
-def _check_arguments(up: str, scale: float) -> None:
+def _check_arguments(up: str, scale: float | None) -> None:
     if up not in UP_CHOICES:
         raise InputError(f"The up axis {up!r} is unknown. Choose one of {', '.join(UP_CHOICES)}.")
-    if not (math.isfinite(scale) and scale > 0.0):
+    if scale is not None and not (math.isfinite(scale) and scale > 0.0):
         raise InputError(f"The scale {scale} is not usable. Give metres per unit, above zero: 0.001 for millimetres.")
 
 
@@ -200,7 +205,7 @@ def _whole_file(path: Path, reading: _Reading) -> RawMesh:
     meshes = _read(path, reading, empty_ok=True)
     if not meshes:
         return RawMesh(name=path.stem, vertices=np.empty((0, 3)), faces=np.empty((0, 3), dtype=np.int64))
-    return replace(merged(meshes, path.stem), unit=meshes[0].unit)
+    return merged(meshes, path.stem)
 
 
 def _archive(path: Path, reading: _Reading) -> _Given:
@@ -237,7 +242,8 @@ def _description(path: Path, reading: _Reading) -> _Given:
     poses = forward_kinematics(robot, rest_configuration(robot))
     groups = [group for group in rigid_groups(robot) if group.has_geometry]
     meshes = tuple(
-        _upright(baked(robot, group, poses), "z" if reading.up == "auto" else reading.up) for group in groups
+        _upright(_in_metres(baked(robot, group, poses), reading.scale), "z" if reading.up == "auto" else reading.up)
+        for group in groups
     )
     return _Given(meshes=meshes, warnings=robot.notes)
 
@@ -265,7 +271,8 @@ def _read(path: Path, reading: _Reading, *, empty_ok: bool) -> tuple[RawMesh, ..
         )
     if path.suffix.lower() == ".3mf":
         check_packed_mesh(path, allowed)
-    meshes = read_meshes(path, empty_ok=empty_ok, appearance=True)
+    found = read_meshes(path, empty_ok=empty_ok, appearance=True)
+    meshes = tuple(_in_metres(mesh, reading.scale) for mesh in found)
     if reading.up != "auto":
         return tuple(_upright(mesh, reading.up) for mesh in meshes)
     usual = "y" if path.suffix.lower() in GLTF_SUFFIXES else "z"
@@ -279,21 +286,26 @@ def _upright(mesh: RawMesh, up: str) -> RawMesh:
     return mesh.moved(np.array(_TO_Z_UP[up], dtype=np.float64))
 
 
-def _unit_warnings(meshes: tuple[RawMesh, ...]) -> tuple[str, ...]:
-    units = sorted({mesh.unit for mesh in meshes if mesh.unit and not mesh.unit.startswith("meter")})
-    return tuple(
-        f"The file states its lengths in {unit}; they were taken as metres. Give --scale {_metres(unit)} to convert."
-        for unit in units
-    )
+def _in_metres(mesh: RawMesh, scale: float | None) -> RawMesh:
+    factor = _UNITS.get(mesh.unit.rstrip("s"), 1.0) if scale is None else scale
+    return mesh if factor == 1.0 else mesh.moved(factor * np.eye(3))
 
 
-def _size_warnings(assembly: Assembly, scale: float, config: AssemblyConfig) -> tuple[str, ...]:
+def _lengths(meshes: Sequence[RawMesh], scale: float | None) -> str:
+    """Say in which unit the input was read, and why."""
+    if scale is not None:
+        return f"{scale:g} m per unit, as --scale states"
+    units = sorted({mesh.unit for mesh in meshes if mesh.unit.rstrip("s") in _UNITS})
+    return f"{' and '.join(units)}, as the file states" if units else "metres"
+
+
+def _size_warnings(assembly: Assembly, lengths: str, scale: float, config: AssemblyConfig) -> tuple[str, ...]:
     """Ask about the unit of an object that is larger or smaller than what has joints."""
     size = float(np.ptp(assembly.bounds, axis=0).max())
     if config.smallest <= size <= config.largest:
         return ()
     unit, factor = next((item for item in _GUESSES if config.smallest <= size * item[1] <= config.largest), _GUESSES[0])
-    said = f"The object is {length_text(size)} long with {scale:g} m to the unit, which is unusual. "
+    said = f"The object is {length_text(size)} long (lengths read in {lengths}), which is unusual. "
     guess = f"If its lengths are in {unit}, it is {length_text(size * factor)} long: give --scale {scale * factor:g}."
     return (said + guess,)
 
@@ -323,12 +335,6 @@ def _foot(points: FloatArray, axis: int, end: float) -> float:
     across = [other for other in range(3) if other != axis]
     at_end = points[np.abs(points[:, axis] - end) < _ON_GROUND * float(np.linalg.norm(extent))]
     return float(np.prod(np.ptp(at_end[:, across], axis=0) / np.maximum(extent[across], 1e-300)))
-
-
-def _metres(unit: str) -> str:
-    """The number for --scale, as a word where the unit is not known."""
-    known = _UNITS.get(unit.rstrip("s"))
-    return "METRES_PER_UNIT" if known is None else f"{known:g}"
 
 
 WANTED_SUFFIXES = (*MESH_SUFFIXES, *CAD_SUFFIXES, ".bin", ".urdf")

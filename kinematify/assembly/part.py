@@ -112,6 +112,8 @@ class Assembly:
     """What the user should know about the input, one sentence each."""
     originals: Mapping[str, Part] = field(default_factory=dict)
     """Part name -> full mesh, for parts that were simplified for the inference; the output shows these."""
+    lengths: str = "metres"
+    """In which unit the input was read, and why, for reports."""
     segmented: bool = True
     """False where the parts are pieces of a mesh, of which several may be one rigid part."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import posixpath
 import re
 import tempfile
@@ -10,6 +11,8 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from PIL import Image
 
 from kinematify.assembly.load import load_assembly
 from kinematify.batch.manifest import ObjectRecord
@@ -24,17 +27,27 @@ from kinematify.pipeline.record import write_inference_files
 from kinematify.processes.pool import sentence
 from kinematify.refinement.loop import refine
 from kinematify.robot.joint_type import JointType
+from kinematify.validation.checks import CHECKS
+from kinematify.validation.finding import Severity
+from kinematify.validation.formats.html import as_html
+from kinematify.validation.formats.picture import drawing_of
 from kinematify.validation.run import validate
 from kinematify.validation.run.outcome import as_json_text
 
 if TYPE_CHECKING:
     from kinematify.batch.source import Source
+    from kinematify.validation.finding import Finding
+    from kinematify.validation.run.report import ValidationReport
 
 STEPS = ("infer", "refine", "validate", "export")
 """What can be done with an object, in this order."""
 FORMATS = {"mjcf": "model.xml", "usd": "model.usda", "sdf": "model.sdf", "glb": "model.glb"}
 """Formats of the step ``export`` and their files."""
 REPORT_FILE = "validation.json"
+VIEW_FILE, THUMBNAIL_FILE = "report.html", "thumbnail.jpg"
+_ERRORS = 3
+_DRAWING_SECONDS = 20.0
+_THUMBNAIL = (320, 320)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +60,7 @@ class Conversion:
     settings: ValidationSettings
     engines: tuple[str, ...]
     up: str
-    scale: float
+    scale: float | None
     hash: str
     """Of all of these."""
 
@@ -105,6 +118,8 @@ def _do_steps(
             known["parts"] = len(assembly.parts)
             known["faces"] = sum(len(part.faces) for part in assembly.parts)
             inference = infer(assembly, config=config)
+            known["parts"] = len(inference.assembly.parts)  # pieces of a mesh are fewer parts
+            known["lengths"], known["warnings"] = assembly.lengths, tuple(inference.warnings)
         if "refine" in steps:
             with clock.stage("refine", 0.0):
                 inference = refine(inference, settings=conversion.settings).inference
@@ -117,13 +132,32 @@ def _do_steps(
             report = validate(model, settings=conversion.settings, engines=conversion.engines, workers=1)
             report = replace(report, model=posixpath.join(place, MODEL_FILE) if "infer" in steps else source.place)
             (made / REPORT_FILE).write_text(as_json_text([report]), encoding="utf-8")
+            _draw(report, model, conversion.settings, made)
         known["verdict"] = report.verdict
+        errors = [item for item in report.counted if item.severity is Severity.ERROR and item.cause is None]
+        known["errors"] = tuple(dict.fromkeys(map(_place_words, errors)))[:_ERRORS]
     if "export" in steps:
         with clock.stage("export", 0.0):
             for form in conversion.formats:
                 export(model, form, made / FORMATS[form], settings=conversion.settings)
     with clock.stage("store", 0.0):
         publish(made, place)
+
+
+def _draw(report: ValidationReport, model: Path, settings: ValidationSettings, made: Path) -> None:
+    """Write the page of the model, to turn and move, and a small picture for the page of all objects."""
+    drawing = drawing_of(model, (), settings, seconds=_DRAWING_SECONDS)
+    scenes = {report.model: drawing.scene} if drawing.scene else {}
+    (made / VIEW_FILE).write_text(as_html([report], {report.model: drawing.picture}, scenes), encoding="utf-8")
+    if drawing.picture:
+        with Image.open(io.BytesIO(drawing.picture)) as picture:
+            picture.thumbnail(_THUMBNAIL)
+            picture.convert("RGB").save(made / THUMBNAIL_FILE, quality=80)
+
+
+def _place_words(finding: Finding) -> str:
+    place = finding.joint or " and ".join(finding.pair or ()) or finding.link
+    return CHECKS[finding.check].fails + (f" ({place})" if place else "")
 
 
 def _forget_peak() -> None:

@@ -48,6 +48,12 @@ class ObjectRecord:
     """Why it is not ok."""
     verdict: Literal["pass", "warn", "fail"] | None = None
     """Of its validation."""
+    errors: tuple[str, ...] = ()
+    """Of its validation, by title and place, the first three."""
+    lengths: str = ""
+    """In which unit it was read, and why; empty where nothing was inferred."""
+    warnings: tuple[str, ...] = ()
+    """Of its inference."""
     seconds: float
     """Wall time, of the last worker that had it [s]."""
     step_seconds: dict[str, float] = field(default_factory=dict)

@@ -59,7 +59,7 @@ class BatchRequest:
     engines: tuple[str, ...] = DEFAULT_ENGINES
     """Of the validation."""
     up: str = "auto"
-    scale: float = 1.0
+    scale: float | None = None
     """Both as `load_assembly` takes them."""
     share: tuple[int, int] = (1, 1)
     """Number of the share of the objects to convert, from 1, and how many shares there are."""

@@ -7,8 +7,9 @@ import posixpath
 from collections import Counter
 from statistics import fmean
 from typing import TYPE_CHECKING
+from urllib.parse import quote
 
-from kinematify.batch.convert import REPORT_FILE
+from kinematify.batch.convert import REPORT_FILE, THUMBNAIL_FILE, VIEW_FILE
 from kinematify.batch.manifest import read_manifests
 from kinematify.batch.run import OBJECTS
 from kinematify.batch.source import filesystem
@@ -22,16 +23,27 @@ if TYPE_CHECKING:
 
 PAGE_FILE = "index.html"
 STEP_HEADINGS = ("step", "objects", "mean [s]", "95 % within [s]", "most [s]", "share")
-_OBJECT_HEADINGS = ("object", "status", "verdict", "joints", "parts", "faces", "seconds", "memory [MB]", "why not")
+_OBJECT_HEADINGS = (
+    "picture",
+    "object",
+    "result",
+    "reason",
+    "joints",
+    "parts",
+    "faces",
+    "seconds",
+    "memory [MB]",
+    "files",
+)
 
 
 def outcome_words(records: Sequence[ObjectRecord]) -> str:
-    """``12 ok (9 pass, 2 warn, 1 fail), 1 unusable, 1 timeout``."""
+    """``12 written (9 pass, 2 warn, 1 fail), 1 unusable, 1 timeout``."""
     verdicts = Counter(record.verdict for record in records if record.verdict)
     judged = ", ".join(f"{verdicts[word]} {word}" for word in ("pass", "warn", "fail") if verdicts[word])
     counts = Counter(record.status for record in records)
     words = [f"{counts[status]} {status}" for status in ("unusable", "error", "timeout", "crash") if counts[status]]
-    return ", ".join([f"{counts['ok']} ok" + (f" ({judged})" if judged else ""), *words])
+    return ", ".join([f"{counts['ok']} written" + (f" ({judged})" if judged else ""), *words])
 
 
 def step_rows(records: Sequence[ObjectRecord]) -> list[tuple[str, ...]]:
@@ -63,9 +75,9 @@ def as_page(records: Sequence[ObjectRecord]) -> str:
         "<h2>Time</h2>",
         table(STEP_HEADINGS, step_rows(records), name="steps", classes=("", *["number"] * 5)),
         "<h2>Objects</h2>",
-        table(_OBJECT_HEADINGS, rows, name="objects", classes=("", "", "", *["number"] * 5, "")),
+        table(_OBJECT_HEADINGS, rows, name="objects", classes=("", "", "", "", *["number"] * 5, "")),
     ]
-    return page(title, body)
+    return page(title, body, beside=True)
 
 
 def write_page(out: str) -> str:
@@ -87,9 +99,8 @@ def write_page(out: str) -> str:
 
 
 def _row(record: ObjectRecord) -> tuple[str, ...]:
-    folder = f"{OBJECTS}/{text(record.object)}"
-    name = f'<a href="{folder}/">{text(record.object)}</a>' if record.status == "ok" else text(record.object)
-    verdict = f'<a href="{folder}/{REPORT_FILE}">{badge(record.verdict)}</a>' if record.verdict else ""
+    folder = f"{OBJECTS}/{quote(record.object)}"
+    written, checked = record.status == "ok", record.verdict is not None
     numbers = (
         record.joints,
         record.parts,
@@ -97,10 +108,19 @@ def _row(record: ObjectRecord) -> tuple[str, ...]:
         round(record.seconds, 1),
         record.peak_mb and round(record.peak_mb),
     )
+    name = text(record.object)
+    files = {"folder": "", "JSON report": REPORT_FILE if checked else None}
+    links = [f'<a href="{folder}/{file}">{words}</a>' for words, file in files.items() if file is not None]
     return (
-        name,
-        text(record.status),
-        verdict,
+        f'<img alt="" loading="lazy" width="160" src="{folder}/{THUMBNAIL_FILE}">' if written and checked else "",
+        f'<a href="{folder}/{VIEW_FILE}" title="Turn and move it, with its findings">{name}</a>' if checked else name,
+        badge(record.verdict or ("written" if written else record.status)),
+        text(_reason(record)),
         *("" if value is None else str(value) for value in numbers),
-        text(record.error),
+        " ".join(links) if written else "",
     )
+
+
+def _reason(record: ObjectRecord) -> str:
+    """Why it is not what was asked for, else what to look at."""
+    return record.error or "; ".join((*record.errors, *record.warnings))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.options import examples, listed
+from kinematify.cli.options import examples, listed, scale_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
@@ -78,7 +78,7 @@ _SHOWN = 10
     show_default=True,
     help="Axis of the inputs that points up.",
 )
-@click.option("--scale", type=float, default=1.0, show_default=True, help="Metres per unit of the inputs.")
+@scale_option
 @click.option(
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
 )

@@ -7,12 +7,13 @@ from pathlib import Path
 
 import click
 
+from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.options import examples, package_dirs_option
 
 
 @click.command(
     "erase",
-    short_help="URDF -> anonymous part meshes, and the truth in a file beside them.",
+    short_help="URDF -> anonymous part meshes, and the ground truth in a file beside them.",
     epilog=examples(
         "kinematify erase franka/model.urdf -o panda-parts",
         "kinematify erase robot.urdf -o robot-parts --pose random --seed 3 --yaw 37",
@@ -30,20 +31,40 @@ from kinematify.cli.options import examples, package_dirs_option
 )
 @click.option("--seed", type=int, default=0, show_default=True, help="Seed of pose, order and names of the parts.")
 @click.option("--yaw", type=float, default=0.0, show_default=True, metavar="DEG", help="Turn about the vertical axis.")
+@click.option("--force", is_flag=True, help="Replace OUT if `kinematify erase` wrote it.")
 @package_dirs_option
-def command(*, model: Path, out: Path, pose: str, seed: int, yaw: float, package_dirs: tuple[Path, ...]) -> None:
-    """Remove the kinematics of the URDF MODEL: what is left is what a scan of the object would show.
+@json_option
+def command(
+    *,
+    model: Path,
+    out: Path,
+    pose: str,
+    seed: int,
+    yaw: float,
+    force: bool,
+    package_dirs: tuple[Path, ...],
+    json_to: str | None,
+) -> None:
+    """Remove the kinematics of MODEL, a URDF or a model folder: what remains is what a scan of the object would show.
 
     Links joined by fixed joints become one part. Order and names of the parts are shuffled. OUT is an input of
-    `kinematify infer`; the truth is written beside it as OUT.truth.json and is never read by `infer`.
+    `kinematify infer`; the ground truth is written beside it as OUT.truth.json and is never read by `infer`.
     """
     from kinematify.assembly.erase import erase, write_erased
+    from kinematify.model.output import urdf_of
     from kinematify.robot.read import read_robot
 
-    robot = read_robot(model, package_dirs=package_dirs, geometry="shown")
+    robot = read_robot(urdf_of(model), package_dirs=package_dirs, geometry="shown")
     erased = erase(robot, pose=pose, seed=seed, yaw_deg=yaw)
-    truth = write_erased(erased, out)
+    truth = write_erased(erased, out, overwrite=force)
     for note in robot.notes:
         click.echo(f"Note: {note}", err=True)
-    click.echo(f"{len(erased.parts)} parts in {out}, {len(erased.truth.joints)} joints erased. The truth: {truth}")
+    if json_to is not None:
+        answer = {"schema": 1, "out": str(out), "parts": len(erased.parts), "joints": len(erased.truth.joints)}
+        write_answer({**answer, "truth": str(truth)}, json_to)
+    if json_to == "-":
+        return
+    click.echo(
+        f"{len(erased.parts)} parts in {out}, {len(erased.truth.joints)} joints erased. The ground truth: {truth}"
+    )
     click.echo(f"Next: kinematify infer {shlex.quote(str(out))} -o {shlex.quote(f'{out}-model')}")

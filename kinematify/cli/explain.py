@@ -107,9 +107,7 @@ def _feedback(checks: Sequence[Check]) -> list[str]:
 def _section(check: Check) -> list[str]:
     return [
         f"### {check.id}",
-        "",
-        f"**{check.title}**; else: {check.fails}",
-        "",
+        f"- **{check.title}**; else: {check.fails}",
         f"- Verifies: {check.verifies}",
         f"- Why it matters: {check.matters}",
         f"- Remedy: {check.remedy}",

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.options import examples, listed, package_dirs_option, sampling_seed_option
+from kinematify.cli.options import examples, force_file_option, listed, package_dirs_option, sampling_seed_option
 from kinematify.cli.table import format_table
 
 
@@ -38,6 +38,7 @@ from kinematify.cli.table import format_table
 @click.option(
     "--gripper", metavar="JOINTS", help="Joints of the fingers, separated by commas; found on the tool if not given."
 )
+@force_file_option
 @json_option
 @package_dirs_option
 @sampling_seed_option
@@ -49,6 +50,7 @@ def command(
     free: bool,
     tool: str | None,
     gripper: str | None,
+    force: bool,
     json_to: str | None,
     package_dirs: tuple[Path, ...],
     seed: int | None,
@@ -71,11 +73,13 @@ def command(
     """
     from kinematify.config.validation import load_settings
     from kinematify.formats.export import export
+    from kinematify.model.output import check_file
 
     if form != "srdf" and (tool or gripper):
         raise click.UsageError("--tool and --gripper belong to --to srdf. Leave them out.")
     if free and form in ("srdf", "glb", "urdf"):
         raise click.UsageError("--free belongs to --to mjcf, usd or sdf. Leave it out.")
+    check_file(out, overwrite=force)
     joints = listed(gripper)
     settings = load_settings() if seed is None else load_settings(seed=seed)
     done = export(model, form, out, free=free, tool=tool, gripper=joints, package_dirs=package_dirs, settings=settings)

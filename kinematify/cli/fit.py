@@ -19,7 +19,7 @@ from kinematify.cli.progress import progress_reporter
     epilog=examples(
         "kinematify fit -o fitted",
         "kinematify fit models/everyday models/robots --rounds 8 --composed 400 -o fitted",
-        "kinematify fit models/everyday --packages -o fitted",
+        "kinematify fit models/everyday models/infinigen --per-category 10 --hold-out infinigen -o fitted",
         "kinematify fit --rounds 1 --composed 20 -o reduced",
     ),
 )
@@ -30,6 +30,20 @@ from kinematify.cli.progress import progress_reporter
 @click.option("--packages", is_flag=True, help="Also objects that installed PyPI packages carry.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Draws the generated objects.")
 @click.option("--jobs", type=click.IntRange(min=1), help="Worker processes; as many as there are cores if not given.")
+@click.option(
+    "--per-category",
+    type=click.IntRange(min=1),
+    help="Fit to this many objects of each category of a folder; the others judge. All if not given.",
+)
+@click.option(
+    "--hold-out", multiple=True, help="Also evaluate this folder of objects without fitting to it; repeat it."
+)
+@click.option(
+    "--skip",
+    type=click.Choice(["fixed", "edges", "described"]),
+    multiple=True,
+    help="Do not refit what detects fixed parts, or the edges of the tree; do not evaluate described objects.",
+)
 @click.option(
     "--ablation", is_flag=True, help="Also judge fits without each group of measurements, and to fewer objects."
 )
@@ -43,6 +57,9 @@ def command(
     packages: bool,
     seed: int,
     jobs: int | None,
+    per_category: int | None,
+    hold_out: tuple[str, ...],
+    skip: tuple[str, ...],
     ablation: bool,
     json_to: str | None,
 ) -> None:
@@ -65,6 +82,9 @@ def command(
             seed=seed,
             workers=jobs or os.cpu_count() or 1,
             cache=out / "measured",
+            per_category=per_category,
+            hold_out=hold_out,
+            skip=skip,
             ablation=ablation,
             progress=progress,
         )

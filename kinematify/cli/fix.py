@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.options import examples, package_dirs_option
+from kinematify.cli.options import examples, force_file_option, package_dirs_option
 from kinematify.cli.progress import progress_reporter
 
 if TYPE_CHECKING:
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     help="Change joints too: swapped limits, limits beyond a contact, a zero axis, an axis or place that the parts "
     "show. Each change is shown as a diff.",
 )
+@force_file_option
 @package_dirs_option
 @json_option
 def command(
@@ -47,10 +48,11 @@ def command(
     out: Path,
     everything: bool,
     kinematics: bool,
+    force: bool,
     package_dirs: tuple[Path, ...],
     json_to: str | None,
 ) -> int:
-    """Write the URDF MODEL again, with what `validate` finds in it repaired as far as the repair is certain.
+    """Write MODEL, a URDF or a model folder, as a URDF with findings of `validate` repaired where that is certain.
 
     Links that jam or overlap by their collision geometry alone get boxes and convex pieces, carved by the motion;
     a mass or inertia that no engine can use becomes that of the geometry; of repeated elements the first stays. Mesh
@@ -69,8 +71,11 @@ def command(
     load_imports()  # before anything loads NumPy
     from kinematify.config import load_config
     from kinematify.config.validation import load_settings
+    from kinematify.model.output import check_file, urdf_of
     from kinematify.refinement.fix import fix_urdf
 
+    check_file(out, overwrite=force)
+    model = urdf_of(model)
     with progress_reporter() as progress:
         done = fix_urdf(
             model,

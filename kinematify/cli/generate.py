@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.options import collision_option, complete_categories, examples
+from kinematify.cli.options import collision_option, complete_categories, examples, scale_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
     from kinematify.cli.provided import ProvidedGeneration
     from kinematify.generate.composer.bodies import BodyKind
     from kinematify.generate.composer.mechanisms import MechanismKind
+
+_WIDTH = 100
+"""Characters of a line of --list."""
 
 
 @click.command(
@@ -89,7 +93,7 @@ if TYPE_CHECKING:
 )
 @click.option("--resend", is_flag=True, help="Send steps again that failed, or of which no answer is known.")
 @click.option("--up", type=click.Choice(["auto", "y", "z"]), default="auto", help="Axis that points up in the parts.")
-@click.option("--scale", type=float, default=1.0, metavar="FACTOR", help="Metres per unit of the parts.")
+@scale_option
 @click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder to make.")
 @click.option("--strict", is_flag=True, help="Write nothing unless all that the sentence asks for is built.")
 @click.option("--infer", "inferred", is_flag=True, help="Find the joints again from the parts alone, and compare.")
@@ -121,7 +125,7 @@ def command(
     replay: Path | None,
     resend: bool,
     up: str,
-    scale: float,
+    scale: float | None,
     out: Path | None,
     strict: bool,
     inferred: bool,
@@ -215,7 +219,7 @@ def command(
 
 def _requested(text: str | None, category: str | None, settings: tuple[str, ...], blueprint: Path | None) -> Requested:
     if blueprint is not None:
-        from kinematify.generate.blueprint_file import WrittenBlueprint
+        from kinematify.generate.procedural.blueprint_file import WrittenBlueprint
 
         return WrittenBlueprint(blueprint)
     if text is not None:
@@ -274,10 +278,12 @@ def _categories() -> str:
         (family.name, family.title, ", ".join(p.name for p in family.parameters))
         for family in known_families().values()
     ]
-    table = format_table(("category", "what it is", "parameters"), rows)
+    table = format_table(("category", "what it is", "parameters"), rows, width=_WIDTH)
+    composed = (("bodies", _named(BODIES)), ("mechanisms", _named(MECHANISMS)))
     return (
         f"{table}\n\nWhat no category builds is composed, as in --text 'a cart with four casters and two drawers':\n"
-        f"bodies: {_named(BODIES)}\nmechanisms: {_named(MECHANISMS)}\n\n"
+        + "".join(textwrap.fill(f"{kind}: {names}", _WIDTH, subsequent_indent="  ") + "\n" for kind, names in composed)
+        + "\n"
         "Parameters with units and ranges: kinematify generate --list --category NAME"
     )
 

@@ -11,8 +11,8 @@ import click
 
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.asking import Asking, asking_options, with_answers
-from kinematify.cli.inferred import as_loaded, confidences, describe, load_as_loaded
-from kinematify.cli.options import collision_option, examples, with_collision
+from kinematify.cli.inferred import as_loaded, confidences, describe, load_as_loaded, renamed
+from kinematify.cli.options import collision_option, examples, scale_option, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS, describe_refinement, exit_status
 from kinematify.errors import EnvironmentFault, InputError, KinematifyError
@@ -60,7 +60,7 @@ _LONGEST = 86400.0
     show_default=True,
     help="Axis of the input that points up (-z: it lies upside down); auto: y for glTF, what COLLADA says, else z.",
 )
-@click.option("--scale", type=float, default=1.0, show_default=True, help="Metres per unit of the input.")
+@scale_option
 @click.option(
     "--labels",
     type=click.Path(path_type=Path),
@@ -78,6 +78,13 @@ _LONGEST = 86400.0
     "--groups",
     type=click.Path(path_type=Path),
     help="groups.json of an earlier model of the same mesh, corrected: the pieces (or parts) of every part.",
+)
+@click.option(
+    "--object",
+    "number",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Which object, from left to right, of a mesh that shows several.",
 )
 @click.option(
     "--density",
@@ -126,10 +133,11 @@ def command(
     assembly: Path,
     out: Path,
     up: str,
-    scale: float,
+    scale: float | None,
     labels: Path | None,
     pieces: str,
     groups: Path | None,
+    number: int | None,
     density: float | None,
     masses: tuple[str, ...],
     base: str | None,
@@ -183,7 +191,9 @@ def command(
         progress = stack.enter_context(progress_reporter())
         use_one_thread(settings)
         progress("reading the parts", 0.0)
-        given = load_assembly(assembly, config=settings.assembly, up=up, scale=scale, labels=labels, pieces=pieces)
+        given = load_assembly(
+            assembly, config=settings.assembly, up=up, scale=scale, labels=labels, pieces=pieces, number=number
+        )
         parts = grouped_parts(given, groups, settings, progress)
         settings = _weighing(settings, density, masses, parts)
         told = _told(hints, _names(parts), base)
@@ -341,6 +351,8 @@ def _as_answer(inference: Inference, out: Path) -> dict[str, Any]:
         "out": str(out),
         "files": sorted(path.relative_to(out).as_posix() for path in out.rglob("*") if path.is_file()),
         "base": inference.model.root,
+        "lengths": inference.assembly.lengths,
+        "renamed": renamed(inference.assembly),
         "joints": [_joint_answer(inference, joint) for joint in inference.model.joints],
         "set_aside": [{"name": item.part.name, "reason": item.reason} for item in inference.assembly.set_aside],
         "warnings": list(inference.warnings),

@@ -7,14 +7,18 @@ from typing import TYPE_CHECKING
 
 from kinematify.cli.table import format_table
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.lengths import range_text
+from kinematify.robot.lengths import length_text, range_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from kinematify.assembly.part import Assembly
     from kinematify.pipeline import Inference
     from kinematify.robot.robot import Joint
+
+_RENAMED = 10
+"""Changed names that are printed."""
 
 
 def confidences(inference: Inference) -> dict[str, float]:
@@ -28,6 +32,7 @@ def describe(inference: Inference, out: Path) -> str:
     confidence_of = confidences(inference)
     lines = [
         f"Base: {inference.model.root}",
+        f"Lengths: read in {inference.assembly.lengths}; the object is {_size(inference.assembly)} (x, y, z)",
         "",
         describe_joints(inference.model.joints, confidence_of),
         "",
@@ -35,6 +40,15 @@ def describe(inference: Inference, out: Path) -> str:
         *describe_files(out),
     ]
     return "\n".join(lines)
+
+
+def renamed(assembly: Assembly) -> dict[str, str]:
+    """Parts that got another name than in the input, which maps to that."""
+    return {new: old for new, old in assembly.original_names.items() if new != old}
+
+
+def _size(assembly: Assembly) -> str:
+    return " x ".join(length_text(float(side)) for side in assembly.bounds[1] - assembly.bounds[0])
 
 
 def describe_joints(joints: Sequence[Joint], confidence_of: Mapping[str, float] | None = None) -> str:
@@ -86,6 +100,11 @@ def _describe_doubts(inference: Inference) -> list[str]:
     joint_of = {joint.child: joint.name for joint in inference.model.joints}
     doubtful = [joint_of[part] for part in inference.doubtful]
     lines = [f"Set aside: {item.part.name} ({item.reason})" for item in inference.assembly.set_aside]
+    changed = renamed(inference.assembly)
+    if changed:
+        said = ", ".join(f"{old!r} to {new}" for new, old in list(changed.items())[:_RENAMED])
+        more = f" and {len(changed) - _RENAMED} more (--json lists all)" if len(changed) > _RENAMED else ""
+        lines.append(f"Renamed for simulators: {said}{more}.")
     lines += [f"Note: {warning}" for warning in inference.warnings]
     lines += [f"Closed chain: {chain.told}" for chain in inference.closed_chains]
     if doubtful:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -23,6 +23,8 @@ package_dirs_option = click.option(
     help="Package, or folder of packages, for package:// paths; may be given more than once.",
 )
 
+force_file_option = click.option("--force", is_flag=True, help="Replace the file of -o if it exists.")
+
 sampling_seed_option = click.option(
     "--seed", type=int, help="Seed of the sampled configurations, instead of the configuration's."
 )
@@ -32,6 +34,29 @@ collision_option = click.option(
     type=click.Choice(["auto", "mesh"]),
     help="Collision geometry: boxes and convex pieces carved by the motion (auto, the configuration's), or the visual "
     "meshes, of which engines take the hulls.",
+)
+
+
+class _Scale(click.ParamType["float | None"]):
+    """``auto``, which is None, or metres per unit."""
+
+    name = "auto|metres"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float | None:
+        """Return metres per unit; None: what the file states."""
+        try:
+            return None if value == "auto" else float(value)
+        except ValueError:
+            self.fail(f"{value!r} is no number. Give auto, or metres per unit: 0.001 for millimetres.", param, ctx)
+
+
+scale_option = click.option(
+    "--scale",
+    type=_Scale(),
+    default="auto",
+    show_default=True,
+    metavar="auto|NUMBER",
+    help="Metres per unit of the input; auto: the unit that a file states, else metres.",
 )
 
 

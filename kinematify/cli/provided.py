@@ -16,7 +16,7 @@ from kinematify.cli.generation import Generation, status_of, summary_of, validat
 from kinematify.cli.inferred import describe
 from kinematify.cli.options import say, with_collision
 from kinematify.errors import InputError
-from kinematify.generate.blueprint_file import read_blueprint
+from kinematify.generate.procedural.blueprint_file import read_blueprint
 from kinematify.generate.procedural.language.compare import compare
 from kinematify.generate.procedural.language.parse import parse_any
 from kinematify.generate.providers.command import CommandSource
@@ -64,7 +64,7 @@ class ProvidedOptions:
     replay: Path | None
     resend: bool
     up: str
-    scale: float
+    scale: float | None
     seed: int | None
     config: Config
 

@@ -66,13 +66,12 @@ def command(
     shows the command that does the same. Over SSH, forward the port that is printed: ssh -L 8080:localhost:8080.
     """
     from kinematify.errors import InputError
+    from kinematify.model.output import urdf_of
     from kinematify.view.window import Window
 
     if len(joints) != len(values):
         raise InputError(f"There are {len(joints)} --joint and {len(values)} --q. Give one value for each joint.")
-    urdf = model / "model.urdf" if model.is_dir() else model
-    if not urdf.is_file():
-        raise InputError(f"There is no file {urdf}. Give a URDF, or a model folder that `kinematify infer` wrote.")
+    urdf = urdf_of(model)
     told = report or urdf.parent / "validation.json"
     sights = _sights(told) if report is not None or told.is_file() else []
     window = Window(urdf, package_dirs=package_dirs, sights=sights, host=host, port=port)

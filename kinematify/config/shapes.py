@@ -63,7 +63,7 @@ class ContactConfig(StageConfig):
 class GroupingConfig(StageConfig):
     """Which pieces of a mesh that is not segmented are one rigid part."""
 
-    threshold: float = 0.2  # the best F1 of moving parts on what was left out (results/pieces.md)
+    threshold: float = 0.25  # the best F1 of moving parts on what was left out (results/grouping.md)
     """Probability from which a set of pieces is a moving part."""
     crumb: float = 0.012  # screws and letters; the smallest button of the benchmark is twice as large
     """Pieces with a smaller diagonal, as a fraction of the assembly's, ride on the nearest one."""

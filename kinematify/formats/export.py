@@ -11,7 +11,7 @@ from kinematify.config.validation import load_settings
 from kinematify.errors import InputError, OutputError
 from kinematify.formats.content import read_content, told_renaming
 from kinematify.formats.losses import losses
-from kinematify.model.output import MODEL_FILE
+from kinematify.model.output import urdf_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -89,21 +89,6 @@ def export(
     except OSError as error:
         reason = error.strerror or str(error)
         raise OutputError(f"{path} cannot be written: {reason}. Give a file in a folder that exists.") from error
-
-
-def urdf_of(model: Path) -> Path:
-    """Return the URDF of a model folder; a file is itself.
-
-    Raises:
-        InputError: The folder has none, or several.
-    """
-    if not model.is_dir():
-        return model
-    found = [model / MODEL_FILE] if (model / MODEL_FILE).is_file() else sorted(model.glob("*.urdf"))
-    if len(found) != 1:
-        what = f"{len(found)} URDF files" if found else "no URDF file"
-        raise InputError(f"The folder {model} has {what} and no {MODEL_FILE}. Give the URDF file itself.")
-    return found[0]
 
 
 def _srdf(

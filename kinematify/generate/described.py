@@ -11,30 +11,26 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from kinematify.errors import InputError
-from kinematify.generate.blueprint_file import (
+from kinematify.generate.library.assembled import MODELING, builder_of, carried_out, put_together
+from kinematify.generate.library.builder import ModelingStyle, ObjectBuilder
+from kinematify.generate.library.steps import Step
+from kinematify.generate.procedural.blueprint_file import (
     MIRRORS,
     BlueprintDescription,
     Name,
     Repetition,
     Vector,
-    parents_first,
 )
-from kinematify.generate.library.builder import CAREFUL, ModelingStyle, ObjectBuilder
-from kinematify.generate.library.steps import Step, run_steps
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import Family
 from kinematify.generate.procedural.parameter import Parameter, choice, counted, parse_table
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping
 
-    from manifold3d import Manifold
-
-    from kinematify.generate.blueprint_file import PartDescription
     from kinematify.generate.procedural.blueprint import BlueprintJoint
     from kinematify.generate.procedural.family import Values
     from kinematify.generate.procedural.workshop import Workshop
@@ -164,17 +160,9 @@ class ObjectDescription(Spoken, BlueprintDescription):
                     solid, joint = given[name]
                     looks[names[name]], solids[names[name]] = looks[name], solid.transform(transform)
                     joints[names[name]] = _joint_elsewhere(joint, names, transform)
-        _put_together(solids, looks, list(joints.values()), values, workshop)
+        put_together(solids, looks, list(joints.values()), values, workshop)
 
 
-_MODELING: dict[str, dict[str, Any]] = {
-    "careful": {},
-    "gaps": {"gap": 0.005},
-    "touching": {"gap": 0.0},
-    "solid": {"has_bore": False, "hollow": False, "gap": 0.0},
-    "overlapping": {"has_bore": False, "max_penetration": 0.3, "gap": 0.0},
-}
-"""How an object in steps is modelled -> what differs from the careful way, in which everything moves freely."""
 _Range = tuple[float, float]
 
 
@@ -258,7 +246,7 @@ class SteppedDescription(Spoken):
                     counted(f"{word}s", count, (count, count), "Belongs to it.", words=word)
                     for word, count in self.details.items()
                 ),
-                choice("modeling", tuple(_MODELING), "How it is modelled.", drawn=False),
+                choice("modeling", tuple(MODELING), "How it is modelled.", drawn=False),
             ),
             material="plastic",
             part_words=self.part_words,
@@ -274,51 +262,10 @@ class SteppedDescription(Spoken):
             InputError: A step cannot be carried out with what was drawn.
         """
         builder = ObjectBuilder(self.name, style, rng)
-        return self._described(builder, {name: said.drawn(builder) for name, said in self.parameters.items()})
-
-    def _described(self, builder: ObjectBuilder, values: Mapping[str, Any]) -> dict[str, Any]:
-        switched = {name: value == "yes" if value in ("yes", "no") else value for name, value in values.items()}
-        try:
-            run_steps(self.steps, builder, switched)
-        except ValueError as error:
-            raise InputError(f"The object {self.name} cannot be built: {error}.") from error
-        return builder.description()
+        return carried_out(self.steps, builder, {name: said.drawn(builder) for name, said in self.parameters.items()})
 
     def _build(self, values: Values, workshop: Workshop) -> None:
-        style = replace(CAREFUL, gap=values.number("clearance"), **_MODELING[values.choice("modeling")])
-        builder = ObjectBuilder(self.name, style, values.rng if values.drawn else None)
-        said = self._described(builder, {name: values.value(name) for name in self.parameters})
-        try:
-            built = BlueprintDescription.model_validate(said)
-        except ValidationError as error:
-            reason = error.errors(include_url=False)[0]
-            raise InputError(
-                f"The {self.title} cannot be built so: {reason['msg']} at {'.'.join(map(str, reason['loc']))}."
-            ) from error
-        solids = {part.name: part.solid({}) for part in built.parts}
-        joints = [replace(joint.joint(), value=joint.value) for joint in built.joints]
-        _put_together(solids, {part.name: part for part in built.parts}, joints, values, workshop)
-        for loop in built.loops:
-            workshop.closes(*loop.parts, loop.pivot)
-
-
-def _put_together(
-    solids: Mapping[str, Manifold],
-    looks: Mapping[str, PartDescription],
-    joints: Sequence[BlueprintJoint],
-    values: Values,
-    workshop: Workshop,
-) -> None:
-    """Add parts and joints to a workshop; a joint whose `value` is not zero stands there unless it is to be open."""
-    base = next(iter(solids))
-    for name, solid in solids.items():
-        look = looks[name]
-        asked = (values.choice("material"), values.choice("color")) if name == base else ("", "")
-        color = look.color if isinstance(look.color, str) else None
-        workshop.body(name, solid, material=None if asked[0] else look.material, color=asked[1] or color)
-    for joint in parents_first(joints):
-        share = joint.value / joint.upper if joint.value else 0.0
-        workshop.hang(replace(joint, value=0.0), values.number("open") or share)
+        builder_of(self.name, self.title, self.steps, self.parameters)(values, workshop)
 
 
 def _carried(name: str, joints: Mapping[str, BlueprintJoint]) -> list[str]:

@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kinematify.errors import OutputError
+from kinematify.errors import InputError, OutputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -53,6 +53,34 @@ def write_model_folder(out: Path, write: Callable[[Path], None], *, overwrite: b
                 "Give another place with -o, or change its permissions or free disk space."
             ) from error
         raise
+
+
+def urdf_of(model: Path) -> Path:
+    """Return the URDF of a model folder, or the only one of another folder; a file is itself.
+
+    Raises:
+        InputError: There is no such file, or the folder has no URDF or several.
+    """
+    if not model.is_dir():
+        if not model.is_file():
+            raise InputError(f"There is no file {model}. Give a URDF, or a model folder that `kinematify infer` wrote.")
+        return model
+    found = [model / MODEL_FILE] if (model / MODEL_FILE).is_file() else sorted(model.glob("*.urdf"))
+    if len(found) != 1:
+        what = f"{len(found)} URDF files ({', '.join(item.name for item in found[:3])})" if found else "no URDF file"
+        raise InputError(f"The folder {model} has {what} and no {MODEL_FILE}. Give the URDF file itself.")
+    return found[0]
+
+
+def check_file(out: Path, *, overwrite: bool) -> None:
+    """Refuse to replace a file that was not asked to be replaced.
+
+    Raises:
+        OutputError: `out` exists and must not be replaced.
+    """
+    if out.is_dir() or (out.is_file() and not overwrite):
+        what, remedy = ("is a folder", "") if out.is_dir() else ("exists already", ", or --force to replace it")
+        raise OutputError(f"The output {out} {what}. Give another file with -o{remedy}.")
 
 
 def check_output(out: Path, *, overwrite: bool) -> None:

@@ -121,6 +121,15 @@ class LeaderMechanism:
             slopes[row] = self._slopes(row)
         return slopes
 
+    def leads_at(self, leaders: FloatArray) -> FloatArray:
+        """`leads` where the leaders have these values (leaders,): the slopes of curves there, (joints, leaders)."""
+        if not self._curved:
+            return self.leads
+        steps = _NEARBY * np.eye(len(leaders))
+        ahead, behind = (self.all_values(leaders + sign * steps) for sign in (1.0, -1.0))
+        slopes: FloatArray = (ahead - behind).T / (2.0 * _NEARBY)
+        return slopes
+
     @cached_property
     def rest(self) -> FloatArray:
         """Values of the leaders at rest [rad or m], shape (leaders,)."""

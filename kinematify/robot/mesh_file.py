@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from lxml import etree
 
-from kinematify.errors import AssemblyError, EnvironmentFault
+from kinematify.errors import AssemblyError, EnvironmentFault, KinematifyError
 from kinematify.robot.appearance import joined, painted
 from kinematify.robot.exact_faces import ExactFaces, joined_faces
 from kinematify.robot.gltf_file import read_gltf
@@ -128,6 +128,7 @@ def merged(meshes: tuple[RawMesh, ...], name: str) -> RawMesh:
         name=name,
         vertices=np.concatenate([mesh.vertices for mesh in meshes]),
         faces=np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)]),
+        unit=meshes[0].unit if meshes else "",
         up=meshes[0].up if meshes else "",
         appearance=joined([mesh.appearance for mesh in meshes], [len(mesh.faces) for mesh in meshes]),
         exact=joined_faces([mesh.exact for mesh in meshes]),
@@ -143,7 +144,7 @@ def _guarded(path: Path, read: Callable[[Path, bool], tuple[RawMesh, ...]], *, a
             _check_indices(meshes)
     except MemoryError as error:
         raise AssemblyError(f"The mesh file {path} does not fit into memory. Simplify it first.") from error
-    except EnvironmentFault:
+    except KinematifyError:
         raise
     except Exception as error:
         reason = f"{error}".strip().partition("\n")[0][:200] or type(error).__name__
@@ -211,6 +212,8 @@ def _read_scene(path: Path, appearance: bool) -> tuple[RawMesh, ...]:
             content = _without_materials(path)
             scene = trimesh.load_scene(content, file_type="dae", process=False, skip_materials=True)
         return _collada_meshes(scene, path, content, trimesh.Trimesh, appearance=appearance)
+    if scene.geometry and all(isinstance(item, trimesh.PointCloud) for item in scene.geometry.values()):
+        raise AssemblyError(f"The file {path} is a point cloud, which has no surface. Make a mesh of it first.")
     meshes = tuple(_scene_meshes(scene, path, trimesh.Trimesh, appearance=appearance))
     if suffix == ".stl" and not meshes and not _is_empty_stl(path):
         raise ValueError("it is neither a binary STL of the length that it states nor a complete ASCII one")

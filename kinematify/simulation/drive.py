@@ -41,6 +41,8 @@ class Driven:
     """The same where the joint stands at last, shape (pairs,)."""
     rows: tuple[int, ...]
     """Rows of `DriveSession.sweep` on its way."""
+    values: FloatArray
+    """Of all joints at each look [rad or m], shape (LOOKS, J)."""
     looks: FloatArray
     """What is drawn of the way: command, value [rad or m], force [N m or N] and depth beyond what is allowed [m] at
     each look, shape (4, LOOKS)."""
@@ -192,5 +194,6 @@ def _driven(
         excess=excess.max(axis=1),
         at_end=at_end,
         rows=tuple(rows[: excess.shape[1]]),
+        values=record.looks,
         looks=looks,
     )

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 _RESERVED = "world"
 """MuJoCo's name of the outside; a link of this name is loaded under another one."""
+PIN_SOLREF, PIN_SOLIMP = (0.004, 1.0), (0.99, 0.999, 1.0e-4)
+"""Of pins, as MJCF exports have them (`kinematify.formats.mjcf`)."""
 _ROWS_PER_THREAD = 150
 """Fewer rows are done before a thread has started."""
 
@@ -104,7 +106,19 @@ def parse(urdf: Path, mechanism: LeaderMechanism, *, step: float) -> ParsedModel
     for number, geom in enumerate(spec.geoms):
         geom.name = f"kinematify geom {number}"
     names = tuple(stand_in if name == _RESERVED else name for name in mechanism.links)
+    _close_loops(spec, names, mechanism)
     return ParsedModel(spec=spec, names=names, mechanism=mechanism, step=step)
+
+
+def _close_loops(spec: mujoco.MjSpec, names: tuple[str, ...], mechanism: LeaderMechanism) -> None:
+    """Hold both ends of every loop together, which MuJoCo does not read in a URDF."""
+    for loop in mechanism.robot.loops:
+        first, second = (names[mechanism.links.index(link)] for link in loop.links)
+        pin = spec.add_equality(
+            name=loop.name, type=mujoco.mjtEq.mjEQ_CONNECT, objtype=mujoco.mjtObj.mjOBJ_BODY, name1=first, name2=second
+        )
+        pin.data[:3] = loop.points[0]
+        pin.solref[:2], pin.solimp[:3] = PIN_SOLREF, PIN_SOLIMP
 
 
 def set_options(spec: mujoco.MjSpec, step: float) -> None:
@@ -283,26 +297,29 @@ _Part = tuple["FloatArray", "IntArray", "IntArray", "FloatArray", "FloatArray", 
 
 def _measure_rows(loaded: CompiledModel, values: FloatArray, rows: IntArray, dynamic: int) -> _Part:
     model, data = loaded.model, mujoco.MjData(loaded.model)
-    qpos, bodies = loaded.qpos, loaded.body
-    poses = np.tile(np.eye(4), (len(rows), len(loaded.body), 1, 1))
-    gravity = np.zeros((len(rows), model.nv))
+    configurations = np.tile(data.qpos, (len(rows), 1))
+    configurations[:, loaded.qpos] = values[rows]
+    turns, places = np.empty((len(rows), model.nbody, 9)), np.empty((len(rows), model.nbody, 3))
+    gravity, counts = np.zeros((len(rows), model.nv)), np.zeros(len(rows), dtype=np.int64)
     matrices: list[FloatArray] = []
-    found: list[tuple[IntArray, IntArray, FloatArray]] = []
+    found: list[tuple[IntArray, FloatArray]] = []
     for k, row in enumerate(rows):
-        data.qpos[qpos] = values[row]
+        data.qpos[:] = configurations[k]
         mujoco.mj_fwdPosition(model, data)
         mujoco.mj_rne(model, data, 0, gravity[k])
-        poses[k, :, :3, :3] = data.xmat[bodies].reshape(-1, 3, 3)
-        poses[k, :, :3, 3] = data.xpos[bodies]
+        turns[k], places[k], counts[k] = data.xmat, data.xpos, data.ncon
         if data.ncon:
-            found.append((np.full(data.ncon, row), data.contact.geom.copy(), -data.contact.dist))
+            contact = data.contact
+            found.append((contact.geom.copy(), -contact.dist))
         if row < dynamic:
             matrices.append(_mass_matrix(loaded, data))
-    row_of, geoms, depth = (np.concatenate([item[k] for item in found] or [np.zeros(0)]) for k in range(3))
+    bodies, size = loaded.body, len(loaded.joint)
+    poses = np.tile(np.eye(4), (len(rows), len(bodies), 1, 1))
+    poses[..., :3, :3], poses[..., :3, 3] = turns[:, bodies].reshape(len(rows), -1, 3, 3), places[:, bodies]
+    geoms, depth = (np.concatenate([item[k] for item in found] or [np.zeros(0)]) for k in range(2))
     links = loaded.link_of_body[model.geom_bodyid][geoms.reshape(-1, 2).astype(np.int64)]
-    size = len(loaded.joint)
     inertia = np.array(matrices).reshape(len(matrices), size, size)
-    return poses, row_of.astype(np.int64), links, depth, gravity[:, loaded.dof], inertia
+    return poses, np.repeat(rows, counts), links, depth, gravity[:, loaded.dof], inertia
 
 
 def _mass_matrix(loaded: CompiledModel, data: mujoco.MjData) -> FloatArray:

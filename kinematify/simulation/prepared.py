@@ -117,7 +117,7 @@ def prepare(model: Robot, work: Path, settings: PrepareSettings) -> Prepared:
         for index, link in enumerate(model.links)
     )
     joints = tuple(prepared_joint(joint, settings) for joint in model.joints)
-    write_robot(Robot(name=_NAME, links=links, joints=joints), work / URDF_FILE)
+    write_robot(Robot(name=_NAME, links=links, joints=joints, loops=model.loops), work / URDF_FILE)
     prepared = Prepared(
         urdf=work / URDF_FILE,
         links=tuple(_record(link, pieces[link.name], inertials[link.name]) for link in model.links),

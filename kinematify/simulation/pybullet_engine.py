@@ -276,7 +276,8 @@ class _Run:
         """Place the model at rest."""
         self._model, self._world, self.mechanism = model, world, world.mechanism
         self._leaders = [self.mechanism.joints.index(travel.joint) for travel in self.mechanism.travels]
-        self._followers = [k for k in range(len(self.mechanism.joints)) if k not in self._leaders]
+        passive = {self.mechanism.joints.index(name) for name in world.passive}
+        self._followers = [k for k in range(len(self.mechanism.joints)) if k not in {*self._leaders, *passive}]
         self.failure: tuple[str, ...] = ()
         world.place(model.values_at_rest)
 
@@ -328,8 +329,8 @@ class _Run:
         rest = self._model.values_at_rest
         forces = np.full(len(rest), _UNLIMITED)
         forces[self._leaders] = np.minimum(force, _UNLIMITED)
-        for column, value in enumerate(rest.tolist()):
-            self.command(column, value, 0.0, float(forces[column]))
+        for column in (*self._leaders, *self._followers):
+            self.command(column, float(rest[column]), 0.0, float(forces[column]))
 
     def command(self, column: int, target: float, speed: float, force: float) -> None:
         """Command one of `LeaderMechanism.joints`."""

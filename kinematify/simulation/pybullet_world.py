@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pybullet as bullet
 
+from kinematify.robot.mechanism import LeaderMechanism, joints_between
 from kinematify.robot.transforms import quaternion_of
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import Contacts, deepest
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.mechanism import LeaderMechanism
+    from kinematify.robot.robot import Robot
 
 _FLAGS = (
     bullet.URDF_USE_SELF_COLLISION
@@ -37,17 +38,22 @@ _HULL_MARGIN = 1e-3
 _LARGE_INERTIA = 0.1
 """Principal moments [kg m^2] below it are never refused."""
 _BASE = -1
+_PIN_FORCE = 1e6
+"""Of a pin that closes a loop [N]: it never gives way."""
+_PIN_ERP, _PIN_ITERATIONS = 0.8, 200
+"""Share of a gap that a step closes, and iterations of the solver: with Bullet's own a driven clamp opens by .15 %."""
 
 
 class Client:
     """A world, with PyBullet's functions for it; it is freed when nothing refers to it any more."""
 
-    def __init__(self) -> None:
-        """Connect to a new world, in this process."""
-        number = bullet.connect(bullet.DIRECT)
+    def __init__(self, connected: int | None = None) -> None:
+        """Connect to a new world, in this process; `connected`: use a world of somebody else, and leave it open."""
+        number = bullet.connect(bullet.DIRECT) if connected is None else connected
         self._named = {"physicsClientId": number}
-        self.disconnect = weakref.finalize(self, bullet.disconnect, physicsClientId=number)
-        """Frees it now, once: PyBullet gives the same number to the next one."""
+        if connected is None:
+            self.disconnect = weakref.finalize(self, bullet.disconnect, physicsClientId=number)
+            """Frees it now, once: PyBullet gives the same number to the next one."""
 
     def __getattr__(self, name: str) -> Any:
         """A function of PyBullet in this world."""
@@ -201,6 +207,36 @@ class PybulletBody:
         state = self.client.getLinkState(self.body, index, computeForwardKinematics=1)
         return pose_of(state[0], state[1])
 
+    def close_loops(self) -> None:
+        """Hold both ends of every loop together (`createConstraint`), and switch off the motors of `passive` joints."""
+        for loop in self.mechanism.robot.loops:
+            parent, child = map(self.index_of, loop.links)
+            at, its = (self._from_centre(link, point) for link, point in zip(loop.links, loop.points, strict=True))
+            pin = self.client.createConstraint(
+                self.body, parent, self.body, child, bullet.JOINT_POINT2POINT, [0.0, 0.0, 0.0], at, its
+            )
+            self.client.changeConstraint(pin, maxForce=_PIN_FORCE)
+        for name in self.passive:
+            index = self.indices[self.mechanism.joints.index(name)]
+            self.client.setJointMotorControl2(self.body, index, bullet.VELOCITY_CONTROL, force=0.0)
+
+    @cached_property
+    def passive(self) -> frozenset[str]:
+        """Joints that loops move, and no motor: those that follow along a curve, or mimic a joint of the same loop."""
+        robot = self.mechanism.robot
+        found = {joint.name for joint in robot.joints if joint.closure is not None}
+        for loop in robot.loops:
+            moved = joints_between(robot, loop.links)
+            mimics = ((name, robot.joint_by_name[name].mimic) for name in moved)
+            found |= {name for name, mimic in mimics if mimic is not None and mimic.joint in moved}
+        return frozenset(found)
+
+    def _from_centre(self, link: str, point: FloatArray) -> list[float]:
+        """A point of a link's frame in the frame of its centre of mass, in which constraints are stated [m]."""
+        info = self.client.getDynamicsInfo(self.body, self.index_of(link))
+        found: list[float] = (np.linalg.inv(pose_of(info[3], info[4])) @ np.append(point, 1.0))[:3].tolist()
+        return found
+
     def release(self, *, ideal: bool = False) -> None:
         """Switch all motors off, which are on from the start; `ideal`: damping and friction too."""
         for index in self.indices:
@@ -266,9 +302,29 @@ def load(
     loaded = _loaded(connect(step), mechanism, urdf, useFixedBase=fixed, flags=_FLAGS)
     if looking:
         loaded = replace(loaded, mass_scale=_scaled_down(loaded))
+    elif loaded.complete and mechanism.robot.loops:
+        loaded.client.setPhysicsEngineParameter(erp=_PIN_ERP, numSolverIterations=_PIN_ITERATIONS)
+        loaded.close_loops()
     if loaded.complete:
         loaded.act(_welded_pairs(mechanism), on=False)
     return loaded
+
+
+def load_with_loops(client: int, robot: Robot, urdf: Path) -> int:
+    """Load a file into a world that is connected, its root fixed and its loops closed; returns PyBullet's number of it.
+
+    Args:
+        client: PyBullet's number of the world.
+        robot: What is in the file.
+        urdf: The file.
+
+    Raises:
+        Refused: PyBullet cannot.
+    """
+    loaded = _loaded(Client(client), LeaderMechanism(robot=robot), urdf, useFixedBase=True)
+    if loaded.complete:
+        loaded.close_loops()
+    return loaded.body
 
 
 def load_at(

@@ -69,6 +69,29 @@ def distinct(alternatives: Sequence[JointAlternative], size: float) -> tuple[Joi
     return (*shown[:_MOST], *(item for item in kept if item.kind is JointType.FIXED))
 
 
+def agreeing(
+    alternatives: Sequence[JointAlternative], written: JointAlternative, confidence: float | None, size: float
+) -> tuple[JointAlternative, ...]:
+    """Return candidates whose probabilities agree with the confidence of the joint; the others share the rest.
+
+    Args:
+        alternatives: From `distinct`.
+        written: The joint of the file.
+        confidence: What the inference states for it; None leaves the probabilities as they are.
+        size: Diagonal of the part that moves [m].
+    """
+    alike = [_look_alike(item, written, size) for item in alternatives]
+    if confidence is None or not any(alike):
+        return tuple(alternatives)
+    others = sum(item.probability or 0.0 for item, same in zip(alternatives, alike, strict=True) if not same)
+    rest = (1.0 - confidence) / max(others, 1e-12)
+    scaled = [
+        replace(item, probability=confidence if same else min(rest * (item.probability or 0.0), 1.0 - confidence))
+        for item, same in zip(alternatives, alike, strict=True)
+    ]
+    return tuple(sorted(scaled, key=lambda item: (item.kind is JointType.FIXED, -(item.probability or 0.0))))
+
+
 def _look_alike(one: JointAlternative, other: JointAlternative, size: float) -> bool:
     if one.kind is JointType.FIXED or other.kind is JointType.FIXED:
         return one.kind is other.kind

@@ -226,6 +226,17 @@ class DrawnModel:
             with client.atomic():
                 client.camera.position, client.camera.look_at = target + back + down, target + down
 
+    def fit(self, q: Mapping[str, float]) -> None:
+        """Let every page see the whole model in a configuration, from the side from which it looks."""
+        low, high = self._scene.extent(q)
+        center, size = 0.5 * (low + high), float(np.linalg.norm(high - low))
+        for client in self._server.get_clients().values():
+            back = client.camera.position - client.camera.look_at
+            back *= max(size, self._scene.size) / max(float(np.linalg.norm(back)), 1e-9)
+            back *= 1.1 / min(client.camera.aspect, 1.0)
+            with client.atomic():
+                client.camera.position, client.camera.look_at = center + back, center
+
     def add_gizmo(self, axis: FloatArray, pivot: FloatArray) -> Any:
         """Return a gizmo whose red arrow is an axis, frame of the root link [m], shape (3,) each."""
         return self._server.scene.add_transform_controls(

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.errors import DescriptionError, EnvironmentFault, InputError
-from kinematify.model.output import MODEL_FILE
+from kinematify.model.output import urdf_of
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 
@@ -39,14 +39,11 @@ def load(path: str | Path, *, package_dirs: Sequence[str | Path] = ()) -> Loaded
     Raises:
         InputError: There is no such file, or it cannot be read.
     """
-    urdf = Path(path) / MODEL_FILE if Path(path).is_dir() else Path(path)
-    if not urdf.is_file():
-        raise InputError(f"There is no file {urdf}. Give a URDF, or a model folder that `kinematify infer` wrote.")
-    return LoadedModel(urdf, tuple(map(Path, package_dirs)))
+    return LoadedModel(urdf_of(Path(path)), tuple(map(Path, package_dirs)))
 
 
 class LoadedModel:
-    """The robot of a file: poses, meshes, a viewer, and models of MuJoCo and Pinocchio.
+    """The robot of a file: poses, meshes, a viewer, and models of MuJoCo, PyBullet and Pinocchio.
 
     A configuration maps joint names to values [rad or m]. The name of a link selects the joint above it. Joints that
     are not named are at zero; mimic joints follow their leader.
@@ -116,6 +113,28 @@ class LoadedModel:
             file = Path(folder, "model.xml")
             export(self.path, "mjcf", file, package_dirs=self._package_dirs)
             return mujoco.MjModel.from_xml_path(str(file))
+
+    def to_pybullet(self, client: int = 0) -> int:
+        """Load this file into a world of PyBullet, its root fixed; returns the body's number.
+
+        Closed loops, which a URDF cannot tell PyBullet, are closed with `createConstraint`, and the default motors of
+        the joints that they move are off.
+
+        Args:
+            client: The number that `pybullet.connect` returned.
+
+        Raises:
+            EnvironmentFault: PyBullet is not installed.
+            InputError: PyBullet refuses the file.
+        """
+        _engine("pybullet", "pybullet")
+        from kinematify.simulation.engine import Refused  # noqa: PLC0415  # with PyBullet
+        from kinematify.simulation.pybullet_world import load_with_loops  # noqa: PLC0415
+
+        try:
+            return load_with_loops(client, self.robot, self.path)
+        except Refused as refusal:
+            raise InputError(f"PyBullet does not load {self.path}: {refusal}") from refusal
 
     def to_pinocchio(self) -> Any:
         """Return a `pinocchio.Model` of this file, its root fixed to the world.

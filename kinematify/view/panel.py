@@ -31,7 +31,8 @@ _TYPES = {
 """What a joint can be set to by hand."""
 _MARKUP = re.compile(r"[\\`*_{}\[\]<>]")
 _POSES = ("At rest", "Opened", "Random")
-_SLIDER_STEPS = 400
+_SLIDER_STEPS = 100
+"""An arrow key moves a slider by one."""
 _TOLD = 12
 """Touching pairs that are listed."""
 _SIGHTS = 40
@@ -54,7 +55,7 @@ class Actions(Protocol):
         """Move a joint as one of its candidates says, 0 for as in the file."""
 
     def try_parent(self, name: str) -> None:
-        """Let the part of the chosen joint hang on another one when it is kept."""
+        """Write the model with another parent of the chosen joint's part."""
 
     def set_by_hand(self) -> None:
         """Begin to set the chosen joint by hand."""
@@ -156,8 +157,6 @@ class Panel:
     def show_joint(self, joint: Joint, candidates: Sequence[str], parents: Sequence[str]) -> None:
         """Show what is known of a joint, its candidates in words and what its part could hang on, below the sliders."""
         self._joint = joint.name
-        moves = _plain(f"{joint.child} on {joint.parent} ({joint.kind.value}).")
-        self._told.content = f"**{_plain(joint.name)}** moves {moves}"
         self._play.visible = True
         self._play.label = f"Play {joint.name}"
         self._options = [_AS_WRITTEN, *(f"{number}: {words}" for number, words in enumerate(candidates, start=1))]
@@ -169,6 +168,17 @@ class Panel:
         self._parent.visible = self._can_keep and len(parents) > 1
         self._by_hand.visible = self._can_keep
         self._keep.visible = False
+
+    def describe(self, joint: Joint, probability: float | None) -> None:
+        """Say type, range and probability of a joint as it is shown: as it is tried, or as in the file."""
+        kind, (lower, upper), factor = self._scene.kind_of(joint), self._scene.range_of(joint), self._factor(joint.name)
+        unit = "deg" if kind.turns else "mm"
+        limited = kind in (JointType.REVOLUTE, JointType.PRISMATIC)
+        words = [kind.value]
+        words += [f"{factor * lower:z.4g} to {factor * upper:z.4g} {unit}"] if limited else []
+        words += [] if probability is None else [f"{probability:.0%} sure"]
+        moves = _plain(f"{joint.child} on {joint.parent}: {', '.join(words)}.")
+        self._told.content = f"**{_plain(joint.name)}** moves {moves}"
 
     def offer_keeping(self, offered: bool) -> None:  # whether something is tried
         """Show or hide the button that writes what is tried."""
@@ -232,12 +242,12 @@ class Panel:
         self._play = gui.add_button("Play", visible=False)
         self._play.on_click(_ignoring_event(actions.play))
         self._options = [_AS_WRITTEN]
-        self._parent: Any = gui.add_dropdown("Hangs on", ("",), visible=False)
+        self._parent: Any = gui.add_dropdown("Parent", ("",), visible=False)
         self._parent.on_update(_ignoring_event(lambda: actions.try_parent(self._parent.value)))
-        self._choice: Any = gui.add_dropdown("It could also", (_AS_WRITTEN,), visible=False)
+        self._choice: Any = gui.add_dropdown("Candidates", (_AS_WRITTEN,), visible=False)
         self._choice.on_update(_ignoring_event(self._tried))
         self._by_hand = gui.add_button(
-            "Set by hand", visible=False, hint="Type, axis and limits; the red arrow of the gizmo is the axis."
+            "Edit", visible=False, hint="Type, axis and limits; the red arrow of the gizmo is the axis."
         )
         self._by_hand.on_click(_ignoring_event(actions.set_by_hand))
         self._hand_type: Any = gui.add_dropdown("Type", tuple(_TYPES), visible=False)
@@ -246,7 +256,7 @@ class Panel:
         self._hand_limits.on_update(_ignoring_event(actions.change_line))
         self._keep = gui.add_button("Keep this", visible=False, color="green", hint="Writes the model with this joint.")
         self._keep.on_click(_ignoring_event(actions.keep))
-        back = gui.add_button("Take the last choice back", visible=can_undo)
+        back = gui.add_button("Undo", visible=can_undo)
         back.on_click(_ignoring_event(actions.undo))
 
     def _add_slider(self, joint: Joint) -> None:
@@ -262,11 +272,11 @@ class Panel:
                 self._gui.add_markdown(_plain(sight.message))
                 self._gui.add_button("Show the place").on_click(_ignoring_event(partial(self._actions.show, sight)))
         if len(sights) > _SIGHTS:
-            self._gui.add_markdown(f"{len(sights) - _SIGHTS} more stand in the report.")
+            self._gui.add_markdown(f"{len(sights) - _SIGHTS} more are in the report.")
 
     def _add_view(self, parts: Sequence[str]) -> None:
         gui, actions = self._gui, self._actions
-        apart = gui.add_slider("Taken apart [%]", 0, 100, 1, 0)
+        apart = gui.add_slider("Explode [%]", 0, 100, 1, 0)
         apart.on_update(lambda event: actions.take_apart(event.target.value / 100.0))
         axes = gui.add_checkbox("Axes", initial_value=True)
         axes.on_update(lambda event: actions.show_axes(event.target.value))
@@ -291,9 +301,10 @@ class Panel:
         """Lower end, upper end and step of a slider, in its unit."""
         factor = self._factor(joint.name)
         lower, upper = (factor * end for end in self._scene.range_of(joint))
-        decade = math.floor(math.log10(max((upper - lower) / _SLIDER_STEPS, 1e-9)))
-        step = 10.0**decade
-        return round(lower, -decade), round(max(upper, lower + step), -decade), step
+        step = float(f"{max((upper - lower) / _SLIDER_STEPS, 1e-6):.3g}")
+        digits = 2 - math.floor(math.log10(max(upper - lower, 1e-3)))
+        lower = round(lower, digits)
+        return lower, max(round(upper, digits), lower + step), step
 
     def _label(self, joint: Joint) -> str:
         return f"{joint.name} [{'deg' if self._scene.kind_of(joint).turns else 'mm'}]"
@@ -305,10 +316,10 @@ class Panel:
 
 def said_of(shown: Shown) -> str:
     """How to begin, the joints to look at first, and where chains of joints close."""
-    said = ["Touch a slider or click a part."]
+    said = ["Move a slider (arrow keys move it by 1 % of the range) or click a part."]
     if shown.doubtful:
         names = _plain(", ".join(shown.doubtful))
-        said.append(f"Look at these, the inference is less than {shown.doubtful_below:.0%} sure: **{names}**.")
+        said.append(f"Check these joints first, their confidence is below {shown.doubtful_below:.0%}: **{names}**.")
     said += [f"Dashed line: {_plain(chain.told)}" for chain in shown.chains]
     return "\n\n".join(said)
 
@@ -325,7 +336,7 @@ def said_of_touches(touches: Sequence[Touch]) -> str:
     if not bad:
         return "Nothing collides."
     lines = [
-        f"- **{_plain(' and '.join(touch.pair))}** stand in each other, {1e3 * touch.depth:.3g} mm deep"
+        f"- **{_plain(' and '.join(touch.pair))}** interpenetrate by {1e3 * touch.depth:.3g} mm"
         for touch in bad[:_TOLD]
     ]
     more = [f"- and {len(bad) - _TOLD} more pairs"] if len(bad) > _TOLD else []

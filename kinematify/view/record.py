@@ -72,6 +72,8 @@ class Shown:
     scene: ViewScene
     alternatives: Mapping[tuple[str, str], tuple[JointAlternative, ...]] = field(default_factory=dict)
     """Candidates of joints by (parent, child) link."""
+    confidences: Mapping[str, float] = field(default_factory=dict)
+    """Of the joint above each link."""
     doubtful: tuple[str, ...] = ()
     """Links whose joints are to be looked at, the least sure first."""
     doubtful_below: float = 0.0
@@ -106,6 +108,7 @@ def shown_with(scene: ViewScene, path: Path) -> Shown:
         return Shown(
             scene=scene,
             alternatives=_alternatives_of(record),
+            confidences={item["child"]: float(item["confidence"]) for item in record["joints"] if "confidence" in item},
             doubtful=tuple(map(str, record.get("doubtful", ()))),
             doubtful_below=float(record.get("doubtful_below", 0.0)),
             chains=(

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from kinematify.view.alternatives import JointAlternative
 
 _ARC_STEPS = 24
+_SWEEP = 36
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,17 +81,20 @@ class ViewScene:
     @cached_property
     def size(self) -> float:
         """Diagonal of the box around the model at rest [m]."""
-        poses = self.poses(self.rest)
-        points = [vertices @ T[:3, :3].T + T[:3, 3] for T, (vertices, _) in self._placed(poses) if len(vertices)]
-        return float(np.linalg.norm(np.ptp(np.concatenate(points), axis=0))) if points else 1.0
+        low, high = self.extent(self.rest)
+        return float(np.linalg.norm(high - low)) or 1.0
+
+    def extent(self, q: Mapping[str, float]) -> FloatArray:
+        """Return the corners of the model in a configuration, frame of the root link [m], shape (2, 3)."""
+        placed = self._placed(self.poses(q))
+        points = [vertices @ T[:3, :3].T + T[:3, 3] for T, (vertices, _) in placed if len(vertices)]
+        corners = np.concatenate(points) if points else np.zeros((1, 3))
+        return np.stack([corners.min(axis=0), corners.max(axis=0)])
 
     @cached_property
     def camera(self) -> tuple[FloatArray, FloatArray]:
         """Where to look from, and at what, shape (3,) each [m]: towards the side to which parts move."""
-        poses = self.poses(self.rest)
-        points = [vertices @ T[:3, :3].T + T[:3, 3] for T, (vertices, _) in self._placed(poses) if len(vertices)]
-        corners = np.concatenate(points) if points else np.zeros((1, 3))
-        center: FloatArray = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
+        center: FloatArray = self.extent(self.rest).mean(axis=0)
         turn = camera_turn(self.robot, self.groups, list(self.meshes.values()), self.rest) + 0.5 * np.pi
         eye = center + 1.0 * self.size * np.array([np.cos(turn), np.sin(turn), 0.5])
         return eye, center
@@ -161,11 +165,7 @@ class ViewScene:
     @cached_property
     def ground(self) -> float:
         """Height of the lowest point at rest, frame of the root link [m]."""
-        poses = self.poses(self.rest)
-        heights = [
-            (vertices @ T[:3, :3].T + T[:3, 3])[:, 2].min() for T, (vertices, _) in self._placed(poses) if len(vertices)
-        ]
-        return float(min(heights, default=0.0))
+        return float(self.extent(self.rest)[0, 2])
 
     def range_of(self, joint: Joint) -> tuple[float, float]:
         """Ends of a slider [rad or m]: the limits, or half a turn either way where there are none.
@@ -194,8 +194,10 @@ class ViewScene:
     def line_of(self, joint: Joint) -> tuple[FloatArray, FloatArray]:
         """Axis and a point on it, as tried or as in the file, frame of the root link at zero [m], shape (3,) each."""
         tried = self._tried.get(joint.name)
-        if tried is not None:
-            return tried.axis, tried.pivot
+        return self.line_in_file(joint) if tried is None else (tried.axis, tried.pivot)
+
+    def line_in_file(self, joint: Joint) -> tuple[FloatArray, FloatArray]:
+        """Axis and a point on it as in the file, frame of the root link at zero [m], shape (3,) each."""
         T = self._zero[joint.child]
         return T[:3, :3] @ joint.axis, T[:3, 3]
 
@@ -248,6 +250,26 @@ class ViewScene:
             tolerated = depth <= allowance.at_rest(pair) + allowance.tolerance(pair)
             found.append(Touch(pair=(tops[pair[0]], tops[pair[1]]), depth=depth, tolerated=tolerated))
         return sorted(found, key=lambda touch: (touch.tolerated, -touch.depth))
+
+    def free_range(self, joint: Joint) -> tuple[float, float]:
+        """Return how far a joint moves as it is tried until something collides, all others at rest [rad or m].
+
+        Looked for in `_SWEEP` steps from zero to half a turn, or by the model's size, in both directions.
+        """
+        turns = self.kind_of(joint).turns
+        reach = math.pi if turns else self.size
+        ends = []
+        for direction in (-1.0, 1.0):
+            free = 0.0
+            for step in range(1, _SWEEP + 1):
+                value = direction * reach * step / _SWEEP
+                if not all(touch.tolerated for touch in self.touches({**self.rest, joint.name: value})):
+                    break
+                free = value
+            ends.append(free)
+        if ends[0] == ends[1]:
+            return self.range_of(joint)
+        return ends[0], ends[1]
 
     def glyph(self, joint: Joint) -> FloatArray:
         """Line segments of a joint's axis and range in the frame of the joint at zero, shape (n, 2, 3) [m]."""

@@ -6,6 +6,7 @@ import io
 import math
 import threading
 import time
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +15,8 @@ from PIL import Image
 
 from kinematify.errors import KinematifyError
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.transforms import rotation_from_quaternion
-from kinematify.view.alternatives import JointAlternative, described, distinct
+from kinematify.robot.transforms import quaternion_of, rotation_from_quaternion, rotation_from_x
+from kinematify.view.alternatives import JointAlternative, agreeing, described, distinct
 from kinematify.view.drawn import DrawnModel
 from kinematify.view.panel import Panel, said_of, said_of_failure, said_of_kept, said_of_touches
 from kinematify.view.regroup import GroupPanel
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
     import viser
 
+    from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint
     from kinematify.view.keep import Kept, ModelFolder
     from kinematify.view.record import Shown, Sight
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
 _CHOSEN, _MARKED, _WRONG = (66, 133, 244), (245, 166, 35), (219, 40, 40)
 """Of the part whose joint is chosen, of what a finding is about, and of what collides."""
 _FRAME = 1.0 / 30.0
+_LOOK_AGAIN = 2.0
+"""Between two looks at whether the file was changed [s]."""
 _SWEEP_SECONDS = 4.0
 _HEAD_START = 1.5
 """That the first client has for its first picture, before more is drawn and collisions are looked for, which keeps a
@@ -50,6 +54,7 @@ class ModelViewer:
         sights: Sequence[Sight],
         open_folder: Callable[[], ModelFolder] | None = None,
         reopen: Callable[[], Shown] | None = None,
+        changed_at: Callable[[], float] = float,
     ) -> None:
         """Build the page.
 
@@ -59,8 +64,10 @@ class ModelViewer:
             sights: Findings.
             open_folder: Gives the place where a candidate that is kept is written; None: nothing can be kept.
             reopen: Reads the folder again after it was written.
+            changed_at: When the file was last written [s]; 0 where it is not there.
         """
         self._server, self._open_folder, self._reopen = server, open_folder, reopen
+        self._changed_at, self._read_at = changed_at, changed_at()
         self._folder: ModelFolder | None = None
         self._lock = threading.RLock()  # sliders, buttons and the sweep come from threads of their own
         self._random = np.random.default_rng(0)
@@ -72,8 +79,7 @@ class ModelViewer:
         """Show a model from the beginning."""
         with self._lock:
             scene = shown.scene
-            self._scene, self._alternatives, self._parents = scene, shown.alternatives, shown.parents
-            self._parent: str | None = None
+            self._scene, self._shown = scene, shown
             self._q = {joint.name: scene.rest[joint.name] for joint in scene.leaders}
             self._marked: frozenset[str] = frozenset()
             self._sweeping: str | None = None
@@ -82,6 +88,7 @@ class ModelViewer:
             self._stale = True
             self._colliding: frozenset[str] = frozenset()
             self._gizmo: Any = None
+            self._line = (np.array([1.0, 0.0, 0.0]), np.zeros(3))
             self._drawn = DrawnModel(self._server, scene, shown.chains, self._clicked)
             self._panel = Panel(
                 self._server.gui,
@@ -135,7 +142,11 @@ class ModelViewer:
         """Sweep what is to be swept and look for collisions until told to stop."""
         start, last = time.monotonic(), ""
         first: float | None = None
+        checked = time.monotonic()
         while not stop.wait(_FRAME):
+            if time.monotonic() - checked > _LOOK_AGAIN:
+                checked = time.monotonic()
+                self._follow_file()
             if first is None and self._server.get_clients():
                 first = time.monotonic()
             name = self._sweeping
@@ -150,6 +161,20 @@ class ModelViewer:
                 self._add_marks()
                 if self._stale:
                     self.look_for_collisions()
+
+    def _follow_file(self) -> None:
+        """Show the model again if another program wrote its file."""
+        changed = self._changed_at()
+        if self._reopen is None or changed in (0.0, self._read_at):
+            return
+        self._read_at = changed
+        try:
+            shown = self._reopen()
+        except KinematifyError as error:
+            self._tell("The file was changed and cannot be read; the page shows it as it was", str(error))
+            return
+        self._folder = None
+        self._open(shown, (), f"The file was changed; the page shows it as it is now.\n\n{said_of(shown)}")
 
     def _add_marks(self) -> None:
         with self._lock:
@@ -184,25 +209,28 @@ class ModelViewer:
             self._glow()
 
     def try_parent(self, name: str) -> None:
-        """Let the part of the chosen joint hang on another one when it is kept; its joint is found then."""
+        """Write the model with another parent of the chosen joint's part; its joint is inferred again."""
         with self._lock:
             if self._chosen is None:
                 return
             joint = self._scene.robot.joint_by_name[self._chosen]
-            other = name if name != joint.parent and name in self._parents.get(joint.child, ()) else None
-            if other is not None:
-                self._end_by_hand()
-            self._parent = other
-            self._panel.offer_keeping(other is not None or self._scene.tried(joint.name) is not None)
+            if name == joint.parent or name not in self._shown.parents.get(joint.child, ()):
+                return
+            self._end_by_hand()
+        assert self._open_folder is not None
+        self._folder = self._folder or self._open_folder()
+        self._written(partial(self._folder.hang, joint.child, name))
 
     def _try(self, joint: str, alternative: JointAlternative | None) -> None:
-        self._parent = None
-        self._scene.try_joint(joint, alternative)
-        self._sweeping = None
         item = self._scene.robot.joint_by_name[joint]
+        self._scene.try_joint(joint, alternative)
+        if alternative is not None and alternative.limits is None and alternative.kind is not JointType.FIXED:
+            self._scene.try_joint(joint, replace(alternative, limits=self._scene.free_range(item)))
+        self._sweeping = None
         self._drawn.draw_axis(item)
         self._q[joint] = float(np.clip(0.0, *self._scene.range_of(item)))
         self._panel.refit(item)
+        self._panel.describe(item, self._probability(item))
         self._panel.offer_keeping(alternative is not None)
         self._place()
 
@@ -217,8 +245,9 @@ class ModelViewer:
             kind = self._scene.kind_of(joint)
             self._end_by_hand()
             self._panel.begin_by_hand(kind, self._scene.range_of(joint))
+            self._line = axis, pivot
             self._gizmo = self._drawn.add_gizmo(axis, pivot)
-            self._gizmo.on_update(lambda _: self.change_line())
+            self._gizmo.on_update(lambda _: self.move_line())
             self.change_line()
 
     def set_limits(self, lower: float, upper: float) -> None:
@@ -240,8 +269,23 @@ class ModelViewer:
                 self._panel.fit_limits(kind, (0.0, 0.5 * math.pi if kind.turns else 0.5 * self._scene.size))
                 self.change_line()
 
+    def move_line(self) -> None:
+        """Take the line of the joint from the gizmo, which follows the part that carries it."""
+        with self._lock:
+            if self._gizmo is not None and self._chosen is not None:
+                T = np.linalg.inv(self._carried(self._chosen))
+                axis = rotation_from_quaternion(np.asarray(self._gizmo.wxyz))[:, 0]
+                self._line = T[:3, :3] @ axis, T[:3, :3] @ np.asarray(self._gizmo.position) + T[:3, 3]
+                self.change_line()
+
+    def _carried(self, joint: str) -> FloatArray:
+        """Motion of a joint's parent since all joints were at zero, frame of the root link, shape (4, 4)."""
+        parent = self._scene.robot.joint_by_name[joint].parent
+        moved: FloatArray = self._scene.poses(self._q)[parent] @ np.linalg.inv(self._scene.poses({})[parent])
+        return moved
+
     def change_line(self) -> None:
-        """Try the joint as gizmo, type and limits say."""
+        """Try the joint as line, type and limits say."""
         with self._lock:
             if self._gizmo is None or self._chosen is None:
                 return
@@ -250,8 +294,8 @@ class ModelViewer:
             limited = kind in (JointType.REVOLUTE, JointType.PRISMATIC)
             alternative = JointAlternative(
                 kind=kind,
-                axis=rotation_from_quaternion(np.asarray(self._gizmo.wxyz))[:, 0],
-                pivot=np.array(self._gizmo.position, dtype=np.float64),
+                axis=self._line[0],
+                pivot=self._line[1],
                 by_hand=True,
                 limits=(min(lower, 0.0), max(upper, 0.0)) if limited else None,
             )
@@ -264,9 +308,6 @@ class ModelViewer:
         with self._lock:
             joint = None if self._chosen is None else self._scene.robot.joint_by_name[self._chosen]
             tried = None if joint is None else self._scene.tried(joint.name)
-            parent = self._parent
-        if joint is not None and parent is not None:
-            return self._written(partial(self._folder.hang, joint.child, parent))
         if joint is None or tried is None:
             return None
         return self._written(partial(self._folder.keep, joint.child, tried))
@@ -298,6 +339,7 @@ class ModelViewer:
             self._tell("Nothing was changed", str(error))
             return None
         finally:
+            self._read_at = self._changed_at()
             for item in waiting:
                 item.remove()
         self._open(shown, (), said_of(shown) if kept is None else said_of_kept(kept))
@@ -310,14 +352,22 @@ class ModelViewer:
     def _candidates(self, joint: Joint) -> tuple[JointAlternative, ...]:
         bounds = self._scene.bounds.get(self._scene.group_of(joint.child))
         size = self._scene.size if bounds is None else float(np.linalg.norm(bounds[1] - bounds[0]))
-        return distinct(self._alternatives.get((joint.parent, joint.child), ()), size)
+        axis, pivot = self._scene.line_in_file(joint)
+        written = JointAlternative(kind=joint.kind, axis=axis, pivot=pivot)
+        known = distinct(self._shown.alternatives.get((joint.parent, joint.child), ()), size)
+        return agreeing(known, written, self._shown.confidences.get(joint.child), size)
 
     def _show_joint(self, name: str) -> None:
         joint = self._scene.robot.joint_by_name[name]
         bounds = self._scene.bounds.get(self._scene.group_of(joint.child), np.zeros((2, 3)))
         said = [described(item, bounds) for item in self._candidates(joint)]
-        self._parent = None
-        self._panel.show_joint(joint, said, self._parents.get(joint.child, ()))
+        self._panel.show_joint(joint, said, self._shown.parents.get(joint.child, ()))
+        self._panel.describe(joint, self._probability(joint))
+
+    def _probability(self, joint: Joint) -> float | None:
+        """How likely the joint is as it is shown: as it is tried, or as in the file."""
+        tried = self._scene.tried(joint.name)
+        return self._shown.confidences.get(joint.child) if tried is None else tried.probability
 
     def take_pose(self, name: str) -> None:
         """Bring all joints to rest, to the end of their way, or anywhere."""
@@ -332,6 +382,8 @@ class ModelViewer:
                     values[joint.name] = float(self._random.uniform(lower, upper))
             self.set(values)
             self._glow()
+            if name == "Opened":
+                self._drawn.fit(self._q)
 
     def _clicked(self, top: str) -> None:
         """Choose the joint that carries a part, or the one that leads it."""
@@ -398,6 +450,10 @@ class ModelViewer:
     def _place(self) -> None:
         """Put everything where the joints stand; collisions are looked for later, since that takes longer."""
         self._drawn.place(self._q, self._apart)
+        if self._gizmo is not None and self._chosen is not None:
+            T, (axis, pivot) = self._carried(self._chosen), self._line
+            self._gizmo.wxyz = quaternion_of(rotation_from_x(T[:3, :3] @ axis))
+            self._gizmo.position = T[:3, :3] @ pivot + T[:3, 3]
         self._stale = True
 
     def look_for_collisions(self) -> None:

@@ -92,6 +92,7 @@ class Window:
             sights=sights,
             open_folder=partial(_model_folder, urdf) if urdf.name == MODEL_FILE and shown.alternatives else None,
             reopen=lambda: read_model(urdf, package_dirs),
+            changed_at=lambda: urdf.stat().st_mtime if urdf.is_file() else 0.0,
         )
         name = "localhost" if host in ("127.0.0.1", "0.0.0.0") else host
         self.url = f"http://{name}:{self.server.get_port()}"

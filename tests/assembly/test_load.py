@@ -229,12 +229,17 @@ def test_collada_nodes_are_parts_and_its_up_axis_and_unit_are_heeded(tmp_path: P
     assert np.allclose(load(tmp_path / "a.dae", up="z").parts[0].bounds[1], [0.01, 0.02, 0.03])
 
 
-def test_3mf_objects_are_parts_and_the_unit_is_pointed_out(tmp_path: Path) -> None:
+def test_3mf_objects_are_parts_in_the_unit_that_the_file_states_unless_a_scale_is_given(tmp_path: Path) -> None:
     scene().export(tmp_path / "a.3mf")
-    loaded = load(tmp_path / "a.3mf")
+    loaded, raw = load(tmp_path / "a.3mf"), load(tmp_path / "a.3mf", scale=1.0)
     assert loaded.names == ("body", "door")
-    assert "--scale 0.001" in loaded.warnings[0]
-    assert not any("states its lengths" in warning for warning in load(tmp_path / "a.3mf", scale=0.001).warnings)
+    assert loaded.lengths == "millimeter, as the file states"
+    assert np.allclose(loaded.bounds, 1e-3 * raw.bounds)
+    assert raw.lengths == "1 m per unit, as --scale states"
+    (tmp_path / "parts").mkdir()
+    for name, x in (("a", 0.0), ("b", 3000.0)):
+        box(x).export(tmp_path / "parts" / f"{name}.3mf")
+    assert load(tmp_path / "parts").lengths == "millimeter, as the file states", "in a folder as well"
 
 
 @pytest.mark.parametrize(

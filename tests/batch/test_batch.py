@@ -13,6 +13,7 @@ import time
 from pathlib import Path
 
 import pytest
+import trimesh
 
 from benchmarks.studies.batch import Killed, killed_run, workers_of
 from kinematify.cli.app import run
@@ -48,6 +49,26 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "assets" / "dangling.glb").symlink_to(folder / "nowhere.glb")
     assert batch(folder / "assets/**/*.glb", "-o", folder / "out", "--up", "z", "--steps", "infer,validate,export") == 1
     return folder
+
+
+def test_meshes_that_nobody_segmented_are_grouped_and_one_of_several_objects_is_reported(tmp_path: Path) -> None:
+    def box(size: tuple[float, float, float], centre: tuple[float, float, float]) -> trimesh.Trimesh:
+        return trimesh.creation.box(size, trimesh.transformations.translation_matrix(centre))
+
+    boards = [box((0.4, 0.4, 0.02), (0, 0, 0.01)), *(box((0.02, 0.4, 0.5), (x, 0, 0.27)) for x in (-0.19, 0.19))]
+    boards += [box((0.36, 0.02, 0.5), (0, y, 0.27)) for y in (-0.19, 0.19)]
+    lid = [box((0.4, 0.4, 0.02), (0, 0, 0.532)), box((0.05, 0.05, 0.03), (0, 0, 0.557))]
+    one = trimesh.util.concatenate([*boards, *lid])
+    (tmp_path / "assets").mkdir()
+    one.export(tmp_path / "assets" / "bin.ply")
+    scene = [box((3, 2, 0.02), (0.5, 0, -0.01)), one, one.copy().apply_translation((1, 0, 0))]
+    trimesh.util.concatenate(scene).export(tmp_path / "assets" / "two.ply")
+    assert batch(tmp_path / "assets/*.ply", "-o", tmp_path / "out", *INFER) == 1
+    records = by_object(tmp_path / "out")
+    assert records["bin"]["status"] == "ok"
+    assert 2 <= int(str(records["bin"]["parts"])) < 7
+    assert records["two"]["status"] == "unusable"
+    assert "shows 2 objects on a floor" in str(records["two"]["error"])
 
 
 def test_what_is_unreadable_is_recorded_among_the_good_ones(done: Path) -> None:

@@ -72,10 +72,21 @@ def test_a_small_fit_writes_weights_and_tables_and_the_same_again(tmp_path: Path
     once, again = tmp_path / "once", tmp_path / "again"
     for out in (once, again):
         report = run_fit(
-            [], out, rounds=0, composed=4, seed=0, workers=1, cache=tmp_path / "cache", ablation=False, progress=silent
+            [],
+            out,
+            rounds=0,
+            composed=4,
+            seed=0,
+            workers=1,
+            cache=tmp_path / "cache",
+            per_category=None,
+            hold_out=(),
+            skip=("edges",),
+            ablation=False,
+            progress=silent,
         )
         assert set(report["sets"]) == {"random mechanisms"}
-    assert "left out" in (once / "choice.md").read_text()
+    assert "held out by category" in (once / "choice.md").read_text()
     first, second = (np.load(out / WEIGHTS) for out in (once, again))
     for name in first.files:
         if name != "facts":  # they hold the date

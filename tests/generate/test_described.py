@@ -9,9 +9,9 @@ import pytest
 from manifold3d import Manifold, Mesh64
 
 from kinematify.errors import InputError
-from kinematify.generate.blueprint_file import described_blueprint
 from kinematify.generate.described import ObjectDescription, SteppedDescription, known_families, library
 from kinematify.generate.library.steps import checked_steps
+from kinematify.generate.procedural.blueprint_file import described_blueprint
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.materials import COLORS

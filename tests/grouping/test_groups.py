@@ -12,7 +12,7 @@ import trimesh
 from kinematify.assembly.load import load_assembly
 from kinematify.assembly.pieces import connected_sheets
 from kinematify.config import load_config
-from kinematify.errors import InputError
+from kinematify.errors import AssemblyError, InputError
 from kinematify.grouping.groups import group_pieces, read_groups
 from kinematify.robot.mesh_file import RawMesh
 
@@ -69,3 +69,25 @@ def test_boxes_that_share_an_edge_are_two_sheets_and_coincident_faces_are_one() 
     one = box((1, 1, 1), (0, 0, 0))
     doubled = RawMesh(name="double", vertices=one.vertices, faces=np.concatenate([one.faces, one.faces[:, ::-1]]))
     assert len(connected_sheets(doubled, 1e-7)) == 1
+
+
+def test_of_a_scene_on_a_floor_one_object_is_asked_for_and_the_floor_is_removed(
+    bin_with_lid: Path, tmp_path: Path
+) -> None:
+    one = trimesh.load_mesh(bin_with_lid)
+    other = one.copy().apply_translation((1.0, 0.1, 0.0))
+    floor = box((3, 2, 0.02), (0.5, 0, -0.01))
+    several, alone = tmp_path / "several.ply", tmp_path / "alone.ply"
+    trimesh.util.concatenate([other, floor, one]).export(several)
+    trimesh.util.concatenate([floor, one]).export(alone)
+    with pytest.raises(
+        AssemblyError, match=r"shows 2 objects on a floor.*--object N.*1: 7 pieces, 0.4 x 0.4 x 0.572 m"
+    ):
+        load_assembly(several)
+    with pytest.raises(AssemblyError, match="has no object 3"):
+        load_assembly(several, number=3)
+    second = load_assembly(several, number=2)
+    assert second.bounds[0, 0] == pytest.approx(0.8, abs=1e-6)
+    assert any("the floor piece_" in text and "7 pieces of other objects" in text for text in second.warnings)
+    assert [len(part.faces) for part in load_assembly(alone).parts] == [12] * 7
+    assert len(load_assembly(bin_with_lid).parts) == 7, "its bottom is no floor"

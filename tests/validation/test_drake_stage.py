@@ -43,7 +43,8 @@ def pendulum(**changes: object) -> Model:
 def test_good_cabinet_passes_every_check(tmp_path: Path) -> None:
     result = told(cabinet(), tmp_path)
     assert set(result.results) == IDS
-    assert {check: r.reason for check, r in result.results.items() if r.status is not Status.PASS} == {}
+    skipped = {check: r.reason for check, r in result.results.items() if r.status is not Status.PASS}
+    assert skipped == {"KV913": "no loop joint closes a chain"}
     assert result.results["KV905"].measured["arrived"] == 4
 
 
@@ -97,7 +98,8 @@ def test_follower_goes_along(tmp_path: Path) -> None:
 def test_link_called_world_is_a_link(tmp_path: Path) -> None:
     body, *others = cabinet().parts
     renamed = Model(parts=(Part(name="world", boxes=()), replace(body, parent="world", at=(0.0, 0.0, 1.0)), *others))
-    assert {r.status for r in told(renamed, tmp_path).results.values()} == {Status.PASS}
+    results = told(renamed, tmp_path).results
+    assert {check for check, r in results.items() if r.status is not Status.PASS} == {"KV913"}
 
 
 def test_refused_model_blocks_the_rest(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,7 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_file import read_meshes
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
-from kinematify.view.alternatives import JointAlternative, described, distinct
+from kinematify.view.alternatives import JointAlternative, agreeing, described, distinct
 from kinematify.view.drawn import glb_of
 from kinematify.view.record import load_alternatives
 from kinematify.view.scene import ViewScene
@@ -137,6 +138,41 @@ def test_candidates_that_look_the_same_are_one() -> None:
     assert found[-1].kind is JointType.FIXED
 
 
+def test_candidates_agree_with_the_confidence_of_the_joint_in_the_file() -> None:
+    def turn(x: float, probability: float | None) -> JointAlternative:
+        axis, pivot = np.array([0.0, 0.0, 1.0]), np.array([x, 0.0, 0.0])
+        return JointAlternative(kind=JointType.REVOLUTE, axis=axis, pivot=pivot, probability=probability)
+
+    found = agreeing([turn(0.6, 0.4), turn(0.0, 0.3), turn(0.3, 0.1)], turn(0.01, None), 0.75, size=1.0)
+    assert [item.probability for item in found] == pytest.approx([0.75, 0.2, 0.05]), "the joint of the file is first"
+
+
+def test_a_candidate_gets_the_range_that_is_free(scene: ViewScene) -> None:
+    hinge = scene.robot.joint_by_name["hinge"]
+    slide = JointAlternative(kind=JointType.PRISMATIC, axis=np.array([0.0, 1.0, 0.0]), pivot=np.zeros(3))
+    scene.try_joint("hinge", slide)
+    lower, upper = scene.free_range(hinge)
+    assert lower == pytest.approx(-scene.size)
+    assert 0.0 <= upper < 0.1 * scene.size, "the frame is behind the door"
+
+
+def test_a_model_that_another_program_changes_is_shown_again(urdf: Path) -> None:
+    pytest.importorskip("viser", reason="viser is not installed")
+    from kinematify.view.window import Window  # needs viser
+
+    window = Window(urdf, port=18087)
+    window.run_aside()
+    try:
+        urdf.write_text(_URDF.replace("hinge", "pivot"))
+        os.utime(urdf, (1.0, 1.0))
+        until = time.monotonic() + 60.0
+        while "pivot" not in window.viewer.values and time.monotonic() < until:
+            time.sleep(0.2)
+        assert set(window.viewer.values) == {"pivot"}
+    finally:
+        window.close()
+
+
 def test_a_model_without_colours_gets_some_and_one_with_colours_keeps_them(urdf: Path, scene: ViewScene) -> None:
     invented = {surfaces[0].material.color for surfaces in scene.surfaces.values()}
     assert len(invented) == len(scene.surfaces)
@@ -162,13 +198,18 @@ def test_a_model_is_taken_apart_from_its_middle(scene: ViewScene) -> None:
     ("arguments", "words"),
     [
         (["none.urdf"], "There is no file none.urdf"),
+        (["{two}"], "has 2 URDF files (a.urdf, b.urdf)"),
         (["{urdf}", "--joint", "hinge"], "1 --joint and 0 --q"),
         (["{urdf}", "--joint", "knob", "--q", "1"], "It has hinge."),
         (["{urdf}", "--report", "{urdf}"], "is no report of one model"),
     ],
 )
 def test_bad_arguments(urdf: Path, arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["view", *(argument.format(urdf=urdf) for argument in arguments)]) == 2
+    two = urdf.parent / "two"
+    two.mkdir()
+    for name in ("a.urdf", "b.urdf"):
+        (two / name).write_text(_URDF)
+    assert run(["view", *(argument.format(urdf=urdf, two=two) for argument in arguments)]) == 2
     assert words in capsys.readouterr().err
 
 

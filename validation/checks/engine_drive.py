@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.robot.linkage import loop_gaps, without_followers
 from kinematify.simulation.contacts import stand_in_error, stand_in_reason
 from kinematify.validation.check import CauseScope, FeedbackRow, engine_check
 from kinematify.validation.checks.engine_rest import escape_limit
 from kinematify.validation.checks.follow import IN_ENGINES, ON_THE_WAY
-from kinematify.validation.checks.needs import late, not_driven, nothing_moves
+from kinematify.validation.checks.needs import late, not_driven, nothing_closes, nothing_moves
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.geometry.formatting import BARELY, SLIMMER
 
@@ -133,6 +134,53 @@ def limits_hold(result: OpenCheck, context: EngineContext) -> None:
                 limit=limit,
                 unit=travel.unit,
             )
+    _say_left(result, context)
+
+
+@engine_check(
+    "13",
+    title="Driven, loops stay closed",
+    fails="A loop opens while a joint is driven",
+    severity=Severity.WARNING,
+    blame=Blame.PHYSICS,
+    follows={"KV230": CauseScope.MODEL},
+    needs=(nothing_moves, nothing_closes, not_driven),
+)
+def loops_stay_closed(result: OpenCheck, context: EngineContext) -> None:
+    """On the way of each driven joint, both ends of every loop stay within physics.loop_gap of the model's size of each
+    other. The engine holds them by its own means, and no motor moves the passive joints.
+
+    MuJoCo: By an equality connect with the softness of the MJCF export.
+
+    PyBullet: By createConstraint; where <mimic> alone closes a loop, by the motors of the joints that follow.
+
+    Drake: By drake:ball_constraint, as the file states it.
+
+    Why it matters: A linkage that comes apart under load is none.
+
+    Remedy: Correct what KV230 names; give the links of the loop plausible masses: pins of links far lighter than their
+    load give way.
+    """
+    robot, mechanism = context.declared, context.mechanism
+    free = without_followers(robot)
+    allowed = context.request.settings.physics.loop_gap * context.physics.size
+    for item in context.drives.driven:
+        gaps = [loop_gaps(free, dict(zip(mechanism.joints, row.tolist(), strict=True))) for row in item.values]
+        worst = {loop: max(gap[loop] for gap in gaps) for loop in gaps[0]}
+        result.measured["widest_gap"] = max(*worst.values(), result.measured.get("widest_gap", 0.0))
+        for loop in robot.loops:
+            if worst[loop.name] > allowed:
+                driven = context.travel(item).joint
+                result.find(
+                    f"While {driven} is driven to {item.drive.end:.3g}, the loop {loop.name} of {loop.links[0]} and "
+                    f"{loop.links[1]} opens by {worst[loop.name]:.3g} m.",
+                    "Correct the loop, or the masses of its links.",
+                    pair=loop.links,
+                    joint=driven,
+                    value=worst[loop.name],
+                    limit=allowed,
+                    unit="m",
+                )
     _say_left(result, context)
 
 

@@ -39,6 +39,11 @@ def nothing_moves(context: EngineContext) -> str | None:
     return None if context.mechanism.travels else "no joint moves"
 
 
+def nothing_closes(context: EngineContext) -> str | None:
+    """In an engine, a loop joint."""
+    return None if context.declared.loops else "no loop joint closes a chain"
+
+
 def no_geometry(context: EngineContext) -> str | None:
     """In an engine, something that can touch a floor."""
     return None if any(link.pieces for link in context.prepared.links) else "no link has geometry"

@@ -121,11 +121,11 @@ def _section(index: int, outcome: Outcome, picture: bytes, scene: str) -> str:
         heading,
         f"<p>{text(outcome.as_loaded)}</p>" if outcome.as_loaded else "",
         f"<p>{text(summary_words(outcome))}</p>",
-        _picture(picture),
-        viewer(index, scene),
-        _table("Families", family_table(outcome), f"families-{index}", _COUNTS),
         "<h3>Findings</h3>",
         _findings(index, outcome, with_viewer=bool(scene)),
+        viewer(index, scene),
+        _picture(picture),
+        _table("Families", family_table(outcome), f"families-{index}", _COUNTS),
         *(
             _table(heading, content, f"{name}-{index}")
             for heading, name, content in (
@@ -194,11 +194,12 @@ def _findings(index: int, report: ValidationReport, *, with_viewer: bool) -> str
 
 
 def _shown(index: int, report: ValidationReport, finding: Finding) -> str:
-    """A button that shows where a finding was seen; empty if it names neither a configuration nor a link."""
+    """A button that shows where a finding was seen; empty if it names no place."""
     links = [*(finding.pair or ()), *([finding.link] if finding.link else [])]
     joints = {joint.joint for joint in report.joints}
+    joint = finding.joint if finding.joint in joints and not links else None
     q = {name: value for name, value in (finding.q or {}).items() if name in joints and math.isfinite(value)}
-    return f"<p>{show_button(index, q, links, 'Show in 3-D')}</p>" if links or q else ""
+    return f"<p>{show_button(index, q, links, 'Show in 3-D', joint)}</p>" if links or q or joint else ""
 
 
 def _finding(block: FindingBlock, anchor: str, button: str) -> str:

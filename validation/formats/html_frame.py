@@ -13,8 +13,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 _ASSETS = Path(__file__).resolve().parent / "assets"
-_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+_POLICY = "default-src 'none'; img-src {images}; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 """A name in a URDF must not be able to make the page load anything from elsewhere."""
+_BESIDE = "data: 'self' file:"
+"""From where a page may show pictures that lie beside it."""
 _MANY_ROWS = 8
 """Tables with more rows get a box that filters them."""
 
@@ -28,18 +30,20 @@ def asset(name: str) -> str:
     return (_ASSETS / name).read_text(encoding="utf-8")
 
 
-def page(title: str, body: Iterable[str], *, scripts: Sequence[str] = ()) -> str:
-    """Return a page that loads nothing from elsewhere and can be read without scripts.
+def page(title: str, body: Iterable[str], *, scripts: Sequence[str] = (), beside: bool = False) -> str:
+    """Return a page that loads nothing from other servers and can be read without scripts.
 
     Args:
         title: Plain text.
         body: Pieces of HTML.
         scripts: Names of further assets.
+        beside: Whether it may show pictures that lie beside it.
     """
+    policy = _POLICY.format(images=_BESIDE if beside else "data:")
     code = "\n".join(asset(name) for name in ("page.js", *scripts))
     parts = [
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">',
-        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">',
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
         f"<title>{text(title)}</title><style>{asset('page.css')}</style></head><body>",
         '<a class="skip" href="#content">To the content</a><main id="content">',

@@ -14,6 +14,8 @@ from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.model.kinematic_model import KinematicModel, ModelLink
 from kinematify.model.preview import render_preview
+from kinematify.model.urdf import link_colors, link_shades
+from kinematify.robot.appearance import joined, linear_of, srgb_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Inertial, Joint, forward_kinematics, joint_values, rest_configuration, rigid_groups
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.config.validation import ValidationSettings
+    from kinematify.robot.appearance import Appearance
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.robot import RigidGroup, Robot
     from kinematify.validation.stage import Recorder
@@ -94,23 +97,27 @@ def scene_of(path: Path, package_dirs: Sequence[Path] = ()) -> str:
     Raises:
         DescriptionError: It cannot be read.
     """
-    return _scene(read_robot(path, package_dirs=package_dirs))
+    robot = read_robot(path, package_dirs=package_dirs, appearance=True)
+    return _scene(robot, shown_model(robot))
 
 
-def _scene(robot: Robot) -> str:
-    scene = view_data(robot, faces=_FACES)
+def _scene(robot: Robot, model: KinematicModel) -> str:
+    """The scene in the colours of the picture, so that a part has one colour in both."""
+    shades = link_shades(model)
+    colors = {name: srgb_of(shades.get(name, 1.0) * linear_of(color)) for name, color in link_colors(model).items()}
+    scene = view_data(robot, faces=_FACES, colors=colors)
     return "" if scene is None else json.dumps(scene, allow_nan=False)
 
 
 def run(request: StageRequest, _recorder: Recorder) -> None:
     """Draw the model of a request into its folder; body of the process."""
-    robot = read_robot(request.urdf, package_dirs=request.package_dirs)
-    scene = _scene(robot)
+    robot = read_robot(request.urdf, package_dirs=request.package_dirs, appearance=True)
+    model = shown_model(robot)
+    scene = _scene(robot, model)
     if scene:
         aside = request.work / f".{_SCENE}"
         aside.write_text(scene, encoding="utf-8")
         aside.replace(request.work / _SCENE)  # a process that is stopped leaves no half of it
-    model = shown_model(robot)
     config = load_config("default").preview.model_copy(update=_PANEL)
     if any(len(link.part.faces) > 1 for link in model.links):
         render_preview(model, request.work / _FILE, config)
@@ -149,14 +156,20 @@ def _link(standing: _Standing, group: RigidGroup) -> ModelLink:
     # A link without shape still carries others: a triangle of no area at its origin stands for it.
     vertices: list[FloatArray] = [np.tile(standing.place(group.top), (3, 1))]
     faces: list[IntArray] = [np.array([[0, 1, 2]])]
+    looks: list[Appearance | None] = [None]
     for name in group.links:
         T_world_link = standing.T_world_link[name]
         for mesh in standing.robot.link_by_name[name].meshes:
+            looks.append(mesh.appearance)
             faces.append(mesh.faces + sum(map(len, vertices)))
             vertices.append(mesh.vertices @ T_world_link[:3, :3].T + T_world_link[:3, 3])
     if group.has_geometry:
         faces.pop(0)
-    part = Part(name=group.top, vertices=np.concatenate(vertices), faces=np.concatenate(faces))
+        looks.pop(0)
+    look = joined(looks, [len(item) for item in faces])
+    corners, triangles = np.concatenate(vertices), np.concatenate(faces)
+    color = None if look is None else look.mean_color(corners, triangles)[:3]
+    part = Part(name=group.top, vertices=corners, faces=triangles, color=color, appearance=look)
     return ModelLink(name=group.top, part=part, T_world_link=_at(standing.place(group.top)), inertial=_NO_INERTIAL)
 
 

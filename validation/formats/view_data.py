@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import colorsys
 import math
 from typing import TYPE_CHECKING, Any
 
@@ -24,17 +23,21 @@ _FEWEST = 1000
 """Triangles that every body keeps: a small knob must not become a wedge beside a large cabinet."""
 _STEPS = 65535
 _SMALLEST = 1e-9
+_BEGUN = 0.05
+"""Share of the range at which it is looked where a part goes: a door on its whole way ends beside the object."""
+_STEEP = 0.9
+"""Vertical share of a motion from which it has no side."""
 _ASIDE = 0.6
 """Camera beside the direction in which parts move [rad]: a drawer seen from its front hides its own way."""
-_GOLDEN = 0.61803398875  # turns of hue: neighbours in order differ
 
 
-def view_data(robot: Robot, *, faces: int) -> dict[str, Any] | None:
+def view_data(robot: Robot, *, faces: int, colors: Mapping[str, FloatArray]) -> dict[str, Any] | None:
     """Return the object as JSON values; None if it has no geometry.
 
     Args:
         robot: As described; meshes in link frames.
         faces: About how many triangles the whole may have.
+        colors: Of every body by its top link, sRGB in [0, 1], shape (3,).
     """
     groups = rigid_groups(robot)
     T_root_link = forward_kinematics(robot, {joint.name: 0.0 for joint in robot.joints if joint.mimic is None})
@@ -47,7 +50,7 @@ def view_data(robot: Robot, *, faces: int) -> dict[str, Any] | None:
     bodies = [
         {
             "links": list(group.links),
-            "color": _color(index),
+            "color": np.round(colors[group.top], 3).tolist(),
             **_placed(robot, groups, index, T_root_link),
             **_packed(*_decimated(vertices, triangles, share=faces / total)),
         }
@@ -107,14 +110,26 @@ def camera_turn(
         rest: Configuration at rest.
     """
     limited = [j for j in robot.joints if j.mimic is None and math.isfinite(j.upper - j.lower)]
-    poses = forward_kinematics(robot, rest), forward_kinematics(robot, {**rest, **{j.name: j.upper for j in limited}})
+    begun = {j.name: rest[j.name] + _BEGUN * (_far_end(j, rest[j.name]) - rest[j.name]) for j in limited}
+    poses = forward_kinematics(robot, rest), forward_kinematics(robot, {**rest, **begun})
     way = np.zeros(3)
     for group, (vertices, _) in zip(groups, meshes, strict=True):
         if len(vertices):
             start, end = (T[group.top][:3, :3] @ vertices.mean(axis=0) + T[group.top][:3, 3] for T in poses)
-            way += end - start
+            step = end - start
+            if abs(step[2]) > _STEEP * np.linalg.norm(step):
+                # A lid rises: its free edge is opposite to its hinge, and that is the side that opens.
+                joint = robot.joint_above.get(group.top)
+                hinge = start if joint is None else poses[0][group.top][:3, 3]
+                step = np.linalg.norm(step) * (start - hinge) / max(float(np.linalg.norm(start - hinge)), _SMALLEST)
+            way += step
     away = float(np.arctan2(way[1], way[0])) if np.linalg.norm(way[:2]) > _SMALLEST else -0.5 * math.pi
     return away + _ASIDE - 0.5 * math.pi
+
+
+def _far_end(joint: Joint, value: float) -> float:
+    """The limit that is farther from a value."""
+    return max(joint.lower, joint.upper, key=lambda end: abs(end - value))
 
 
 def _placed(robot: Robot, groups: Sequence[RigidGroup], index: int, T_root_link: Poses) -> dict[str, Any]:
@@ -184,10 +199,3 @@ def _packed(vertices: FloatArray, faces: IntArray) -> dict[str, Any]:
 
 def _base64(values: np.ndarray[Any, Any]) -> str:
     return base64.b64encode(values.tobytes()).decode("ascii")
-
-
-def _color(index: int) -> list[float]:
-    """A light grey for the root, then hues that differ from one body to the next, sRGB in [0, 1]."""
-    if index == 0:
-        return [0.78, 0.77, 0.75]
-    return [round(value, 3) for value in colorsys.hls_to_rgb((0.08 + index * _GOLDEN) % 1.0, 0.62, 0.5)]

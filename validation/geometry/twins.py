@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint
 
-_SAME = 0.01
-"""Difference of boxes at rest and of pivots, fraction of the model's size."""
+_SAME, _SAME_PART = 0.01, 0.05
+"""Difference of boxes at rest and of pivots, fraction of the model's size and of the part's; the smaller one counts."""
 _SAME_DEG = 2.0
 _SAME_RANGE = 0.1
 """Difference of the ends of two ranges that is one of design, fraction of the wider range."""
@@ -79,12 +79,13 @@ def twins_at_odds(scene: Scene) -> Iterator[Difference]:
     boxes = [_box(scene, body) for body in range(len(scene.bodies))]
     parts = _parts(scene, boxes)
     for first, second in combinations(parts, 2):
-        signs = list(_symmetries(scene, boxes, first, second))
-        if not signs:
-            continue
-        differences = [_difference(scene, first, second, sign) for sign in signs]
-        if None not in differences and any(differences):
-            yield Difference(joints=(first.joint, second.joint), how=max(filter(None, differences)))
+        told = [
+            (_difference(scene, first, second, sign), np.count_nonzero(sign < 0.0) == 2)
+            for sign in _symmetries(scene, boxes, first, second)
+        ]
+        shown = [how for how, turned in told if how and not turned]  # half a turn excuses, and accuses nobody
+        if shown and all(how is not None for how, _ in told):
+            yield Difference(joints=(first.joint, second.joint), how=max(shown))
 
 
 def _box(scene: Scene, body: int) -> FloatArray:
@@ -120,7 +121,7 @@ def _parts(scene: Scene, boxes: list[FloatArray]) -> list[_Part]:
 
 def _symmetries(scene: Scene, boxes: list[FloatArray], first: _Part, second: _Part) -> Iterator[FloatArray]:
     """Signs along the axes of the root by which one part may be the other one, about the middle between both."""
-    same = _SAME * scene.size
+    same = _tolerance(scene, first)
     if np.abs((first.high - first.low) - (second.high - second.low)).max() > same:
         return
     apart = np.abs(second.middle - first.middle)
@@ -145,6 +146,10 @@ def _mapped(points: FloatArray, sign: FloatArray, first: _Part, second: _Part) -
     return np.asarray((points - first.middle) * sign + second.middle)
 
 
+def _tolerance(scene: Scene, part: _Part) -> float:
+    return min(_SAME * scene.size, _SAME_PART * float(np.linalg.norm(part.high - part.low)))
+
+
 def _lands(boxes: list[FloatArray], box: FloatArray, same: float) -> bool:
     """Whether a box that was mapped is one of some others."""
     mapped = np.sort(box, axis=0)
@@ -160,7 +165,7 @@ def _difference(scene: Scene, first: _Part, second: _Part, sign: FloatArray) -> 
         return ""
     if turns and kinds:
         off = _mapped(first.point, sign, first, second) - second.point
-        if np.abs(off - (off @ second.axis) * second.axis).max() > _SAME * scene.size:
+        if np.abs(off - (off @ second.axis) * second.axis).max() > _tolerance(scene, first):
             return ""
     if not kinds:
         return OTHER_TYPE

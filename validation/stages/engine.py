@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _LOAD, _POSES, _REST = "01", "02", "03"
 _GATHERING = ("07", "10")
 """Numbers of the checks that look at all runs; these come last."""
-_ORDER = (_LOAD, _POSES, _REST, "04", "08", "12", "05", "06", "09", "11", *_GATHERING)
+_ORDER = (_LOAD, _POSES, _REST, "04", "08", "12", "05", "06", "09", "13", "11", *_GATHERING)
 _PINOCCHIO = "KV606"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -91,6 +92,17 @@ def prism(outline: Sequence[tuple[float, float]], middle: Point, length: float, 
 def lathe(outline: Sequence[tuple[float, float]], foot: Point) -> Shape:
     """A polygon of radius and height turned about the upright line through `foot`."""
     return {"kind": "lathe", "outline": list(outline), "xyz": list(map(float, foot))}
+
+
+def hull(*shapes: Shape) -> Shape:
+    """The smallest convex solid around shapes."""
+    return {"kind": "hull", "shapes": list(shapes)}
+
+
+def strip(places: Sequence[Sequence[float]], low: float, high: float) -> list[Shape]:
+    """A flat bar between two heights along `places`: x, y and half its width there [m], with round ends."""
+    discs = [cylinder(half, (x, y, low), (x, y, high)) for x, y, half in places]
+    return [hull(one, other) for one, other in pairwise(discs)]
 
 
 def stick(square: bool, along: Point, foot: Point, radius: float, start: float, end: float) -> Shape:

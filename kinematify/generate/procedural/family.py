@@ -17,7 +17,7 @@ from kinematify.generate.procedural.workshop import STYLES, Workshop
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.parameter import Parameter, Value
@@ -66,6 +66,10 @@ class Values:
         """As it was given."""
         return self._values[name]
 
+    def has(self, name: str) -> bool:
+        """True if there is such a parameter."""
+        return name in self._values
+
     def number(self, name: str) -> float:
         """A length [m] or an angle [rad]."""
         return float(self._values[name])
@@ -110,8 +114,11 @@ COMMON = (
 """Parameters of every family."""
 
 
-def described_families(builders: Mapping[str, Callable[[Values, Workshop], None]]) -> dict[str, Family]:
-    """Return the families that `families.yaml` describes, in its order, each built by the function of its name."""
+def described_families(
+    builders: Mapping[str, Callable[[Values, Workshop], None]],
+    in_steps: Callable[[str, str, Sequence[Any], Iterable[str]], Callable[[Values, Workshop], None]],
+) -> dict[str, Family]:
+    """Return the families that `families.yaml` describes, in its order, built by their steps or a function."""
     described: Mapping[str, Any] = read_table(Path(__file__).with_name("families.yaml"))
     return {
         name: Family(
@@ -119,7 +126,9 @@ def described_families(builders: Mapping[str, Callable[[Values, Workshop], None]
             title=said["title"],
             words=phrases(said["words"]),
             parameters=tuple(read_parameter(asked, facts) for asked, facts in said["parameters"].items()),
-            build=builders[name],
+            build=in_steps(name, said["title"], said["steps"], said["parameters"])
+            if "steps" in said
+            else builders[name],
             material=said.get("material", "wood"),
             kinds={kind: usual for kinds, usual in said.get("kinds", {}).items() for kind in phrases(kinds)},
             part_words={part: phrases(words) for part, words in said.get("part_words", {}).items()},

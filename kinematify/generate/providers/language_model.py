@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from kinematify.errors import EnvironmentFault, InputError, OutputError
-from kinematify.generate.blueprint_file import BlueprintDescription, described_blueprint
+from kinematify.generate.procedural.blueprint_file import BlueprintDescription, described_blueprint
 from kinematify.generate.procedural.language.words import lemma
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.generate.providers.service import NotTaken, Service

@@ -162,8 +162,7 @@ def _panel_range(
         return _range(sign, -ajar, min(forward, max(np.radians(limits.panel_deg) - ajar, 0.0)), free, config)
     if max(forward, backward) < np.radians(limits.blocked_deg):
         forward = np.pi  # its mesh overlaps the frame: no door is made to stay shut
-    lower = -backward if backward < np.radians(limits.least_deg) else 0.0
-    return _range(sign, lower, min(forward, np.radians(limits.panel_deg)), free, config)
+    return _range(sign, 0.0, min(forward, np.radians(limits.panel_deg)), free, config)
 
 
 # ---- levers ----------------------------------------------------------------------------------------------

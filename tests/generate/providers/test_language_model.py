@@ -12,7 +12,7 @@ from PIL import Image
 from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.generate.blueprint_file import described_blueprint, read_blueprint
+from kinematify.generate.procedural.blueprint_file import described_blueprint, read_blueprint
 from kinematify.generate.procedural.language.compare import compare
 from kinematify.generate.procedural.language.parse import parse_any
 from kinematify.generate.providers.job import open_job

@@ -67,7 +67,7 @@ class Viewer {
     this.marked = new Set(); this.selected = null; this.playing = null;
     this.gl = this.canvas.getContext('webgl', { antialias: true, preserveDrawingBuffer: true });
     if (!this.gl) {
-      root.querySelector('.status').textContent = 'This browser draws no WebGL; the pictures above show the object.';
+      root.querySelector('.status').textContent = 'This browser draws no WebGL; the picture below shows the object.';
       return;
     }
     this.upload();
@@ -137,10 +137,12 @@ class Viewer {
     for (const slider of this.sliders) if (slider.dataset.joint === name) slider.value = value;
     this.draw();
   }
-  show(q, links) {
+  show(q, links, joint = null) {
     this.stop();
     for (const joint of this.scene.joints) this.set(joint.name, joint.name in q ? q[joint.name] : joint.rest);
-    this.marked = new Set(links);
+    const names = this.scene.joints.map(item => item.name);
+    const moved = this.scene.bodies.filter(body => joint !== null && names[body.joint] === joint);
+    this.marked = new Set([...links, ...moved.flatMap(body => body.links)]);
     this.selected = null;
     this.draw();
   }
@@ -183,7 +185,7 @@ class Viewer {
 
   axes() {
     const ct = Math.cos(this.turn), st = Math.sin(this.turn), cl = Math.cos(this.lift), sl = Math.sin(this.lift);
-    return [[ct, st, 0], [st * sl, -ct * sl, cl], [st * cl, -ct * cl, -sl].map(v => -v)];  // right, up, towards the eye
+    return [[-ct, -st, 0], [st * sl, -ct * sl, cl], [st * cl, -ct * cl, -sl].map(v => -v)];  // right, up, towards the eye
   }
   camera(aspect) {
     const [right, up, back] = this.axes(), eye = this.center.map((c, a) => c + this.far * 1.6 * back[a]);
@@ -266,7 +268,7 @@ document.addEventListener('click', event => {
   if (!button) return;
   const viewer = viewers.find(v => v.root.dataset.scene === button.dataset.scene), told = JSON.parse(button.dataset.show);
   if (!viewer || !viewer.gl) return;
-  viewer.show(told.q, told.links);
+  viewer.show(told.q, told.links, told.joint);
   viewer.canvas.scrollIntoView({ block: 'center' });
   viewer.canvas.focus({ preventScroll: true });
 });

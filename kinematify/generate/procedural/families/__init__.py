@@ -1,7 +1,8 @@
-"""Families by what they are; the function ``build_NAME`` of one of these modules builds the family NAME."""
+"""Families by what they are: `families.yaml` has their steps, or a function ``build_NAME`` here builds NAME."""
 
 from __future__ import annotations
 
+from kinematify.generate.library.assembled import builder_of
 from kinematify.generate.procedural.families import (
     appliances,
     arms,
@@ -10,7 +11,6 @@ from kinematify.generate.procedural.families import (
     building,
     containers,
     furniture,
-    hand_tools,
     machines,
     small_appliances,
     walkers,
@@ -18,7 +18,7 @@ from kinematify.generate.procedural.families import (
 from kinematify.generate.procedural.family import described_families
 
 _MODULES = (
-    appliances, arms, bathroom, belongings, building, containers, furniture, hand_tools, machines, small_appliances,
+    appliances, arms, bathroom, belongings, building, containers, furniture, machines, small_appliances,
     walkers,
 )  # fmt: skip
 
@@ -28,6 +28,7 @@ FAMILIES = described_families(
         for module in _MODULES
         for name, build in vars(module).items()
         if name.startswith("build_")
-    }
+    },
+    builder_of,
 )
 """Keyed by name."""

@@ -317,7 +317,7 @@ class LatheShape(_Round):
         return Manifold.revolve(_section(self.outline), self.sides)
 
 
-Shape = Annotated[
+Primitive = Annotated[
     BoxShape
     | RoundedBoxShape
     | CylinderShape
@@ -331,6 +331,20 @@ Shape = Annotated[
     | LatheShape,
     Field(discriminator="kind"),
 ]
+
+
+class HullShape(_Placed):
+    """The smallest convex solid around primitives: a bar that tapers, a plate with round corners."""
+
+    kind: Literal["hull"]
+    shapes: tuple[Primitive, ...] = Field(min_length=1, max_length=50)
+
+    def made(self) -> Manifold:
+        """See `_Placed`."""
+        return hull(*(shape.solid({}) for shape in self.shapes))
+
+
+Shape = Annotated[Primitive | HullShape, Field(discriminator="kind")]
 
 
 class PartDescription(_Described):

@@ -1,0 +1,80 @@
+"""A linkage in environments, in PyBullet by itself, and in the engine checks: the engine closes its loops."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pybullet as bullet
+import pytest
+
+import kinematify
+from benchmarks.linkages import linkage
+from kinematify.config import load_config
+from kinematify.envs.expert import HandExpert
+from kinematify.envs.open_part import OpenPartEnv
+from kinematify.generate.sentence import from_text
+from kinematify.pipeline.generate import write_blueprint
+from kinematify.robot.linkage import loop_gaps, without_followers
+from kinematify.validation.run import validate
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.fixture(scope="module", params=["parallelogram", "four bars"])
+def model(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A toolbox, whose joints follow by <mimic>, and a clamp, whose joints follow along curves."""
+    folder: Path = tmp_path_factory.mktemp("linkage")
+    toolbox = request.param == "parallelogram"
+    drawn = from_text("a toolbox with two cantilever trays").build() if toolbox else linkage("toggle_clamp", 0)
+    write_blueprint(drawn, folder, load_config())
+    return folder
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
+def test_a_hand_opens_a_linkage_that_stays_closed(model: Path, engine: str) -> None:
+    env = OpenPartEnv(model=model, engine=engine, control="position", allow_invalid=True)
+    expert = HandExpert(env)
+    observation, info = env.reset(seed=0)
+    expert.begin()
+    for _ in range(160):
+        observation, _, ended, _, info = env.step(expert.act(observation))
+        if info["is_success"] or ended:
+            break
+    assert info["is_success"], info
+    poses, robot = env._world.link_poses(), env.articulated_object.declared
+    ends = [
+        [(poses[link] @ np.append(point, 1.0))[:3] for link, point in zip(loop.links, loop.points, strict=True)]
+        for loop in robot.loops
+    ]
+    assert max(np.linalg.norm(one - other) for one, other in ends) < 1e-3 * env.articulated_object.scene.size
+    env.close()
+
+
+def test_to_pybullet_closes_the_loops(model: Path) -> None:
+    world, loaded = bullet.connect(bullet.DIRECT), kinematify.load(model)
+    body = loaded.to_pybullet(world)
+    assert bullet.getNumConstraints(physicsClientId=world) == len(loaded.robot.loops)
+    count = bullet.getNumJoints(body, physicsClientId=world)
+    joints = {bullet.getJointInfo(body, k, physicsClientId=world)[1].decode(): k for k in range(count)}
+    driver = loaded.robot.leaders[0]
+    target = 0.8 * driver.upper
+    for step in range(480):
+        aim = min(step / 240, 1.0) * target
+        bullet.setJointMotorControl2(body, joints[driver.name], bullet.POSITION_CONTROL, aim, physicsClientId=world)
+        bullet.stepSimulation(physicsClientId=world)
+    values = {name: bullet.getJointState(body, k, physicsClientId=world)[0] for name, k in joints.items()}
+    bullet.disconnect(world)
+    assert values[driver.name] == pytest.approx(target, abs=0.02)
+    diagonal = float(np.linalg.norm(np.ptp(np.concatenate([m.bounds for m in loaded.meshes().values()]), axis=0)))
+    assert max(loop_gaps(without_followers(loaded.robot), values).values()) < 1e-3 * diagonal
+
+
+def test_each_engine_keeps_the_loop_closed_over_the_range(model: Path) -> None:
+    asked = ["KV413", "KV513", "KV913"]
+    report = validate(model / "model.urdf", selected=asked, engines=("mujoco", "pybullet", "drake"))
+    ran = [item for item in report.checks if item.check in asked]
+    assert len(ran) == 3
+    assert {item.status.name for item in ran} == {"PASS"}, [item.message for item in report.findings]
+    assert all(item.measured["widest_gap"] > 0.0 for item in ran)
