@@ -46,31 +46,27 @@ class PybulletObject:
         """Load the file; what is in each other at rest does not collide, as in MuJoCo."""
         self.articulated_object, self.target, self._dynamics = articulated_object, target, dynamics
         mechanism = articulated_object.scene.mechanism
-        self._loaded = load(mechanism, articulated_object.loaded, step=settings.time.step)
-        self.client, self.body = self._loaded.client, self._loaded.body
+        self.loaded = load(mechanism, articulated_object.loaded, step=settings.time.step)
+        self.client, self.body = self.loaded.client, self.loaded.body
         self.client.setPhysicsEngineParameter(
             numSolverIterations=settings.time.solver_iterations, deterministicOverlappingPairs=1
         )
         place = {name: k for k, name in enumerate(mechanism.links)}
         apart = overlapping_links(articulated_object.scene)
-        self._loaded.act([(place[first], place[second]) for first, second in apart], on=False)
+        self.loaded.act([(place[first], place[second]) for first, second in apart], on=False)
         names = list(mechanism.joints)
         self._leaders = [names.index(joint) for joint in articulated_object.joints]
-        self._indices = self._loaded.indices
+        self._indices = self.loaded.indices
         self._leader_indices = [self._indices[k] for k in self._leaders]
-        passive = {names.index(name) for name in self._loaded.passive}
+        passive = {names.index(name) for name in self.loaded.passive}
         self._followers = [k for k in range(len(names)) if k not in {*self._leaders, *passive}]
-        self._link = int(self._loaded.link[mechanism.links.index(target.link)])
+        self._link = self.loaded.index_of(target.link)
         self._axis = articulated_object.declared.joint_by_name[target.joint].axis
         self._T_base = pose_of(*self.client.getBasePositionAndOrientation(self.body))
-        self._links = {index: self._info(index) for index in self._loaded.link.tolist()}
+        self._links = {index: self._info(index) for index in self.loaded.link.tolist()}
         self._T_usual = self._T_root = T_world_root
         self._saved: int | None = None
         self.look()
-
-    def link_index(self, name: str) -> int:
-        """PyBullet's index of a link."""
-        return int(self._loaded.link[self.articulated_object.scene.mechanism.links.index(name)])
 
     def _info(self, index: int) -> tuple[float, list[float], float]:
         """Mass [kg], principal moments [kg m^2] and friction of a link."""
@@ -80,7 +76,7 @@ class PybulletObject:
     def apply(self, drawn: Draw) -> None:
         """Redraw the object (`kinematify.envs.dynamics.draw`)."""
         client, body = self.client, self.body
-        for number, index in enumerate(self._loaded.link.tolist()):
+        for number, index in enumerate(self.loaded.link.tolist()):
             mass, moments, friction = self._links[index]
             factor = float(drawn.mass[number])
             client.changeDynamics(
@@ -108,15 +104,11 @@ class PybulletObject:
     def place(self, leaders: FloatArray) -> None:
         """Set the joints, followers included, and stop them."""
         if self._saved is None:
-            self._loaded.place(
-                self.articulated_object.scene.mechanism.all_values(self.articulated_object.scene.mechanism.rest[None])[
-                    0
-                ]
-            )
-            self._loaded.find_contacts_anew()
+            self.loaded.place(self.articulated_object.scene.mechanism.values_at_rest)
+            self.loaded.find_contacts_anew()
             self._saved = self.client.saveState()
         self.client.restoreState(self._saved)
-        self._loaded.place(self.articulated_object.scene.mechanism.all_values(leaders[None])[0])
+        self.loaded.place(self.articulated_object.scene.mechanism.all_values(leaders[None])[0])
         self.look()
         self.client.performCollisionDetection()
 
@@ -179,7 +171,7 @@ class PybulletObject:
     def depth(self) -> float:
         """Deepest contact among pairs that collide [m]."""
         points = self.client.getContactPoints(self.body, self.body)
-        link_of, margin = self._loaded.link_of, self._loaded.margin
+        link_of, margin = self.loaded.link_of, self.loaded.margin
         depths = [-p[8] - float(margin[link_of[p[3]]] + margin[link_of[p[4]]]) for p in points]
         return max(0.0, *depths) if depths else 0.0
 
@@ -301,7 +293,7 @@ class PybulletArm(PybulletWorld):
         self.client = self.object.client
         self._articulated_object, self._robot, self._substeps = articulated_object, robot, settings.time.substeps
         self._load(plan, settings)
-        self._held = [self.object.link_index(name) for name in held_links(articulated_object, target)]
+        self._held = [self.object.loaded.index_of(name) for name in held_links(articulated_object, target)]
         forces = np.full(len(robot.robot.finger_joints), settings.robot.grip_force)
         self._forces = np.concatenate([robot.strongest, forces]).tolist()
         self._wanted = np.zeros(len(self._forces))
@@ -329,7 +321,7 @@ class PybulletArm(PybulletWorld):
         shape = self.client.createCollisionShape(bullet.GEOM_PLANE)
         floor = self.client.createMultiBody(0.0, shape)
         for name in self._articulated_object.scene.mechanism.links:
-            self.client.setCollisionFilterPair(floor, self.object.body, _BASE, self.object.link_index(name), 0)
+            self.client.setCollisionFilterPair(floor, self.object.body, _BASE, self.object.loaded.index_of(name), 0)
 
     def place(self, leaders: FloatArray, arm: FloatArray) -> float:
         """Set the object's joints and those of the arm, fingers apart, and stop all."""

@@ -41,8 +41,7 @@ ALLOWED = (
     ("*", "`blame`"),  # a key of the JSON report
     ("docs/validate.md", "`report.told`"),
     ("*", "hands of a clock"),
-    ("docs/gallery.md", "| hands |"),  # of a clock
-    ("docs/gallery.md", "Whether hands turn"),
+    ("docs/gallery.md", "`hands`"),  # of a clock
     ("kinematify/generate/sentence.py", "placed|stands|sits"),  # words that a user may write
     ("validation/formats/html.py", "data-blame="),  # the key of the JSON report
 )

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from kinematify.config import GroupingConfig
     from kinematify.joints.choice.scorer import Scorer
     from kinematify.robot.arrays import BoolArray, FloatArray
 
@@ -258,13 +259,13 @@ def write_all(examples: Sequence[PiecesExample], out: Path) -> list[str]:
     shipped = fit_moving(examples, proposed)
     _write(out, fit_pairs(examples), shipped)
     seen = [_likely(shipped, of) for of in proposed]
-    threshold = load_config().grouping.threshold
+    config = load_config().grouping
     return [
         (
             "Moving parts among the sets of pieces that are chosen, before joints are inferred (IoU of triangles > .5):"
             " precision, recall and F1 with the category held out, F1 in-sample beside it."
         ),
-        _table(examples, proposed, likely, seen, threshold),
+        _table(examples, proposed, likely, seen, config),
     ]
 
 
@@ -283,14 +284,14 @@ def _table(
     proposed: Sequence[_Proposed],
     likely: Sequence[FloatArray],
     seen: Sequence[FloatArray],
-    threshold: float,
+    config: GroupingConfig,
 ) -> str:
     rows = list(zip(examples, proposed, likely, seen, strict=True))
     sets = {**grouped(rows, by=lambda row: row[0].origin + ("" if row[0].fits else ", never fitted to")), "all": rows}
     lines = []
     for name, group in sets.items():
-        held_out = np.sum([_found(item, of, unseen, threshold) for item, of, unseen, _ in group], axis=0)
-        in_sample = np.sum([_found(item, of, fitted, threshold) for item, of, _, fitted in group], axis=0)
+        held_out = np.sum([_found(item, of, unseen, config) for item, of, unseen, _ in group], axis=0)
+        in_sample = np.sum([_found(item, of, fitted, config) for item, of, _, fitted in group], axis=0)
         true, chosen, hit = held_out
         lines.append(
             (
@@ -302,10 +303,10 @@ def _table(
     return table(("set", "objects", "move", "chosen", "precision", "recall", "F1", "F1 in-sample"), lines)
 
 
-def _found(item: PiecesExample, of: _Proposed, likely: FloatArray, threshold: float) -> tuple[int, int, int]:
+def _found(item: PiecesExample, of: _Proposed, likely: FloatArray, config: GroupingConfig) -> tuple[int, int, int]:
     """Parts that move, sets that are chosen, and parts that one of these matches."""
     moving = int(item.moving.sum())
-    chosen = select(of.candidates, likely, threshold)[0] if of.candidates else []
+    chosen = select(of.candidates, likely, config)[0] if of.candidates else []
     hit = int((of.overlaps[chosen].max(axis=0) > _ENOUGH).sum()) if chosen and moving else 0
     return moving, len(chosen), hit
 

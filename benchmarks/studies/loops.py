@@ -202,7 +202,7 @@ class _Chain:
         self.mechanism = LeaderMechanism(robot=robot)
         self.leaders = [travel.joint for travel in self.mechanism.travels]
         self.columns = [self.mechanism.joints.index(name) for name in self.leaders]
-        self.start = self.mechanism.all_values(self.mechanism.rest[None])[0]
+        self.start = self.mechanism.values_at_rest
 
     def aims(self, driver: str, rest: float, end: float, share: float) -> tuple[FloatArray, FloatArray]:
         """Where the leaders are to be, and how fast; all but the driver are held."""

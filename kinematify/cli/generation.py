@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -10,6 +9,7 @@ import click
 
 from kinematify.cli.inferred import describe_files, describe_joints
 from kinematify.cli.options import say, with_collision
+from kinematify.cli.report_files import generated_files, report_on
 from kinematify.config import load_config
 from kinematify.errors import ExitStatus, InputError
 from kinematify.generate.sentence import Made, Sentence
@@ -130,7 +130,7 @@ class Generation:
             write_inference_files(self.inference, folder / INFERRED_FOLDER, preview=self.preview)
 
     def _validate(self, progress: Reporter) -> None:
-        self.report = validated(self.out, preview=self.preview, progress=progress)
+        self.report = report_on(self.out, generated_files(self.out), progress=progress)
 
     @property
     def exit_status(self) -> int:
@@ -173,19 +173,6 @@ class Generation:
         from kinematify.evaluation.metrics import score_blueprint
 
         return score_blueprint(self.blueprint, inference)
-
-
-def validated(out: Path, *, preview: bool, progress: Reporter) -> ValidationReport:
-    """Validate the model of a folder and write the reports into it; the picture goes into the page if there is one."""
-    from kinematify.cli.report_files import ReportFiles
-    from kinematify.validation.formats.picture import scene_of
-    from kinematify.validation.run import validate
-
-    report = validate(out / MODEL_FILE, workers=os.cpu_count() or 1, progress=progress)
-    pictures = {report.model: (out / PREVIEW_FILE).read_bytes()} if preview else {}
-    files = ReportFiles(json=str(out / "validation.json"), junit=None, sarif=None, html=out / "validation.html")
-    files.write([report], pictures, {report.model: scene_of(out / MODEL_FILE)})
-    return report
 
 
 def status_of(report: ValidationReport | None) -> int:

@@ -12,9 +12,10 @@ import click
 
 from kinematify.assembly.load import load_assembly
 from kinematify.cli.blueprint_feedback import in_blueprint_words
-from kinematify.cli.generation import Generation, status_of, summary_of, validated, verdict_on, warn_if_interrupted
+from kinematify.cli.generation import Generation, status_of, summary_of, verdict_on, warn_if_interrupted
 from kinematify.cli.inferred import describe
 from kinematify.cli.options import say, with_collision
+from kinematify.cli.report_files import generated_files, report_on
 from kinematify.errors import InputError
 from kinematify.generate.procedural.blueprint_file import read_blueprint
 from kinematify.generate.procedural.language.compare import compare
@@ -163,8 +164,8 @@ class ProvidedGeneration:
         )  # fmt: skip
         if self.with_verdict:
             rest = 1.0 - _WRITTEN
-            self.report = validated(
-                self.out, preview=self.preview,
+            self.report = report_on(
+                self.out, generated_files(self.out),
                 progress=lambda stage, done: progress(f"validation: {stage}", _WRITTEN + rest * done),
             )  # fmt: skip
 

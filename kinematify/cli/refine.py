@@ -11,6 +11,7 @@ from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.inferred import as_loaded, describe
 from kinematify.cli.options import collision_option, examples, with_collision
 from kinematify.cli.progress import progress_reporter
+from kinematify.cli.report_files import ReportFiles, report_on
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
 
@@ -95,7 +96,9 @@ def command(
     from kinematify.refinement.folder import as_left, open_model_folder, read_record, write_refined
 
     target = _target(folder, out, force=force)
-    files = _report_files(html)
+    files = None if html is None else ReportFiles(json=None, junit=None, sarif=None, html=html)
+    if files is not None:
+        files.check()
     _check_budget(budget)
     with progress_reporter() as progress:
         progress("reading the parts", 0.0)
@@ -119,7 +122,7 @@ def command(
             loaded = as_loaded(target / MODEL_FILE)
         if files is not None:
             progress("validating the result", 0.95)
-            _write_report(files, target)
+            report_on(target, files)
     if json_to:
         write_answer({**as_answer(refinement, target), "as_loaded": loaded or None}, json_to)
     if json_to != "-":
@@ -200,25 +203,3 @@ def _check_budget(budget: float | None) -> None:
 
     if budget is not None and not 0.0 < budget < float("inf"):
         raise InputError(f"--budget is {budget}. Give a number of seconds above 0.")
-
-
-def _report_files(html: Path | None) -> Any:
-    from kinematify.cli.report_files import ReportFiles
-
-    if html is None:
-        return None
-    files = ReportFiles(json=None, junit=None, sarif=None, html=html)
-    files.check()
-    return files
-
-
-def _write_report(files: Any, folder: Path) -> None:
-    from kinematify.model.output import MODEL_FILE
-    from kinematify.pipeline.record import PREVIEW_FILE
-    from kinematify.validation.formats.picture import scene_of
-    from kinematify.validation.run import validate
-
-    report = validate(folder / MODEL_FILE)
-    picture = folder / PREVIEW_FILE
-    pictures = {report.model: picture.read_bytes()} if picture.is_file() else {}
-    files.write([report], pictures, {report.model: scene_of(folder / MODEL_FILE)})

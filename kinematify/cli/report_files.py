@@ -14,7 +14,9 @@ from kinematify.errors import OutputError
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from kinematify.cli.progress import Reporter
     from kinematify.validation.run.outcome import Outcome
+    from kinematify.validation.run.report import ValidationReport
     from kinematify.validation.suppression import Suppression
 
 
@@ -102,6 +104,25 @@ class ReportFiles:
             reports = [outcome for outcome in outcomes if not isinstance(outcome, Unusable)]
             texts["--suggest-accept"] = suppressions_text((*rules, *suggested_suppressions(reports)))
         return texts
+
+
+def generated_files(folder: Path) -> ReportFiles:
+    """The reports in the folder of a generated model."""
+    return ReportFiles(json=str(folder / "validation.json"), junit=None, sarif=None, html=folder / "validation.html")
+
+
+def report_on(folder: Path, files: ReportFiles, *, progress: Reporter | None = None) -> ValidationReport:
+    """Validate the model of a folder and write its reports, with the picture of the folder if there is one."""
+    from kinematify.model.output import MODEL_FILE
+    from kinematify.pipeline.record import PREVIEW_FILE
+    from kinematify.validation.formats.picture import scene_of
+    from kinematify.validation.run import validate
+
+    report = validate(folder / MODEL_FILE, workers=os.cpu_count() or 1, progress=progress)
+    picture = folder / PREVIEW_FILE
+    pictures = {report.model: picture.read_bytes()} if picture.is_file() else {}
+    files.write([report], pictures, {report.model: scene_of(folder / MODEL_FILE)})
+    return report
 
 
 def _problem(path: Path) -> str:

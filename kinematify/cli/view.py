@@ -83,6 +83,8 @@ def command(
                 f"{urdf} has no joint {unknown[0]} that can be set. It has {', '.join(sorted(known)) or 'none'}."
             )
         window.viewer.set(dict(zip(joints, values, strict=True)))
+        if port and window.port != port:
+            click.echo(f"Port {port} is in use, so {window.port} is taken.")
         click.echo(f"{window.url} shows {urdf.resolve()}; Ctrl-C ends it.")
         window.run()
     except KeyboardInterrupt:

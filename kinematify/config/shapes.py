@@ -63,8 +63,10 @@ class ContactConfig(StageConfig):
 class GroupingConfig(StageConfig):
     """Which pieces of a mesh that is not segmented are one rigid part."""
 
-    threshold: float = 0.25  # the best F1 of moving parts on what was left out (results/grouping.md)
-    """Probability from which a set of pieces is a moving part."""
+    share: float = 0.5  # the best F1 of moving parts with the category held out (results/grouping.md)
+    """A set of pieces moves if it is likelier than this share of the likeliest one."""
+    threshold: float = 0.1  # no set of a rigid mesh is likely
+    """Probability below which no set moves."""
     crumb: float = 0.012  # screws and letters; the smallest button of the benchmark is twice as large
     """Pieces with a smaller diagonal, as a fraction of the assembly's, ride on the nearest one."""
 

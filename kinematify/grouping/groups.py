@@ -129,7 +129,7 @@ def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeigh
     if len(kept) < 2:
         raise one_part(assembly)
     candidates, likely = judged([parts[k] for k in kept], weights or shipped_weights())
-    chosen, rejected = select(candidates, likely, config.threshold)
+    chosen, rejected = select(candidates, likely, config)
     if not chosen:
         raise one_part(assembly)
     label = np.full(len(parts), -1)
@@ -171,21 +171,22 @@ def odds_of(scorer: Scorer, columns: FloatArray, names: tuple[str, ...]) -> Floa
     return scorer.sums(columns[:, place].astype(np.float32)).astype(np.float64)
 
 
-def select(candidates: Sequence[Candidate], likely: FloatArray, threshold: float) -> tuple[list[int], list[int]]:
+def select(candidates: Sequence[Candidate], likely: FloatArray, config: GroupingConfig) -> tuple[list[int], list[int]]:
     """The likeliest candidates that have no piece in common, and the likeliest of those that were not taken.
 
     Args:
         candidates: Sets of pieces.
         likely: How likely each is a moving part, shape (c,).
-        threshold: What is less likely is not taken.
+        config: How likely a set must be, absolutely and beside the likeliest one.
     """
+    least = max(config.threshold, config.share * float(likely.max(initial=0.0)))
     taken: set[int] = set()
     chosen: list[int] = []
     rejected: list[int] = []
     for row in np.argsort(-likely, kind="stable").tolist():
         if taken.isdisjoint(candidates[row]):
             taken |= candidates[row]
-            (chosen if likely[row] >= threshold else rejected).append(row)
+            (chosen if likely[row] >= least else rejected).append(row)
     return chosen, rejected
 
 

@@ -13,6 +13,7 @@ from kinematify.model.scene import (
     GLYPH_COLORS,
     best_azimuth,
     camera_for,
+    glyph_color,
     joint_glyphs,
     moving_joints,
     opened_configuration,
@@ -252,10 +253,12 @@ def _legend(model: KinematicModel, config: PreviewConfig, width: int) -> Image.I
 
 def _legend_entries(model: KinematicModel) -> list[_Entry]:
     shades = link_shades(model)
-    shown = {name: srgb_of(shades[name] * linear_of(color)) for name, color in link_colors(model).items()}
+    colors = link_colors(model)
+    shown = {name: srgb_of(shades[name] * linear_of(color)) for name, color in colors.items()}
     entries = [_Entry(shown[model.root], model.root, "base", _FAINT)]
     for joint in model.joints:
-        ink = _bytes(GLYPH_COLORS[joint.kind]) if joint.kind in GLYPH_COLORS else _FAINT
+        moves = joint.kind in GLYPH_COLORS
+        ink = _bytes(glyph_color(joint.kind, colors[joint.child])) if moves else _FAINT
         entries.append(_Entry(shown[joint.child], joint.child, joint.kind.value, ink))
     if tell_apart(np.array([entry.color for entry in entries])):
         return entries

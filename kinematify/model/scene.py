@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.model.urdf import link_colors
 from kinematify.render.camera import fit_camera
 from kinematify.render.picture import PosedMesh
 from kinematify.robot.appearance import joined, plain
@@ -31,6 +32,10 @@ GLYPH_COLORS = {
     JointType.PRISMATIC: np.array([0.07, 0.33, 0.86]),
 }
 """sRGB of the arrows by joint type."""
+_OTHER_GLYPH = {False: np.array([0.95, 0.70, 0.05]), True: np.array([0.66, 0.10, 0.70])}
+"""The same on a part of nearly that colour, by whether the joint turns."""
+_SAME_COLOR = 0.3
+"""Distance of sRGB colours below which an arrow is lost on its part."""
 _SWEEP = {JointType.REVOLUTE: np.deg2rad(250.0), JointType.CONTINUOUS: np.deg2rad(335.0)}
 _CONTINUOUS_TURN = np.deg2rad(35.0)  # shows that it turns without looking like an end stop
 _FREE_CHAIN = 3  # joints one behind the other: furniture has no more, arms and fingers have
@@ -121,6 +126,17 @@ def posed_meshes(
     return posed
 
 
+def glyph_color(kind: JointType, part: FloatArray) -> FloatArray:
+    """Return the colour of a joint's arrow, sRGB, shape (3,): another one where the part that moves has the usual one.
+
+    Args:
+        kind: A type in `GLYPH_COLORS`.
+        part: Colour of the part, sRGB, shape (3,).
+    """
+    usual = GLYPH_COLORS[kind]
+    return _OTHER_GLYPH[kind.turns] if float(np.linalg.norm(usual - part)) < _SAME_COLOR else usual
+
+
 def joint_glyphs(model: KinematicModel, q: Mapping[str, float], config: PreviewConfig) -> dict[str, PosedMesh]:
     """An arrow for every joint that moves, where its axis stands at a configuration.
 
@@ -128,14 +144,15 @@ def joint_glyphs(model: KinematicModel, q: Mapping[str, float], config: PreviewC
         Joint name -> arrow in the world frame.
     """
     T_world_link = forward_kinematics(model.robot, q)
-    diagonal = _diagonal(model)
+    diagonal, colors = _diagonal(model), link_colors(model)
     glyphs = {}
     for joint in moving_joints(model):
         vertices, faces = _arrow_at_rest(model, joint, diagonal, config)
         # The axis is fixed in the parent; the arrow rides on the child, about the same line.
         T_moved = T_world_link[joint.child] @ np.linalg.inv(model.link_by_name[joint.child].T_world_link)
         moved = vertices @ T_moved[:3, :3].T + T_moved[:3, 3]
-        glyphs[joint.name] = PosedMesh(vertices=moved, faces=faces, color=GLYPH_COLORS[joint.kind])
+        color = glyph_color(joint.kind, colors[joint.child])
+        glyphs[joint.name] = PosedMesh(vertices=moved, faces=faces, color=color)
     return glyphs
 
 

@@ -135,6 +135,12 @@ class LeaderMechanism:
         """Values of the leaders at rest [rad or m], shape (leaders,)."""
         return np.array([travel.rest for travel in self.travels])
 
+    @cached_property
+    def values_at_rest(self) -> FloatArray:
+        """Values of all `joints` at rest [rad or m], shape (joints,)."""
+        values: FloatArray = self.all_values(self.rest[None])[0]
+        return values
+
     def all_values(self, leaders: FloatArray) -> FloatArray:
         """Return the values of all `joints` [rad or m], shape (n, joints), for rows of leaders (n, leaders)."""
         values: FloatArray = self._at_zero + leaders @ self.leads.T

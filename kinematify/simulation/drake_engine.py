@@ -370,14 +370,8 @@ class DrakeModel:
     @cached_property
     def ignored_pairs(self) -> frozenset[tuple[int, int]]:
         """Pairs of links that touch at rest."""
-        self.looking.place(self.values_at_rest)
+        self.looking.place(self.mechanism.values_at_rest)
         return frozenset((min(a, b), max(a, b)) for a, b, _ in self.looking.touching())
-
-    @property
-    def values_at_rest(self) -> FloatArray:
-        """Of all joints [rad or m], shape (J,)."""
-        values: FloatArray = self.mechanism.all_values(self.mechanism.rest[None])[0]
-        return values
 
     def measure(self, values: FloatArray, *, dynamic: int) -> Measured:
         """Set the model to every row and look."""
@@ -448,7 +442,7 @@ class DrakeSimulation:
 
     def _free(self, world: _World, count: int, *, told: FloatArray | None = None, every: int = 1) -> FreeRun:
         world.act(self.model.ignored_pairs, on=False)
-        world.place(self.model.values_at_rest)
+        world.place(self.model.mechanism.values_at_rest)
         return free_run(world, world.steps(count, self.step / every, told), count, every=every)
 
     @cached_property
@@ -468,7 +462,7 @@ class DrakeSimulation:
         samples = self.model.engine.settings.sweep_samples
         pairs = acting_pairs(mechanism, self.sweep, drive, self.model.ignored_pairs, samples)
         world.act(pairs, on=True)
-        world.place(self.model.values_at_rest)
+        world.place(self.model.mechanism.values_at_rest)
         world.failure.clear()
         told = commands(drive, mechanism, self.servos, samples)
         exerted = world.plant.get_net_actuation_output_port(world.instance)
@@ -480,11 +474,11 @@ class DrakeSimulation:
     def drop(self) -> Dropped:
         """Let the model fall on a floor."""
         settings, looking = self.model.engine.settings, self.model.looking
-        looking.place(self.model.values_at_rest)
+        looking.place(self.model.mechanism.values_at_rest)
         height = float(_corners(looking)[:, 2].min()) - settings.drop
         world = self.model.world(servos=self.servos, floor=height)
         world.act(self.model.ignored_pairs, on=False)
-        world.place(self.model.values_at_rest)
+        world.place(self.model.mechanism.values_at_rest)
         count = count_steps(settings.drop_seconds, self.step)
         run = world.steps(count, self.step, np.repeat(self._held[None], count, axis=0))
         return drop_run(world, run, count, self.step, places=lambda: world.poses()[:, :3, 3], depth=world.sunk)

@@ -213,7 +213,7 @@ class MujocoSimulation:
             control: Shape (steps, leaders).
             every: 1: all.
         """
-        start = _start_state(self._everything, self._values_at_rest)
+        start = _start_state(self._everything, self._mechanism.values_at_rest)
         (run,) = _run(self._everything, [model], start, control[None], threads=1)
         leaders = [self._mechanism.joints.index(travel.joint) for travel in self._mechanism.travels]
         return FreeRun(
@@ -232,7 +232,7 @@ class MujocoSimulation:
             forces[drive.leader] = self.servos.force[drive.leader]
             models.append(limited_servos(self._acting.model, forces))
         control = np.stack([commands(drive, self._mechanism, self.servos, samples) for drive in drives])
-        start = _start_state(self._acting, self._values_at_rest)
+        start = _start_state(self._acting, self._mechanism.values_at_rest)
         runs = _run(self._acting, models, start, control, threads=self.model.engine.threads)
         return [
             DriveRun(
@@ -257,11 +257,13 @@ class MujocoSimulation:
         """Let the model fall on a floor."""
         settings = self.model.engine.settings
         measuring = self.model.measuring
-        lowest = _lowest_point(measuring.model, _data_of(measuring, _start_state(measuring, self._values_at_rest)))
+        lowest = _lowest_point(
+            measuring.model, _data_of(measuring, _start_state(measuring, self._mechanism.values_at_rest))
+        )
         allowed = with_allowances(self._servoed, measuring, self.sweep, only=False)
         loaded = self._compiled(with_floor(allowed, height=lowest - settings.drop, tolerance=self.sweep.tolerance))
         control = np.repeat(self._held[None, None], count_steps(settings.drop_seconds, self.step), axis=1)
-        (run,) = _run(loaded, [loaded.model], _start_state(loaded, self._values_at_rest), control, threads=1)
+        (run,) = _run(loaded, [loaded.model], _start_state(loaded, self._mechanism.values_at_rest), control, threads=1)
         window = count_steps(SLOW_SECONDS, self.step)
         early, late = (_data_of(loaded, state) for state in (run.state[-1 - window], run.state[-1]))
         moved = np.linalg.norm(late.xpos[loaded.body] - early.xpos[loaded.body], axis=1)
@@ -270,12 +272,6 @@ class MujocoSimulation:
             speed=float(moved.max()) / SLOW_SECONDS,
             warnings=run.warnings,
         )
-
-    @property
-    def _values_at_rest(self) -> FloatArray:
-        """Of all joints [rad or m], shape (J,)."""
-        values: FloatArray = self._mechanism.all_values(self._mechanism.rest[None])[0]
-        return values
 
     @property
     def _held(self) -> FloatArray:

@@ -123,15 +123,8 @@ class PybulletModel:
     @cached_property
     def ignored_pairs(self) -> frozenset[tuple[int, int]]:
         """Pairs of links whose inflated shapes touch at rest; how deep they get is measured beside."""
-        self.looking.place(self.values_at_rest)
+        self.looking.place(self.looking.mechanism.values_at_rest)
         return frozenset((min(a, b), max(a, b)) for _, a, b, depth in self.looking.contacts(0) if depth > 0.0)
-
-    @property
-    def values_at_rest(self) -> FloatArray:
-        """Of all joints [rad or m], shape (J,)."""
-        mechanism = self.looking.mechanism
-        values: FloatArray = mechanism.all_values(mechanism.rest[None])[0]
-        return values
 
     def measure(self, values: FloatArray, *, dynamic: int) -> Measured:
         """Set the model to every row and look."""
@@ -279,7 +272,7 @@ class _Run:
         passive = {self.mechanism.joints.index(name) for name in world.passive}
         self._followers = [k for k in range(len(self.mechanism.joints)) if k not in {*self._leaders, *passive}]
         self.failure: tuple[str, ...] = ()
-        world.place(model.values_at_rest)
+        world.place(self.mechanism.values_at_rest)
 
     def steps(self, count: int, orders: Iterable[tuple[int, float, float, float]] | None = None) -> Iterator[int]:
         """Simulate; ends where a value is not finite.
@@ -326,7 +319,7 @@ class _Run:
 
     def hold(self, force: float | FloatArray) -> None:
         """Hold all joints at rest, with one force or one for each leader [N m or N]; followers without limit."""
-        rest = self._model.values_at_rest
+        rest = self.mechanism.values_at_rest
         forces = np.full(len(rest), _UNLIMITED)
         forces[self._leaders] = np.minimum(force, _UNLIMITED)
         for column in (*self._leaders, *self._followers):

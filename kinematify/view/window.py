@@ -95,7 +95,9 @@ class Window:
             changed_at=lambda: urdf.stat().st_mtime if urdf.is_file() else 0.0,
         )
         name = "localhost" if host in ("127.0.0.1", "0.0.0.0") else host
-        self.url = f"http://{name}:{self.server.get_port()}"
+        self.port: int = self.server.get_port()
+        """The port that is served: another one than asked for if that is in use."""
+        self.url = f"http://{name}:{self.port}"
         """Address of the page."""
 
     def run(self) -> None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import shutil
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pybullet as bullet
 import pytest
+from lxml import etree
 
 import kinematify
 from benchmarks.linkages import linkage
@@ -78,3 +80,17 @@ def test_each_engine_keeps_the_loop_closed_over_the_range(model: Path) -> None:
     assert len(ran) == 3
     assert {item.status.name for item in ran} == {"PASS"}, [item.message for item in report.findings]
     assert all(item.measured["widest_gap"] > 0.0 for item in ran)
+
+
+def test_a_loop_whose_ends_are_apart_is_a_finding_of_the_engine(model: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "open"
+    shutil.copytree(model, folder)
+    document = etree.parse(folder / "model.urdf")
+    point = next(item for item in document.getroot().iter() if etree.QName(item).localname == "ball_constraint_p_AP")
+    x, y, z = map(float, str(point.get("value")).split())
+    point.set("value", f"{x} {y} {z + 0.05}")
+    document.write(folder / "model.urdf")
+    report = validate(folder / "model.urdf", selected=["KV413"], engines=("mujoco",))
+    found = [item for item in report.findings if item.check == "KV413"]
+    assert found
+    assert all(item.value == pytest.approx(0.05, abs=0.01) for item in found)

@@ -11,26 +11,20 @@ import pytest
 from PIL import Image
 
 from kinematify.errors import OutputError
-from kinematify.generate.described import known_families
+from kinematify.generate.described import known_families, library
 from kinematify.generate.procedural.families import FAMILIES
 from tests.places import ROOT
-from tools.draw_gallery import OPENING, PICTURES, SENTENCES, pictured, write_gallery
+from tools.draw_gallery import OPENING, PICTURES, SENTENCES, SHOWN, write_gallery
 
 DOCS = ROOT / "docs"
-LARGEST, LARGEST_IN_ALL = 60_000, 4_000_000  # bytes
+LARGEST, LARGEST_IN_ALL = 60_000, 3_000_000  # bytes
+MOST_PICTURES, MOST_LINES = 100, 350
 TOLD = ("a cart with two wheels and a drawer",)
 
 
 def pictures_of(page: str) -> dict[str, str]:
-    """Picture of each section of a page, by its heading."""
-    return dict(re.findall(r"^## (\w+)\n\n!\[[^\]]+\]\(([^)]+)\)$", page, flags=re.MULTILINE))
-
-
-def told_of(page: str) -> dict[str, str]:
-    """Picture of each sentence of a page."""
-    return {
-        text: link for text, link, under in re.findall(r"!\[([^\]]+)\]\(([^)]+)\)<br>([^|]+) \|", page) if text == under
-    }
+    """What is said of each picture of a page, by its link."""
+    return dict(re.findall(r"!\[[^\]]+\]\(([^)]+)\)<br>([^|]+) \|", page))
 
 
 @pytest.fixture(scope="module")
@@ -41,21 +35,20 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write_gallery(folder, shown, TOLD, described, command="make it", progress=lambda name, done: None)
 
 
-def test_each_family_has_a_section_with_its_words_and_parameters(made):
+def test_each_family_has_a_picture_a_row_and_its_parameters(made):
     page = made.read_text("utf-8")
-    assert list(pictures_of(page)) == ["gripper", "laptop"]
+    said = [f"`{name}`: {FAMILIES[name].title}" for name in ("gripper", "laptop")]
+    seesaw = f"`seesaw`: {', '.join(known_families()['seesaw'].words[:2])}"
+    assert list(pictures_of(page).values()) == [*TOLD, *said, seesaw]
     assert "Made by `make it`." in page
-    assert ", ".join(FAMILIES["laptop"].words) in page
     for family in (FAMILIES["gripper"], FAMILIES["laptop"]):
-        for parameter in family.all_parameters:
-            assert f"| {parameter.name} | " in page
-    assert re.search(r"Joints: 1 revolute \(1\)\.", page)
+        row = next(line for line in page.splitlines() if line.startswith(f"| `{family.name}` |"))
+        assert all(f"`{parameter.name}`" in row for parameter in family.parameters)
+    assert all(item.title in page for item in library().values() if not item.like)
 
 
 def test_pictures_are_small_and_show_two_states(made):
-    page = made.read_text("utf-8")
-    assert list(told_of(page)) == [*TOLD, f"a {', '.join(known_families()['seesaw'].words[:4])}"]
-    for link in [*pictures_of(page).values(), *told_of(page).values()]:
+    for link in pictures_of(made.read_text("utf-8")):
         picture = made.parent / link
         assert picture.stat().st_size <= LARGEST
         image = np.asarray(Image.open(picture).convert("RGB")).astype(float)
@@ -80,20 +73,16 @@ def test_a_folder_that_cannot_be_written_is_refused(tmp_path):
         write_gallery(tmp_path / "file", {}, (), {}, command="", progress=lambda name, done: None)
 
 
-def test_the_committed_page_shows_every_family():
+def test_the_committed_page_shows_every_family_and_names_every_kind():
     page = (DOCS / "gallery.md").read_text("utf-8")
-    pictures = pictures_of(page)
-    assert list(pictures) == list(FAMILIES), "run: python -m tools.draw_gallery docs"
-    told = told_of(page)
-    assert tuple(told)[: len(SENTENCES)] == SENTENCES
-    described = list(pictured())
-    assert [Path(link).stem for link in told.values()][len(SENTENCES) :] == described
-    assert len(SENTENCES) >= 30
-    pictures |= told
-    sizes = {name: (DOCS / link).stat().st_size for name, link in pictures.items()}
-    assert max(sizes.values()) <= LARGEST
-    assert sum(sizes.values()) <= LARGEST_IN_ALL
-    assert set((DOCS / "gallery").iterdir()) == {
-        DOCS / PICTURES / OPENING,
-        *(DOCS / link for link in pictures.values()),
-    }
+    assert len(page.splitlines()) <= MOST_LINES
+    links = [DOCS / link for link in pictures_of(page)]
+    assert [link.stem for link in links[len(SENTENCES) :]] == [*FAMILIES, *SHOWN], "run: make pictures"
+    assert tuple(pictures_of(page).values())[: len(SENTENCES)] == SENTENCES
+    missing = [item.title for item in library().values() if not item.like and item.title not in page]
+    assert not missing, "run: make pictures"
+    sizes = [link.stat().st_size for link in links]
+    assert len(links) < MOST_PICTURES
+    assert max(sizes) <= LARGEST
+    assert sum(sizes) <= LARGEST_IN_ALL
+    assert set((DOCS / "gallery").iterdir()) == {DOCS / PICTURES / OPENING, *links}

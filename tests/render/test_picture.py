@@ -16,6 +16,7 @@ from kinematify.model.scene import (
     GLYPH_COLORS,
     best_azimuth,
     camera_for,
+    glyph_color,
     joint_glyphs,
     opened_configuration,
     posed_meshes,
@@ -170,6 +171,13 @@ def test_hidden_arrow_is_pale():
     column, row = camera.project(np.zeros((1, 3)))[0][0].astype(int)
     red, green, _ = image[row, column]
     assert 0.03 < red - green < 0.35
+
+
+def test_an_arrow_has_another_colour_on_a_part_of_its_own():
+    for kind in (JointType.REVOLUTE, JointType.PRISMATIC):
+        usual = GLYPH_COLORS[kind]
+        assert np.array_equal(glyph_color(kind, np.array([0.7, 0.7, 0.7])), usual)
+        assert np.linalg.norm(glyph_color(kind, usual + 0.02) - usual) > 0.5
 
 
 def test_an_arrow_stands_out_of_its_own_colour():

@@ -29,6 +29,8 @@ _PIECES = (
     "Write convex pieces as collision geometry of {0} and {1} that keep clear of each other along the motion; "
     "kinematify fix MODEL.urdf -o OUT does so."
 )
+_TOUCHING = 1e-4
+"""Contacts that are not as deep are no overlap that anybody sees [m]."""
 STILL = "does not move: "
 """Before the name of a joint: what KV804 measured of it, in the file loaded without flags."""
 _MESH_REFUSED = re.compile(r"no decoder found for mesh|invalid mesh filename extension|MakeConvexHull only applies to")
@@ -342,7 +344,7 @@ def _find_short(result: OpenCheck, context: AsLoadedContext, run: VelocityProbe,
     unit = "N m" if travel.turns else "N"
     said = (
         f"Pushed with up to {push.force:.3g} {unit} from {travel.rest:.4g} towards {run.end:.4g} {travel.unit} in "
-        f"{context.how}, gravity off and the others held, joint {travel.joint} gets to {stop:.4g} {travel.unit}"
+        f"{context.how}, gravity off and the others held, joint {travel.joint} gets to {_shown(stop)} {travel.unit}"
     )
     severity = _severity(run) if jammed else Severity.NOTE
     result.find(
@@ -373,8 +375,15 @@ def _cause(found: tuple[Overlap, float] | None, run: VelocityProbe, *, jammed: b
     if found is None:
         return "without contacts it gets to the end"
     (first, second), depth, value = found[0].links, found[0].depth, found[1]
-    where = "there" if value == run.pushed.farthest else f"at {value:.4g} {run.travel.unit}"
+    where = "there" if value == run.pushed.farthest else f"at {_shown(value)} {run.travel.unit}"
+    if depth < _TOUCHING:
+        return f"{where} {first} and {second} touch"
     return f"{where} {first} and {second} are {depth * 1e3:.3g} mm deep in each other"
+
+
+def _shown(value: float) -> str:
+    """A value of a joint without the rounding errors of an engine."""
+    return f"{round(value, 6) + 0.0:.4g}"
 
 
 @check(

@@ -119,20 +119,21 @@ def cap_problems(result: OpenCheck, urdf: Urdf) -> None:
     settings = urdf.settings
     depths = urdf.depths(urdf.roots)
     elements = sum(1 for _ in urdf.robot.iter(etree.Element))
-    for what, count, most in (
+    counts = (
         ("XML elements", elements, settings.max_elements),
         ("links", len(urdf.links), settings.max_links),
         ("joints", len(urdf.joints), settings.max_links),
         ("joints one below the other", max(depths.values(), default=0), settings.max_depth),
-    ):
-        if count > most:
-            result.find(
-                f"The file has {count} {what}; at most {most} are handed to engines, some of which hang or "
-                "crash with more.",
-                "Split the model, or merge links that fixed joints hold together.",
-                value=count,
-                limit=most,
-            )
+    )
+    many = [(what, count, most) for what, count, most in counts if count > most]
+    if many:
+        told = " and ".join(f"{count} {what} (at most {most})" for what, count, most in many)
+        result.find(
+            f"The file has {told}: some engines hang or crash with more.",
+            "Split the model, or merge links that fixed joints hold together.",
+            value=many[0][1],
+            limit=many[0][2],
+        )
 
 
 @check(
