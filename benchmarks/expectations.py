@@ -41,6 +41,7 @@ SETS = {
     "heldout_5": "sixty more of people who walk in, committed after that was mended and before they were tried",
     "heldout_6": "sixty more of people who walk in, committed before more objects were added, tried after",
     "heldout_7": "sixty written by somebody without sight of the library, committed before anything was added",
+    "heldout_8": "sixty more, committed before the grammar of that day was opened",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }
@@ -50,7 +51,7 @@ _SIZE = 0.02  # of a size, by which it may be off
 _ANGLE_DEG = 0.1
 _CALLED = {
     "arm": ("arm", "link"), "blade": ("blade", "rotor"), "carriage": ("carriage", "bridge", "ram"),
-    "casement": ("sash",), "gate": ("gate", "door"), "turntable": ("turntable", "lazy_susan"),
+    "casement": ("sash",), "gate": ("gate", "door", "leaf"), "turntable": ("turntable", "lazy_susan"),
     "caster": ("castor", "caster", "swivel_wheel"), "door": ("door", "leaf", "sliding_door"),
     "globe": ("ball",), "handle": ("handle", "lever"), "lid": ("lid", "screen"), "needle": ("gauge", "needle"),
     "flap": ("flap", "flap_door", "tilting_flap"),
@@ -333,13 +334,14 @@ def _of_kind(joint: BlueprintJoint, kind: str) -> bool:
 
 def _parts(made: Blueprint, noun: str) -> list[Part]:
     """Parts that a reader calls so: their name without a number; where there is none, its last word."""
-    called = _CALLED.get(noun, (noun,))
+    called = (noun, *_CALLED.get(noun, ()))
     exact = [part for part in made.parts if _stem(part.name) in called]
     return exact or [part for part in made.parts if any(_is_last_word(stem, _stem(part.name)) for stem in called)]
 
 
 def _stem(name: str) -> str:
-    return name.rstrip("0123456789_")
+    """A name without its number and its side."""
+    return re.sub(r"(?:_(?:\d+|left|right))+$", "", name).rstrip("0123456789_")
 
 
 _PLAIN: dict[str, Callable[[Blueprint, Blueprint, Any], list[str]]] = {

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import InputError
+from kinematify.generate.composer.attached import attached
 from kinematify.generate.composer.compose import compose
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.language.parts import PartRequirement
+from kinematify.generate.procedural.language.parts import PartRequirement, looking
 from kinematify.generate.procedural.language.sizes import OVERALL
 from kinematify.robot.transforms import rotation_about
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from kinematify.assembly.part import Part
-    from kinematify.generate.composer.compose import Composition
+    from kinematify.generate.composer.compose import Composition, MechanismSpec
     from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.parameter import Value
@@ -48,6 +49,10 @@ class Request:
     """What is asked of its parts, besides the values."""
     composition: Composition | None = None
     """Of mechanisms on a body, where no family builds it."""
+    added: tuple[MechanismSpec, ...] = ()
+    """Mechanisms that such an object has not, and that are put on it where there is a place."""
+    looks: tuple[tuple[tuple[str, ...], str, str], ...] = ()
+    """Names of parts, and the material or the colour of these alone."""
     overall: tuple[str, float] | None = None
     """A size of the whole [m] that it is scaled to."""
     copies: int = 1
@@ -66,6 +71,8 @@ class Request:
             InputError: A value is out of its bounds, or the parts are not as they are asked for.
         """
         blueprint = self._single(seed)
+        for names, material, color in self.looks:
+            blueprint = looking(blueprint, names, material, color)
         if self.copies > 1:
             width = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[0])
             blueprint = blueprint.repeated(self.copies, width + _GAP)
@@ -76,7 +83,13 @@ class Request:
 
     def _single(self, seed: int | None) -> Blueprint:
         if self.composition is None:
-            return self._as_required(seed)
+            made = self._as_required(seed)
+            for item in self.added:
+                try:
+                    made = attached(made, item)
+                except InputError:
+                    continue  # who compares it with the sentence reports it
+            return made
         return compose(self.composition, seed=seed, may_stand_still=bool(self.how))
 
     def _as_required(self, seed: int | None) -> Blueprint:

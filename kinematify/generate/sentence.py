@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.language.contradictions import refuse_contradictions
-from kinematify.generate.procedural.language.parse import FUNCTION_WORDS, parse
+from kinematify.generate.procedural.language.motions import GOING, MOTIONS
+from kinematify.generate.procedural.language.parse import FUNCTION_WORDS, NOT_DONE, parse, unknown_object
 from kinematify.generate.procedural.language.words import (
     PLAIN_WORDS,
     PURPOSES,
@@ -94,6 +95,12 @@ class _Plan:
             return tuple(words for plan in self.others for words in plan.missing(plan.blueprint))
         return _missing(self, blueprint)
 
+    def names(self, blueprint: Blueprint) -> Mapping[str, str]:
+        """Parts that the sentence calls otherwise than an object does, as it calls them."""
+        from kinematify.generate.procedural.language.compare import compare  # noqa: PLC0415 - with numpy
+
+        return {} if self.others else compare(self.specification, blueprint, self.nouns).names
+
     @cached_property
     def fault(self) -> int:
         """Words that are not built."""
@@ -119,6 +126,7 @@ class Sentence:
         for specification in self.specifications:
             try:
                 refuse_contradictions(specification)
+                _refuse_other_kind(specification)
                 for plan in _plans(specification):
                     if best is None or plan.fault < best.fault:
                         best = plan
@@ -144,7 +152,8 @@ class Sentence:
         """
         plan = self.plan
         blueprint = plan.blueprint if seed is None else plan.request.build(seed=seed)
-        return Made(blueprint=blueprint, specification=plan.specification, not_built=plan.missing(blueprint))
+        called = blueprint.renamed(plan.names(blueprint))
+        return Made(blueprint=called, specification=plan.specification, not_built=plan.missing(blueprint))
 
     def build(self, *, seed: int | None = None) -> Blueprint:
         """Build the object as far as it can be built; see `made`."""
@@ -273,8 +282,28 @@ def _plans(specification: Specification, *, alone: bool = True) -> Iterator[_Pla
             raise reasons[0]
 
 
+def _refuse_other_kind(specification: Specification) -> None:
+    """Refuse what something does before its name if that is no motion: a rocking chair is another kind of chair.
+
+    Raises:
+        InputError: It is said.
+    """
+    from kinematify.generate.composer.sentence import nouns_of_mechanisms  # noqa: PLC0415 - with the library
+
+    before = specification.name[0] - 1
+    word = specification.tokens[before].given if before >= 0 else ""
+    head = specification.tokens[specification.name[-1]].given
+    known = {word for kind in _library() if kind[-1] == head for word in kind[:-1]}
+    known |= STOP_WORDS | FUNCTION_WORDS | PURPOSES | {*MOTIONS, *GOING}
+    stem = word.removesuffix("ing")
+    if stem != word not in known | NOT_DONE and len(specification.name) == 1 and stem not in nouns_of_mechanisms():
+        raise InputError(unknown_object(specification.tokens, _library()))
+
+
 def _family_plan(specification: Specification, family: Family) -> _Plan:
-    from kinematify.generate.procedural.language.parts import part_nouns  # noqa: PLC0415 - with solids
+    from kinematify.generate.composer.sentence import mechanism_for  # noqa: PLC0415 - with solids
+    from kinematify.generate.procedural.language.compare import compare  # noqa: PLC0415
+    from kinematify.generate.procedural.language.parts import part_nouns  # noqa: PLC0415
     from kinematify.generate.procedural.language.understand import understand  # noqa: PLC0415
     from kinematify.generate.request import Request  # noqa: PLC0415
 
@@ -289,6 +318,11 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
     )
     made = request.build()
     nouns = {" ".join(words): names for words, names in part_nouns(family, made).items()}
+    compared = compare(specification, made, nouns)
+    added = tuple(item for part in compared.absent if (item := mechanism_for(part)) is not None)
+    if added or compared.looks:
+        request = replace(request, added=added, looks=compared.looks)
+        made = request.build()
     return _Plan(
         specification=specification,
         request=request,
@@ -301,6 +335,7 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
 
 def _composed_plan(specification: Specification, body: BodyKind, alone: bool) -> _Plan:
     from kinematify.generate.composer.sentence import read_composition  # noqa: PLC0415 - with solids
+    from kinematify.generate.procedural.language.compare import compare  # noqa: PLC0415
     from kinematify.generate.request import Request  # noqa: PLC0415
 
     meant = read_composition(specification, body, may_stand_still=not alone)
@@ -314,10 +349,14 @@ def _composed_plan(specification: Specification, body: BodyKind, alone: bool) ->
         how="" if alone else "in a scene",
     )
     nouns = {word: (item.stem,) for item in composition.wanted for word in item.mechanism.words}
+    made = request.build()
+    if looks := compare(specification, made, nouns).looks:
+        request = replace(request, looks=looks)
+        made = request.build()
     return _Plan(
         specification=specification,
         request=request,
-        blueprint=request.build(),
+        blueprint=made,
         used=meant.used,
         dropped=meant.dropped,
         nouns=nouns,
@@ -359,7 +398,7 @@ def _missing(plan: _Plan, blueprint: Blueprint) -> tuple[str, ...]:
     specification, tokens = plan.specification, plan.specification.tokens
     compared = compare(specification, blueprint, plan.nouns)
     taken = {*specification.name, *plan.used} - {k for item in plan.dropped for k in item.at}
-    found = list(plan.dropped)
+    found = [item for item in plan.dropped if not item.at or not item.at <= compared.held]
     for item in compared.missing:
         if item.at <= taken and not item.is_sure:
             continue

@@ -36,7 +36,7 @@ from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from kinematify.generate.procedural.language.specification import Specification
+    from kinematify.generate.procedural.language.specification import PartSpecification, Specification
 
 _Kind = TypeVar("_Kind")
 _SIDES = {side: side for side in FACING} | {"rear": "back", "underside": "bottom"}
@@ -309,8 +309,10 @@ class _Reader:
             if not taken and self._tokens[k].text in MOTIONS:
                 self.unread.append(k)
             elif not taken and not self._says_nothing(self._tokens[k]):
-                self._described_so_far()  # of a noun that is not known here
-                self.unread += [*self._looking, k]
+                if self._past_name:
+                    self._described_so_far()  # of a noun that is not known here
+                    self.unread += self._looking
+                self.unread.append(k)
             if self._look == _Look():
                 self._looking = []
             elif taken:
@@ -612,6 +614,24 @@ def _by_words(named: Iterable[tuple[str, _Kind]]) -> dict[tuple[str, ...], _Kind
     """Keyed by the words of the names, the longest first."""
     found = {_words_of(word): kind for word, kind in named}
     return dict(sorted(found.items(), key=lambda item: -len(item[0])))
+
+
+def mechanism_for(part: PartSpecification) -> MechanismSpec | None:
+    """The mechanism that a part asks for, which an object has not; none if it belongs to another part."""
+    words, said = part.noun.split(), {claim.about: claim.value for claim in part.claims}
+    kinds = (_mechanisms().get(tuple(words[k:])) for k in range(len(words)))
+    kind = next((kind for kind in kinds if kind is not None and kind.arranged == "grid"), None)
+    related = [claim.value[1] for claim in part.claims if claim.about == "relation"]
+    if kind is None or part.of or part.absent or (related and related[0].split()[-1] not in _SIDES):
+        return None
+    return MechanismSpec(
+        mechanism=kind,
+        said=words[-1],
+        count=min(part.count or _several(kind), _MOST_MEMBERS),
+        side=_SIDES.get(said.get("place", ""), ""),
+        material=said.get("material"),
+        color=said.get("color"),
+    )
 
 
 @cache

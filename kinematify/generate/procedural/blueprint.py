@@ -145,6 +145,23 @@ class Blueprint:
         loops = tuple(replace(loop, pivot=factor * loop.pivot) for loop in self.loops)
         return replace(self, parts=parts, joints=tuple(joint(item) for item in self.joints), loops=loops)
 
+    def renamed(self, names: Mapping[str, str]) -> Blueprint:
+        """Return the object with some of its parts called otherwise, by their names."""
+
+        def name(given: str) -> str:
+            return names.get(given, given)
+
+        def joint(given: BlueprintJoint) -> BlueprintJoint:
+            mimic = given.mimic and replace(given.mimic, joint=name(given.mimic.joint))
+            return replace(given, parent=name(given.parent), child=name(given.child), mimic=mimic)
+
+        return replace(
+            self,
+            parts=tuple(replace(part, name=name(part.name)) for part in self.parts),
+            joints=tuple(map(joint, self.joints)),
+            loops=tuple(replace(loop, one=name(loop.one), other=name(loop.other)) for loop in self.loops),
+        )
+
     def carrying(self, other: Blueprint, carrier: str, T_self_other: FloatArray) -> Blueprint:
         """Return the object with another one fixed to one of its parts.
 

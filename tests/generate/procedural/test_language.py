@@ -21,11 +21,9 @@ from kinematify.robot.joint_type import JointType
 from tests.sentences import said_of
 
 EXACT_SHARE = 0.9
-SENSELESS_SHARE = 0.8
-"""The library has a door handle, a laptop bag and a box truck since that list was written."""
 KNOWN_WRONG = {
-    "written": 4, "fresh": 1, "heldout_2": 3, "heldout_6": 1, "composed": 3, "other_words": 1, "new": 3, "heldout_1": 5,
-    "heldout_3": 1, "heldout_5": 2, "heldout_7": 10, "senseless": 4,
+    "fresh": 1, "heldout_2": 2, "heldout_6": 1, "composed": 3, "new": 1, "heldout_1": 1, "heldout_5": 1, "heldout_7": 3,
+    "heldout_8": 1,
 }  # fmt: skip
 """Sentences of each list that build something else without a word; they only decrease. The aim is none."""
 
@@ -41,8 +39,7 @@ def test_sentences_come_out_as_a_reader_expects_or_are_refused(name):
     wrong = [record for record in records if record["came"] == WRONG]
     assert len(wrong) <= KNOWN_WRONG.get(name, 0), wrong
     if name in ("written", "other_words", "senseless"):
-        share = SENSELESS_SHARE if name == "senseless" else EXACT_SHARE
-        assert sum(record["came"] == RIGHT for record in records) >= share * len(records)
+        assert sum(record["came"] == RIGHT for record in records) >= EXACT_SHARE * len(records)
 
 
 def test_every_name_of_an_object_names_it():
@@ -61,11 +58,50 @@ def test_what_is_built_instead_counts_as_wrong():
 
 
 def test_what_is_not_built_is_listed_and_the_rest_is_built():
-    made = from_text("a red cabinet with two doors and a holographic display, 80 cm wide").made()
-    assert made.not_built == ("holographic display",)
+    made = from_text("a red cabinet with two doors and a holographic projector, 80 cm wide").made()
+    assert made.not_built == ("holographic projector",)
     assert len(made.blueprint.joints) == 2
     assert made.facts["understood"]["parts"][0] == {"noun": "door", "count": 2}
-    assert made.facts["not_built"] == ["holographic display"]
+    assert made.facts["not_built"] == ["holographic projector"]
+
+
+def test_a_mechanism_that_the_object_lacks_is_put_on_a_free_side():
+    made = from_text("a dishwasher with a red knob").made()
+    knob = made.blueprint.joint_above["knob"]
+    assert (made.not_built, knob.parent, knob.kind) == ((), "knob_plate", JointType.REVOLUTE)
+    parts = {part.name: part for part in made.blueprint.parts}
+    assert parts["knob"].color == COLORS["red"]
+    body = parts[made.blueprint.root].bounds
+    assert np.abs(parts["knob_plate"].bounds[:, None] - body[None]).min() < 0.002  # flush with one of its sides
+    assert said_of("a dishwasher with a bell") == "bell"
+
+
+def test_one_part_may_look_otherwise_than_its_siblings():
+    made = from_text("a chest of drawers where every drawer is white except the bottom one, which is oak").made()
+    drawers = {part.name: part for part in made.blueprint.parts if part.name.startswith("drawer")}
+    bottom = min(drawers, key=lambda name: drawers[name].bounds[0, 2])
+    assert drawers.pop(bottom).density == MATERIALS["oak"].density
+    assert {part.color for part in drawers.values()} == {COLORS["white"]}
+    assert made.not_built == ()
+
+
+def test_parts_are_called_as_the_sentence_calls_them():
+    made = from_text("an IV pole with a telescopic rod").made()
+    assert made.blueprint.joint_above["rod"].kind is JointType.PRISMATIC
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("a parasol that tilts", "tilts"),
+        ("a bicycle with pedals", "pedals"),
+        ("a cabinet without a front", "without"),
+        ("an ironing board with folding legs", "in one part"),
+        ("an office chair with armrests that go up and down", "armrests"),
+    ],
+)
+def test_what_was_measured_and_does_not_hold_is_listed(text, words):
+    assert words in said_of(text)
 
 
 def test_parsing_builds_nothing_and_says_what_it_understood():

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections import defaultdict
+import re
+from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -16,7 +17,7 @@ from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from kinematify.assembly.part import Part
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 _SIZE = 0.02  # of a size, by which it may be off
 _EDGE = 1e-3  # [m] within which something is as far out as another thing
 _SYNONYMS = (
-    {"door", "leaf", "gate"}, {"lid", "cover", "top", "cap"}, {"knob", "dial"}, {"wheel", "tyre", "tire"},
+    {"door", "leaf", "gate"}, {"lid", "cover", "top", "cap", "flap"}, {"knob", "dial"}, {"wheel", "tyre", "tire"},
     {"caster", "castor", "swivel_wheel", "wheel"}, {"arm", "link", "boom"}, {"drawer", "tray"},
     {"sash", "casement", "pane"},
     {"rotor", "blade", "propeller", "fan"}, {"seat", "cushion"}, {"back", "backrest"},
@@ -54,6 +55,16 @@ _PLACES = {
     "bottom": (0, 0, -1), "lower": (0, 0, -1), "lowest": (0, 0, -1), "underside": (0, 0, -1), "underneath": (0, 0, -1),
     "front": (0, -1, 0), "back": (0, 1, 0), "rear": (0, 1, 0),
 }  # fmt: skip
+_MOVING = frozenset({
+    "wheel", "caster", "castor", "door", "drawer", "lid", "flap", "pedal", "button", "lever", "crank", "gate", "dial",
+    "tailgate", "switch", "hatch", "shutter", "propeller", "rotor", "roller", "gear", "turntable", "plunger", "slider",
+    "sash", "knob", "hinge",
+})  # fmt: skip
+"""Parts that move wherever they are."""
+_NUMBERED = re.compile(r"(?:_(?:\d+|left|right))+$")
+_LOOKS = ("color", "material")
+_MEASURED = ("size", "moves", "way", "hinge", "place", "relation", "color", "material", "open", "like", "count")
+"""What is said of a part that is there, and can be measured of it."""
 _ABOVE = {"above": 1, "over": 1, "below": -1, "under": -1, "beneath": -1, "underneath": -1}
 _AXES = {"width": (0, 1), "length": (0, 1, 2), "depth": (1, 0), "height": (2,), "diameter": (0, 1, 2), "": (0, 1, 2)}
 
@@ -81,6 +92,12 @@ class Comparison:
     held: frozenset[int]
     """Words that hold."""
     missing: tuple[Missing, ...]
+    names: Mapping[str, str]
+    """Parts that the sentence calls otherwise, by their names -> as it calls them."""
+    absent: tuple[PartSpecification, ...]
+    """Parts that are not there."""
+    looks: tuple[tuple[tuple[str, ...], str, str], ...]
+    """Parts that look otherwise than asked for: their names, and the material or the colour, the other one empty."""
 
 
 @dataclass(kw_only=True)
@@ -93,6 +110,9 @@ class _Compared:
     specification: Specification
     held: set[int] = field(default_factory=set)
     missing: list[Missing] = field(default_factory=list)
+    names: dict[str, str] = field(default_factory=dict)
+    absent: list[PartSpecification] = field(default_factory=list)
+    looks: list[tuple[tuple[str, ...], str, str]] = field(default_factory=list)
 
     # ---- parts by their nouns --------------------------------------------------------------------------------------
 
@@ -109,6 +129,10 @@ class _Compared:
                 return found, len(words) - k
         return [], 0
 
+    @cached_property
+    def _nouns_asked(self) -> frozenset[str]:
+        return frozenset(part.noun.rsplit(maxsplit=1)[-1] for part in self.specification.parts)
+
     def _called(self, stem: str) -> list[Part]:
         """Parts whose names say a word: as the builder calls them, exactly, at their end, by another word for it."""
         names = set(self.nouns.get(stem.replace("_", " "), ()))
@@ -117,14 +141,15 @@ class _Compared:
         def matches() -> Iterator[Callable[[str], bool]]:
             yield lambda name: name in names or _stem(name) in names
             for word in (stem, *others):
+                if word in self._nouns_asked and word != stem:
+                    continue  # it is asked for, too
                 yield lambda name, word=word: word in (_stem(name), lemma(_stem(name)))  # type: ignore[misc]
                 yield lambda name, word=word: _ends_with(name, word)  # type: ignore[misc]
             yield lambda name: _stem(name).startswith(f"{stem}_")
 
-        for match in matches():
-            if found := [part for part in self.made.parts if match(part.name)]:
-                return found
-        return []
+        groups = ([part for part in self.made.parts if match(part.name)] for match in matches())
+        there = [found for found in groups if found]
+        return next((found for found in there if self._joints_of(found)), there[0] if there else [])
 
     def counted(self, noun: str) -> int | None:
         """How many a parameter says that there are, of what is no part of its own: handles, shelves, slots."""
@@ -140,6 +165,18 @@ class _Compared:
                     return 0 if value == "none" else -1 if key in _ON_EACH else 1
         return None
 
+    def _numbers(self, noun: str, found: Sequence[Part]) -> set[int | None]:
+        """How many there are: all that are called so, those of one name, or as many as a parameter says."""
+        stems = Counter(_stem(part.name) for part in found)
+        words = {word for group in _SYNONYMS if noun.rsplit(maxsplit=1)[-1] in group for word in group} | {noun}
+        names = {part.name for part in found}  # a finger has three links
+        chains = [name for name in names if name in self.made.joint_above]
+        chains = [name for name in chains if self.made.joint_above[name].parent not in names]
+        numbers: set[int | None] = {len(found), *stems.values(), len(chains)}
+        copies = self.specification.whole.count or 1
+        numbers |= {number // copies for number in numbers if number is not None and number % copies == 0}
+        return numbers if noun.rsplit(maxsplit=1)[-1] in stems else numbers | set(map(self.counted, sorted(words)))
+
     # ---- what is said of them --------------------------------------------------------------------------------------
 
     def check(self) -> Comparison:
@@ -153,14 +190,20 @@ class _Compared:
             groups[part.noun.split()[-1]].append(part)
         for parts in groups.values():
             self._check_group(parts)
-        return Comparison(held=frozenset(self.held), missing=tuple(self.missing))
+        return Comparison(
+            held=frozenset(self.held),
+            missing=tuple(self.missing),
+            names=self.names,
+            absent=tuple(self.absent),
+            looks=tuple(self.looks),
+        )
 
     def _judge(self, claim: Claim, wrong: str | None) -> None:
         """Take up that a claim holds (None), or what is wrong with it."""
         if wrong is None:
             self.held.update(claim.at)
         else:
-            sure = claim.about in ("size", "moves", "way", "hinge")
+            sure = claim.about in _MEASURED
             self.missing.append(Missing(words=claim.words, at=frozenset(claim.at), reason=wrong, is_sure=sure))
 
     def _check_group(self, parts: Sequence[PartSpecification]) -> None:
@@ -169,7 +212,7 @@ class _Compared:
         placed = [part for part in parts if any(claim.about == "place" for claim in part.claims)]
         apart = len(placed) == len(parts) and len(parts) > 1
         asked = (sum(numbers) if apart else max(numbers)) if numbers else None
-        for part in parts:
+        for part in sorted(parts, key=_is_one):
             there = part.claims[0]
             found, known = self.parts_called(part.noun)
             number = len(found) if found else self.counted(part.noun)
@@ -184,24 +227,68 @@ class _Compared:
                     self._account_for_modifiers(part, there, 1)
                 else:
                     at = frozenset(k for claim in part.claims for k in claim.at)
-                    self.missing.append(Missing(words=_said(part), at=at))
+                    words = " ".join(self.specification.tokens[k].given for k in sorted(at))
+                    self.missing.append(Missing(words=words, at=at))
+                    self.absent.append(part)
                 continue
             self._account_for_modifiers(part, there, known)
-            said = next((claim for claim in part.claims if claim.about == "count"), None)
-            if said is not None:
-                wrong = None if number in (asked, -1) or number == part.count else f"{number} built"
-                self._judge(said, wrong) if wrong is None else self.missing.append(
-                    Missing(
-                        words=f"{said.words} {there.words}", at=frozenset((*said.at, there.at[-1])), reason=wrong,
-                    )
-                )  # fmt: skip
-            elif part.count == 1 and len(parts) == 1 and not part.of and len(found) > 1:  # "a door"
-                self.missing.append(Missing(words=_said(part), at=frozenset(there.at), reason=f"{len(found)} built"))
+            before = len(self.missing)
+            self._check_number(part, found, {asked, -1, part.count}, alone=len(parts) == 1)
             chosen = _chosen(found, part)
             for claim in part.claims[1:]:
-                if claim.about != "count":
-                    wrong = self._part_keeps(claim, chosen, found) if chosen else "a solid of another part"
-                    self._judge_part(part, claim, wrong)
+                if claim.about == "count":
+                    continue
+                meant = chosen
+                if claim.about in _LOOKS and len(chosen) == len(found):  # but for those of which is said otherwise
+                    ones = [_chosen(found, other) for other in parts if other is not part and _is_one(other)]
+                    meant = [item for item in chosen if not any(item in one for one in ones)] or chosen
+                wrong = self._part_keeps(part, claim, meant, found)
+                if wrong is not None and claim.about in _LOOKS and meant:
+                    look = (claim.value, "") if claim.about == "material" else ("", claim.value)
+                    self.looks.append((tuple(item.name for item in meant), *look))
+                self._judge_part(part, claim, wrong, is_there=bool(chosen))
+            if not self._joints_of(found) and self._would_move(part):
+                self._miss(there.words, there.at, "it does not move")
+            if len(self.missing) == before and len(chosen) == len(found) and part.count in (None, len(found)):
+                self._call(found, "_".join(part.noun.split()[-known:]), part.noun)
+
+    def _miss(self, words: str, at: Iterable[int], reason: str) -> None:
+        """Take up what was measured and is not as it was asked for."""
+        self.missing.append(Missing(words=words, at=frozenset(at), reason=reason, is_sure=True))
+
+    def _check_number(
+        self, part: PartSpecification, found: Sequence[Part], asked: set[int | None], *, alone: bool
+    ) -> None:
+        """Check how many there are; `a door` is one, and `legs` are several."""
+        there, numbers = part.claims[0], self._numbers(part.noun, found)
+        said = next((claim for claim in part.claims if claim.about == "count"), None)
+        built = f"{len(found) or self.counted(part.noun)} built"
+        if said is not None and (_is_one(part) or numbers & {*asked, said.value}):
+            self.held.update(said.at)
+        elif said is not None:
+            words, at = f"{said.words} {there.words}", frozenset((*said.at, there.at[-1]))
+            self.missing.append(Missing(words=words, at=at, reason=built, is_sure=bool(found)))
+        elif _on_sides(part) and len(found) == 1:
+            self._miss(f"{there.words} on each side", there.at, built)
+        elif part.count is None and len(found) == 1 and not self.counted(part.noun):
+            self._miss(_said(part), there.at, "in one part")
+        elif part.count == 1 and alone and not part.of and found and 1 not in numbers and not _on_sides(part):
+            self._miss(_said(part), there.at, built)
+
+    def _call(self, found: Sequence[Part], noun: str, said: str) -> None:
+        """Call moving parts of one name as the sentence does."""
+        stems = {_stem(part.name) for part in found}
+        taken = {_stem(part.name) for part in self.made.parts}
+        moving = all(part.name in self.made.joint_above for part in found)
+        if (
+            moving
+            and len(stems) == 1
+            and not stems & set(said.split())
+            and noun not in taken
+            and not _ends_with(found[0].name, noun)
+        ):
+            several = len(found) > 1
+            self.names |= {part.name: f"{noun}_{k}" if several else noun for k, part in enumerate(found, start=1)}
 
     def _all_have_it(self, part: PartSpecification) -> bool:
         """Whether one part was to have something that a parameter gives to all of its kind."""
@@ -222,20 +309,21 @@ class _Compared:
         self.missing.append(Missing(words=words, at=at, reason=f"every {part.of} has one", is_sure=True))
         return True
 
-    def _judge_part(self, part: PartSpecification, claim: Claim, wrong: str | None) -> None:
+    def _judge_part(self, part: PartSpecification, claim: Claim, wrong: str | None, *, is_there: bool) -> None:
         if wrong is not None and claim.about != "there":
             said = part.claims[0]
             words = claim.words if set(said.at) & set(claim.at) else f"{said.words}: {claim.words}"
-            sure = claim.about in ("size", "moves", "way", "hinge") and wrong != "a solid of another part"
+            sure = claim.about in _MEASURED and (is_there or claim.about in ("moves", "way", "hinge"))
             self.missing.append(Missing(words=words, at=frozenset(claim.at), reason=wrong, is_sure=sure))
         else:
             self.held.update(claim.at)
 
     def _absent(self, part: PartSpecification, found: Sequence[Part], number: int | None) -> None:
         at = frozenset(k for claim in part.claims for k in claim.at)
-        if number:
+        if number or part.noun.split()[-1] in _OF_ANY_OBJECT:
             words = f"without {part.claims[0].words}"
-            self.missing.append(Missing(words=words, at=at, reason=f"{number if number > 0 else 1} built"))
+            built = number if number and number > 0 else 1
+            self.missing.append(Missing(words=words, at=at, reason=f"{built} built", is_sure=True))
         else:
             self.held |= at
 
@@ -256,21 +344,45 @@ class _Compared:
             reason = f"a plain {words[-1]}"
             self.missing.append(Missing(words=said, at=frozenset(k for k, _ in left), reason=reason))
 
-    def _part_keeps(self, claim: Claim, chosen: Sequence[Part], found: Sequence[Part]) -> str | None:
+    def _part_keeps(
+        self, part: PartSpecification, claim: Claim, chosen: Sequence[Part], found: Sequence[Part]
+    ) -> str | None:
         """What is wrong with a claim about some of the parts of a noun; None if it holds."""
-        joints = [self.made.joint_above[part.name] for part in chosen if part.name in self.made.joint_above]
+        joints = self._joints_of(chosen)
+        if not chosen and claim.about not in ("moves", "way", "hinge", "open", "color", "material"):
+            return "a solid of another part"
         if claim.about in ("moves", "way", "hinge", "open"):
             return self._joints_keep(claim, joints) if joints else "it is fixed"
         judges: dict[str, Callable[[], str | None]] = {
             "size": lambda: self._sized(claim.value, chosen),
-            "color": lambda: _looks(claim, chosen),
-            "material": lambda: _looks(claim, chosen),
+            "color": lambda: self._look_of(claim, chosen),
+            "material": lambda: self._look_of(claim, chosen),
             "place": lambda: self._placed(claim.value, chosen, found),
-            "relation": lambda: self._related(claim.value, chosen),
+            "relation": lambda: self._related(claim, part, chosen),
             "like": lambda: self._mirrored(found),
             "does": lambda: "no such motion",
         }
         return judges[claim.about]() if claim.about in judges else None
+
+    def _joints_of(self, parts: Sequence[Part]) -> list[BlueprintJoint]:
+        """Joints of parts; of what is fixed, those of what it carries."""
+        names = {part.name for part in parts}
+        moving = [joint for joint in self.made.joints if joint.kind is not JointType.FIXED]
+        above = [joint for joint in moving if joint.child in names]
+        return above or [joint for joint in moving if joint.parent in names - {self.made.root}]
+
+    def _would_move(self, part: PartSpecification) -> bool:
+        """Whether a part is one that moves wherever it is, and not the handle of each door."""
+        word = part.noun.split()[-1]
+        return word in _MOVING and self.counted(part.noun) != -1 and word not in self.made.parameters.values()
+
+    def _look_of(self, claim: Claim, chosen: Sequence[Part]) -> str | None:
+        """What is wrong with how parts look; a solid of another part may be of another material than that part."""
+        if wrong := _looks(claim, chosen) if chosen else "a solid of another part":
+            others = [item for part in self.made.parts if part.appearance for item in part.appearance.materials[1:]]
+            names = {word for item in others for word in item.name.split()}
+            return None if str(claim.value).split()[-1] in names else wrong
+        return None
 
     def _joints_keep(self, claim: Claim, joints: Sequence[BlueprintJoint]) -> str | None:
         if claim.about == "moves":
@@ -288,6 +400,9 @@ class _Compared:
         joints = [joint for joint in self.made.joints if not _covers(joint.child, own) or claim.value == "moves"]
         if claim.value in ("turns", "spins"):
             joints = [joint for joint in joints if turns_about_itself(self.made, joint)]
+        if claim.value == "tilts":  # ribs do not tilt an umbrella
+            stems = Counter(_stem(joint.child) for joint in self.made.joints)
+            joints = [joint for joint in joints if stems[_stem(joint.child)] == 1 or len(stems) == 1]
         judges: dict[str, Callable[[], str | None]] = {
             "moves": lambda: None if any(moves_so(self.made, item, claim.value) for item in joints) else "no part does",
             "way": lambda: None if self._any_goes(joints, claim.value) else "no part goes there",
@@ -323,12 +438,14 @@ class _Compared:
             of = {part.name: part for part in self.closed.parts}
             boxes = [np.ptp(of[part.name].bounds, axis=0) for part in chosen]
         else:
-            boxes = [np.ptp(part.bounds, axis=0) for part in self.closed.parts]
+            every = self.closed.parts if name not in ("width", "height", "depth") else self.closed.parts[:1]
+            boxes = [np.ptp(part.bounds, axis=0) for part in every]
             boxes += [np.ptp(self.closed.assembly.bounds, axis=0), np.ptp(self.made.assembly.bounds, axis=0)]
-        axes = (0, 1, 2) if chosen else _AXES.get(name, (0, 1, 2))
+        axes = _AXES.get(name, (0, 1, 2))
         sizes = [float(box[axis]) for box in boxes for axis in axes]
         sizes += [distance for part in chosen for distance in self._between_pins(part)]
-        known = [] if chosen else [value for value in self.made.parameters.values() if isinstance(value, float)]
+        is_exact = bool(chosen) or name in ("width", "height", "depth")
+        known = [] if is_exact else [value for value in self.made.parameters.values() if isinstance(value, float)]
         if any(abs(size / metres - 1.0) <= _SIZE for size in (*sizes, *known)):
             return None
         whole = float(np.ptp(self.closed.assembly.bounds, axis=0)[axes[0]]) if not chosen else max(sizes)
@@ -360,8 +477,10 @@ class _Compared:
         same = len(boxes) == 2 and np.allclose(images[0], boxes[1][:, 0], atol=_EDGE)
         return None if same else "not mirrored"
 
-    def _related(self, relation: tuple[str, str], chosen: Sequence[Part]) -> str | None:
-        preposition, noun = relation
+    def _related(self, claim: Claim, part: PartSpecification, chosen: Sequence[Part]) -> str | None:
+        preposition, noun = claim.value
+        if preposition == "of" and min(claim.at) - 1 in part.claims[0].at and noun.split()[-1] not in _OF_ANY_OBJECT:
+            return "not so built"
         others, _ = self.parts_called(noun)
         if not others:
             own = noun.split()[-1] in self.specification.kind.split()
@@ -388,6 +507,16 @@ def compare(
     return _Compared(made=made, nouns=nouns or {}, specification=specification).check()
 
 
+def _is_one(part: PartSpecification) -> bool:
+    """Whether it is one of several, by its place."""
+    return part.count == 1 and any(claim.about == "place" for claim in part.claims)
+
+
+def _on_sides(part: PartSpecification) -> bool:
+    """Whether one is asked for on either side."""
+    return any(claim.value == "side" and claim.about == "place" for claim in part.claims)
+
+
 def _covers(name: str, own: Sequence[str]) -> bool:
     """Whether a part only covers or controls something, and does not give the object its name."""
     return any(f"_{_stem(name)}".endswith(f"_{word}") and word not in own for word in _COVERS)
@@ -398,7 +527,8 @@ def _ends_with(name: str, word: str) -> bool:
 
 
 def _stem(name: str) -> str:
-    return name.rstrip("0123456789_")
+    """A part's name without its number and its side."""
+    return _NUMBERED.sub("", name)
 
 
 def _said(part: PartSpecification) -> str:

@@ -21,6 +21,7 @@ from kinematify.generate.procedural.language.words import (
     NUMBERS,
     OPENNESS,
     PLAIN_WORDS,
+    PURPOSES,
     STOP_WORDS,
     UNITS,
     Words,
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.language.words import Token
 
 _WITH = ("with", "having", "has", "have", "featuring", "including", "containing", "plus", "carrying", "holding")
-_JOINERS = ("and", ",", ";", ":", ".", "or", "but", "also", "as", "well", "then")
+_JOINERS = ("and", ",", ";", ":", ".", "or", "but", "also", "as", "well", "then", "except")
 _RELATIVE = ("that", "which", "who")
 _PREPOSITIONS = (
     "on", "at", "in", "inside", "under", "underneath", "below", "beneath", "above", "over", "behind", "beside",
@@ -49,7 +50,9 @@ _BEING = ("is", "are", "can", "could", "be", "may", "will", "each", "all", "both
 _CAN = ("be", "can", "to", "may")
 _PULLED = ("pulled", "slid", "swung")
 """With `out` they are as good as opened."""
-_DETERMINERS = ("a", "an", "the", "its", "their", "some", "any", "each", "every", "both", "all", "other", "another")
+_DETERMINERS = (
+    "a", "an", "the", "its", "their", "some", "any", "each", "every", "both", "all", "other", "another", "either",
+)  # fmt: skip
 PLACES = (
     "left", "right", "top", "bottom", "front", "back", "rear", "upper", "lower", "middle", "side", "underside",
     "inside",
@@ -57,16 +60,20 @@ PLACES = (
 )  # fmt: skip
 _MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word in material.words}
 _UNDER_WHOLE = ("wheel", "caster", "castor", "leg", "foot", "roller", "runner", "base", "stand", "track", "skid")
+_GROUPS = ("row", "column", "stack", "grid", "pair", "set", "bank", "line")
+"""What is counted behind them is counted in each."""
 _ADJUSTABLE = ("adjustable", "variable", "changeable")
 _MEASURES = {"height": "up", "angle": "", "length": "", "width": "", "tilt": "", "reach": "", "position": "", "arm": ""}
 FUNCTION_WORDS = frozenset(
     {*_BEGINS_PART, *_PREPOSITIONS, *_BEING, *_DETERMINERS, "other", "way", "flat", "one", "ones", "side"}
 )
 """Words that say how others belong together."""
-_NO_NOUN = frozenset({*PLAIN_WORDS, "way", "one", "ones"})
+_NO_NOUN = frozenset({*PLAIN_WORDS, "way", "one", "ones", "stacked"})
 _DONE_ENDS = ("ed", "ing")
 _QUOTED = 15  # words of a sentence in a message
-_SHORTEST_DONE, _NOT_DONE = 5, ("spring", "string", "bearing", "railing", "awning", "ceiling", "building", "painting")
+_SHORTEST_DONE = 5
+NOT_DONE = frozenset({"spring", "string", "bearing", "railing", "awning", "ceiling", "building", "painting"})
+"""Nouns that end as verbs do."""
 _STATES = (
     "half",
     "way",
@@ -212,7 +219,7 @@ def _may_follow(tokens: Sequence[Token], k: int) -> bool:
     )
     known = known or token.number is not None or token.is_sign or word in MOTIONS or word in DONE or word in GOING
     known = known or any(word in words for words in DIMENSIONS.values()) or word in PLACES or word in SIZE_WORDS
-    done = word.endswith(_DONE_ENDS) and len(word) > _SHORTEST_DONE and word not in _NOT_DONE
+    done = word.endswith(_DONE_ENDS) and len(word) > _SHORTEST_DONE and word not in NOT_DONE
     return known or done or word in _STATES
 
 
@@ -393,6 +400,8 @@ class _Parser(Words):
             if part.nouns and (word in _BEING or word in _PULLED or self._verb_at(k) or word in WAYS or word in PLACES):
                 break
             taken = self._look_or_size(k, part) or self._described(k, part)
+            if word in ("every", "each", "either") and part is not self.whole:
+                part.count = None
             if not taken and word.isalpha() and word not in _DETERMINERS and word not in _NO_NOUN:
                 if word in STOP_WORDS and part.nouns:
                     break
@@ -463,10 +472,15 @@ class _Parser(Words):
         if word == "mirrored" and not self._noun_behind(k):
             self.claim(part, "like", "mirrored", k)
             return 1
-        if word in _MATERIAL_WORDS and not (part is not self.whole and word == "mirror"):
+        is_purpose = word in PURPOSES and self._noun_behind(k)  # a paper tray
+        if word in _MATERIAL_WORDS and not is_purpose and not self._is_mirror(k, part):
             self.claim(part, "material", _MATERIAL_WORDS[word], k)
             return 1
         return self._size(k, part)
+
+    def _is_mirror(self, k: int, part: _Draft) -> bool:
+        """Whether a mirror is meant, and not what something is made of."""
+        return self.given(k) == "mirror" and (part is not self.whole or not self._noun_behind(k))
 
     def _size(self, k: int, part: _Draft) -> int:
         """`60 cm wide`, `a height of 2 m`, `15 cm`; how many words."""
@@ -534,9 +548,10 @@ class _Parser(Words):
         ):
             at += 1
         word = self.given(at)
-        if word in PLACES and not self._noun_behind(at) and self.given(k) in _AT:
+        sided = self.given(at + 1) in ("side", "hand", "end", "edge")
+        if word in PLACES and (sided or not self._noun_behind(at)) and self.given(k) in _AT:
             self.claim(self.current, "place", word, *range(k, at + 1))
-            return at + (2 if self.given(at + 1) in ("side", "hand", "end", "edge") else 1)
+            return at + (2 if sided else 1)
         if word in _MATERIAL_WORDS and self.given(k) in ("of", "in", "from"):
             return k + 1
         target = _Draft()
@@ -548,6 +563,9 @@ class _Parser(Words):
         elif target.nouns:
             how = "each" if self.given(k + 1) in ("each", "every") else self.given(k)
             self.claim(self.current, "relation", (how, noun), *range(k, end))
+            counted = any(claim.about == "count" for claim in target.claims)
+            if counted and noun.split()[-1] not in PLACES and lemma(self.given(k - 1)) not in _GROUPS:
+                self.parts.append(target)
         else:
             self.current.claims += target.claims
         return max(end, k + 1)

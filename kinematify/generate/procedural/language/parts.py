@@ -96,7 +96,7 @@ class PartRequirement:
         if not fits:
             raise InputError(f"Asked for is {self.words!r}, but {_described(blueprint, names)}.")
         if self.look is not None:
-            blueprint = _looking(blueprint, names, *self.look)
+            blueprint = looking(blueprint, names, *self.look)
         return blueprint if self.opened is None else _opened(blueprint, joints, *self.opened, self.words)
 
 
@@ -264,6 +264,8 @@ class PartReader:
         while end not in self.reading.used:
             pair = f"{self.reading.text(end)} {self.reading.text(end + 1)}"
             word = self.reading.text(end)
+            if word == "mirror" and self.reading.text(end + 1) in ("", "on", "with", ","):
+                break  # a mirror is meant
             of = next((name for name, item in MATERIALS.items() if word in item.words), "")
             if pair in COLOR_WORDS and not color:
                 color, end = COLOR_WORDS[pair], end + 2
@@ -303,7 +305,7 @@ class PartReader:
                 return ()
             if not word or word in STOP_WORDS or self.reading.tokens[at].is_sign:
                 break
-            if self.reading.number(at) is None and word not in UNITS:
+            if self.reading.number(at) is None and word not in UNITS and at > min(self.reading.named):
                 return None
         at = k - 1
         while self.reading.text(at) in _OF:
@@ -343,7 +345,7 @@ def _is_called(name: str, nouns: Sequence[str]) -> bool:
     return stem_of(name) in nouns
 
 
-def _looking(blueprint: Blueprint, names: Sequence[str], material: str, color: str) -> Blueprint:
+def looking(blueprint: Blueprint, names: Sequence[str], material: str, color: str) -> Blueprint:
     """Paint parts, or make them of another material; handles keep their own look."""
 
     def look(part: Part) -> Part:

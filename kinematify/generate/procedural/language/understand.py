@@ -5,8 +5,11 @@ Driven by what the families declare: nothing here knows a family.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.family import build, checked
@@ -18,13 +21,14 @@ from kinematify.generate.procedural.language.parts import PartReader
 from kinematify.generate.procedural.language.reading import ParseState, nouns_of
 from kinematify.generate.procedural.language.sizes import (
     DIMENSIONS,
+    OVERALL,
     SIZE_WORDS,
     read_bare_length,
     read_overall,
     read_size_words,
     read_sizes,
 )
-from kinematify.generate.procedural.language.words import CHOICES, OPENNESS, singular, tokens_of
+from kinematify.generate.procedural.language.words import CHOICES, KINDS, NUMBERS, OPENNESS, singular, tokens_of
 from kinematify.generate.procedural.layout import CELLS
 from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS
 
@@ -44,6 +48,8 @@ _PLACES = {
 }
 _NOT = ("no", "without")
 _SWINGS = {"hinged", "hinge", "hinges", "opens", "opening", "swings"}
+_DOUBLED = ("leaves", "sashes", "doors")
+_SIZE = 0.02  # of a size, by which it may be off
 _ABSURD = 4.0  # times out of its range, something is no such object
 
 
@@ -87,6 +93,7 @@ def understand(specification: Specification, family: Family) -> Understanding:
         read_grids,
         read_counts,
         read_counted_name,
+        _double,
         _choices,
         _parts_it_has,
         read_bare_length,
@@ -100,6 +107,7 @@ def understand(specification: Specification, family: Family) -> Understanding:
     read_openness(reading, parts)
     parts.read()
     read_copies(reading)
+    _fit_sizes(reading, parts)
     return Understanding(
         family=family.name,
         values=dict(reading.values),
@@ -109,6 +117,34 @@ def understand(specification: Specification, family: Family) -> Understanding:
         overall=reading.overall,
         copies=reading.copies,
     )
+
+
+def _double(reading: ParseState) -> None:
+    """`a double gate` has two leaves."""
+    for k in range(min(reading.named)):
+        parameter = next((p for p in reading.family.parameters if p.name in _DOUBLED), None)
+        if reading.text(k) in KINDS and k not in reading.used and parameter and parameter.name not in reading.values:
+            reading.take(parameter.name, NUMBERS[reading.text(k)], reading.text(k), k)
+
+
+def _fit_sizes(reading: ParseState, parts: PartReader) -> None:
+    """Where a frame makes the whole larger than its opening, the whole is as large as is asked for."""
+    for axis, name in enumerate(OVERALL):
+        value, base = reading.values.get(name), parts.made.parts[0].bounds
+        said = reading.said.get(name, "").split()
+        if not set(DIMENSIONS[name]) & set(said) or not isinstance(value, float):
+            continue
+        there = [float(np.ptp(bounds, axis=0)[axis]) for bounds in (base, parts.made.assembly.bounds)]
+        fits = reading.copies > 1 or any(math.isclose(size, value, rel_tol=_SIZE) for size in there)
+        for size in () if fits else there[::-1]:
+            values = {**reading.values, name: value + value - size}
+            try:
+                made = build(reading.family, values)
+            except InputError:
+                continue
+            if math.isclose(float(np.ptp(made.assembly.bounds, axis=0)[axis]), value, rel_tol=_SIZE):
+                reading.values, parts.made = values, made
+                break
 
 
 def _usual_of_its_kind(reading: ParseState) -> None:

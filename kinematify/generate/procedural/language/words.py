@@ -86,6 +86,8 @@ _WRITTEN = (
     (r"\bw/o\b", "without"),
     (r"\bw/", "with"),
     ("&", "and"),
+    (r"\b(?:one|each)? ?(?:above|below|under|over|on top of) (?:the|each|one) (?:other|another)\b", "stacked"),
+    (r"\b(in|on|of|for|to) both\b(?! sides)(?= \w+s\b)", r"\1 each"),
     *((rf"\b{body}[ -](?:high|tall)\b", f"{cm} cm tall") for body, cm in _BODY_CM.items()),
     (r"\b(?<!garage )(doors?|shutters?) (?:that|which) (?:can )?rolls? up\b", r"roll up \1"),
     (r"\b(?:that|which) stays? open\b", ""),
@@ -121,8 +123,11 @@ _ROUGHLY = (
     "deep",
 )
 """Sizes of parts without a number; parts have the sizes that fit."""
+_NO_UNIT = "".join(
+    rf"(?<!\b{unit} )" for unit in ("cm", "mm", "m", "metre", "metres", "meter", "meters", "inch", "feet")
+)
 _ROUGH_PART = re.compile(
-    rf"(?<![\d.])(?<!\bcm )(?<!\bmm )(?<!\bm )\b(?P<size>(?:{'|'.join(_ROUGHLY)})\s+)(?P<noun>[a-z]+)\b", re.IGNORECASE
+    rf"(?<![\d.]){_NO_UNIT}\b(?P<size>(?:{'|'.join(_ROUGHLY)})\s+)(?P<noun>[a-z]+)\b", re.IGNORECASE
 )
 _HAVING = re.compile(r"(\b(?:with|having|has|featuring|including|plus)\b|,)", re.IGNORECASE)
 _IRREGULAR = {"leaves": "leaf", "shelves": "shelf", "knives": "knife", "feet": "foot",
