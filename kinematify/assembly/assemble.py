@@ -16,6 +16,7 @@ from kinematify.assembly.part import Assembly, Part, SetAside
 from kinematify.errors import AssemblyError
 from kinematify.robot.appearance import MAX_MATERIALS
 from kinematify.robot.arrays import used_vertices
+from kinematify.robot.densities import density_of
 from kinematify.robot.weld import snapped, weld, welded
 
 if TYPE_CHECKING:
@@ -155,7 +156,8 @@ def _welded_part(mesh: RawMesh, name: str, config: AssemblyConfig) -> Part:
     if len(faces):
         appearance = None if mesh.appearance is None else mesh.appearance.of_faces(kept).with_few_materials()
         looks = _looks(vertices, faces, appearance)
-        return Part(name=name, vertices=vertices, faces=faces, exact=mesh.exact, **looks)
+        density = None if appearance is None else density_of(appearance, vertices[faces])
+        return Part(name=name, vertices=vertices, faces=faces, exact=mesh.exact, density=density, **looks)
     # Nothing has area: kept as it was given, so that the user finds it in the output.
     finite = mesh.vertices if np.isfinite(mesh.vertices).all() else mesh.vertices[:0]
     return Part(name=name, vertices=finite, faces=mesh.faces)

@@ -15,7 +15,7 @@ from kinematify.cli.inferred import as_loaded, confidences, describe, load_as_lo
 from kinematify.cli.options import collision_option, examples, scale_option, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS, describe_refinement, exit_status
-from kinematify.errors import EnvironmentFault, KinematifyError
+from kinematify.errors import EnvironmentFault, InputError, KinematifyError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -86,6 +86,14 @@ _LONGEST = 86400.0
     metavar="N",
     help="Which object, from left to right, of a mesh that shows several.",
 )
+@click.option(
+    "--density",
+    type=click.FloatRange(min=0.0, min_open=True),
+    metavar="KG/M3",
+    help="Density of all parts; without it materials in the files, else that of plastic, with walls where they are "
+    "hollow.",
+)
+@click.option("--mass", "masses", multiple=True, metavar="PART=KG", help="Mass of a part. Several may be given.")
 @click.option("--base", metavar="NAME", help="Part that the tree is rooted at, if the choice made is wrong.")
 @click.option(
     "--hint",
@@ -130,6 +138,8 @@ def command(
     pieces: str,
     groups: Path | None,
     number: int | None,
+    density: float | None,
+    masses: tuple[str, ...],
     base: str | None,
     hints: tuple[str, ...],
     config: str,
@@ -166,7 +176,6 @@ def command(
     with environment_variables(ONE_THREAD):
         from kinematify.assembly.load import load_assembly
         from kinematify.config import load_config
-        from kinematify.grouping.groups import Grouping
         from kinematify.model.output import check_output
         from kinematify.pipeline import infer
 
@@ -186,7 +195,8 @@ def command(
             assembly, config=settings.assembly, up=up, scale=scale, labels=labels, pieces=pieces, number=number
         )
         parts = grouped_parts(given, groups, settings, progress)
-        told = _told(hints, parts.assembly.names if isinstance(parts, Grouping) else parts.names, base)
+        settings = _weighing(settings, density, masses, parts)
+        told = _told(hints, _names(parts), base)
         inference = infer(parts, config=settings, base=base, progress=_share(progress, 0.0, _INFERRED))
         asking = Asking(vlm=vlm, everything=vlm_all, types_first=vlm_first, person=ask)
         inference, heard, status = with_answers(
@@ -205,6 +215,34 @@ def command(
         blocks = (heard, describe_refinement(inference), describe(inference, out), loaded)
         click.echo("\n\n".join(block for block in blocks if block))
     return status
+
+
+def _names(parts: Assembly | Grouping) -> Sequence[str]:
+    from kinematify.grouping.groups import Grouping
+
+    return parts.assembly.names if isinstance(parts, Grouping) else parts.names
+
+
+def _weighing(settings: Config, density: float | None, masses: Sequence[str], parts: Assembly | Grouping) -> Config:
+    """The settings with the density and the masses that were given.
+
+    Raises:
+        InputError: A mass is not ``PART=KG``, or there is no such part.
+    """
+    stated = {}
+    for text in masses:
+        part, _, number = text.rpartition("=")
+        try:
+            stated[part] = float(number)
+        except ValueError:
+            stated[part] = math.nan
+        if part not in _names(parts) or not 0.0 < stated[part] < math.inf:
+            raise InputError(
+                f"--mass {text} is not the name of a part and its mass in kg, such as {_names(parts)[0]}=1.5. "
+                f"The parts are {', '.join(_names(parts)[:12])}."
+            )
+    model = settings.model.model_copy(update={"density": density, "masses": stated})
+    return settings.model_copy(update={"model": model})
 
 
 def grouped_parts(

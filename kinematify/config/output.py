@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+from pydantic import Field
+
 from kinematify.config.base import StageConfig
 
 
@@ -14,6 +16,13 @@ class ModelConfig(StageConfig):
     """Density of the volume of a closed mesh [kg/m^3]."""
     hull_density: float = 300.0  # the hull of a shell encloses mostly air: measured furniture is 100 to 400
     """Density of the convex hull of a mesh that is open or flat [kg/m^3]."""
+    # 2 mm of steel, 6 mm of glass, 23 mm of wood: what is sheet, tube, board or case is built so
+    density: float | None = None  # `infer --density`
+    """Of all parts, solid or not, if it is given [kg/m^3]; materials and walls then say nothing."""
+    masses: dict[str, float] = Field(default_factory=dict)  # `infer --mass`
+    """Masses of parts that are known, by name [kg]."""
+    wall_weight: float = 15.0
+    """Heavier bodies are hollow: mass of walls over the surface on which they are [kg/m^2]."""
     min_mass: float = 1.0e-6  # MuJoCo refuses moving bodies below 1e-15; far below any part one can handle
     """Smallest mass of a link [kg]."""
     min_inertia: float = 1.0e-12  # the same bound for moments; that of a 1 mm cube of plastic is 1.7e-13
@@ -115,6 +124,12 @@ class DynamicsConfig(StageConfig):
     """A part that was pushed comes to rest in about this time [s]: inertia over damping."""
     opening_time: float = 2.0
     """A hand moves it over its whole range in at most about this time [s]."""
+    effort_margin: float = 5.0  # a hand that jerks, contacts that rub: a flap of 1 g needs no 100 N m
+    """Effort limits are so many times what moves a joint over its range in that time."""
+    least_effort: float = 0.1  # a finger
+    """Lower effort limits are raised to this [N m or N]."""
+    shortest_time: float = 0.25  # a button that is struck
+    """Velocity limits are not above the range over this time [s]."""
 
 
 class PreviewConfig(StageConfig):

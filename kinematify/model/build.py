@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from kinematify.contact.tree import KinematicTree
     from kinematify.joints.candidate import JointEstimate
     from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import Inertial
 
 
 def build_model(
@@ -80,11 +82,18 @@ def _link(assembly: Assembly, index: int, origin: FloatArray, *, thickness: floa
         name=part.name,
         part=part,
         T_world_link=T_world_link,
-        inertial=inertial_of(original or part, origin, thickness=thickness, config=config),
+        inertial=_inertial(original or part, origin, thickness, config),
         fixed_visuals=tuple(item.part for item in assembly.set_aside if item.nearest == part.name),
         original=original,
         collision_parts=_collision_parts(original or part, thickness),
     )
+
+
+def _inertial(part: Part, origin: FloatArray, thickness: float, config: ModelConfig) -> Inertial:
+    found, mass = inertial_of(part, origin, thickness=thickness, config=config), config.masses.get(part.name)
+    if mass is None:
+        return found
+    return replace(found, mass=mass, tensor=found.tensor * (mass / found.mass), source="stated")
 
 
 def _collision_parts(part: Part, thickness: float) -> tuple[Part, ...]:

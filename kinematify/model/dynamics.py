@@ -53,9 +53,10 @@ def with_dynamics(robot: Robot, config: DynamicsConfig, *, measured: bool = Fals
     """Return the robot with damping and friction for every joint that has none, and with parts that can be moved.
 
     Friction holds what rests in the middle of its range against its weight; damping lets a hand's force move it over
-    its range in a few seconds and no quicker than in a fraction of one. Motors of machines get the effort that their
-    load asks for. Where a hand, or the strongest motor, could not lift what a joint carries, its masses are made
-    smaller: they come from the volume of a closed surface as if it were solid.
+    its range in a few seconds and no quicker than in a fraction of one. Efforts and speeds fit the load and the range:
+    several times what it takes and at most what the joint had, but motors of machines get what their load asks for.
+    Where a hand, or the strongest motor, could not lift what a joint carries, its masses are made smaller, but for
+    those that the user stated: they come from the geometry.
 
     Args:
         robot: Links with mass properties; zero is their pose as given.
@@ -68,7 +69,7 @@ def with_dynamics(robot: Robot, config: DynamicsConfig, *, measured: bool = Fals
     joints = tuple(
         joint
         if joint.kind is JointType.FIXED or joint.damping is not None or joint.friction is not None
-        else _with_dynamics(robot, joint, config)
+        else _with_dynamics(robot, joint, config, measured=measured)
         if moved_by_hand(robot, joint)
         else _with_motor(robot, joint, config, measured=measured)
         for joint in robot.joints
@@ -173,19 +174,26 @@ def _lightened(robot: Robot, joint: Joint, config: DynamicsConfig) -> Robot:
                 link,
                 inertial=replace(link.inertial, mass=scale * link.inertial.mass, tensor=scale * link.inertial.tensor),
             )
-            if link.name in carried and link.inertial is not None
+            if link.name in carried and link.inertial is not None and link.inertial.source != "stated"
             else link
             for link in robot.links
         ),
     )
 
 
-def _with_dynamics(robot: Robot, joint: Joint, config: DynamicsConfig) -> Joint:
+def _with_dynamics(robot: Robot, joint: Joint, config: DynamicsConfig, *, measured: bool) -> Joint:
     load, hand = joint_load(robot, joint), _hand(joint, config)
     friction = min(_rubbing(load, config), config.most_friction * hand)
     left = max(hand - load.largest - friction, (1.0 - config.hand_share) * hand)
     damping = min(load.inertia / config.settling_time, left * config.opening_time / max(load.travel, 1e-9))
-    return _stated(joint, damping, friction)
+    if joint.effort is None or joint.velocity is None or measured:
+        return _stated(joint, damping, friction)
+    needed = max(config.effort_margin * _Motor.of(load, config).effort, config.least_effort)
+    fastest = max(load.travel, 1e-3) / config.shortest_time
+    fitted = replace(
+        joint, effort=float(f"{min(joint.effort, needed):.3g}"), velocity=float(f"{min(joint.velocity, fastest):.3g}")
+    )
+    return _stated(fitted, damping, friction)
 
 
 @dataclass(frozen=True, kw_only=True)

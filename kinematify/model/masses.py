@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Link, Robot, Shape
 
 
+_STURDY = 1e-6
+"""By how much two principal moments exceed the third, at least: a sheet without thickness has none."""
 _SLACK = 1e-6  # relative rounding of a volume compared with that of the hull
 
 
@@ -41,8 +43,9 @@ class _Solid:
 def inertial_of(part: Part, origin: FloatArray, *, thickness: float, config: ModelConfig) -> Inertial:
     """Mass properties of a part in a link frame of world orientation.
 
-    A closed mesh is integrated exactly by the divergence theorem; anything else is replaced by its convex hull. The
-    result satisfies what engines demand: positive mass, a positive definite tensor, and the triangle inequality.
+    A closed mesh is integrated exactly by the divergence theorem; anything else is replaced by its convex hull. Bodies
+    that would then weigh more than walls of their surface do are hollow, and weigh what the walls weigh. The result
+    satisfies what engines demand: positive mass, a positive definite tensor, and the triangle inequality.
 
     Args:
         part: The mesh in world coordinates; may be open, flat or inside out.
@@ -51,7 +54,7 @@ def inertial_of(part: Part, origin: FloatArray, *, thickness: float, config: Mod
         config: Densities of parts that have none of their own, and lower bounds.
 
     Returns:
-        Mass properties with source ``volume`` or ``hull``.
+        Mass properties with source ``volume``, ``hull`` or ``shell``.
     """
     used = part.vertices[np.unique(part.faces)]
     thick = thickened(used, thickness)
@@ -59,8 +62,35 @@ def inertial_of(part: Part, origin: FloatArray, *, thickness: float, config: Mod
     solid = _closed_volume(part) if len(thick) == len(used) else None
     # Shells that are nested with opposite winding or that overlap can integrate to nonsense; a hull cannot.
     if solid is not None and _plausible(solid, hull, part.bounds):
-        return _weighed_solid(solid, part.density or config.solid_density, "volume", origin, config)
-    return _weighed_solid(hull, part.density or config.hull_density, "hull", origin, config)
+        density, source = part.density or config.solid_density, "volume"
+    else:
+        solid, density, source = hull, part.density or config.hull_density, "hull"
+    if config.density is not None:
+        return _weighed_solid(solid, config.density, source, origin, config)
+    shell = _walls(part)
+    if density * solid.volume > config.wall_weight * shell.volume > 0.0 and _sturdy(shell):
+        return _weighed_solid(shell, config.wall_weight, "shell", origin, config)
+    return _weighed_solid(solid, density, source, origin, config)
+
+
+def _walls(part: Part) -> _Solid:
+    """Moments of the surface: its area takes the place of the volume [m^2]. Exact, by the middles of the edges."""
+    corners = part.vertices[part.faces]
+    crosses = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    areas = 0.5 * np.linalg.norm(crosses, axis=1)
+    points = 0.5 * (corners + np.roll(corners, 1, axis=1)).reshape(-1, 3)
+    weights = np.repeat(areas / 3.0, 3)
+    area = float(areas.sum())
+    center = weights @ points / area if area > 0.0 else np.zeros(3)
+    arms = points - center
+    second = (weights[:, None] * arms).T @ arms
+    return _Solid(volume=area, center=center, tensor=np.trace(second) * np.eye(3) - second)
+
+
+def _sturdy(solid: _Solid) -> bool:
+    """Whether the moments are those of something that extends in all directions, by more than engines round."""
+    low, middle, high = np.linalg.eigvalsh(solid.tensor)
+    return bool(low > 0.0 and low + middle > (1.0 + _STURDY) * high)
 
 
 def _closed_volume(part: Part) -> _Solid | None:

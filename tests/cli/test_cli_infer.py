@@ -171,6 +171,8 @@ def test_bad_input_ends_with_2_and_one_paragraph(
     ("words", "text"),
     [
         (["--base", "roof"], "roof"),
+        (["--mass", "roof=2"], "roof"),
+        (["--density", "0"], "density"),
         (["--config", "no-such"], "There is no configuration no-such"),
         (["--scale", "0"], "scale"),
         (["--labels", "labels.npy"], "--labels"),

@@ -181,3 +181,11 @@ def test_what_a_file_states_stays() -> None:
     robot = lid(0.5, 0.0)
     stated = replace(robot, joints=(replace(robot.joints[0], damping=0.0, friction=0.25),))
     assert with_dynamics(stated, CONFIG).joints[0].friction == 0.25
+
+
+def test_effort_and_speed_fit_the_load_and_the_range() -> None:
+    """A flap of 0.7 g had 100 N m."""
+    heavy, light = (with_dynamics(lid(mass, 0.0), CONFIG).joints[0] for mass in (1.0, 0.0007))
+    assert light.effort == CONFIG.least_effort
+    assert heavy.effort is not None
+    assert light.effort < heavy.effort <= 100.0

@@ -13,9 +13,12 @@ from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.geometry.convex import convex_hull, thickened
 from kinematify.model.masses import inertial_of
+from kinematify.robot.appearance import Appearance, Material
+from kinematify.robot.densities import density_of
 from kinematify.robot.robot import Inertial
 
-CONFIG = load_config().model
+CONFIG = load_config().model.model_copy(update={"wall_weight": 1e9})
+"""All bodies are solid."""
 ORIGIN = np.zeros(3)
 
 
@@ -145,3 +148,28 @@ def test_tiny_parts_stay_above_the_bounds_of_engines():
     assert found.mass == CONFIG.min_mass
     assert np.linalg.eigvalsh(found.tensor)[0] >= CONFIG.min_inertia * (1 - 1e-9)
     assert_physical(found)
+
+
+def test_a_body_that_is_too_heavy_to_be_solid_is_a_shell() -> None:
+    mesh = trimesh.creation.box((1.0, 1.0, 1.0))
+    part = Part(name="case", vertices=mesh.vertices + 2.0, faces=mesh.faces, density=7850.0)
+    found = inertial_of(part, ORIGIN, thickness=1e-5, config=load_config().model)
+    assert (found.source, found.mass) == ("shell", pytest.approx(6.0 * load_config().model.wall_weight))
+    assert found.center_of_mass == pytest.approx([2.0, 2.0, 2.0])
+    assert np.diag(found.tensor) == pytest.approx(np.full(3, found.mass * 5.0 / 18.0))  # of a hollow cube
+    assert_physical(found)
+
+
+def test_thin_sheet_keeps_its_mass() -> None:
+    mesh = trimesh.creation.box((1.0, 1.0, 0.001))
+    part = Part(name="sheet", vertices=mesh.vertices, faces=mesh.faces, density=7850.0)
+    assert inertial_of(part, ORIGIN, thickness=1e-5, config=load_config().model).mass == pytest.approx(7.85)
+
+
+def test_density_by_the_names_of_materials() -> None:
+    corners = np.array([[[0, 0, 0], [1, 0, 0], [0, 1, 0]]] * 4, dtype=float)
+    names = ("Brushed_Steel.001", "OakVeneer", "paint")
+    looks = Appearance(materials=tuple(Material(name=name) for name in names), material_of_face=np.array([0, 1, 1, 2]))
+    assert density_of(looks, corners) == pytest.approx((7850.0 + 2 * 710.0) / 3)
+    plain = Appearance(materials=(Material(name="paint"),), material_of_face=np.zeros(4, dtype=np.int64))
+    assert density_of(plain, corners) is None
