@@ -228,7 +228,7 @@ class _Compared:
                 else:
                     at = frozenset(k for claim in part.claims for k in claim.at)
                     words = " ".join(self.specification.tokens[k].given for k in sorted(at))
-                    self.missing.append(Missing(words=words, at=at))
+                    self.missing.append(Missing(words=words, at=at, is_sure=moved))
                     self.absent.append(part)
                 continue
             self._account_for_modifiers(part, there, known)
