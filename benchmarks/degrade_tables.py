@@ -33,7 +33,7 @@ KINDS = {
 }
 """Kind of input -> what was done, for readers."""
 NOT_MEANT = (CLEAN, "hulls")
-"""Left out of the mean: hulls have no bearings left."""
+"""Not in the mean: hulls have no bearings left."""
 
 _COLUMNS = (
     ("angle [deg]", "angle_deg", 1.0, 2),

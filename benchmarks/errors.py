@@ -198,7 +198,7 @@ def write_error_gallery(
         folder: Made if need be.
         name: Of the page.
         count: How many joints are shown.
-        progress: Told the object and the share done.
+        progress: Called with the object and the share done.
 
     Raises:
         OutputError: The folder cannot be written.

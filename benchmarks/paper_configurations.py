@@ -44,7 +44,7 @@ ORACLES: Mapping[str, float | None] = {OWN: None, "oracle 100 %": 1.0, "oracle 9
 WITHOUT: Mapping[str, Mapping[str, object]] = {
     variant.label.removeprefix("paper").strip(): variant.changes for variant in PAPER_VARIANTS
 }
-"""What is left out, nothing first -> changes of the configuration."""
+"""What is omitted, nothing first -> changes of the configuration."""
 _DRAWS = 5
 """An oracle that errs is drawn so often, and its figures averaged."""
 

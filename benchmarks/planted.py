@@ -1,4 +1,4 @@
-"""Wrong joints in true mechanisms, for `kinematify refine` to find and mend.
+"""Wrong joints in true mechanisms, for `kinematify refine` to find and fix.
 
 Contacts are measured, the tree and all joints are the true ones, and every joint keeps the candidates that inference
 proposes for its edge, the right one among them. Then one joint is made wrong.
@@ -134,13 +134,13 @@ def _agree(one: JointCandidate, other: JointCandidate) -> bool:
 def planted_faults(
     mechanism: TrueMechanism, seed: int, faults: tuple[str, ...] = FAULTS, *, level: bool = False
 ) -> Iterator[PlantedJoint]:
-    """Plant each fault once, in a joint drawn from the seed; a fault that fits no joint is left out.
+    """Plant each fault once, in a joint drawn from the seed; a fault that fits no joint is omitted.
 
     Args:
         mechanism: A true one.
         seed: Draws the joints.
         faults: Some of `FAULTS`, and `RANGE`.
-        level: The wrong joint scores as the best candidate does, so that only simulation tells them apart. Otherwise it
+        level: The wrong joint scores as the best candidate does, so only simulation distinguishes them. Otherwise it
             scores what inference gives it. The second best has the score of the best in either case.
     """
     for fault in faults:

@@ -50,7 +50,7 @@ better. The inference is deterministic, so that this only has to cover other ver
 def find_regressions(report: Report[JobResult], baseline: Report[JobResult]) -> tuple[Regression, ...]:
     """Compare means over the runs that both reports hold, per configuration and kind of object.
 
-    Times are left out: they depend on the machine.
+    Times are omitted: they depend on the machine.
 
     Args:
         report: The run to judge.

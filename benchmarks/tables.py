@@ -348,7 +348,7 @@ _COMPARED = (
 def comparison(report: Report[JobResult], baseline: Report[JobResult]) -> list[str]:
     """Return a table of what has changed since an earlier report, object by object.
 
-    Only runs that both reports hold are compared. Changes below a hundredth of the printed unit are left out.
+    Only runs that both reports hold are compared. Changes below a hundredth of the printed unit are omitted.
     """
     before = {(result.object, result.condition, result.variant): result for result in baseline.records}
     pairs = [

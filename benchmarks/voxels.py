@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _DENSITY = 12  # samples per square of a cell's side: next to no cell that the surface crosses is missed
 _MOST_SAMPLES = 4_000_000
 _KEPT = 0.95  # share of the surface that must be found again; otherwise the part is too thin or open for a solid
-_WALL = 0.75  # half the thickness of the wall that stands for a thin or open surface, cells
+_WALL = 0.75  # half the thickness of the wall that represents a thin or open surface, cells
 _CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
 
 

@@ -188,7 +188,7 @@ def _read(source: str, folder: Path) -> ArticulatedObject:
 
 
 def loadable(urdf: Path, folder: Path) -> Path:
-    """Return a file that engines load as it stands: the given one where its pieces are convex and its links weigh.
+    """Return a file that engines load as it is: the given one where its pieces are convex and its links weigh.
 
     Others are written into the folder as `kinematify fix --all` does, with friction and damping for joints without.
     """

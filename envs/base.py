@@ -88,7 +88,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         self._aim(self._choose(joint))
 
     def _choose(self, joint: str) -> str:
-        """Return the joint that ``auto`` stands for."""
+        """Return the joint that ``auto`` represents."""
         if joint != AUTO:
             return joint
         return (

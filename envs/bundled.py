@@ -65,7 +65,7 @@ DRAWERS = ("drawers", "nightstand", "dresser", "pedestal", "desk")
 
 
 def find_bundled(model: str) -> BundledObject:
-    """Return what a `model` keyword with one of both prefixes stands for.
+    """Return what a `model` keyword with one of both prefixes represents.
 
     Raises:
         InputError: There is no such object; the message names the nearest.

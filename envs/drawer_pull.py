@@ -129,7 +129,7 @@ class DrawerPullEnv(OpeningEnv):
             tool: Link of the robot that carries the fingers.
             control: ``tool`` or ``joint``.
             reward: ``dense`` or ``sparse``.
-            randomize: What is drawn anew in each episode.
+            randomize: What is drawn again in each episode.
             terminate_on_success: End the episode on success.
             allow_invalid: Take a model that fails `kinematify validate`.
             render_mode: None, ``rgb_array`` or ``human``.

@@ -101,7 +101,7 @@ class Draw:
 
 
 def drawing(randomize: bool | str | Collection[str]) -> frozenset[str]:
-    """Return the names that a `randomize` keyword stands for.
+    """Return the names that a `randomize` keyword represents.
 
     Raises:
         InputError: It names something else.

@@ -124,7 +124,7 @@ class OpenPartEnv(OpeningEnv):
             robot: None; `DrawerPullEnv` has robots.
             control: ``force`` or ``position``.
             reward: ``dense`` or ``sparse``.
-            randomize: What is drawn anew in each episode.
+            randomize: What is drawn again in each episode.
             terminate_on_success: End the episode on success.
             allow_invalid: Take a model that fails `kinematify validate`.
             render_mode: None, ``rgb_array`` or ``human``.

@@ -64,7 +64,7 @@ class View:
     radius: float
     """Of what is to be seen [m]."""
     azimuth: float
-    """Where it stands, seen from the centre, from x towards y [rad]."""
+    """Where it is, seen from the centre, from x towards y [rad]."""
 
 
 def has_screen() -> bool:

@@ -33,7 +33,7 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
     """`num_envs` copies of `OpenPartEnv` in MuJoCo; spaces, rewards and success are those of that class.
 
     ``gymnasium.make_vec(id, num_envs, vectorization_mode="vector_entry_point")`` makes it. Every copy has its own
-    random object with `randomize`. An environment that ended begins anew with the next step, whose action, reward and
+    random object with `randomize`. An environment that ended begins again with the next step, whose action, reward and
     end are then without meaning (gymnasium's ``NEXT_STEP``). Infos hold arrays of length `num_envs`: ``is_success``,
     ``open_fraction``, ``thrown``, ``escaped``, ``unstable``. Only `OpenPartEnv` tells ``max_penetration`` and
     ``warnings``.

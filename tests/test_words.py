@@ -24,7 +24,7 @@ INSTEAD = {
     "mended": "fixed",
     "mending": "fixing",
     "heed": "apply, respect",
-    "heeded": "applied, respected",
+    "respected": "applied, respected",
     "heeds": "applies, respects",
     "anew": "again; retrain",
     "left out": "held-out; omitted",

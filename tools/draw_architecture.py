@@ -1,4 +1,4 @@
-"""Write the drawing and the table of packages in docs/architecture.md anew from the code."""
+"""Write the drawing and the table of packages in docs/architecture.md again from the code."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def table() -> str:
 
 
 def rewritten(page: str) -> str:
-    """The page with its two generated parts made anew."""
+    """The page with its two generated parts made again."""
     for name, content in (("drawing", drawing()), ("packages", table())):
         begin, end = f"<!-- {name}:begin -->", f"<!-- {name}:end -->"
         if begin not in page or end not in page:

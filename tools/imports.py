@@ -60,7 +60,7 @@ def import_graph() -> dict[str, frozenset[str]]:
 def _modules_of(name: str) -> set[str]:
     """The module that a dotted name is or is taken from, all of a package for `package.*`; none of other projects.
 
-    A public name of `kinematify` stands for the module that it is loaded from.
+    A public name of `kinematify` represents the module that it is loaded from.
     """
     top, _, public = name.partition(".")
     if top == "kinematify" and public in _HOMES:

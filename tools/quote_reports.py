@@ -1,4 +1,4 @@
-"""Write the reports that docs/validate.md quotes anew: `python -m tools.quote_reports FOLDER`, of NAME/model.urdf."""
+"""Write the reports that docs/validate.md quotes again: `python -m tools.quote_reports FOLDER`, of NAME/model.urdf."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def quoted(page: str) -> tuple[str, ...]:
 
 
 def rewritten(page: str, folder: str) -> str:
-    """The page with every report made anew, but for its last paragraph, which is always the same."""
+    """The page with every report made again, but for its last paragraph, which is always the same."""
 
     def report(match: re.Match[str]) -> str:
         command = [sys.executable, "-m", "kinematify", "validate", match[1]]

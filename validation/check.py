@@ -55,7 +55,7 @@ FAMILIES = dict(
 )
 """Title of each family, keyed by the beginning of its ids."""
 _NOT_OURS = ("KV1", "KV2", "KV6", "KV8")
-"""Families whose findings no choice of a joint can mend."""
+"""Families whose findings no choice of a joint can fix."""
 
 
 class FeedbackRow(StrEnum):
@@ -110,7 +110,7 @@ class Check:
     matters: str
     """What goes wrong in practice if it is ignored."""
     remedy: str
-    """How to mend it."""
+    """How to fix it."""
     feedback: FeedbackRow | None = None
     """What refinement makes of its findings; None if nothing."""
     doubts: bool = False
@@ -284,7 +284,7 @@ def engine_check(
 
     Causes in `follows` are ids, or such numbers for checks of the same engine.
 
-    In its docstring ``{engine}`` stands for the engine's name, and a paragraph such as ``PyBullet: ...`` is added to
+    In its docstring ``{engine}`` represents the engine's name, and a paragraph such as ``PyBullet: ...`` is added to
     what that engine's check verifies.
     """
 

@@ -50,7 +50,7 @@ def blame_of(element: _Element) -> Blame:
 
 
 def shown(text: str | None, most: int = 60) -> str:
-    """A value as it stands in the file, cut where it is very long."""
+    """A value as it is in the file, cut where it is very long."""
     if text is None:
         return "nothing"
     return repr(text) if len(text) <= most else f"{text[:most]!r}... ({len(text)} characters)"

@@ -121,7 +121,7 @@ class CheckResult:
         return (self.reason or "").startswith(_NOT_FINISHED)
 
     def with_findings(self, findings: Iterable[Finding]) -> CheckResult:
-        """Return the result with its findings judged anew: it has not failed if all of them are notes now."""
+        """Return the result with its findings judged again: it has not failed if all of them are notes now."""
         found = tuple(findings)
         status = self.status
         if status is Status.FAIL and all(finding.severity is Severity.NOTE for finding in found):

@@ -19,15 +19,15 @@ _SHOWN_KINDS = 5
 
 
 def find_models(words: Sequence[str]) -> tuple[Path, ...]:
-    """Return the files that `words` stand for, each once, in the order of the words and sorted within a word.
+    """Return the files that `words` represent, each once, in the order of the words and sorted within a word.
 
     Args:
-        words: A file is taken as it is, whatever its name; a folder stands for all ``.urdf`` files below it (links to
+        words: A file is taken as it is, whatever its name; a folder represents all ``.urdf`` files below it (links to
             folders are not followed, so that loops of them do no harm); other words are patterns as in a shell, in
-            which ``**`` stands for any folders.
+            which ``**`` represents any folders.
 
     Raises:
-        InputError: A word stands for nothing, or for something that is neither a file nor a folder.
+        InputError: A word names nothing, or something that is neither a file nor a folder.
     """
     found = [path for word in words for path in _models_of(word)]
     once = {os.path.realpath(path): path for path in reversed(found)}

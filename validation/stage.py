@@ -38,7 +38,7 @@ class StageRequest:
     """Ids of the checks that the user wants."""
     deadline: float
     """`time.process_time()` of the stage's process at which it should be over, which no other program's load changes; a
-    stage that is late says what it left out."""
+    stage that is late says what it omitted."""
     engines: tuple[str, ...] = ()
     """Engines that were asked for, for the stage that compares them."""
     failures: Mapping[str, str] = field(default_factory=dict)
@@ -69,7 +69,7 @@ class Recorder:
         self._selected = selected
 
     def wants(self, *checks: str) -> bool:
-        """True if at least one of the checks was asked for; work for none of them can be left out."""
+        """True if at least one of the checks was asked for; work for none of them can be omitted."""
         return any(check in self._selected for check in checks)
 
     @contextmanager

@@ -22,7 +22,7 @@ class JointSummary:
     best_alternative: Mapping[str, Any] | None = None
     """``kind``, ``axis``, ``pivot`` (world frame at zero), ``score`` of a joint that explains the geometry better."""
     next_best: tuple[Mapping[str, Any], ...] = ()
-    """Of a joint that failed, the next best candidates of the inference, where its record stands beside the model."""
+    """Of a joint that failed, the next best candidates of the inference, where its record is beside the model."""
 
 
 @dataclass(frozen=True, kw_only=True)

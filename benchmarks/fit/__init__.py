@@ -1,1 +1,1 @@
-"""How the choice of joints is fitted: corpora, examples, trees, and what is judged on what was left out."""
+"""How the choice of joints is fitted: corpora, examples, trees, and what is judged on held-out objects."""

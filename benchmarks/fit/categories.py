@@ -1,4 +1,4 @@
-"""Which objects are of one category: what is judged left out by category is fitted to nothing of the same kind."""
+"""Which objects are of one category: what is evaluated held out by category is fitted to nothing of the same kind."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """What the choice is fitted to and judged on: generated objects in ways of modelling, random mechanisms, real ones.
 
-Objects that files describe judge alone: with them in the fit, no more that was left out is right (results/choice.md).
+Objects that files describe judge alone: with them in the fit, no more held-out ones are right (results/choice.md).
 """
 
 from __future__ import annotations
@@ -119,7 +119,7 @@ def gather_examples(
         cache: Folder with one file per object that was measured.
         seed: Draws the generated objects.
         workers: Processes at a time.
-        progress: Told the object and the share done.
+        progress: Called with the object and the share done.
 
     Raises:
         EnvironmentFault: An object killed its worker or took an hour.
@@ -184,7 +184,7 @@ def _gathered(
 
 
 def _key(source: CorpusSource, seed: int) -> str:
-    """Hash of what the measurements depend on, but not of the code: an emptied folder measures anew."""
+    """Hash of what the measurements depend on, but not of the code: an emptied folder measures again."""
     files = [] if source.folder is None else sorted(source.folder.rglob("*.*"))
     sizes = [(path.name, path.stat().st_size) for path in files]
     facts = asdict(source) | {"folder": None}

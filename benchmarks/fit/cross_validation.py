@@ -163,7 +163,7 @@ def agreed_examples(examples: Sequence[Example], likely: Sequence[FloatArray]) -
 
 @dataclass(frozen=True, kw_only=True)
 class RigidityRow:
-    """How well fixed and moving parts of a set are told apart, left out by category."""
+    """How well fixed and moving parts of a set are distinguished, held out by category."""
 
     moving: int
     lost: float | None
@@ -211,7 +211,7 @@ def judge_edges_left_out(examples: Sequence[TreeExample]) -> dict[str, EdgesRow]
 
 @dataclass(frozen=True, kw_only=True)
 class OpeningRow:
-    """How well the side is told that the turns of a set open to, left out by category."""
+    """How well the side is told that the turns of a set open to, held out by category."""
 
     turns: int
     right: float
@@ -234,7 +234,7 @@ def judge_opening_left_out(examples: Sequence[Example]) -> dict[str, OpeningRow]
 
 @dataclass(frozen=True, kw_only=True)
 class TurningRow:
-    """How well it is told which turns of a set go round, left out by category."""
+    """How well the endless turns of a set are found, held out by category."""
 
     rounds: int
     found: float | None

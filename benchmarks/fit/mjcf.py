@@ -32,13 +32,13 @@ _LOOKS = ("texture", "material", "skin", "region")
 def read_mjcf(document: _Element, path: Path, bodies: Sequence[str]) -> Robot:
     """Read the trees of some bodies of a scene; link frames are parallel to the world at the joints.
 
-    Bodies without a joint belong to the body that carries them, and the first body's own joints are left out: it is the
+    Bodies without a joint belong to the body that carries them, and the first body's own joints are omitted: it is the
     base link. Zero is the configuration in which the model is drawn. Geometry is what is shown; where two sorts are,
-    what collides is left out.
+    what collides is omitted.
 
     Args:
         document: The MJCF.
-        path: Where it stands; includes and meshes are looked up beside it.
+        path: Where it is; includes and meshes are looked up beside it.
         bodies: Names, or numbers as text where a body has no name; ``world`` for what stands still beside the trees.
 
     Raises:

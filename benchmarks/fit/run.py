@@ -110,7 +110,7 @@ def run_fit(
         hold_out: Folders of objects that are also judged by a fit that has nothing of any of them.
         skip: Of `FIXED_HEAD`, `EDGES_HEAD` and `DESCRIBED_SET`: what is neither measured, fitted nor judged.
         ablation: Also fit without each group of measurements, and to a part of the objects.
-        progress: Told what is done and the share of it.
+        progress: Called with what is done and the share of it.
 
     Returns:
         What ``choice.json`` holds.
@@ -257,7 +257,7 @@ def _calibration(examples: Sequence[Example], likely: Mapping[int, FloatArray]) 
 
 
 def _ablation(examples: Sequence[Example], progress: Callable[[str, float], None]) -> dict[str, Any]:
-    """Left out by category: each group of measurements taken away, and a part of the objects alone."""
+    """Held out by category: each group of measurements taken away, and a part of the objects alone."""
     groups = sorted({group for example in examples for group in example.groups})
     without = {"nothing": examples} | {group: [_without(group, example) for example in examples] for group in groups}
     shares = {

@@ -50,7 +50,7 @@ _COMMANDS = (
     "view missing.urdf", "batch missing -o out", "bench no-such-study", "bench detection --seed no",
     "fit --no-such-option", "nightly --no-such-option",
 )  # fmt: skip
-"""Words of commands that are run beside a good model and one whose axis is zero; `_` stands for a space."""
+"""Words of commands that are run beside a good model and one whose axis is zero; `_` represents a space."""
 _TIMES = re.compile(r"^\[ *\d+\.\d s,.*\n|; \d+\.\d s$", re.MULTILINE)
 """What is printed of progress, and how long a command took."""
 _ANNOTATIONS = ("title", "description")

@@ -7,7 +7,7 @@ judged by the checks KV8xx of `kinematify validate`: it is loaded with the engin
 gravity, and each joint is pushed by a hand over what exact geometry leaves free of its range. A model works in an
 engine in which no check complains; `blocked` counts the joints of which less is free than is declared. PyBullet is
 asked with `URDF_USE_SELF_COLLISION`; without that flag, its default, links pass through each other. The plain code of
-complaints about models of others is run as it stands in the report; `shown` counts those where it shows what is said.
+complaints about models of others is run as it is in the report; `shown` counts those where it shows what is said.
 """
 
 from __future__ import annotations
@@ -132,7 +132,7 @@ def measure(options: AsLoadedOptions, work: Work) -> Measured:
 
 
 def tried_as_loaded(case: TriedFile) -> Record:
-    """Infer, build, mend or take a model, and try it."""
+    """Infer, build, fix or take a model, and try it."""
     config = load_config()
     config = config.model_copy(update={"collision": config.collision.model_copy(update={"mode": case.collision})})
     if case.item is None:

@@ -105,7 +105,7 @@ class Reliability:
 
 
 def judged_joints(results: Iterable[JobResult]) -> list[ScoredJoint]:
-    """All joints with a confidence; those that have none stand for no answer."""
+    """All joints with a confidence; those that have none represent no answer."""
     return [
         ScoredJoint(
             object=result.object,

@@ -1,6 +1,6 @@
 """How fast and how robust are the environments, and do hand-written policies solve them?
 
-Hand-written policies and random actions meet objects that are drawn anew in each episode (`randomize=True`). Speed is
+Hand-written policies and random actions meet objects that are drawn again in each episode (`randomize=True`). Speed is
 measured beside MuJoCo's own loop.
 """
 

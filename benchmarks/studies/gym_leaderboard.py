@@ -2,7 +2,7 @@
 
 Twenty tasks of `kinematify.envs.tasks`, observed by state. Every policy is judged on objects and seeds of the test
 split; PPO of Stable-Baselines3 learns on objects and seeds of the training split, a policy for each task, and its
-success on objects that it was trained on stands beside. *Reset* is the longest of a task, of processor time.
+success on objects that it was trained on is beside. *Reset* is the longest of a task, of processor time.
 """
 
 from __future__ import annotations

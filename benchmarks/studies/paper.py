@@ -5,12 +5,12 @@ forbidden), `paper-base` (the base link is given, as in Algorithm 1) and `paper-
 pieces of cut parts are not joined. Contact strength is exp(-gap / tolerance), for the paper says "proximity" and gives
 no formula, so that all parts that touch have nearly the same; *by area* it is the area of the contact beside the
 largest one. A part hangs wrong where it touches another one no less than what carries it, be it for a gap in the true
-joint or because both meet in that pose; the strengths stand beside. Gaps are exact, *by fields* they are the
+joint or because both meet in that pose; the strengths are beside it. Gaps are exact, *by fields* they are the
 smallest signed distance of surface samples in the field of the other part, as the paper has it.
 
 Joints: on the true tree, DW-CAVL as printed and DW-CAVL+, in which a sample that has left the contact by more than
 sigma_c costs no more the farther it gets, and samples of the contact count in L_coll as others do. J of the true joint
-stands beside J of the chosen one. Where a joint is wrong (type, or axis off by more than 10 deg), the *objective* is at
+is beside J of the chosen one. Where a joint is wrong (type, or axis off by more than 10 deg), the *objective* is at
 fault if the true joint costs more than the chosen one, else the *pool* if no candidate of the true type lies within 10
 deg, else the *optimiser*. Signed distances from grids unless --sdf neural is asked for.
 
@@ -234,7 +234,7 @@ def _judged(scene: CavlScene, erased: ErasedModel, edge: tuple[int, int], config
     pool = [item for item in paper_candidates(scene.contact, scene.diagonal, config, seed) if item.kind is kind]
     angle = axis_angle(chosen.axis, true.axis)
     wrong = chosen.kind is not kind or angle > WRONG_DEG
-    # The pivot's share of J is left out: where on its line the true pivot stands is a convention.
+    # The pivot's share of J is omitted: where on its line the true pivot stands is a convention.
     costs = {
         name: item.evidence["cavl_objective"] - config.pivot_weight * item.evidence["cavl_offset"]
         for name, item in (("true", judged), ("chosen", chosen))

@@ -51,7 +51,7 @@ class Command:
     """One command that is timed."""
 
     words: tuple[str, ...]
-    """Of the command line; ``IN`` stands for the parts or the file, ``OUT`` for a folder."""
+    """Of the command line; ``IN`` represents the parts or the file, ``OUT`` a folder."""
     given: str
     """``drawer``, a number of parts, or the name of an object of the benchmark."""
     newer: tuple[str, ...] = ()

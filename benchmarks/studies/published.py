@@ -200,7 +200,7 @@ def _other_makers(folder: Path | None) -> dict[str, Callable[[], Iterator[Publis
     """Models of the given folder, else of those beside the benchmark, by source."""
     if folder is not None:
         return {"other makers": partial(_in_folder, folder, "other makers", InputError)}
-    return {  # what nobody asked for is left out
+    return {  # what nobody asked for is omitted
         source: partial(_in_folder, bench_folder().parent / name, source, EnvironmentFault)
         for name, source in OTHER_MAKERS.items()
     }

@@ -7,7 +7,7 @@ candidates are those of inference, the right one among them. The other wrong joi
 choice gives them beside the candidates, with --level those of the best candidate, so that only simulation tells them
 apart. *Found*: a failure blames the joint, in whichever round. *Repaired*: parent, type, axis within 10 deg, line
 within a tenth of the part, and the opening side are right afterwards; of *parent*, the parent, on which the joint is
-inferred anew. *Harm*: joints that were right and are not any more, or whose range overlaps the true one by .1 less. The
+inferred again. *Harm*: joints that were right and no longer are, or whose range overlaps the true one by .1 less. The
 rows *nothing* are the true mechanisms as they are.
 
 --inferred OBJECTS asks what simulation can do about the joints that inference gets wrong, with the true tree given. The

@@ -3,7 +3,7 @@
 `kinematify view` of a model of ten parts is started as a user does, beside a browser that is open already and draws by
 the processor, as a machine without a graphics card must. *Address*: from the command until it prints where the page is.
 *Picture*: from the command until the page shows the parts. *Answer*: from a slider's message to the server until the
-first answer is back on the page; ten in each start. The processor's time until the picture stands beside the clock:
+first answer is back on the page; ten in each start. The processor's time until the picture is beside the clock:
 where the clock says much more, the machine was busy. The *empty* page is one box in viser without anything of ours,
 which no change of ours makes faster.
 """
@@ -179,7 +179,7 @@ def _answers(page: Page, messages: list[tuple[str, float]]) -> list[float]:
 
 
 def _processor_time(root: int, *, without: int = 0) -> float:
-    """Of a process and its offspring [s]; one of them can be left out."""
+    """Of a process and its offspring [s]; one of them can be omitted."""
     used, parents = {}, {}
     for path in Path("/proc").glob("[0-9]*/stat"):
         try:

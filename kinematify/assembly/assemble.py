@@ -214,7 +214,7 @@ def _degenerate_reason(part: Part, diagonal: float, config: AssemblyConfig) -> s
 
 
 def _without_duplicates(triage: _Triage, config: AssemblyConfig) -> _Triage:
-    """Set aside every part that stands where an earlier one of the same shape stands."""
+    """Set aside every part that is in the place of an earlier one of the same shape."""
     if not triage.kept:
         return triage
     tolerance = config.duplicate * Assembly(parts=tuple(triage.kept), source="").diagonal

@@ -53,7 +53,7 @@ _GUESSES = (("millimetres", 1e-3), ("centimetres", 1e-2), ("metres, and were div
 _ON_GROUND, _BELOW_GROUND = 0.005, 0.1
 """Of the object's diagonal: what is nearer lies on the ground, what is lower is under it."""
 _STANDS, _LIES = 0.5, 0.1
-"""Shares of a footprint with which an object stands for certain, and hardly can."""
+"""Shares of a footprint with which an object rests for certain, and hardly can."""
 _UNITS = {"micron": 1e-6, "millimeter": 1e-3, "centimeter": 1e-2, "meter": 1.0, "inch": 0.0254, "foot": 0.3048}
 """Units that a 3MF may state, in metres."""
 

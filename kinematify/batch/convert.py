@@ -161,7 +161,7 @@ def _place_words(finding: Finding) -> str:
 
 
 def _forget_peak() -> None:
-    """Let the kernel count the most memory anew, where it can: a worker takes many objects."""
+    """Let the kernel count the most memory again, where it can: a worker takes many objects."""
     with suppress(OSError):
         Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
 

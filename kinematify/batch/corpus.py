@@ -59,7 +59,7 @@ def write_corpus(
         out: The folder.
         count: How many objects.
         seed: Draws the parameters; an object of a name has the same ones in a corpus of any size.
-        progress: Told the object and the share done.
+        progress: Called with the object and the share done.
         workers: Processes at a time.
         composed: Mechanisms on bodies instead of families; their ``source.json`` has a sentence for each.
 

@@ -132,7 +132,7 @@ class Manifest:
             self._copy()
 
     def forget(self, places: Iterable[str]) -> None:
-        """Drop the records of objects that are going to be converted anew."""
+        """Drop the records of objects that are going to be converted again."""
         gone = self.records.keys() & set(places)
         if gone:
             self.records = {place: record for place, record in self.records.items() if place not in gone}

@@ -32,7 +32,7 @@ class Pool:
     fresh: bool = False
     """Forget what the folder holds; otherwise what has ended is not run again."""
     progress: Progress = lambda what, share: None
-    """Told what has just ended and the fraction done in [0, 1]."""
+    """Called with what has just ended and the fraction done in [0, 1]."""
 
     def run(
         self,

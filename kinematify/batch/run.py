@@ -68,7 +68,7 @@ class BatchRequest:
     resume: bool = False
     """Go on: objects with a record of the same content and configuration stay, but for errors of the machine."""
     retry: bool = False
-    """With `resume`: convert anew what is not ``ok``, whatever the reason."""
+    """With `resume`: convert again what is not ``ok``, whatever the reason."""
 
     def conversion(self) -> Conversion:
         """Return what is asked for of every object.
@@ -127,7 +127,7 @@ def run_batch(request: BatchRequest, engine: Executor, progress: Progress | None
     Args:
         request: What to convert, and how.
         engine: Starts the workers.
-        progress: Told the object that has ended and the share done.
+        progress: Called with the object that has ended and the share done.
 
     Returns:
         The records; after an interrupt those of the objects that have ended.

@@ -83,7 +83,7 @@ class PackageState:
 
     @property
     def remedy(self) -> str | None:
-        """The command that mends it, None if nothing is wrong."""
+        """The command that fixes it, None if nothing is wrong."""
         if self.state == "ok":
             return None
         force = "--force-reinstall --no-deps " if self.state == "broken" else ""

@@ -1,4 +1,4 @@
-"""`kinematify explain`: what a check verifies, why it matters, how to mend what it finds."""
+"""`kinematify explain`: what a check verifies, why it matters, how to fix what it finds."""
 
 from __future__ import annotations
 

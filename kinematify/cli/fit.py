@@ -1,4 +1,4 @@
-"""`kinematify fit`: the choice of joints, fitted anew and judged on what was left out."""
+"""`kinematify fit`: the choice of joints, fitted again and judged on held-out objects."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 PICTURES_AT_MOST = 12
 """With more models an HTML report shows none: it would take long to make and to load."""
 PICTURE_SECONDS = 15.0
-"""A picture that takes longer is left out [s]; known robots take 1 to 3."""
+"""A picture that takes longer is omitted [s]; known robots take 1 to 3."""
 
 
 @dataclass(kw_only=True)
@@ -89,7 +89,7 @@ class ValidationRun:
             self.pictures[report.model], self.scenes[report.model] = drawing.picture, drawing.scene
 
     def _task_of(self, model: Path) -> TaskRequest | None:
-        """The task with names of films that tell the models apart."""
+        """The task with names of films that distinguishes the models."""
         if self.task is None:
             return None
         stem = model.stem if len(self.models) == 1 else f"{model.absolute().parent.name}_{model.stem}"

@@ -41,7 +41,7 @@ class BearingTwinsConfig(StageConfig):
     """Points per part that are laid upon each other."""
     tolerance: float = 0.045  # half as much again as for congruent parts: the samples are fewer
     """Largest mean distance between them, fraction of the smaller part's diagonal."""
-    alike: float = 0.1  # walls that stand for solids are half a cell thicker on each side
+    alike: float = 0.1  # walls that represent solids are half a cell thicker on each side
     """Rough parts whose spreads along their principal axes differ by more are no twins, fraction of the largest."""
     reach: float = 0.1  # contacts of rough meshes wander by a few percent of the part
     """Contacts that lie farther apart after the motion are no twins, fraction of the part's diagonal."""

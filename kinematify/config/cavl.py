@@ -29,7 +29,7 @@ class CavlConfig(StageConfig):
     in L_coll too (DW-CAVL+; not printed)."""
     length_unit: float = 0.01  # J is about 1 where the contact is lost by its own width
     """Length that counts as 1 in J; a smaller one spreads the scores 1 / (1 + J)."""
-    # small turns find the axis, large ones tell types apart
+    # small turns find the axis, large ones distinguish types
     angles_deg: list[float] = Field([-20.0, -10.0, -5.0, 5.0, 10.0, 20.0])
     """Theta of revolute candidates [deg]."""
     # what a lever arm of a tenth moves under those angles

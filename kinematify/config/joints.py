@@ -24,7 +24,7 @@ class SweepConfig(StageConfig):
     """Virtual motion test."""
 
     points: int = 300  # a wall or post narrower than 1/17 of the part may be missed
-    """Points that stand for the moving part."""
+    """Points that represent the moving part."""
     shrink: float = 0.015  # parts that slide along each other touch exactly; 1.5 % clears them
     """Fraction by which they are drawn towards the part's centre."""
     hinge_zone: float = 0.22  # corners next to the hinge dig into the frame in most meshes
@@ -202,7 +202,7 @@ class CompoundConfig(StageConfig):
     cross: float = 0.6  # a cross is smaller than the forks around it
     """Largest diagonal of the part between the axes of a universal joint, fraction of either neighbour's."""
     beside: float = 0.1  # fingers face each other; drawers that open to both sides do so too, and rarely
-    """How far fingers may stand beside each other, fraction of their distance along the axis."""
+    """How far fingers may be beside each other, fraction of their distance along the axis."""
     coaxial: float = 0.5  # bottles, pens and jars lie about the line of their cap; the bodies of knobs do not
     """How far the middle of a body may be from the line of its cap, fraction of the neck's radius."""
 
@@ -240,7 +240,7 @@ class ConfidenceConfig(StageConfig):
     """Log odds that what the weighted cues would choose keeps over the fitted probabilities."""
     fold_lead: float = 2.0  # a plate folded in the middle is a rocker, which few fitted objects are
     """The same where they choose the fold of a rocker."""
-    # left out, 8 of 629 real parts that move are taken for fixed, and 221 of 480 that do not (results/choice.md)
+    # omitted, 8 of 629 real parts that move are taken for fixed, and 221 of 480 that do not (results/choice.md)
     fixed: float = 0.82
     """How likely a part must be fixed to be taken for it."""
     name_weight: float = 3.5  # "drawer", "wheel" and "foot" weigh this much; anonymous names nothing

@@ -81,7 +81,7 @@ class CollisionConfig(StageConfig):
     most_pieces: int = 48  # the motion may cut them into some more
     """Convex pieces of a link before it is carved."""
     most_carved: int = 64  # engines take them without pain
-    """Pieces of a link after that; those that stand for least of its surface are dropped."""
+    """Pieces of a link after that; those that represent least of its surface are dropped."""
     link_gap: float = 0.012  # fingers go around the handle of a drawer, which stands off by 2 cm
     """Pieces may reach so far beyond a link's surface, fraction of its diagonal."""
     model_gap: float = 0.005  # with half as much again, boards and rails that slide past each other lose 5 cm (dresser)

@@ -69,7 +69,7 @@ class PlanSettings(StageConfig):
     singular: float = 0.02
     """Smallest singular value of the Jacobian (lengths in half metres) below which the arm cannot follow."""
     margin: float = 0.008  # convex pieces in engines reach 7 mm beyond the surface
-    """Arm and object stay so far apart, the hand left out [m]."""
+    """Arm and object stay so far apart, without the hand [m]."""
     approach: float = 0.06
     """The hand comes in along a straight line from so far off [m]."""
     approach_steps: int = 6

@@ -203,7 +203,7 @@ class GeometrySettings(StageConfig):
     """Points on a body's surface that are asked how deep they are."""
     tolerance: float = 0.01  # untouched hinges and slides: 147 of 160 joints stay below
     """Depth beyond that at rest that does not count, fraction of the model's size."""
-    part_tolerance: float = 0.25  # buttons and latches: their shafts are often left out of the hole that they move in
+    part_tolerance: float = 0.25  # buttons and latches: their shafts are often missing in the hole that they move in
     """The same as a fraction of the smaller part's size; the smaller one of the two counts."""
     wrong: float = 0.03  # of untouched parents and children only drawers that do go through the back reach it
     """Depth that is an error, fraction of the model's size."""
@@ -286,7 +286,7 @@ class EvidenceSettings(StageConfig):
     """Distance to every line that the two bodies show, beyond which an axis is unexplained, fraction of the child's
     diagonal."""
     linkage_distance: float = 0.15  # axes of quadrupeds without bearings in their meshes reach 0.14
-    """The same in linkages, whose bearings are often left out of the meshes."""
+    """The same in linkages, whose bearings are often missing in the meshes."""
     better: float = 0.3  # 7 of 118 true joints of furniture trail by more, all by over 0.6; the rest by at most 0.06
     """Lead in the score from which another hinge is worth a warning, outside linkages."""
     better_slide: float = 0.55  # two true drawers of 47 trail by 0.35 and 0.52, nine of ten wrong directions by 0.65
@@ -460,7 +460,7 @@ class AgreementSettings(StageConfig):
     """Relative difference of a gravity torque that is a warning."""
     contact_depth: float = 0.005  # hulls and margins of engines differ by 1 to 3 mm
     """Overlap in one engine that the other should see too [m]."""
-    contact_share: float = 0.005  # and by more on large models, where convex pieces stand for curved shapes
+    contact_share: float = 0.005  # and by more on large models, where convex pieces represent curved shapes
     """The same as a fraction of the model's size; the larger of the two counts."""
 
 

@@ -30,7 +30,7 @@ class ContactSamples:
     distances: FloatArray
     """Exact unsigned distance to the other part [m], shape (n,). Read-only."""
     areas: FloatArray
-    """Surface area that each sample stands for [m^2], shape (n,). Read-only."""
+    """Surface area that each sample represents [m^2], shape (n,). Read-only."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,7 +58,7 @@ class ContactGraph:
     n_parts: int
     edges: tuple[ContactEdge, ...]
     clusters: tuple[tuple[int, ...], ...]
-    """Groups of two or more congruent parts (up to mirroring), ascending; singletons are left out."""
+    """Groups of two or more congruent parts (up to mirroring), ascending; singletons are omitted."""
     tolerance: float
     """Largest gap that counts as contact [m]."""
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 BENCH_VARIABLE = "KINEMATIFY_BENCH"
 PIP_DATA = "pip"
-"""The word that stands for robots of the PyPI package example-robot-data."""
+"""The word that represents robots of the PyPI package example-robot-data."""
 SETS = ("robots", "everyday", "everyday2")
 """Sets of the benchmark folder, each a folder in it and a word for it: robots, household objects of one data set, and
 household objects and devices of many others."""

@@ -170,7 +170,7 @@ def degraded(job: Job, assembly: Assembly) -> Degraded | None:
 
 
 def predicted(erased: ErasedModel, inference: Inference, given: Degraded | None = None) -> tuple[Prediction, int]:
-    """Return an inference by the parts of the truth, and how many cuts it mended."""
+    """Return an inference by the parts of the truth, and how many cuts it fixed."""
     names = (*erased.truth.part_names, *(given.pieces if given is not None else ()))
     index = {name: number for number, name in enumerate(names)}
     prediction = prediction_of(inference.trees[0], inference.joints, inference.assembly.names, index)

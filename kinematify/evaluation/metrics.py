@@ -131,7 +131,7 @@ class JointScore:
     kind: str
     """True type."""
     predicted_kind: str | None
-    """None where the parent-child pair is not in the predicted tree, or stands for another joint of that pair."""
+    """None where the parent-child pair is not in the predicted tree, or represents another joint of that pair."""
     gripper: bool
     """True for fingers that the paper's count leaves out."""
     angle_deg: float
@@ -153,7 +153,7 @@ class JointScore:
 
     @property
     def matched(self) -> bool:
-        """True where a predicted joint stands for this one."""
+        """True where a predicted joint represents this one."""
         return self.predicted_kind is not None
 
     @property
@@ -175,7 +175,7 @@ class JointScore:
 
     @property
     def type_right_strict(self) -> bool:
-        """Type accuracy with revolute and continuous told apart."""
+        """Type accuracy with revolute and continuous distinguished."""
         return self.predicted_kind == self.kind
 
 
@@ -260,7 +260,7 @@ def _joint_scores(
 def _matches(
     joints: Sequence[TrueJoint], predicted: Mapping[tuple[int, int], JointEstimate]
 ) -> dict[str, JointEstimate]:
-    """True joint name -> the predicted joint that stands for it."""
+    """True joint name -> the predicted joint that represents it."""
     by_pair: dict[tuple[int, int], list[TrueJoint]] = defaultdict(list)
     for joint in joints:
         by_pair[joint.parent, joint.child].append(joint)

@@ -81,7 +81,7 @@ def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -
 
     Args:
         request: Objects, conditions, configurations and where to work.
-        progress: Told what has just finished and the fraction done in [0, 1].
+        progress: Called with what has just finished and the fraction done in [0, 1].
 
     Returns:
         The results in the order of the request.

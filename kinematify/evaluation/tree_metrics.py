@@ -270,7 +270,7 @@ class _MappingSearch:
         return [1 << (row * width + place[node]) if node in place else 0 for row, node in enumerate(self.rows)]
 
     def _compatible_pairs(self) -> list[int]:
-        """Bit mask, per pair, of the pairs that may stand beside it."""
+        """Bit mask, per pair, of the pairs that may be beside it."""
         above_1, above_2 = self.relations
         masks = []
         for a in range(len(self.rows)):

@@ -46,7 +46,7 @@ def _link(link: Link, meshes: MeshFiles) -> Link:
 
 
 def _shape(shape: Shape, link: str, meshes: MeshFiles) -> Shape:
-    """URDF has no capsule: its triangles stand for it."""
+    """URDF has no capsule: its triangles represent it."""
     if shape.kind not in ("mesh", "capsule"):
         return shape
     return Shape(mesh=shape.mesh, file=Path(meshes.folder.name, meshes.write(shape, link)), color=shape.color)

@@ -58,7 +58,7 @@ class Request:
     copies: int = 1
     """How many, side by side."""
     other: Request | None = None
-    """What it holds, stands on or stands beside."""
+    """What it holds, stands on or is beside."""
     is_toy: bool = False
     """It is small: all of it is scaled."""
     how: str = ""

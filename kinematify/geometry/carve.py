@@ -53,7 +53,7 @@ _BEGUN = 0.25
 _DIRECTIONS = 6
 """Steps of a sweep whose face planes are tried as cuts."""
 _MANY = 10_000_000
-"""Corners times normals of which inner corners are left out first: hulls of scanned parts have thousands of each."""
+"""Corners times normals of which inner corners are omitted first: hulls of scanned parts have thousands of each."""
 _CACHED = 200_000
 """Numbers in a table that is made at once: they fit the processor's cache."""
 
@@ -104,7 +104,7 @@ class _Polytope:
     """A convex piece of a body, with its planes."""
 
     def __init__(self, body: int, piece: ConvexPiece, marks: FloatArray) -> None:
-        """Keep the piece, and the points (n, 3) of its body's surface that it stands for."""
+        """Keep the piece, and the points (n, 3) of its body's surface that it represents."""
         self.body, self.piece, self.marks = body, piece, marks
         self.vertices = piece.vertices
         self.low, self.high = piece.low, piece.high
@@ -193,7 +193,7 @@ def carved(
             pieces meet. What lies beyond is left as it is: carving there would hide that the motion is not possible.
         clearance: Distance that is kept between what moves and what does not [m].
         thinnest: What would be left thinner than this is dropped [m].
-        most: Pieces of a body at most; those are dropped that stand for least of its surface.
+        most: Pieces of a body at most; those are dropped that represent least of its surface.
         kept: Bodies that stay as they are: only what meets them is cut.
     """
     alive = [_marked(index, *of_body) for index, of_body in enumerate(zip(bodies, surfaces, strict=True))]

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
 
 
-_PRECISION = 1e-6  # axes between which extents differ by less than this fraction are not told apart
+_PRECISION = 1e-6  # axes between which extents differ by less than this fraction are not distinguished
 
 
 def convex_hull(points: FloatArray) -> tuple[FloatArray, IntArray]:

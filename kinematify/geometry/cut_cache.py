@@ -125,7 +125,7 @@ def _largest_board(body: Concave, triangles: FloatArray, least: float) -> tuple[
 
 
 def _planes(triangles: FloatArray, heights: FloatArray, axis: FloatArray) -> Iterator[float]:
-    """Planes on both sides of the largest faces across an axis, those at the ends left out."""
+    """Planes on both sides of the largest faces across an axis, those at the ends omitted."""
     low, high = float(heights.min()), float(heights.max())
     extent = high - low
     if extent <= 0.0:

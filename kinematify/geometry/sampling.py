@@ -38,7 +38,7 @@ class SurfaceSamples:
     normals: FloatArray
     """Unit normals of the faces that the points lie on, shape (n, 3). Read-only."""
     areas: FloatArray
-    """Surface area that each sample stands for [m^2], shape (n,); sums to the part's area. Read-only."""
+    """Surface area that each sample represents [m^2], shape (n,); sums to the part's area. Read-only."""
     faces: IntArray
     """Index of the face that each point lies on, shape (n,). Read-only."""
 

@@ -40,7 +40,7 @@ class Solid:
             faces: Shape (F, 3), at least one.
             unit: Length of one unit of the FCL tree [m]; FCL takes short lengths for none.
             hole: See `shells_of`.
-            points: Number of points that stand for the surface in questions of depth.
+            points: Number of points that represent the surface in questions of depth.
         """
         self._mesh = vertices, faces
         self._unit, self._hole, self._count = unit, hole, points

@@ -57,7 +57,7 @@ class Samples:
     normals: FloatArray
     """Unit, interpolated over smooth edges, shape (n, 3)."""
     areas: FloatArray
-    """Surface area that each sample stands for [m^2], shape (n,)."""
+    """Surface area that each sample represents [m^2], shape (n,)."""
 
     def subset(self, index: NDArray[Any]) -> Samples:
         """Keep the samples that a boolean mask or an index array selects."""
@@ -458,7 +458,7 @@ def main_directions(normals: FloatArray, areas: FloatArray) -> FloatArray:
 
     Args:
         normals: Unit normals of samples of a part, shape (n, 3).
-        areas: What each sample stands for [m^2], shape (n,).
+        areas: What each sample represents [m^2], shape (n,).
 
     Returns:
         Unit directions, those with most area first, shape (k, 3).

@@ -134,7 +134,7 @@ class Execution:
     rest_speed: float
     """Speed of the joint at the end, fraction of the planned way [1/s]."""
     depth: float
-    """Deepest that the robot got into the object, the hand in the held part left out [m]."""
+    """Deepest that the robot got into the object, the hand in the held part omitted [m]."""
     deepest: tuple[str, str] | None
     """Link of the robot and link of the object."""
     tracking: float

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
 
-_BATCH = 14  # two to this power configurations stand for what the arm can reach
+_BATCH = 14  # two to this power configurations represent what the arm can reach
 
 
 class Arm:
@@ -34,7 +34,7 @@ class Arm:
         Args:
             robot: As planning needs it.
             settings: Iterations and tolerances.
-            seed: Of restarts and of the samples that stand for what can be reached.
+            seed: Of restarts and of the samples that represent what can be reached.
         """
         self.robot, self.settings, self._seed = robot, settings, seed
         self.declared = read_robot(robot.urdf)
@@ -125,7 +125,7 @@ class Arm:
 
     @cached_property
     def samples(self) -> FloatArray:
-        """Configurations that stand for what the arm can do, shape (n, dof)."""
+        """Configurations that represent what the arm can do, shape (n, dof)."""
         sobol = qmc.Sobol(self.dof, scramble=True, seed=self._seed)
         return np.asarray(self.lower + sobol.random_base2(_BATCH) * (self.upper - self.lower))
 

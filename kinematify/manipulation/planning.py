@@ -52,7 +52,7 @@ class Freedom:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Clearing:
-    """An object as it stands when the turn of a joint comes."""
+    """An object as it is when the turn of a joint comes."""
 
     scene: Scene
     freedom: Freedom

@@ -145,7 +145,7 @@ def write_pour(cup: Vessel, into: Vessel, yaw: float, path: Path, settings: Pour
 
 
 def pour_motion(scene: Scene, pour: Pour, settings: PourSettings) -> ObjectMotion:
-    """Lift, carry and tilt one after the other, in equal steps; the shares of the way stand for values."""
+    """Lift, carry and tilt one after the other, in equal steps; the shares of the way represent values."""
     counts = [
         max(2, round(pour.lift / settings.step)),
         max(2, round(pour.carry / settings.step)),
@@ -228,7 +228,7 @@ class PourPlan:
 def plan_pour(
     arm: Arm, cup: Vessel, into: Vessel, folder: Path, settings: ValidationSettings, *, seed: int = 0
 ) -> PourPlan:
-    """Plan how a robot pours from a cup into a container that stands beside it on the floor.
+    """Plan how a robot pours from a cup into a container that is beside it on the floor.
 
     Args:
         arm: The robot.

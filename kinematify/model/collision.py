@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 _THINNEST = 1e-4
 """Of flat pieces that are joined [m]."""
 _MARKS = 2000
-"""Points of a link's surface that pieces stand for while they are carved."""
+"""Points of a link's surface that pieces represent while they are carved."""
 _PROBES = 400
 """Points of a link's surface by which it is told how much the pieces leave out."""
 _CORNERS = 160
@@ -64,7 +64,7 @@ _ROUND = 0.25
 
 @dataclass(frozen=True, kw_only=True)
 class FittedLink:
-    """The collision geometry of one link and how well it stands for the surface."""
+    """The collision geometry of one link and how well it represents the surface."""
 
     link: str
     boxes: int
@@ -313,7 +313,7 @@ def _as_it_is(link: Link, T_world_link: FloatArray) -> list[ConvexPiece]:
 
 
 def _named(shapes: Sequence[Shape], link: str, index: int) -> tuple[Shape, ...]:
-    """Shapes with a file for each mesh; the number of the link tells names apart that differ in special letters."""
+    """Shapes with a file for each mesh; the number of the link distinguishes names that differ in special letters."""
     stem = f"{re.sub(r'[^A-Za-z0-9_-]', '_', link)[:_MAX_STEM]}_{index}_collision"
     return tuple(
         replace(shape, file=Path(MESH_FOLDER, f"{stem}_{number}.obj")) if shape.kind == "mesh" else shape
@@ -322,7 +322,7 @@ def _named(shapes: Sequence[Shape], link: str, index: int) -> tuple[Shape, ...]:
 
 
 def _marks(link: Link, T_world_link: FloatArray) -> FloatArray:
-    """Points on what the pieces of a link stand for, world frame, shape (n, 3)."""
+    """Points on what the pieces of a link represent, world frame, shape (n, 3)."""
     points = _on_surface((shape.mesh for shape in shapes_of(link)), _MARKS)
     return points @ T_world_link[:3, :3].T + T_world_link[:3, 3]
 
@@ -375,13 +375,13 @@ _SQUARE = 1e-6
 _ROUNDNESS = 1e-3
 """A piece is round if its corners are on a circle or a sphere but for this fraction of its radius."""
 _LEAST_CORNERS = 8
-"""Of what may stand for a circle."""
+"""Of what may represent a circle."""
 
 
 def fitted_shape(piece: ConvexPiece, most_beyond: float) -> tuple[Shape, float]:
     """Return the shape that a piece is, and how far that reaches beyond it [m].
 
-    Corners of round pieces lie on their cylinder or sphere, so that nothing is left out.
+    Corners of round pieces lie on their cylinder or sphere, so that nothing is omitted.
 
     Args:
         piece: In the link frame.

@@ -84,7 +84,7 @@ def _steady(robot: Robot, *, given: Robot) -> Robot:
     a joint goes with all that hangs on it, which is far more than moves where a long chain folds.
     """
     roots = np.sqrt([max(joint.damping or 0.0, 0.0) for joint in robot.joints])
-    # The same eigenvalues, of a symmetric matrix; what carries no mass is left out.
+    # The same eigenvalues, of a symmetric matrix; what carries no mass is omitted.
     decay = roots[:, None] * np.linalg.pinv(mass_matrix(robot), rcond=1e-9, hermitian=True) * roots
     fastest = float(np.linalg.eigvalsh(decay).max(initial=0.0))
     share = _MOST_DECAY / max(_TIME_STEP * fastest, _MOST_DECAY)

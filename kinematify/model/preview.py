@@ -49,7 +49,7 @@ class _Panel:
     caption: str
     scene: PictureScene
     numbers: tuple[int, ...] = ()
-    """Of the legend, one per mesh of the scene; empty where colours tell them apart."""
+    """Of the legend, one per mesh of the scene; empty where colours distinguish them."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class _Entry:
     ink: tuple[int, int, int]
     """Colour of the word for the kind."""
     number: int | None = None
-    """As it stands on the part; None where colours tell parts apart."""
+    """As it stands on the part; None where colours distinguish parts."""
 
 
 def render_preview(model: KinematicModel, path: Path, config: PreviewConfig) -> None:

@@ -91,7 +91,7 @@ def posed_meshes(
     colors: Mapping[str, FloatArray],
     shades: Mapping[str, float] | None = None,
 ) -> dict[str, PosedMesh]:
-    """Every link's mesh, set-aside visuals included, as it stands at a configuration.
+    """Every link's mesh, set-aside visuals included, as it is at a configuration.
 
     Args:
         model: The model.

@@ -91,7 +91,7 @@ def lacks_drive(joint: Joint) -> bool:
 
 
 def prepared_joint(joint: Joint, settings: PrepareSettings) -> Joint:
-    """Return the joint with what readers demand; negative damping and friction, which they refuse, are left out."""
+    """Return the joint with what readers demand; negative damping and friction, which they refuse, are omitted."""
     return replace(
         joint,
         effort=_positive(joint.effort) or settings.effort,

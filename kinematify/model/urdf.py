@@ -112,7 +112,7 @@ _LIGHTNESS = np.array([0.72, 0.64, 0.80])  # cycled, so that similar hues still 
 _CHROMA = 0.125  # inside sRGB for all hues at these lightnesses but for a little clipping
 _ROOT = (0.83, 0.008, 1.2)  # a light warm grey: what stands still stays in the background
 _SHADES = (1.0, 0.72, 1.35, 0.52)  # of the light of a material: plainly lighter or darker, and still that material
-_ALIKE = 0.1  # of the sides of sRGB: swatches that are nearer are not told apart
+_ALIKE = 0.1  # of the sides of sRGB: swatches that are nearer are not distinguished
 
 # OKLab to linear sRGB (Ottosson, "A perceptual color space for image processing", 2020).
 _OKLAB_TO_LMS = np.array([[1, 0.3963377774, 0.2158037573], [1, -0.1055613458, -0.0638541728],

@@ -154,7 +154,7 @@ def _side(
     diagonal: float,
     config: CavlConfig,
 ) -> CavlSide:
-    """Dense samples near the other part, coarse ones elsewhere, each with the area that it stands for."""
+    """Dense samples near the other part, coarse ones elsewhere, each with the area that it represents."""
     coarse = torch.from_numpy(body.points.copy())
     reach = float(contact.distances.max(initial=-1.0))
     beyond = (field.value(coarse).abs() > reach).numpy()

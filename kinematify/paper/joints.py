@@ -105,7 +105,7 @@ class PaperJoints:
 
         What failed adds to L_coll, so much that the failed joint pays what the failures weigh. Under this penalty the
         optimiser runs from every candidate, and from the next best of the pool, for each motion that failed as many of
-        either type as were refined at first. Their scores are without the penalty: the simulation judges them anew.
+        either type as were refined at first. Their scores are without the penalty: the simulation judges them again.
 
         Args:
             joint: The chosen one, which failed; it stays among the candidates and does not move.

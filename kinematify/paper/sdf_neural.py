@@ -85,7 +85,7 @@ def train_fields(
         parts: Meshes with positive extent.
         config: Size of the networks, samples and training.
         seed: Of samples and weights.
-        progress: Told the share that is done.
+        progress: Called with the share that is done.
 
     Returns:
         One field per part, in their order; the same for the same seed on the same device.

@@ -107,7 +107,7 @@ def run_tasks(
         executor: Starts the workers.
         reuse: Tasks that a worker takes one after the other.
         lives: A task whose worker dies is begun again until it has cost as many; then that is its failure.
-        heard: Told the key of a task and what it tells before it ends.
+        heard: Called with the key of a task and what it tells before it ends.
     """
     upcoming, deaths = iter(tasks), Counter[str]()
     again: deque[WorkItem[_Result]] = deque()

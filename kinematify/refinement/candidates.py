@@ -2,7 +2,7 @@
 
 The inference keeps its candidates as lines with scores; to be simulated, a candidate needs the range that it would
 have been given had it been chosen. A joint that is none of them is scored as the inference would have scored it. Under
-the paper's method, the optimiser makes candidates anew after a joint has failed.
+the paper's method, the optimiser makes candidates again after a joint has failed.
 """
 
 from __future__ import annotations

@@ -71,7 +71,7 @@ class Chooser:
     refused: list[str] = field(default_factory=list)
     """Choices that would have hidden a failure, with the reason."""
     gained: dict[str, float] = field(default_factory=dict)
-    """What joints that were chosen anew have before the old ones, by part [log odds]."""
+    """What joints that were chosen again have before the old ones, by part [log odds]."""
 
     def choose_again(self, plan: Plan, feedback: Feedback) -> tuple[Plan, list[PlanChange]]:
         """Take decisions about joints again, one part after the other, those that most speaks against first.
@@ -186,7 +186,7 @@ class Chooser:
         return plan.with_joint(best.joint), change
 
     def _lead_of(self, trial: Trial, first: Trial) -> float:
-        """What a candidate has to lead the chosen one by: more if it moves otherwise, most if it mends no failure."""
+        """What a candidate has to lead the chosen one by: more if it moves otherwise, most if it fixes no failure."""
         if first.against == 0.0 or trial.against > 0.0:
             return self.config.margin
         joint, old = trial.joint, first.joint

@@ -186,7 +186,7 @@ def fix_urdf(
         everything: Give all links collision pieces, and all that weigh nothing a mass, findings or not.
         kinematics: Change joints, too.
         workers: Processes at a time, as for `validate`.
-        progress: Told the stage that ended and the fraction done.
+        progress: Called with the stage that ended and the fraction done.
 
     Raises:
         InputError: `model` is no URDF; `out` is `model`, or cannot be written.

@@ -226,7 +226,7 @@ def _vector(text: str, count: int = 3) -> FloatArray | None:
 
 
 def with_hints(inference: Inference, hints: Sequence[Hint]) -> Inference:
-    """Choose the joints anew that hints speak of.
+    """Choose the joints again that hints speak of.
 
     Raises:
         InputError: A hint is about the base link, which has no joint above it.

@@ -75,7 +75,7 @@ def refine(
         seconds: Time at most [s]; a multiple of the time of the inference if absent, for dear tiers no limit.
         base: Name of the part that is the base link, where it is known.
         settings: Of the validation; the shipped ones if absent.
-        progress: Told what is being done and the share done.
+        progress: Called with what is being done and the share done.
 
     Returns:
         The best round. Ctrl-C ends the loop, and the best round so far is returned.
@@ -122,14 +122,14 @@ class _Done:
     feedback: Feedback
     round: Round
 
-    def rank(self, mended: int) -> tuple[float, ...]:
+    def rank(self, sound_at: int) -> tuple[float, ...]:
         """Smaller is better: errors about motion, wrong parts or contacts, warnings, evidence; earlier rounds win ties.
 
         Args:
-            mended: Number of the round from which on parts and contacts are what the meshes say.
+            sound_at: Number of the round from which on parts and contacts are what the meshes say.
         """
         errors, warnings = _severities(self.verdict)
-        return errors, self.round.number < mended, warnings, -self.round.score, self.round.number
+        return errors, self.round.number < sound_at, warnings, -self.round.score, self.round.number
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -158,7 +158,7 @@ class _Loop:
         self.candidates: dict[SearchedContacts, CandidateJoints] = {}
         self.ended = "all rounds were used"
         self.simulated = 0
-        self.mended = 0
+        self.sound_at = 0
 
     def in_time(self) -> bool:
         """Whether there is time for one thing more."""
@@ -195,7 +195,7 @@ class _Loop:
             if plan.signature in seen:
                 self.ended = "the next plan had been simulated before"
                 return
-            if not self.in_time() and self.mended != number + 1:  # what is known to be wrong is never kept for haste
+            if not self.in_time() and self.sound_at != number + 1:  # what is known to be wrong is never kept for haste
                 self.ended = "the time was used up"
                 return
 
@@ -205,7 +205,7 @@ class _Loop:
             self._deepened(best.round.number)
 
     def _best(self) -> _Done:
-        return min(self.done, key=lambda done: done.rank(self.mended))
+        return min(self.done, key=lambda done: done.rank(self.sound_at))
 
     def result(self) -> Refinement:
         """The best round as an inference; of those that were simulated farthest, where the time did not last."""
@@ -214,7 +214,7 @@ class _Loop:
             return Refinement(inference=replace(self.given, refinement=self._record(history)), history=history)
         farthest = max((done.round.tier for done in self.done), key=TIERS.index)
         finalists = [done for done in self.done if done.round.tier == farthest]
-        best = min(finalists, key=lambda done: done.rank(self.mended))
+        best = min(finalists, key=lambda done: done.rank(self.sound_at))
         history = self._history(best.round.number)
         inference = self.given
         if best.round.number > 0:
@@ -288,7 +288,7 @@ class _Loop:
         if done.round.number == 0 and done.round.tier == GEOMETRY:
             rebuilt_plan = self._rebuilt(done)
             if rebuilt_plan is not None:
-                self.mended = 1
+                self.sound_at = 1
                 return (*rebuilt_plan, [])
         carried = any(CHECKS[signal.check].feedback in _OF_PARENTS for signal in done.feedback.edges)
         plan, changes = self._repaired(done) if carried else (done.plan, [])

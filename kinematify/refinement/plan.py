@@ -84,7 +84,7 @@ class Round:
     tier: str
     """``geometry``, ``engines`` or ``task``: how far it was simulated."""
     changes: tuple[PlanChange, ...]
-    """What was chosen anew before it was simulated."""
+    """What was chosen again before it was simulated."""
     motion_errors: int
     """By the exact geometry alone, which every tier has."""
     errors: int = 0
@@ -98,7 +98,7 @@ class Round:
     """Sum of the scores of the chosen candidates below the best ones, and of all log odds against them; 0 at best."""
     seconds: float = 0.0
     refused: tuple[str, ...] = ()
-    """Changes that would have hidden a failure rather than mended it, with the reason."""
+    """Changes that would have hidden a failure rather than fixed it, with the reason."""
 
 
 @dataclass(frozen=True, kw_only=True)

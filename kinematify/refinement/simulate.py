@@ -55,7 +55,7 @@ class WorldScene(Scene):
     """A point on the axis of every joint, world frame at rest [m], shape (3,)."""
 
     def poses(self, leaders: FloatArray) -> FloatArray:
-        """Motion of every body from where it stands at rest, rows of leaders (n, leaders) -> (n, B, 4, 4)."""
+        """Motion of every body from where it is at rest, rows of leaders (n, leaders) -> (n, B, 4, 4)."""
         values = self.mechanism.all_values(leaders)
         column = {name: k for k, name in enumerate(self.mechanism.joints)}
         poses = np.broadcast_to(np.eye(4), (len(leaders), len(self._groups), 4, 4)).copy()
@@ -117,7 +117,7 @@ class PartsWorld:
 
 
 def _in_world_frame(model: KinematicModel, visuals: Mapping[str, Part]) -> Robot:
-    """The same tree with all link frames in the world frame; the lines of the joints are told apart from it."""
+    """The same tree with all link frames in the world frame; the lines of the joints are distinguished from it."""
     return Robot(
         name=model.name,
         links=tuple(
@@ -245,7 +245,7 @@ _RUN = {
 }
 """Checks that a dear tier runs beside those of the tiers before it: whose findings change what is chosen.
 
-What geometry holds of the shapes at rest (KV34x) is left out: the scores of the inference have said that.
+What geometry holds of the shapes at rest (KV34x) is omitted: the scores of the inference have said that.
 """
 
 

@@ -43,7 +43,7 @@ _OUTLINE_VERTICES = 30000
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PosedMesh:
-    """A mesh as it stands in the picture."""
+    """A mesh as it is in the picture."""
 
     vertices: FloatArray
     """World frame [m], shape (V, 3)."""
@@ -54,7 +54,7 @@ class PosedMesh:
     appearance: Appearance | None = None
     """Of the faces, in place of the colour."""
     shade: float = 1.0
-    """Factor on the light of all its colours: tells meshes of one material apart."""
+    """Factor on the light of all its colours: distinguishes meshes of one material."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -80,7 +80,7 @@ class PictureScene:
         directions = np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=1)
         used = np.zeros(len(self.rays.vertices), dtype=bool)
         used[self.rays.faces] = True
-        # A dense mesh has another vertex next to the one that is left out.
+        # A dense mesh has another vertex next to the one that is omitted.
         vertices = self.rays.vertices[used][:: 1 + np.count_nonzero(used) // _OUTLINE_VERTICES]
         points = np.concatenate([vertices, *(glyph.vertices for glyph in self.glyphs)])
         extremes: FloatArray = points[np.unique((directions @ points.T).argmax(axis=1))]

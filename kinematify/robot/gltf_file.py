@@ -113,7 +113,7 @@ class _GltfBuffers:
     loaded: dict[int, bytes]
 
     def numbers(self, index: int) -> NDArray[Any]:
-        """Contents of an accessor, shape (count, width); integers that stand for fractions become fractions."""
+        """Contents of an accessor, shape (count, width); integers that represent fractions become fractions."""
         accessor = self.document["accessors"][index]
         if "sparse" in accessor:
             raise ValueError("it stores positions as sparse changes, which are not read")
@@ -147,7 +147,7 @@ class _GltfBuffers:
         return self.named(uri, "buffer")[: buffer["byteLength"]]
 
     def named(self, uri: str, what: str) -> bytes:
-        """The bytes that an address in the document or beside it stands for."""
+        """The bytes that an address in the document or beside it represents."""
         if uri.startswith("data:"):
             return base64.b64decode(uri.partition(",")[2])
         path = (self.folder / unquote(uri)).resolve()
@@ -323,7 +323,7 @@ def _local_transform(node: dict[str, Any]) -> FloatArray:
 def _merged_primitives(
     mesh: dict[str, Any], source: _GltfBuffers, materials: _Materials | None
 ) -> tuple[FloatArray, IntArray, Appearance | None]:
-    """All triangles of a mesh; its primitives differ by material only. Points and lines are left out."""
+    """All triangles of a mesh; its primitives differ by material only. Points and lines are omitted."""
     vertices, faces, count = [np.empty((0, 3))], [np.empty((0, 3), dtype=np.int64)], 0
     looks: list[Appearance | None] = []
     for primitive in mesh["primitives"]:

@@ -250,7 +250,7 @@ def widest_opening(robot: Robot, links: tuple[str, str], point: FloatArray) -> L
 
 
 def joints_between(robot: Robot, links: tuple[str, str]) -> tuple[str, ...]:
-    """Return the joints of the tree on the way from one link to another, fixed ones left out."""
+    """Return the joints of the tree on the way from one link to another, fixed ones omitted."""
     ways = []
     for link in links:
         way, above = [], robot.joint_above.get(link)

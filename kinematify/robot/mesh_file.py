@@ -52,7 +52,7 @@ _STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("at
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RawMesh:
-    """A triangle mesh as it stands in a file, not yet checked."""
+    """A triangle mesh as it is in a file, not yet checked."""
 
     name: str
     """Name of the node, group or object; empty where the file names none."""
@@ -63,7 +63,7 @@ class RawMesh:
     unit: str = ""
     """Unit that the file states, where it is neither metres nor converted to them."""
     up: str = ""
-    """Key of `TO_Z_UP` if the file states such an axis, which was not heeded."""
+    """Key of `TO_Z_UP` if the file states such an axis, which was not respected."""
     appearance: Appearance | None = None
     """Of the faces; None where the file states no material and no colours, and where it was not asked for."""
     exact: ExactFaces | None = None
@@ -297,7 +297,7 @@ def _collada_meshes(
 
 @dataclass(frozen=True, eq=False)
 class _Holder:
-    """A node of a COLLADA document where it stands: what is instanced twice has two."""
+    """A node of a COLLADA document where it is: what is instanced twice has two."""
 
     name: str
 

@@ -46,7 +46,7 @@ def read_robot(
     """Read a URDF; every mesh file is opened once.
 
     ``package://NAME/...`` is looked up in `package_dirs` (each a package or a folder of packages), then in the folders
-    above the URDF. Floating and planar joints stand for a body that is free in the world: above the first geometry they
+    above the URDF. Floating and planar joints represent a body that is free in the world: above the first geometry they
     are read as fixed, elsewhere they are refused. A revolute joint without limits is continuous. COLLADA meshes that
     state another axis than z as the one that points up are turned where links meet only then. Each such reading is a
     note in the result.
@@ -345,14 +345,14 @@ def _check_free_joints(robot: Robot, free: Sequence[Joint]) -> None:
 
 
 _CLOSES = 0.25
-"""The axis is heeded where that leaves less than this share of the gaps."""
+"""The axis is respected where that leaves less than this share of the gaps."""
 _GAP = 0.01
 """Where gaps are smaller than this fraction of the model's size, nothing speaks against the usual reading."""
 _POINTS = 800
 """Points of a link that gaps are measured between."""
 
 
-def upright_reading(ignored: Robot, heeded: Robot) -> Robot:
+def upright_reading(ignored: Robot, respected: Robot) -> Robot:
     """Return the reading of a model in which its links meet, with what was measured.
 
     Over the published models that state such an axis, links meet with it ignored in five files of six, as RViz reads
@@ -360,16 +360,16 @@ def upright_reading(ignored: Robot, heeded: Robot) -> Robot:
 
     Args:
         ignored: The model with all meshes as their numbers stand.
-        heeded: The same with meshes turned upright whose files say that they lie.
+        respected: The same with meshes turned upright whose files say that they lie.
     """
-    apart = _mean_gap(ignored), _mean_gap(heeded)
+    apart = _mean_gap(ignored), _mean_gap(respected)
     size = float(np.linalg.norm(np.ptp(np.concatenate(list(_points(ignored).values())), axis=0)))
     closes = apart[1] < _CLOSES * apart[0] and apart[0] > _GAP * size
-    reading = UpAxis(heeded=closes, gap_ignored=apart[0], gap_heeded=apart[1])
+    reading = UpAxis(respected=closes, gap_ignored=apart[0], gap_respected=apart[1])
     if not closes:
         return replace(ignored, up_axis=reading)
     note = "The up axis of the COLLADA meshes is applied, because the links meet only with it."
-    return replace(heeded, notes=(*heeded.notes, note), up_axis=reading)
+    return replace(respected, notes=(*respected.notes, note), up_axis=reading)
 
 
 def _mean_gap(robot: Robot) -> float:

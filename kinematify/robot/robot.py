@@ -68,7 +68,7 @@ class Shape:
     color: tuple[float, float, float, float] | None = None
     """Red, green, blue, opacity in [0, 1]; None where the file states none."""
     concave: bool = False
-    """Whether the file asks engines to collide its surface, not its hull (``concave="yes"``, which PyBullet heeds)."""
+    """Whether the file asks engines to collide its surface, not its hull (``concave="yes"``, respected by PyBullet)."""
     line: int = 0
     """Where the file declares it; 0 for what no file declares, here and below."""
 
@@ -81,12 +81,12 @@ class Shape:
 class UpAxis:
     """How meshes were read whose files state that another axis than z points up."""
 
-    heeded: bool
+    respected: bool
     """Whether they were turned upright."""
     gap_ignored: float
     """Mean gap at rest between links that a joint connects, if it is ignored [m]."""
-    gap_heeded: float
-    """The same if it is heeded [m]."""
+    gap_respected: float
+    """The same if it is respected [m]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

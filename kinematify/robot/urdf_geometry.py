@@ -47,7 +47,7 @@ class GeometrySource:
     def shapes(self, link: _Element, tag: str) -> tuple[Shape, ...]:
         """Return all ``visual`` or ``collision`` elements of a link with their triangles.
 
-        Primitives with a length of zero stand for no shape, and are left out.
+        Primitives with a length of zero represent no shape, and are omitted.
 
         Raises:
             DescriptionError: An element has no geometry, an unknown one, bad numbers, or a mesh that is missing.

@@ -143,7 +143,7 @@ class UrdfDocument:
 
     @cached_property
     def link_names(self) -> list[str]:
-        """Names of links, the unnamed left out, in the order of the document."""
+        """Names of links, the unnamed omitted, in the order of the document."""
         return [name for link in self.links if (name := link.get("name"))]
 
     @cached_property

@@ -104,7 +104,7 @@ def parse_description(path: Path) -> _Element:
 
 
 def parse_text(text: bytes) -> _Element:
-    """Return the root element of a document, comments and processing instructions left out.
+    """Return the root element of a document, comments and processing instructions omitted.
 
     Raises:
         lxml.etree.XMLSyntaxError: It is not well-formed, or deeper or larger than the limits of the parser.

@@ -77,7 +77,7 @@ class EnginePoses:
     `computeGeneralizedGravity`)."""
     contacts: IntArray | None = None
     """Row, link, link (smaller index first) of every pair of links that touches or overlaps, shape (c, 3), each once;
-    links are indices into `links`. Links that fixed joints join, and links without collision shapes, are left out."""
+    links are indices into `links`. Links that fixed joints join, and links without collision shapes, are omitted."""
     contact_depth: FloatArray | None = None
     """Deepest point of each of `contacts` [m], positive where they overlap, shape (c,)."""
 

@@ -65,7 +65,7 @@ class Touching:
     tolerance: float
     """Depth that never counts [m]."""
     slack: FloatArray
-    """How far convex stand-ins can exceed what they stand for [m], 0 for pairs that are apart at rest and that no joint
+    """How far convex stand-ins can exceed what they represent [m], 0 for pairs that are apart at rest and that no joint
     connects, shape (p,)."""
 
     @cached_property

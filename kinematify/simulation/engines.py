@@ -43,7 +43,7 @@ class EngineEntry:
     keeps_energy: bool = True
     """False: its integrator gains energy with its usual step, so energy is looked at with smaller ones."""
     stops_late: bool = False
-    """True: a joint is stopped one step after it has passed its limit, and left where it stands then."""
+    """True: a joint is stopped one step after it has passed its limit, and left where it is then."""
     contact_flag: str | None = None
     """Of its loader: without it links of one file pass through each other; None: they collide by default."""
     holds: tuple[str, ...] = ()

@@ -41,7 +41,7 @@ class PinocchioEngine:
         return PinocchioFile(urdf, package_dirs)
 
     def load(self, prepared: Prepared, mechanism: LeaderMechanism) -> PinocchioModel:
-        """Build the tree; the geometry is left out, Pinocchio would only look for the files."""
+        """Build the tree; the geometry is omitted, Pinocchio would only look for the files."""
         robot = etree.parse(prepared.urdf).getroot()
         for link in robot.iter("link"):
             for shape in link.findall("collision"):
@@ -69,7 +69,7 @@ class PinocchioModel:
     def loaded(self) -> LoadedModel:
         """What became of joints and masses."""
         model, joints = self.model, {}
-        for name, joint in list(zip(model.names, model.joints, strict=True))[1:]:  # the first stands for the world
+        for name, joint in list(zip(model.names, model.joints, strict=True))[1:]:  # the first represents the world
             kind = joint.shortname()
             bounded = joint.nq == 1
             joints[str(name)] = LoadedJoint(

@@ -148,7 +148,7 @@ class PybulletBody:
         """Forget the contacts of earlier configurations.
 
         PyBullet keeps contacts from step to step as points that move with the bodies. Where a body was set to another
-        place they are wrong, so all pairs are made to be found anew.
+        place they are wrong, so all pairs are made to be found again.
         """
         for index in self.link.tolist():
             self.client.setCollisionFilterGroupMask(self.body, index, 1, 1)

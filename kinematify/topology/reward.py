@@ -84,7 +84,7 @@ def structure(tree: TreeLayout, preferred_degree: int) -> float:
 def static_support(tree: TreeLayout, centroids: FloatArray, volumes: FloatArray, scale: float) -> float:
     """``R_static = 1 / (1 + tau / sigma_tau)`` with ``tau = sum_i |(c_sub(i) - c_i) x M(i) g z-|`` over i != b.
 
-    Density and gravity scale tau and sigma_tau alike and are left out.
+    Density and gravity scale tau and sigma_tau alike and are omitted.
 
     Args:
         tree: The tree.

@@ -36,7 +36,7 @@ def breadth_first_tree(
     contact reaches is attached to its nearest part by a virtual edge.
 
     Args:
-        graph: Contacts; bridges are left out.
+        graph: Contacts; bridges are omitted.
         root: The base link.
         centroids: Part centroids [m], shape (n, 3).
         forbidden: Pairs that must not be joined.
@@ -460,7 +460,7 @@ def _search_problem(
 
 
 def touching_pairs(graph: ContactGraph) -> Iterator[Pair]:
-    """Pairs of parts that touch; bridges are left out."""
+    """Pairs of parts that touch; bridges are omitted."""
     return ((edge.a, edge.b) for edge in graph.edges if not edge.bridge)
 
 

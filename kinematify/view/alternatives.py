@@ -42,7 +42,7 @@ class JointAlternative:
     score: float = field(default=0.0)
     """Its rank among the candidates of one joint: higher is better."""
     by_hand: bool = False
-    """It was set on the page, and its type is meant as it stands: `continuous` turns without end."""
+    """It was set on the page, and its type is meant as it is: `continuous` turns without end."""
     limits: tuple[float, float] | None = None
     """Lower and upper limit along `axis` [rad or m] where they were set."""
 

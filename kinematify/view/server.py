@@ -262,7 +262,7 @@ class ModelViewer:
         self._panel.end_by_hand()
 
     def change_kind(self) -> None:
-        """Begin the range of another type anew: a quarter turn, or half of the model's size."""
+        """Begin the range of another type again: a quarter turn, or half of the model's size."""
         with self._lock:
             if self._gizmo is not None:
                 kind = self._panel.hand_kind
@@ -302,7 +302,7 @@ class ModelViewer:
             self._try(self._chosen, alternative)
 
     def keep(self) -> Kept | None:
-        """Write the model with the joint as it is tried, and show it anew; None if it could not be written."""
+        """Write the model with the joint as it is tried, and show it again; None if it could not be written."""
         assert self._open_folder is not None
         self._folder = self._folder or self._open_folder()
         with self._lock:
@@ -313,7 +313,7 @@ class ModelViewer:
         return self._written(partial(self._folder.keep, joint.child, tried))
 
     def regroup(self, change: Callable[[ModelFolder], Kept]) -> Kept | None:
-        """Merge or split parts, infer again, and show the model anew; None if it could not be written."""
+        """Merge or split parts, infer again, and show the model again; None if it could not be written."""
         assert self._open_folder is not None
         folder = self._folder = self._folder or self._open_folder()
         return self._written(lambda: change(folder))

@@ -50,7 +50,7 @@ def chosen_candidate(joint: JointEstimate) -> JointCandidate | None:
 
 
 def look_alike(one: JointCandidate, other: JointCandidate, size: float, config: VisionConfig) -> bool:
-    """Whether two candidates of a part of this diagonal [m] cannot be told apart in a picture."""
+    """Whether two candidates of a part of this diagonal [m] cannot be distinguished in a picture."""
     if one.kind.turns != other.kind.turns:
         return False
     if abs(float(one.axis @ other.axis)) < np.cos(np.radians(config.same_axis_deg)):

@@ -40,7 +40,7 @@ KnownQuestion: TypeAlias = "tuple[JointQuestion, frozenset[str]]"
 def screening_questions(config: Config) -> Iterator[KnownQuestion]:
     """Questions of which the right answers are known: about the largest moving part of each object.
 
-    Objects whose joint is not among the options are left out.
+    Objects whose joint is not among the options are omitted.
 
     Args:
         config: All stages; objects are inferred with it.

@@ -199,7 +199,7 @@ def test_obj_polygons_and_indices_that_count_back(tmp_path: Path) -> None:
     assert [part.bounds[0, 2] for part in loaded.parts] == [0.0, 5.0]
 
 
-def test_collada_nodes_are_parts_and_its_up_axis_and_unit_are_heeded(tmp_path: Path) -> None:
+def test_collada_nodes_are_parts_and_its_up_axis_and_unit_are_respected(tmp_path: Path) -> None:
     corners = box().vertices.reshape(-1).tolist()
     faces = box().faces.reshape(-1).tolist()
     pieces = "".join(

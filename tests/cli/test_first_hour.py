@@ -46,6 +46,6 @@ def test_the_first_hour(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
         else:
             assert run(words) == 0, line
     joints = read_robot(tmp_path / "out" / "first" / "model.urdf").joint_by_name
-    assert joints["knob_joint"].kind is JointType.FIXED, "the hint was heeded"
+    assert joints["knob_joint"].kind is JointType.FIXED, "the hint was respected"
     (program,) = re.findall(r"^```python\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
     exec(program, {})

@@ -117,8 +117,8 @@ LYING = """<robot name="stack">{links}
 </robot>"""
 
 
-@pytest.mark.parametrize(("height", "heeded"), [(3.0, True), (1.0, False)])
-def test_collada_up_axis_is_heeded_where_links_meet_only_then(tmp_path: Path, height: float, heeded: bool) -> None:
+@pytest.mark.parametrize(("height", "respected"), [(3.0, True), (1.0, False)])
+def test_collada_up_axis_is_respected_only_where_links_meet(tmp_path: Path, height: float, respected: bool) -> None:
     text = trimesh.creation.box(bounds=[[0, 0, 0], [1, 3, 1]]).export(file_type="dae").decode()
     assert "<up_axis>Y_UP</up_axis>" in text
     (tmp_path / "m.dae").write_text(text)
@@ -126,11 +126,11 @@ def test_collada_up_axis_is_heeded_where_links_meet_only_then(tmp_path: Path, he
     (tmp_path / "stack.urdf").write_text(LYING.format(links=links, height=height))
     robot = read_robot(tmp_path / "stack.urdf")
     assert robot.up_axis is not None
-    assert robot.up_axis.heeded is heeded
+    assert robot.up_axis.respected is respected
     first = robot.links[0].meshes[0].vertices
-    expected = [[0, -1, 0], [1, 0, 3]] if heeded else [[0, 0, 0], [1, 3, 1]]
+    expected = [[0, -1, 0], [1, 0, 3]] if respected else [[0, 0, 0], [1, 3, 1]]
     np.testing.assert_allclose([first.min(axis=0), first.max(axis=0)], expected, atol=1e-6)
-    assert any("up axis" in note for note in robot.notes) is heeded
+    assert any("up axis" in note for note in robot.notes) is respected
 
 
 def test_collada_axes_agree_with_pinocchio(tmp_path: Path) -> None:

@@ -39,7 +39,7 @@ class Extent:
 
 
 def extents_of(robot: Robot) -> dict[str, Extent]:
-    """Measure the room of every link, keyed by link; links without geometry are left out."""
+    """Measure the room of every link, keyed by link; links without geometry are omitted."""
     found = {}
     poses = forward_kinematics(robot, {})
     for link in robot.links:

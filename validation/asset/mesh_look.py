@@ -72,7 +72,7 @@ class MeshContext:
 
     @cached_property
     def extents(self) -> dict[str, Extent]:
-        """The room that each link takes, keyed by link; links without geometry are left out."""
+        """The room that each link takes, keyed by link; links without geometry are omitted."""
         return extents_of(self.model)
 
     @cached_property

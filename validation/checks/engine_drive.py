@@ -256,7 +256,7 @@ def _surfaces(context: EngineContext, driven: Driven, pair: tuple[str, str], *, 
 
 
 def _buried(context: EngineContext, index: int) -> bool:
-    """Whether a pair is in each other at rest already, as shapes are that stand for a joint roughly."""
+    """Whether a pair is in each other at rest already, as shapes are that represent a joint roughly."""
     sweep = context.drives.sweep
     return bool(sweep.at_rest[index] > sweep.tolerance)
 
@@ -274,7 +274,7 @@ def _severity(context: EngineContext, index: int, *, certain: bool) -> Severity:
 
 
 def _blocking_pair(context: EngineContext, driven: Driven) -> int | None:
-    """Return the pair of the sweep that stops a joint: the deepest where it stands, else the deepest ahead of it."""
+    """Return the pair of the sweep that stops a joint: the deepest where it is, else the deepest ahead of it."""
     parted = context.separates(driven.drive.leader)
     if not parted.any():
         return None

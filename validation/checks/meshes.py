@@ -256,16 +256,16 @@ def stated_units(result: OpenCheck, look: MeshContext) -> None:
     collada = [file for file in look.files if file.path.suffix.lower() == ".dae"]
     lying = [file for file in collada if file.mesh is not None and file.mesh.up]
     reading = look.model.up_axis
-    if reading is not None and reading.heeded:
+    if reading is not None and reading.respected:
         result.find(
             f"{len(lying)} COLLADA meshes, such as {lying[0].called}, state an up axis other than z, and the links "
             f"meet only if it is applied: gaps of {reading.gap_ignored * 1e3:.3g} mm on average close to "
-            f"{reading.gap_heeded * 1e3:.3g} mm. It is applied here; RViz and others ignore it.",
+            f"{reading.gap_respected * 1e3:.3g} mm. It is applied here; RViz and others ignore it.",
             "Export these meshes with z up.",
             link=lying[0].first.link,
             line=lying[0].first.line,
             value=reading.gap_ignored,
-            limit=reading.gap_heeded,
+            limit=reading.gap_respected,
             unit="m",
         )
     elif collada:

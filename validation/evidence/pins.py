@@ -35,7 +35,7 @@ class SharedPin:
 def shared_pins(bodies: Bodies, robot: Robot) -> Iterator[SharedPin]:
     """Find pins between bodies that are no neighbours in the tree and that its motion pulls apart.
 
-    Mimic joints that keep a linkage closed keep its pins closed, too; these are left out.
+    Mimic joints that keep a linkage closed keep its pins closed, too; these are omitted.
 
     Args:
         bodies: The model at rest, with what bears on what.

@@ -53,7 +53,7 @@ def line_chart(
         axes: Their words.
         width: Of the drawing [px].
         height: Of the drawing [px].
-        legend: Whether the lines are told apart.
+        legend: Whether the lines are distinguished.
     """
     points = [point for line in series for point in line.points]
     if not points:
@@ -83,7 +83,7 @@ def line_chart(
 
 
 def sparkline(values: Sequence[Point], *, width: int = 90, height: int = 22) -> str:
-    """Return a small line without axes; the numbers stand beside it."""
+    """Return a small line without axes; the numbers are beside it."""
     if not values:
         return ""
     x, _, _ = _scale([p[0] for p in values], 3, width - 3)

@@ -153,7 +153,7 @@ def shown_model(robot: Robot) -> KinematicModel:
 
 
 def _link(standing: _Standing, group: RigidGroup) -> ModelLink:
-    # A link without shape still carries others: a triangle of no area at its origin stands for it.
+    # A link without shape still carries others: a triangle of no area at its origin represents it.
     vertices: list[FloatArray] = [np.tile(standing.place(group.top), (3, 1))]
     faces: list[IntArray] = [np.array([[0, 1, 2]])]
     looks: list[Appearance | None] = [None]

@@ -129,7 +129,7 @@ class GeometryContext:
 
     @cached_property
     def late(self) -> str | None:
-        """Which joints were left out."""
+        """Which joints were omitted."""
         left = [travel.joint for travel in self.scene.travels[len(self.sweeps) :]]
         return not_finished(f"time ran out before {len(left)} joints: {', '.join(left)}") if left else None
 
@@ -208,7 +208,7 @@ class GeometryContext:
 
     @cached_property
     def pairs_of_joints(self) -> tuple[list[JointPair], int]:
-        """Pairs of joints that bring bodies together which neither of them alone does, and how many were left out."""
+        """Pairs of joints that bring bodies together which neither of them alone does, and how many were omitted."""
         alone = [frozenset(m.pair for side in sweep.sides for m in side.meetings) for sweep in self.sweeps]
         return joint_pairs(self.scene, self.overlap, self.allowance, alone, self.in_time)
 

@@ -1,7 +1,7 @@
 """What the declared surfaces say of a way on which convex pieces collide.
 
 Pieces close what is narrower than their tolerance: a lever in a slit of a millimetre of play is stopped by pieces that
-stand for no surface at all, and as deep as the wall is thick.
+represent no surface at all, and as deep as the wall is thick.
 """
 
 from __future__ import annotations

@@ -133,7 +133,7 @@ def _symmetries(scene: Scene, boxes: list[FloatArray], first: _Part, second: _Pa
             continue
         turned = np.count_nonzero(sign < 0.0) == 2
         if first.parent == second.parent:
-            # What is turned by half a turn takes its parent with it; what is mirrored or repeated stands beside.
+            # What is turned by half a turn takes its parent with it; what is mirrored or repeated is beside.
             off = _mapped(boxes[first.parent].mean(axis=0), sign, first, second) - boxes[first.parent].mean(axis=0)
             agrees = not turned or np.abs(off).max() <= 2.0 * same
         else:

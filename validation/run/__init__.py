@@ -81,7 +81,7 @@ def validate(
         suppressions: Findings that do not count.
         task: What a robot is to do with the object (KV7xx); without one these checks are not in the report.
         workers: Processes at a time; as many as there are cores if absent.
-        progress: Told the stage that ended and the fraction done.
+        progress: Called with the stage that ended and the fraction done.
 
     Returns:
         The report; after an interrupt a partial one that says so.
@@ -118,7 +118,7 @@ _GUARDS = frozenset(check for check in CHECKS if check.startswith("KV1"))
 """Checks of file and meshes: they always run, and their errors always count, since nothing else can run after one."""
 _MESH_GUARDS = frozenset(check for check in _GUARDS if check.startswith("KV15"))
 _LAST_GUARD = "KV152"
-"""Told when every mesh file has been opened and read."""
+"""Called when every mesh file has been opened and read."""
 
 
 _DOUBTS = frozenset(name for name, check in CHECKS.items() if check.doubts)

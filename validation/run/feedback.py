@@ -1,7 +1,7 @@
 """From findings to feedback: which decision each failure blames, as plain data (design section 5).
 
 A failure seldom proves anything. Each signal carries a weight in log odds, the unit in which the inference adds up its
-own evidence (`failure_rates` measures it), and the search decides. Failures that are not the search's to mend are
+own evidence (`failure_rates` measures it), and the search decides. Failures that are not the search's to fix are
 listed with the reason, so that nothing is dropped in silence; above all, no collision is ever switched off.
 
 Which row of the table (`FeedbackRow`) a finding belongs to stands at its check, here stands what each row does;
@@ -102,7 +102,7 @@ class Allowance:
 
 @dataclass(frozen=True, kw_only=True)
 class UnfixableFinding:
-    """A failure that no choice of the search can mend, and who can."""
+    """A failure that no choice of the search can fix, and who can."""
 
     check: str
     joint: str | None
@@ -126,7 +126,7 @@ class Feedback:
         return bool(self.edges or self.lines or self.types or self.ranges)
 
     def against(self, child: str) -> float:
-        """Log odds against the joint of a part, parent left out.
+        """Log odds against the joint of a part, parent omitted.
 
         Of each check its worst finding counts, once; what two engines find of a joint is one failure.
         """

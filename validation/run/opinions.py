@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def evidence_before_blame(results: Sequence[CheckResult]) -> list[CheckResult]:
     """Return the results with the opinions about each joint as one note, unless an error of fact is about that joint.
 
-    Of a joint whose line a fact doubts, the opinions about its line are left out: the fact names the better one.
+    Of a joint whose line a fact doubts, the opinions about its line are omitted: the fact names the better one.
 
     Args:
         results: Of all checks of a run.

@@ -33,7 +33,7 @@ def asset_stage() -> Stage:
 
 
 def later_stages(chosen: Sequence[str]) -> list[Stage]:
-    """Everything that moves the model, the longest first; engines that were not chosen are left out."""
+    """Everything that moves the model, the longest first; engines that were not chosen are omitted."""
     stages = [
         Stage(name="prepare", run=prepare.run, checks=(), imports=("kinematify.simulation.prepared",)),
         Stage(

@@ -35,7 +35,7 @@ class ValidationReport:
     pairs: PairTable | None = None
     """None if the exact geometry was not looked at."""
     refinement: Mapping[str, Any] | None = None
-    """Rounds of `kinematify refine`, where their record stands beside the model."""
+    """Rounds of `kinematify refine`, where their record is beside the model."""
     environment: Mapping[str, Any] = field(default_factory=dict)
     """Versions, seed, settings, seconds, and ``interrupted`` if it is partial."""
 

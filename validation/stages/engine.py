@@ -26,7 +26,7 @@ def run(request: StageRequest, recorder: Recorder, *, engine: str) -> None:
 
     Args:
         request: Of the run; `prepared.urdf` is read from its folder.
-        recorder: Told the results.
+        recorder: Called with the results.
         engine: Of `ENGINES`.
     """
     from kinematify.validation.engine_context import EngineContext

@@ -1,6 +1,6 @@
 """The stage `geometry`: collision at rest and along the motion by exact geometry, without an engine (KV30x to KV33x).
 
-Where time runs out, the checks say what they left out.
+Where time runs out, the checks say what they omitted.
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ def precheck(request: StageRequest, recorder: Recorder) -> bool:
 
     Args:
         request: Names the document, where packages lie, and the caps.
-        recorder: Told the checks KV101 to KV144; after an error of the text itself only those that could still run.
+        recorder: Called with the checks KV101 to KV144; after an error of the text itself only those that could run.
 
     Raises:
         DescriptionError: The file is missing, cannot be opened, or is something else than a URDF.

@@ -241,7 +241,7 @@ class PullTask:
         )  # fmt: skip
 
     def tell_successes(self, result: OpenCheck) -> None:
-        """Add how far the joints open, and where the robot stands for it."""
+        """Add how far the joints open, and where the robot represents it."""
         for plan in self.plans:
             result.measured[f"{plan.joint} opened"] = plan.fraction
             result.measured[f"{plan.joint} seconds"] = plan.seconds

@@ -102,7 +102,7 @@ def run_night(request: NightRequest, progress: Progress) -> NightResult:
 
     Args:
         request: What to run.
-        progress: Told what has just ended and the fraction done in [0, 1].
+        progress: Called with what has just ended and the fraction done in [0, 1].
 
     Raises:
         InputError: Another night is running; a night of a newer version is there; there is no such baseline, data or

@@ -129,7 +129,7 @@ def validation_scenario(
 
 
 def digest(facts: Any) -> str:
-    """Twelve characters that stand for plain values."""
+    """Twelve characters that represent plain values."""
     return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:12]
 
 

@@ -304,7 +304,7 @@ def _left(file: Path) -> State | None:
     try:
         return State(**json.loads(file.read_text(encoding="utf-8")))
     except (OSError, ValueError, TypeError):
-        return None  # there is none, or an older version left it: begin anew, finished runs are kept by their keys
+        return None  # there is none, or an older version left it: begin again, finished runs are kept by their keys
 
 
 def _begun(plan: str, taken: Collection[str]) -> State:

@@ -125,10 +125,10 @@ def kept(validation: NightValidation, report: ValidationReport, seconds: float, 
     """Return what a night keeps of a report: what is wrong, what did not run, and counts.
 
     Args:
-        validation: That was asked for; checks of other engines are left out.
+        validation: That was asked for; checks of other engines are omitted.
         report: Of the model.
         seconds: That it took.
-        selected: Checks that were asked for; others are left out.
+        selected: Checks that were asked for; others are omitted.
     """
     asked = [check for check in report.checks if check.check in selected]
     checks = [check for check in asked if check.engine is None or check.engine in validation.engines]
@@ -169,7 +169,7 @@ def check_key(item: CheckResult | Finding) -> str:
 
 
 def _problems(checks: Sequence[CheckResult]) -> tuple[Problem, ...]:
-    """Errors and warnings; where a check says the same of one place twice, a number tells the two apart."""
+    """Errors and warnings; where a check says the same of one place twice, a number distinguishes the two."""
     seen: dict[str, int] = defaultdict(int)
     problems = []
     for check in checks:

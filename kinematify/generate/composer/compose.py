@@ -455,7 +455,7 @@ def _corners(area: Bay, count: int) -> list[Bay]:
     half = min(0.05, area.height / _TURNING, 2.0 * area.width / (_TURNING * max(across, 2)))
     inset = 1.5 * half
     xs = np.linspace(area.left + inset, area.right - inset, across) if across > 1 else np.zeros(1)
-    # An odd one is left out behind, where the others then stand between those in front.
+    # An odd one is missing behind, where the others then stand between those in front.
     behind = xs if count % 2 == 0 else 0.5 * (xs[1:] + xs[:-1])
     spots = [(float(x), area.bottom + inset) for x in behind] + [(float(x), area.top - inset) for x in xs]
     if count == 1:

@@ -154,7 +154,7 @@ class ObjectBuilder:
         ajar: bool = True,
         rest: float = 0.0,
     ) -> None:
-        """Let a part turn within limits [rad]; `rest` is where it stands unless it is drawn `ajar`, which it may be."""
+        """Let a part turn within limits [rad]; `rest` is where it is unless it is drawn `ajar`, which it may be."""
         self._join("revolute", child, parent, axis, pivot, lower, upper, ajar, rest)
 
     def spin(self, child: str, parent: str, axis: Point, pivot: Point) -> None:

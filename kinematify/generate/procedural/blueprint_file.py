@@ -115,7 +115,7 @@ class _Placed(_Described):
     """How often it stands there."""
 
     def solid(self, counts: Mapping[str, int]) -> Manifold:
-        """The primitive where it stands, as often as `counts` say that are only named."""
+        """The primitive where it is, as often as `counts` say that are only named."""
         solid = self.upright().transform(np.column_stack([rotation_from_rpy(np.array(self.rpy)), self.xyz]))
         if self.repeated is not None:
             solid = union(*(solid.transform(placed) for placed in self.repeated.transforms(counts)))
@@ -138,7 +138,7 @@ class _Round(_Placed):
     axis: Literal["x", "y", "z"] = "z"
     """Before it is turned by `rpy`."""
     sides: int = Field(SEGMENTS, ge=3, le=256)
-    """Of the polygon that stands for a circle."""
+    """Of the polygon that represents a circle."""
 
     def upright(self) -> Manifold:
         """See `_Placed`."""

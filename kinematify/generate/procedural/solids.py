@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 SEGMENTS = 48
-"""Sides of the polygon that stands for a circle."""
+"""Sides of the polygon that represents a circle."""
 
 Point: TypeAlias = "Sequence[float] | FloatArray"
 """x, y, z [m]."""

@@ -95,7 +95,7 @@ _MOVING = {JointType.REVOLUTE: "hinges", JointType.PRISMATIC: "slides"}
 class Workshop:
     """Collects bodies and joints; the first body is the base link, every other one is hung on an earlier one.
 
-    Everything is built closed, at zero; `rest` values say where it stands when it is shown. Seen `from_frame`, the same
+    Everything is built closed, at zero; `rest` values say where it is when it is shown. Seen `from_frame`, the same
     workshop takes everything in the coordinates of that frame.
     """
 

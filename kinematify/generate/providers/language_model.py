@@ -124,7 +124,7 @@ class LanguageModel:
             prompt: What to build.
             job: Folder and state of this request.
             known: Names of all kinds of object.
-            progress: Told what is being done.
+            progress: Called with what is being done.
 
         Raises:
             InputError: The key or the request is not accepted.
@@ -168,7 +168,7 @@ class LanguageModel:
             job: Folder and state of this request.
             judge: Says what is wrong with what was built and what is missing, a sentence each; nothing if it is well.
                 It is given the blueprint and which parts the model names for which phrase of the user.
-            progress: Told what is being done and the share that is done.
+            progress: Called with what is being done and the share that is done.
             examples: Blueprints of the library, shown to the model.
             spent: Tokens that were spent on the request already.
 

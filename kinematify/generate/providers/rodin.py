@@ -166,7 +166,7 @@ class _RodinRun:
             pause = min(2.0 * pause, self.settings.longest_pause)
 
     def _fetch(self, out: Path) -> None:
-        """Fetch all files; links are asked for anew when they have expired."""
+        """Fetch all files; links are asked for again when they have expired."""
         self._tell(_FILES, "fetching the parts", 0.0)
         for _ in range(self.settings.tries):
             listed = self._listed()

@@ -156,7 +156,7 @@ class PartSource(Protocol):
         Args:
             prompt: What to build.
             job: Folder and state of this request; everything that is made stays in it.
-            progress: Told what is being done and the share that is done.
+            progress: Called with what is being done and the share that is done.
 
         Raises:
             InputError: The request, the key or the credit is not accepted.

@@ -201,7 +201,7 @@ def _turned_lines(
 ) -> list[BearingLine]:
     """Axes of wheels and discs: a part that is round as a whole turns about its own axis.
 
-    The other part often models no bearing at all (a wheel in its well). Long round parts are left out: a rod hinged
+    The other part often models no bearing at all (a wheel in its well). Long round parts are omitted: a rod hinged
     at its end is round about the wrong line.
     """
     lines = []
@@ -301,7 +301,7 @@ def _running_along(lines: Lines, directions: FloatArray) -> BoolArray:
 def normal_pair_lines(side: BearingSide, count: int, rng: np.random.Generator) -> Lines:
     """Axes of the cylinders through `count` random pairs of samples.
 
-    Each runs along n1 x n2, through the point where the normals meet. Nearly parallel pairs are left out.
+    Each runs along n1 x n2, through the point where the normals meet. Nearly parallel pairs are omitted.
     """
     if len(side.weights) < 2:
         return NO_LINES

@@ -1,7 +1,7 @@
 """Does it turn, slide or not move at all? Log odds from physical cues, each bounded; turning is the default.
 
 The paper compares averages of DW-CAVL over a motion range (section III-D, type verification); these are nearly equal
-for doors and drawers. What tells them apart is shape and room: boxes in a cavity slide, plates hinge, round things
+for doors and drawers. What distinguishes them is shape and room: boxes in a cavity slide, plates hinge, round things
 with a bearing turn, small caps are pressed, and what can only move along one line slides along it.
 """
 

@@ -222,7 +222,7 @@ def _can_turn(ratio: float, turn: float, free: FloatArray, config: JointsConfig)
 
 
 def _square_turns(scene: JointScene, axis: FloatArray, config: JointsConfig) -> tuple[list[float], bool]:
-    """Signed angles [rad] by which a panel turns to get square to its body; and whether it is so as it stands."""
+    """Signed angles [rad] by which a panel turns to get square to its body; and whether it is so as it is."""
     normal = scene.frame.axes[scene.frame.thin]
     turns: list[float] = []
     for face in scene.parent_frame.axes:

@@ -1,7 +1,7 @@
 """The two small networks of the fitted choice, evaluated in numpy; what fitted them is not needed.
 
 The first reads what is measured of all hypotheses of an edge at once. Each is embedded on its own; the mean and the
-greatest of what all of them say stand beside it when it is scored (deep sets, Zaheer et al. 2017). It is asked twice,
+greatest of what all of them say is beside it when it is scored (deep sets, Zaheer et al. 2017). It is asked twice,
 with what the weighted cues say and without, and several networks that began elsewhere are averaged, all in log
 probability.
 

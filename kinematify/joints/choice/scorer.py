@@ -92,7 +92,7 @@ class Scorer:
     value: FloatArray
     """Of leaves, shape (trees, nodes)."""
     temperature: float
-    """Scores are divided by it, so that probabilities hold on what was left out."""
+    """Scores are divided by it, so that probabilities hold on held-out objects."""
     provenance: Mapping[str, Any]
     network: Network | None = None
     """Asked beside the trees which hypothesis is right; without it, trees answer alone."""

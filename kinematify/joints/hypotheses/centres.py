@@ -1,4 +1,4 @@
-"""Lines through the centres of a part: where it stands in its parent or touches it, and its own centroid.
+"""Lines through the centres of a part: where it is in its parent or touches it, and its own centroid.
 
 They are for joints that show no hardware and lie on no edge of a box: limbs that end in a ball, levers, propellers,
 heads on a stalk. The box of a round or tilted part says nothing of its joint, so the directions are also those of its

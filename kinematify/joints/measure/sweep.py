@@ -55,7 +55,7 @@ class Sweep:
 
 
 def moving_points(cache: PartCache, part: int, config: SweepConfig) -> FloatArray:
-    """Points that stand for a part in a sweep: its samples, drawn towards their mean by `config.shrink`."""
+    """Points that represent a part in a sweep: its samples, drawn towards their mean by `config.shrink`."""
     points = cache.samples(part).points
     stride = max(1, len(points) // config.points)
     chosen = points[::stride]

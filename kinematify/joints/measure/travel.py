@@ -180,7 +180,7 @@ def _is_runner(scene: JointScene, axis: FloatArray, free: FloatArray, length: fl
 
 
 def _standing_out(scene: JointScene, direction: FloatArray) -> float:
-    """How far the front of a drawer stands before the body, its own handle left out [m]; 0 if it does not.
+    """How far the front of a drawer stands before the body, without its own handle [m]; 0 if it does not.
 
     What leaves upwards is a lid: it lies where it is put, and would fall in if it could go lower.
     """

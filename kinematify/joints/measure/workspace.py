@@ -38,7 +38,7 @@ class ContactView:
     normals: FloatArray
     """Unit normals of the child there, shape (n, 3)."""
     weights: FloatArray
-    """Contact area that each sample stands for, normalised to sum 1, shape (n,)."""
+    """Contact area that each sample represents, normalised to sum 1, shape (n,)."""
     parent_points: FloatArray
     """Samples of the parent near the child, world frame [m], shape (m, 3)."""
     parent_normals: FloatArray

@@ -34,7 +34,7 @@ _SYNONYMS = (
     {"lever", "handle"}, {"flap", "tailgate", "door"}, {"shade", "head"}, {"button", "key"}, {"barrel", "drum"},
     {"screen", "lid", "display"}, {"shelf", "board"}, {"jaw", "finger"}, {"pedal", "foot_pedal"}, {"rack", "basket"},
 )  # fmt: skip
-"""Words of which one may stand for another, whatever object it is."""
+"""Words of which one may represent another, whatever object it is."""
 _OF_ANY_OBJECT = frozenset({
     "base", "body", "frame", "top", "front", "back", "side", "bottom", "edge", "inside", "surface", "middle", "end",
     "corner", "interior", "outside", "wall", "floor", "ceiling", "table", "ground", "it", "place", "height", "size",

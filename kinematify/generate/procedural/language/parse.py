@@ -114,7 +114,7 @@ def parse(
         sentence: English.
         kinds: The names of all kinds of object, singular, as words.
         mechanisms: Nouns of what may be named before the object that carries it: `a turntable on a table`.
-        harmless: What was left out of it already, see `Specification.harmless`.
+        harmless: What was omitted of it already, see `Specification.harmless`.
 
     Raises:
         InputError: It is empty, too long, no English, or names no kind of object that is known.

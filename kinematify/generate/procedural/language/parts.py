@@ -55,7 +55,7 @@ class PartRequirement:
     """What is asked of the parts of one name."""
 
     nouns: tuple[str, ...]
-    """Names of parts without their numbers, any of them; one word stands for the end of a longer name."""
+    """Names of parts without their numbers, any of them; one word represents the end of a longer name."""
     words: str
     """As it was said."""
     place: str = ""

@@ -38,7 +38,7 @@ class PartSpecification:
 
     @property
     def absent(self) -> bool:
-        """It is to be left out: `without a handle`."""
+        """It is to be omitted: `without a handle`."""
         return self.count == 0
 
     def __str__(self) -> str:

@@ -173,7 +173,7 @@ def without_purposes(sentence: str, asking: frozenset[str]) -> tuple[str, tuple[
         asking: Nouns, singular, that ask for something to be built: `for a sliding drawer` stays.
 
     Returns:
-        What is left, and what was left out, which asks for no shape and no motion: it has no number and none of these.
+        What is left, and what was omitted, which asks for no shape and no motion: it has no number and none of these.
     """
     found = [match for match in _PURPOSE.finditer(sentence) if not _asks(match[0], asking) and match.start() > 0]
     found += [match for match in _MANNER.finditer(sentence) if not any(_overlap(match, other) for other in found)]
@@ -191,7 +191,7 @@ def without_rough_sizes(sentence: str, parts: frozenset[str]) -> tuple[str, tupl
         parts: Nouns, singular, of parts.
 
     Returns:
-        What is left, and what was left out with the noun that it was said of; sizes of the whole stay.
+        What is left, and what was omitted with the noun that it was said of; sizes of the whole stay.
     """
     whole, having, rest = _HAVING.split(sentence, maxsplit=1) if _HAVING.search(sentence) else (sentence, "", "")
     found = [item for item in _ROUGH_PART.finditer(rest) if singular(item["noun"].lower(), parts) in parts]

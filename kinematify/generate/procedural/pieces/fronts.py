@@ -174,9 +174,9 @@ def add_door(
         name: Of the door.
         parent: The body that carries it; a barrel hinge leaves its other half there.
         opening: What the door covers.
-        fitting: Gaps, handle and where it stands.
+        fitting: Gaps, handle and where it is.
         side: ``left`` or ``right``.
-        outermost: True if nothing stands beside the hinge; then the door may turn about its inner edge.
+        outermost: True if nothing is beside the hinge; then the door may turn about its inner edge.
         hinge: ``edge`` (nothing to be seen) or ``barrel``.
     """
     clearance = fitting.clearance
