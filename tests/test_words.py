@@ -24,7 +24,7 @@ INSTEAD = {
     "mended": "fixed",
     "mending": "fixing",
     "heed": "apply, respect",
-    "respected": "applied, respected",
+    "heeded": "applied, respected",
     "heeds": "applies, respects",
     "anew": "again; retrain",
     "left out": "held-out; omitted",
