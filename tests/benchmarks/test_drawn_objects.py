@@ -30,16 +30,32 @@ def carried(blueprint, name):
     return found
 
 
+def chained(blueprint):
+    """Parts that loop joints hold, with all that carries them: none of them moves alone."""
+    above = {joint.child: joint.parent for joint in blueprint.joints}
+    found = set()
+    for loop in blueprint.loops:
+        links = loop.one, loop.other
+        while links := tuple(name for name in links if name in above):
+            found.update(links)
+            links = tuple(above[name] for name in links)
+    return found
+
+
 def blocked(blueprint):
-    """Pairs of a moving part and another one that share more room somewhere on the way than at the start."""
+    """Pairs of a moving part and another one that share more room somewhere on the way than at the start.
+
+    Two parts of a closed chain are no such pair: the chain moves as one, and its joints cannot be moved singly.
+    """
     solids = {part.name: solid_of(part) for part in blueprint.parts}
+    chain = chained(blueprint)
     found = set()
     for joint in blueprint.joints:
         moving = carried(blueprint, joint.child)
         body = Manifold.batch_boolean([solids[name] for name in sorted(moving)], OpType.Add)
         values = np.linspace(max(joint.lower, -np.pi), min(joint.upper, np.pi), 6)
         moved = [body.transform(joint.motion(float(value))[:3]) for value in values]
-        for name in set(solids) - moving:
+        for name in set(solids) - moving - (chain if joint.child in chain else set()):
             other = solids[name]
             shared = (body ^ other).volume() + _MORE * min(body.volume(), other.volume())
             if any((placed ^ other).volume() > shared for placed in moved):
