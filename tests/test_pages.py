@@ -39,6 +39,10 @@ _URDF = """<robot name="door">
 </robot>"""
 
 
+_COLORS = {name: np.array([0.2, 0.4, 0.8]) for name in ("frame", "door", "latch")}
+"""Of the bodies of the door, sRGB."""
+
+
 @pytest.fixture(scope="module", autouse=True)
 def _known_checks() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
@@ -50,7 +54,7 @@ def _known_checks() -> Iterator[None]:
 def report_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("page")
     (folder / "door.urdf").write_text(_URDF)
-    scene = view_data(read_robot(folder / "door.urdf", geometry="shown"), faces=1000)
+    scene = view_data(read_robot(folder / "door.urdf", geometry="shown"), faces=1000, colors=_COLORS)
     way = tuple(0.1 * k for k in range(16))
     curves = tuple(
         JointCurve(joint="hinge_1", engine=engine, upper=True, commanded=way, reached=way, force=way, depth=way)
@@ -207,7 +211,7 @@ def test_night_and_trend_pages(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["</script><script>document.title='x'</script>", '"><img src=x onerror=alert(1)>'])
 def test_names_cannot_break_out_of_the_viewer(tmp_path: Path, name: str) -> None:
     (tmp_path / "door.urdf").write_text(_URDF)
-    scene = view_data(read_robot(tmp_path / "door.urdf", geometry="shown"), faces=1000)
+    scene = view_data(read_robot(tmp_path / "door.urdf", geometry="shown"), faces=1000, colors=_COLORS)
     assert scene is not None
     scene["joints"][0]["name"] = name
     page = tmp_path / "report.html"

@@ -146,8 +146,8 @@ def test_copies_take_along_what_they_carry() -> None:
 @pytest.mark.parametrize(
     ("sentence", "stem", "number"),
     [
-        ("a drone with six propellers", "rotor", 6),
-        ("a ferris wheel with eight cabins", "gondola", 8),
+        ("a drone with six propellers", "propeller", 6),
+        ("a ferris wheel with eight cabins", "cabin", 8),
         ("a wheelbarrow with two wheels", "wheel", 2),
         ("a two wheeled wheelbarrow", "wheel", 2),
         ("an iv stand with four casters and two hooks", "caster", 4),

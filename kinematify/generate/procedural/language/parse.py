@@ -564,7 +564,8 @@ class _Parser(Words):
             how = "each" if self.given(k + 1) in ("each", "every") else self.given(k)
             self.claim(self.current, "relation", (how, noun), *range(k, end))
             counted = any(claim.about == "count" for claim in target.claims)
-            if counted and noun.split()[-1] not in PLACES and lemma(self.given(k - 1)) not in _GROUPS:
+            in_grid = k > 0 and self.tokens[k - 1].number is not None  # three by two drawers
+            if counted and not in_grid and noun.split()[-1] not in PLACES and lemma(self.given(k - 1)) not in _GROUPS:
                 self.parts.append(target)
         else:
             self.current.claims += target.claims
