@@ -267,9 +267,7 @@ class _Compared:
             self.held.update(said.at)
         elif said is not None:
             words, at = f"{said.words} {there.words}", frozenset((*said.at, there.at[-1]))
-            is_several = self.specification.tokens[there.at[-1]].given != part.noun.split()[-1]
-            counts_it = is_several or said.value == 1  # a three objective turret is one turret
-            self.missing.append(Missing(words=words, at=at, reason=built, is_sure=bool(found) and counts_it))
+            self.missing.append(Missing(words=words, at=at, reason=built, is_sure=bool(found)))
         elif _on_sides(part) and len(found) == 1:
             self._miss(f"{there.words} on each side", there.at, built)
         elif part.count is None and len(found) == 1 and not self.counted(part.noun):
