@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from kinematify.grouping.groups import Group
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.robot import Robot
+    from kinematify.robot.robot import LoopJoint, Robot
     from kinematify.view.scene import ViewScene
 
 
@@ -197,8 +197,19 @@ def declared_chains(robot: Robot) -> tuple[DrawnChain, ...]:
         DrawnChain(
             links=loop.links,
             points=loop.points,
-            axis=np.zeros(3),
+            axis=_pin_axis(robot, loop),
             told=f"{loop.links[0]} and {loop.links[1]} share a point; the loop joint {loop.name} closes the chain.",
         )
         for loop in robot.loops
     )
+
+
+def _pin_axis(robot: Robot, loop: LoopJoint) -> FloatArray:
+    """Along which the pin of a loop is drawn, frame of its first link: parallel to a joint that carries the loop."""
+    T = forward_kinematics(robot, {})
+    for link in loop.links:
+        joint = robot.joint_above.get(link)
+        if joint is not None and joint.kind.turns:
+            axis: FloatArray = T[loop.links[0]][:3, :3].T @ T[link][:3, :3] @ joint.axis
+            return axis
+    return np.zeros(3)
