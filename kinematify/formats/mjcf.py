@@ -11,6 +11,7 @@ from kinematify.formats.content import GREY, MeshFiles, body_name, shown_surface
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import quaternion_of
 from kinematify.robot.write import numbers
+from kinematify.simulation.configurations import PIN_SOLIMP, PIN_SOLREF
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,8 +22,7 @@ if TYPE_CHECKING:
     from kinematify.robot.appearance import Surface
     from kinematify.robot.robot import Joint, Link, Shape
 
-_STIFF = {"solref": "0.004 1", "solimp": "0.99 0.999 0.0001"}
-"""Of pins: MuJoCo's default lets a driven four-bar open by 0.4 % of its size, this by 0.004 % at its default step."""
+_PIN = {"solref": numbers(PIN_SOLREF), "solimp": numbers(PIN_SOLIMP)}
 _SEEN, _COLLIDES = "2", "3"  # MuJoCo's viewer shows groups 0 to 2
 
 
@@ -170,7 +170,7 @@ def _add_followers(document: _Element, content: Content) -> None:
     for loop in content.robot.loops:
         (first, second), (anchor, _) = loop.links, loop.points
         etree.SubElement(
-            equality, "connect", _STIFF, name=loop.name, body1=body_name(first), body2=body_name(second),
+            equality, "connect", _PIN, name=loop.name, body1=body_name(first), body2=body_name(second),
             anchor=numbers(anchor),
         )  # fmt: skip
     for joint in followers:

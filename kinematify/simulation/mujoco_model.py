@@ -15,7 +15,7 @@ import numpy as np
 from lxml import etree
 
 from kinematify.robot.transforms import quaternion_of
-from kinematify.simulation.configurations import GRAVITY
+from kinematify.simulation.configurations import GRAVITY, PIN_SOLIMP, PIN_SOLREF
 from kinematify.simulation.contacts import deepest
 from kinematify.simulation.engine import Measured, Refused
 
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
 _RESERVED = "world"
 """MuJoCo's name of the outside; a link of this name is loaded under another one."""
-PIN_SOLREF, PIN_SOLIMP = (0.004, 1.0), (0.99, 0.999, 1.0e-4)
-"""Of pins, as MJCF exports have them (`kinematify.formats.mjcf`)."""
 _ROWS_PER_THREAD = 150
 """Fewer rows are done before a thread has started."""
 
