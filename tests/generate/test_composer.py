@@ -269,6 +269,10 @@ def test_sides_looks_and_openness_are_as_said():
         ("knob", 2, "", "gold"),
     ]
     assert composition.rest == 0.5
+    cart = from_text("a cart with two drawers; the drawers are red").build()
+    body, *drawers = (part.color for part in cart.parts)
+    assert drawers == [COLORS["red"]] * 2
+    assert body != COLORS["red"]
     crank = compose(composition).joint_above["crank_1"]
     np.testing.assert_allclose(crank.axis, [1.0, 0.0, 0.0], atol=1e-9)
 

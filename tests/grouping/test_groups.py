@@ -15,23 +15,13 @@ from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
 from kinematify.grouping.groups import group_pieces, read_groups
 from kinematify.robot.mesh_file import RawMesh
-
-
-def box(size: tuple[float, float, float], centre: tuple[float, float, float]) -> trimesh.Trimesh:
-    return trimesh.creation.box(size, trimesh.transformations.translation_matrix(centre))
+from tests.one_mesh import box, write_bin_with_lid
 
 
 @pytest.fixture
 def bin_with_lid(tmp_path: Path) -> Path:
-    """Five boards, a lid on top with a knob, as one mesh."""
-    boards = [
-        box((0.4, 0.4, 0.02), (0, 0, 0.01)),
-        *(box((0.02, 0.4, 0.5), (side * 0.19, 0, 0.27)) for side in (-1, 1)),
-        *(box((0.36, 0.02, 0.5), (0, side * 0.19, 0.27)) for side in (-1, 1)),
-    ]
-    lid = [box((0.4, 0.4, 0.02), (0, 0, 0.532)), box((0.05, 0.05, 0.03), (0, 0, 0.557))]
     path = tmp_path / "bin.ply"
-    trimesh.util.concatenate([*boards, *lid]).export(path)
+    write_bin_with_lid(path)
     return path
 
 

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 from manifold3d import Manifold
 from trimesh.transformations import euler_matrix
 
+from kinematify.config import load_config
 from kinematify.config.validation import ValidationSettings, load_settings
 from kinematify.geometry.convex import ConvexPiece, convex_piece, surface_points
 from kinematify.geometry.cut import Concave, CutSurface, cut_worst_first, split
@@ -165,7 +166,7 @@ def test_what_was_made_up_is_recorded(machine: Path) -> None:
     assert record.link_by_name["tip"].method is Method.PRIMITIVES
     assert record.link_by_name["frame"].method is Method.NONE
     assert record.link_by_name["frame"].mass < 1e-5, "it adds nothing to the body that it is fixed to"
-    shell = 15.0 * 4.0 * np.pi * 0.05**2  # kg/m2 of wall: a solid ball of water would weigh more
+    shell = load_config().model.wall_weight * 4.0 * np.pi * 0.05**2  # a solid ball of water would weigh more
     assert record.link_by_name["arm"].mass == pytest.approx(shell, rel=0.02)
     assert not record.drives_added
 

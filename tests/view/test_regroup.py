@@ -7,32 +7,22 @@ import shlex
 from typing import TYPE_CHECKING
 
 import pytest
-import trimesh
 
 from kinematify.cli.app import run
 from kinematify.errors import InputError
 from kinematify.view.keep import ModelFolder
 from kinematify.view.record import load_alternatives
+from tests.one_mesh import write_bin_with_lid
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 
-def box(size: tuple[float, float, float], centre: tuple[float, float, float]) -> trimesh.Trimesh:
-    return trimesh.creation.box(size, trimesh.transformations.translation_matrix(centre))
-
-
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """A model of one mesh: a box of boards with a lid that has a knob; boards are one part, lid and knob another."""
-    boards = [
-        box((0.4, 0.4, 0.02), (0, 0, 0.01)),
-        *(box((0.02, 0.4, 0.5), (side * 0.19, 0, 0.27)) for side in (-1, 1)),
-        *(box((0.36, 0.02, 0.5), (0, side * 0.19, 0.27)) for side in (-1, 1)),
-    ]
-    lid = [box((0.4, 0.4, 0.02), (0, 0, 0.532)), box((0.05, 0.05, 0.03), (0, 0, 0.557))]
     mesh, groups = tmp_path / "bin.ply", tmp_path / "groups.json"
-    trimesh.util.concatenate([*boards, *lid]).export(mesh)
+    write_bin_with_lid(mesh)
     parts = [[f"piece_{k:03d}" for k in range(5)], ["piece_005", "piece_006"]]
     groups.write_text(json.dumps({"parts": [{"pieces": part} for part in parts]}), encoding="utf-8")
     words = ["infer", mesh, "-o", tmp_path / "model", "--groups", groups, "--no-preview", "--no-validation"]

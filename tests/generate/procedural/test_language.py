@@ -22,7 +22,7 @@ from tests.sentences import said_of
 
 EXACT_SHARE = 0.9
 KNOWN_WRONG = {
-    "fresh": 1, "heldout_2": 2, "heldout_6": 1, "composed": 3, "new": 1, "heldout_1": 1, "heldout_5": 1, "heldout_7": 3,
+    "heldout_2": 1, "heldout_6": 1, "composed": 3, "new": 1, "heldout_1": 1, "heldout_5": 1, "heldout_7": 3,
     "heldout_8": 1,
 }  # fmt: skip
 """Sentences of each list that build something else without a word; they only decrease. The aim is none."""
