@@ -38,7 +38,7 @@ SETS = {
     "heldout_2": "sixty of people who walk in, committed before they were tried",
     "heldout_3": "sixty more of people who walk in, committed before anything was added, tried after",
     "heldout_4": "sixty more of people who walk in, committed before the parser was opened again, tried after",
-    "heldout_5": "sixty more of people who walk in, committed after that was mended and before they were tried",
+    "heldout_5": "sixty more of people who walk in, committed after that was fixed and before they were tried",
     "heldout_6": "sixty more of people who walk in, committed before more objects were added, tried after",
     "heldout_7": "sixty written by somebody without sight of the library, committed before anything was added",
     "heldout_8": "sixty more, committed before the grammar of that day was opened",

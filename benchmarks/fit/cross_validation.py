@@ -211,7 +211,7 @@ def judge_edges_left_out(examples: Sequence[TreeExample]) -> dict[str, EdgesRow]
 
 @dataclass(frozen=True, kw_only=True)
 class OpeningRow:
-    """How well the side is told that the turns of a set open to, held out by category."""
+    """How well the side is found to which the turns of a set open, held out by category."""
 
     turns: int
     right: float

@@ -196,16 +196,16 @@ def command(
         )
         parts = grouped_parts(given, groups, settings, progress)
         settings = _weighing(settings, density, masses, parts)
-        told = _told(hints, _names(parts), base)
+        stated = _parsed(hints, _names(parts), base)
         inference = infer(parts, config=settings, base=base, progress=_share(progress, 0.0, _INFERRED))
         asking = Asking(vlm=vlm, everything=vlm_all, types_first=vlm_first, person=ask)
         inference, heard, status = with_answers(
-            inference, asking, {hint.part for hint in told}, lambda stage: progress(stage, _INFERRED)
+            inference, asking, {hint.part for hint in stated}, lambda stage: progress(stage, _INFERRED)
         )
         if rounds is not None:
             inference, failed = _refined(inference, rounds, tier, base, _share(progress, _INFERRED, _REFINED))
             status = status or failed
-        inference = _with_hints(inference, told)
+        inference = _with_hints(inference, stated)
         progress("writing the model", _REFINED)
         loaded = _written(inference, out, overwrite=force, preview=not no_preview, beside=beside)
         progress("done", 1.0)
@@ -259,7 +259,7 @@ def grouped_parts(
     return group_pieces(given, settings.grouping)
 
 
-def _told(hints: Sequence[str], parts: Sequence[str], base: str | None) -> Sequence[Hint]:
+def _parsed(hints: Sequence[str], parts: Sequence[str], base: str | None) -> Sequence[Hint]:
     if not hints:  # refinement takes a quarter of a second to load
         return ()
     from kinematify.refinement.hints import parse_hints
@@ -267,12 +267,12 @@ def _told(hints: Sequence[str], parts: Sequence[str], base: str | None) -> Seque
     return parse_hints(hints, parts, base=base)
 
 
-def _with_hints(inference: Inference, told: Sequence[Hint]) -> Inference:
-    if not told:
+def _with_hints(inference: Inference, stated: Sequence[Hint]) -> Inference:
+    if not stated:
         return inference
     from kinematify.refinement.hints import with_hints
 
-    return with_hints(inference, told)
+    return with_hints(inference, stated)
 
 
 def _share(progress: Callable[[str, float], None], start: float, end: float) -> Callable[[str, float], None]:

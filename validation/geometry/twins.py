@@ -1,6 +1,6 @@
 """Two parts that mirror or repeat each other, and whether their joints do so too.
 
-A pair counts only where the shapes at rest and what carries them agree. A difference is told only if no symmetry of
+A pair counts only where the shapes at rest and what carries them agree. A difference counts only if no symmetry of
 the pair explains the two joints: knobs side by side may turn the same way or mirrored, doors with both hinges on the
 left repeat each other.
 """
@@ -79,12 +79,12 @@ def twins_at_odds(scene: Scene) -> Iterator[Difference]:
     boxes = [_box(scene, body) for body in range(len(scene.bodies))]
     parts = _parts(scene, boxes)
     for first, second in combinations(parts, 2):
-        told = [
+        compared = [
             (_difference(scene, first, second, sign), np.count_nonzero(sign < 0.0) == 2)
             for sign in _symmetries(scene, boxes, first, second)
         ]
-        shown = [how for how, turned in told if how and not turned]  # half a turn excuses, and accuses nobody
-        if shown and all(how is not None for how, _ in told):
+        shown = [how for how, turned in compared if how and not turned]  # half a turn explains, but shows no fault
+        if shown and all(how is not None for how, _ in compared):
             yield Difference(joints=(first.joint, second.joint), how=max(shown))
 
 

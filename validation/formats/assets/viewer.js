@@ -266,9 +266,9 @@ addEventListener('load', () => setTimeout(() => {
 document.addEventListener('click', event => {
   const button = event.target.closest && event.target.closest('button[data-show]');
   if (!button) return;
-  const viewer = viewers.find(v => v.root.dataset.scene === button.dataset.scene), told = JSON.parse(button.dataset.show);
+  const viewer = viewers.find(v => v.root.dataset.scene === button.dataset.scene), place = JSON.parse(button.dataset.show);
   if (!viewer || !viewer.gl) return;
-  viewer.show(told.q, told.links, told.joint);
+  viewer.show(place.q, place.links, place.joint);
   viewer.canvas.scrollIntoView({ block: 'center' });
   viewer.canvas.focus({ preventScroll: true });
 });
