@@ -188,12 +188,31 @@ def _with_dynamics(robot: Robot, joint: Joint, config: DynamicsConfig, *, measur
     damping = min(load.inertia / config.settling_time, left * config.opening_time / max(load.travel, 1e-9))
     if joint.effort is None or joint.velocity is None or measured:
         return _stated(joint, damping, friction)
-    needed = max(config.effort_margin * _Motor.of(load, config).effort, config.least_effort)
+    followers = ((robot.joint_by_name[name], ratio) for name, ratio in _followers(robot, joint).items())
+    chain = sum(ratio * _Motor.of(joint_load(robot, other), config).effort for other, ratio in followers)
+    needed = max(config.effort_margin * (_Motor.of(load, config).effort + chain), config.least_effort)
     fastest = max(load.travel, 1e-3) / config.shortest_time
     fitted = replace(
         joint, effort=float(f"{min(joint.effort, needed):.3g}"), velocity=float(f"{min(joint.velocity, fastest):.3g}")
     )
     return _stated(fitted, damping, friction)
+
+
+def _followers(robot: Robot, joint: Joint) -> dict[str, float]:
+    """Joints that move with one, by `<mimic>` or in a closed chain, and how far at most for each unit of its way."""
+    found: dict[str, float] = {}
+    latest = {joint.name: 1.0}
+    while latest:  # followers of followers
+        after = {}
+        for other in robot.joints:
+            if other.mimic is not None and other.mimic.joint in latest:
+                after[other.name] = latest[other.mimic.joint] * abs(other.mimic.multiplier)
+            elif other.closure is not None and other.closure.joint in latest:
+                steepest = float(np.abs(np.gradient(other.closure.values, other.closure.at)).max())
+                after[other.name] = latest[other.closure.joint] * steepest
+        latest = {name: ratio for name, ratio in after.items() if name not in found}
+        found |= latest
+    return found
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,7 +13,7 @@ import pytest
 from kinematify.config import load_config
 from kinematify.model.dynamics import joint_load, mass_matrix, moved_by_hand, with_dynamics
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.robot import Inertial, Joint, Link, Robot
+from kinematify.robot.robot import Inertial, Joint, Link, Mimic, Robot
 from kinematify.robot.write import write_robot
 
 CONFIG = load_config().dynamics
@@ -95,6 +95,18 @@ def test_light_parts_keep_their_mass() -> None:
     made = with_dynamics(lid(0.5, 0.0), CONFIG)
     assert made.links[1].inertial is not None
     assert made.links[1].inertial.mass == 0.5
+
+
+def test_what_leads_others_has_the_effort_to_move_them() -> None:
+    alone = lid(0.5, 0.0)
+    other = replace(
+        hinge("other", "base", (0.0, -1.0, 0.0), 0.0, 1.5), mimic=Mimic(joint="lid_joint", multiplier=2.0, offset=0.0)
+    )
+    both = replace(alone, links=(*alone.links, body("other", 0.5, (0.5, 0.0, 0.0))), joints=(*alone.joints, other))
+    single, leader = (with_dynamics(robot, CONFIG).joints[0].effort for robot in (alone, both))
+    assert single is not None
+    assert single < 100.0
+    assert leader == pytest.approx(min(3.0 * single, 100.0), rel=0.01), "its own load, and twice that of its follower"
 
 
 def test_machines_get_the_effort_that_they_need() -> None:

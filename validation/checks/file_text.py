@@ -127,9 +127,9 @@ def cap_problems(result: OpenCheck, urdf: Urdf) -> None:
     )
     many = [(what, count, most) for what, count, most in counts if count > most]
     if many:
-        counts = " and ".join(f"{count} {what} (at most {most})" for what, count, most in many)
+        listed = " and ".join(f"{count} {what} (at most {most})" for what, count, most in many)
         result.find(
-            f"The file has {counts}: some engines hang or crash with more.",
+            f"The file has {listed}: some engines hang or crash with more.",
             "Split the model, or merge links that fixed joints hold together.",
             value=many[0][1],
             limit=many[0][2],
