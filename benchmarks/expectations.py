@@ -43,6 +43,7 @@ SETS = {
     "heldout_7": "sixty written by somebody without sight of the library, committed before anything was added",
     "heldout_8": "sixty more, committed before the grammar of that day was opened",
     "heldout_9": "sixty more with one part unlike its sibling, committed before the grammar of that session was opened",
+    "heldout_10": "thirty more, committed after that and before they were tried",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }
