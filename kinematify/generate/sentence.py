@@ -14,7 +14,14 @@ from typing import TYPE_CHECKING, Any
 from kinematify.errors import InputError
 from kinematify.generate.procedural.language.contradictions import refuse_contradictions
 from kinematify.generate.procedural.language.motions import GOING, MOTIONS
-from kinematify.generate.procedural.language.parse import FUNCTION_WORDS, NOT_DONE, parse, unknown_object
+from kinematify.generate.procedural.language.parse import (
+    FUNCTION_WORDS,
+    MATERIAL_WORDS,
+    NOT_DONE,
+    parse,
+    unknown_object,
+)
+from kinematify.generate.procedural.language.sizes import SIZE_WORDS
 from kinematify.generate.procedural.language.words import (
     KINDS,
     PLAIN_WORDS,
@@ -24,6 +31,7 @@ from kinematify.generate.procedural.language.words import (
     without_purposes,
     without_rough_sizes,
 )
+from kinematify.generate.procedural.materials import COLOR_WORDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -52,7 +60,7 @@ _AND = re.compile(
 )
 _TOY = re.compile(r"\b(?:toy|model|miniature|dolls?(?:'s)?)\s+", re.IGNORECASE)
 _DRAWS, _NEXT_DRAW = 20, 1_000_003
-_MANNERS = frozenset({*MOTIONS, *GOING, *KINDS, *STOP_WORDS})
+_MANNERS = frozenset({*MOTIONS, *GOING, *KINDS, *STOP_WORDS, *MATERIAL_WORDS, *COLOR_WORDS, *SIZE_WORDS})
 """Words of a name without which it names an object of the same kind."""
 _SEVERAL = 400  # characters at most that may name several objects
 
@@ -234,7 +242,7 @@ def _library() -> dict[tuple[str, ...], list[Family | BodyKind]]:
     found: dict[tuple[str, ...], list[Family | BodyKind]] = {}
     families = known_families()
     variants = [(families[name], families[item.like].words) for name, item in library().items() if item.like]
-    kinds = [*families.values(), *BODIES]
+    kinds: list[Family | BodyKind] = [*families.values(), *BODIES]
     for kind, words in (*((kind, kind.words) for kind in kinds), *variants):
         for word in words:
             if " with " in word:

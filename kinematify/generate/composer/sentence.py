@@ -13,6 +13,7 @@ from kinematify.generate.composer.compose import BANDS, Composition, MechanismSp
 from kinematify.generate.composer.mechanisms import MECHANISMS, MechanismKind
 from kinematify.generate.composer.side import FACING
 from kinematify.generate.procedural.language.compare import Missing
+from kinematify.generate.procedural.language.parse import lemmas
 from kinematify.generate.procedural.language.sizes import SIZE_WORDS
 from kinematify.generate.procedural.language.words import ARTICLES, lemma
 
@@ -45,6 +46,7 @@ class Asked:
     excluded: list[MechanismKind] = field(default_factory=list)
     handles: tuple[str | None, str | None] = (None, None)
     """Material and colour of the handles of doors and drawers."""
+    of_handles: set[int] = field(default_factory=set)
     used: set[int] = field(default_factory=set)
     """Words that were taken up, and that no comparison sees."""
     dropped: list[Missing] = field(default_factory=list)
@@ -66,6 +68,7 @@ class Asked:
         plain_handles = part.noun in _HANDLES and not any(claim.about == "count" for claim in part.claims)
         if plain_handles and (part.count is None or part.of):
             self.handles = look  # those of doors and drawers, which are not counted
+            self.of_handles |= _words_of_part(part)
             return
         if self._is_detail(part) or self._are_members(part) or kind is None:
             return
@@ -218,7 +221,9 @@ def asked_composition(
     asked.take_parts()
     wanted = (*asked.wanted, *asked.granted())
     whole = specification.whole
-    if any(asked.handles) and not any(item.mechanism.has_grip for item in wanted):
+    if any(item.mechanism.has_grip for item in wanted):
+        asked.used |= asked.of_handles
+    else:
         asked.handles = (None, None)
     copies = 1 if whole.count is None else whole.count
     name = " ".join(specification.tokens[k].given for k in specification.name)
@@ -228,7 +233,7 @@ def asked_composition(
     rest = next((c.value[1] for c in whole.claims if c.about == "open" and c.value[0] == "share"), 0.0)
     composition = Composition(
         body=body,
-        said=_unusual(tuple(whole.noun.split()), body.words),
+        said=_unusual(tuple(lemmas(specification.tokens, specification.name)), body.words),
         wanted=wanted,
         size=asked.size(),
         material=_first(whole, "material"),

@@ -289,7 +289,7 @@ class _Compared:
         there, numbers = part.claims[0], self._numbers(part.noun, found)
         said = next((claim for claim in part.claims if claim.about == "count"), None)
         built = f"{len(found) or self.counted(part.noun)} built"
-        if said is not None and (_is_one(part) or numbers & {*asked, said.value}):
+        if said is not None and ((_is_one(part) and said.words != "single") or numbers & {*asked, said.value}):
             self.held.update(said.at)
         elif said is not None:
             words, at = f"{said.words} {there.words}", frozenset((*said.at, there.at[-1]))
@@ -311,7 +311,7 @@ class _Compared:
             and len(stems) == 1
             and not stems & set(said.split())
             and noun not in taken
-            and not _ends_with(found[0].name, noun)
+            and not f"_{_stem(found[0].name)}".endswith(f"_{noun}")
         ):
             several = len(found) > 1
             self.names |= {part.name: f"{noun}_{k}" if several else noun for k, part in enumerate(found, start=1)}

@@ -49,6 +49,8 @@ _AT = ("on", "at", "in", "to", "near", "from", "against", "by", "along", "onto")
 _BEGINS_PART = (*_WITH, *_RELATIVE, "whose", "where", "without", *_JOINERS)
 _BEING = ("is", "are", "can", "could", "be", "may", "will", "each", "all", "both", "it", "they", "being", "also")
 _CAN = ("be", "can", "to", "may")
+_BARE = frozenset(word for word in MOTIONS if not word.endswith(("s", "ing", "able", "ible", "ic")))
+"""Verbs that a singular noun right before them makes a noun."""
 _GOES = ("go", "goes", "opens", "come", "comes")
 _ANYHOW = ("away", "aside", "open", "over")
 """Behind a particle they say no direction: a swing-away arm."""
@@ -67,12 +69,12 @@ LEVELS = {
     "overhead": "top",
 }  # fmt: skip
 """Places that are said without a noun behind them: `with a drawer below`."""
-_MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word in material.words}
+MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word in material.words}
 _UNDER_WHOLE = ("wheel", "caster", "castor", "leg", "foot", "roller", "runner", "base", "stand", "track", "skid")
 _GROUPS = ("row", "column", "stack", "grid", "pair", "set", "bank", "line")
 """What is counted behind them is counted in each."""
 _ADJUSTABLE = ("adjustable", "variable", "changeable")
-_MEASURES = {"height": "up", "angle": "", "length": "", "width": "", "tilt": "", "reach": "", "position": "", "arm": ""}
+_MEASURES = {"height": "up", "angle": "", "length": "", "width": "", "tilt": "", "reach": "", "position": ""}
 FUNCTION_WORDS = frozenset(
     {*_BEGINS_PART, *_PREPOSITIONS, *_BEING, *_DETERMINERS, "other", "way", "flat", "one", "ones", "side"}
 )
@@ -232,7 +234,7 @@ def _may_follow(tokens: Sequence[Token], k: int) -> bool:
         or lemma(word) in UNITS
         or word in UNITS
         or word in COLOR_WORDS
-        or word in _MATERIAL_WORDS
+        or word in MATERIAL_WORDS
         or word in OPENNESS
     )
     known = known or token.number is not None or token.is_sign or word in MOTIONS or word in DONE or word in GOING
@@ -378,7 +380,7 @@ class _Parser(Words):
     def _is_adjective(self, word: str) -> bool:
         """Whether a word is of a look, a size or a state."""
         return (
-            word in COLOR_WORDS or word in _MATERIAL_WORDS or word in SIZE_WORDS or word in OPENNESS
+            word in COLOR_WORDS or word in MATERIAL_WORDS or word in SIZE_WORDS or word in OPENNESS
             or word in PLAIN_WORDS or word in ("dark", "light")
         )  # fmt: skip
 
@@ -467,7 +469,9 @@ class _Parser(Words):
         return k
 
     def _verb_at(self, k: int) -> bool:
-        word = self.given(k)
+        word, before = self.given(k), self.given(k - 1)
+        if word in _BARE and before == lemma(before) and before not in _BEING:
+            return False  # a scissor lift
         return (word in MOTIONS or word in DONE or word in GOING) and not self._noun_behind(k)
 
     def _described(self, k: int, part: _Draft) -> int:
@@ -510,19 +514,21 @@ class _Parser(Words):
 
     def _range(self, k: int) -> int:
         """`from 70 to 120 cm`, `up to 45 degrees`, said of how something moves; how many words."""
-        low, at = 0.0, k + 2
-        if self.given(k) == "from" and (first := self.tokens[k + 1 : k + 2]) and first[0].number is not None:
-            low, at = first[0].number, k + 2
-            at += self.given(at) != "to"  # its unit
-        if self.given(at - (self.given(k) != "from")) != "to" or self.given(k) not in ("from", "up"):
+        first, at = None, k + 1
+        if self.given(k) == "from":
+            first = measured_at(self, k + 1)
+            at = first[2] if first else k + 2
+        high = measured_at(self, at + 1) if self.given(at) == "to" else None
+        if high is None or high[0] == "share" or self.given(k) not in ("from", "up"):
             return 0
-        at += self.given(k) == "from"
-        measured = measured_at(self, at)
-        number = self.tokens[at].number if at < len(self.tokens) else None
-        if measured is None or measured[0] == "share" or not number:
+        low = first[1] if first else 0.0
+        number, bare = self.tokens[at + 1].number, self.tokens[k + 1].number
+        if self.given(k) == "from" and first is None and bare is not None and number:
+            low = bare / number * high[1]  # of the same unit
+        if low >= high[1]:
             return 0
-        self.claim(self.subject, "range", (measured[0], measured[1] * (1.0 - low / number)), *range(k, measured[2]))
-        return measured[2] - k
+        self.claim(self.subject, "range", (high[0], high[1] - low), *range(k, high[2]))
+        return high[2] - k
 
     def _counted(self, k: int, part: _Draft) -> int:
         """`four`, `no`; an article counts nothing."""
@@ -562,14 +568,14 @@ class _Parser(Words):
             self.claim(part, "like", "mirrored", k)
             return 1
         is_purpose = word in PURPOSES and self._noun_behind(k)  # a paper tray
-        if word in _MATERIAL_WORDS and not is_purpose and not self._is_mirror(k, part):
-            self.claim(part, "material", _MATERIAL_WORDS[word], k)
+        if word in MATERIAL_WORDS and not is_purpose and not self._is_mirror(k):
+            self.claim(part, "material", MATERIAL_WORDS[word], k)
             return 1
         return self._size(k, part)
 
-    def _is_mirror(self, k: int, part: _Draft) -> bool:
+    def _is_mirror(self, k: int) -> bool:
         """Whether a mirror is meant, and not what something is made of."""
-        return self.given(k) == "mirror" and (part is not self.whole or not self._noun_behind(k))
+        return self.given(k) == "mirror" and not self._noun_behind(k)
 
     def _size(self, k: int, part: _Draft) -> int:
         """`60 cm wide`, `a height of 2 m`, `15 cm`; how many words."""
@@ -595,6 +601,8 @@ class _Parser(Words):
         taken = taken or self._look_or_size(k, part) or self._adjustable(k, self.whole)
         if taken:
             return k + taken
+        if tuple(self.given(at) for at in range(k, k + 3)) == ("side", "by", "side"):
+            return k + 3
         does = word in GOING and (word not in OPENNESS or before in (*_RELATIVE, *_CAN))
         if word in MOTIONS or does or (word in DONE and before == "be"):
             return self._verb(k)
@@ -646,7 +654,7 @@ class _Parser(Words):
         if word in PLACES and (sided or not self._noun_behind(at)) and self.given(k) in _AT:
             self.claim(self.current, "place", word, *range(k, at + 1))
             return at + (2 if sided else 1)
-        if word in _MATERIAL_WORDS and self.given(k) in ("of", "in", "from"):
+        if word in MATERIAL_WORDS and self.given(k) in ("of", "in", "from"):
             return k + 1
         target = _Draft()
         end = self._noun_phrase(k + 1, target)

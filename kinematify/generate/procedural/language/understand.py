@@ -106,7 +106,7 @@ def understand(specification: Specification, family: Family) -> Understanding:
     _said_of_whole(reading, specification)
     _looks_of_handles(reading, specification, made)
     read_copies(reading)
-    _fit_sizes(reading, _buildable(reading))
+    _fit_sizes(reading, made)
     return Understanding(
         family=family.name,
         values=dict(reading.values),
