@@ -506,6 +506,8 @@ class _Parser(Words):
         if word not in (*OPENNESS, *PULLED) or self.given(at + 1) in NOT_A_STATE:
             return 0
         how, much = before[:2] if before else ("share", OPENNESS.get(word, 1.0))
+        if before and OPENNESS.get(word) == 0.0:
+            how, much = "share", 1.0 - much if how == "share" else 0.0  # fully closed
         end = at + 1 + (self.given(at + 1) in ("out", "up"))
         if amount := amount_at(self, end) if (how, much) == ("share", 1.0) else None:
             how, much, end = amount
