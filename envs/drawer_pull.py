@@ -11,12 +11,13 @@ from gymnasium.spaces import Box
 from gymnasium.utils import EzPickle
 
 from kinematify.envs.articulated_object import AUTO, shared_target
-from kinematify.envs.base import OpeningEnv, made, one_of, world_class
+from kinematify.envs.base import OpeningEnv, made, one_of
 from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
-from kinematify.envs.mujoco_worlds import ROBOT, MujocoArm
 from kinematify.envs.picture import Piece
 from kinematify.envs.robot_plan import env_robot, robot_plan
+from kinematify.envs.worlds import arm_facts
 from kinematify.geometry.convex import convex_hull
+from kinematify.simulation.world import ROBOT
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -26,10 +27,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.envs.articulated_object import Target
-    from kinematify.envs.goal import ObjectState
-    from kinematify.envs.pybullet_worlds import PybulletArm
     from kinematify.envs.robot_plan import EnvRobot, RobotPlan
     from kinematify.robot.arrays import FloatArray
+    from kinematify.simulation.world import ObjectState
 
     Space = spaces.Space[NDArray[np.float32]]
 
@@ -100,7 +100,6 @@ class DrawerPullEnv(OpeningEnv):
     """
 
     _with_robot = True
-    _world: MujocoArm | PybulletArm
 
     def __init__(
         self,
@@ -169,8 +168,7 @@ class DrawerPullEnv(OpeningEnv):
         return _held_at(found, self.plan)
 
     def _make_world(self) -> None:
-        kind = world_class(self.engine, "Arm")
-        self._world = kind(self.articulated_object, self.target, self.robot, self.plan, self.settings)
+        self.world = arm_facts(self.articulated_object, self.target, self.robot, self.plan).opened(self.engine)
 
     def _place(self, leaders: FloatArray) -> float:
         for name, value in self.plan.first.items():
@@ -180,17 +178,24 @@ class DrawerPullEnv(OpeningEnv):
         drawn = self.plan.reach[0] + self.np_random.uniform(-noise, noise, len(self.plan.reach[0]))
         self.wanted = np.clip(drawn, arm.lower, arm.upper)
         self._gap = 1.0
-        return self._world.place(leaders, self.wanted)
+        values = self.articulated_object.scene.mechanism.all_values(leaders[None])[0]
+        self.world.place(values, self._commands())
+        return self.world.depth()
+
+    def _commands(self) -> FloatArray:
+        """Of the servos: arm, then fingers."""
+        return np.concatenate([self.wanted, self.robot.robot.finger_values(self._gap)])
 
     def _act(self, action: NDArray[np.float32]) -> None:
         self._command(np.clip(np.asarray(action, dtype=np.float64), -1.0, 1.0))
-        self._world.act(self.wanted, self.robot.finger_values(self._gap))
+        self.world.command(self._commands())
+        self.world.step(self.settings.time.substeps)
 
     def _command(self, action: FloatArray) -> None:
         """Move what the servos are told: never far from where the joints are, so that nothing winds up."""
         values, arm = self.settings.robot, self.robot.arm
         step = values.joint_step * action[:-1] if self.control == JOINT else self._joint_step(action[:6])
-        now = self._world.joints()[0][: self._dof]
+        now = self.world.driven()[0][: self._dof]
         wanted = np.clip(self.wanted + step, now - values.lead, now + values.lead)
         self.wanted = np.clip(wanted, arm.lower, arm.upper)
         rate = self.settings.time.control_step / values.finger_seconds
@@ -216,7 +221,7 @@ class DrawerPullEnv(OpeningEnv):
     def _observe(self, reading: ObjectState) -> NDArray[np.float32]:
         found = np.zeros(self.observation_space.shape or ())
         self.goal.fill_joints(reading, found)
-        tool, (values, speeds), touch = self._world.tool(), self._world.joints(), self._world.touch()
+        tool, (values, speeds), touch = self.world.tool(), self.world.driven(), self.world.touch()
         planned = self._link_turn() @ self.plan.T_link_tool[:3, :3]
         away = reading.hold - tool[:3, 3]
         self._distance = float(np.sqrt(away @ away))
@@ -232,11 +237,11 @@ class DrawerPullEnv(OpeningEnv):
 
     def _link_turn(self) -> FloatArray:
         """Orientation of the link that is opened, shape (3, 3)."""
-        return self._world.link_poses()[self.target.link][:3, :3]
+        return self.world.link_poses()[self.target.link][:3, :3]
 
     def _opening(self, fingers: FloatArray) -> float:
         """Gap between the pads, share of the widest."""
-        closed, opened = self.robot.finger_values(0.0), self.robot.finger_values(1.0)
+        closed, opened = self.robot.robot.finger_values(0.0), self.robot.robot.finger_values(1.0)
         return float(np.mean((fingers - closed) / (opened - closed)))
 
     def _space(self) -> Space:
@@ -290,7 +295,7 @@ class DrawerPullEnv(OpeningEnv):
     @property
     def link_poses(self) -> Mapping[str, FloatArray]:
         """World poses of the object's links, and of the robot's under ``robot `` and their names, shape (4, 4) each."""
-        return self._world.link_poses()
+        return self.world.link_poses()
 
 
 def damped_step(jacobian: FloatArray, twist: FloatArray, damping: float) -> FloatArray:

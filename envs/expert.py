@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.envs.drawer_pull import JOINT, damped_step
-from kinematify.envs.mujoco_worlds import POSITION
+from kinematify.envs.open_part import POSITION
 from kinematify.robot.robot import forward_kinematics
 
 if TYPE_CHECKING:
@@ -39,9 +39,11 @@ class HandExpert:
         self._control, self._goal = env.control, min(env.open_fraction + _AHEAD, 0.995)
         self._slots, self._stride = env.goal.slots, env.settings.hand.speed
         self._push = 0.0
-        facts, target = env.hand_facts, env.target
+        facts, target = env.facts, env.target
         # Change of speed by a full action [ways/s]: heavy lids have weak hands, light ones strong hands.
-        change = facts.force * target.path_ratio / facts.inertia * env.settings.time.control_step / abs(target.range)
+        change = (
+            facts.hand.force * target.path_ratio / facts.inertia * env.settings.time.control_step / abs(target.range)
+        )
         self._gain, self._sum = min(_GAIN / change, 1.0), min(_SUM / change, 0.5)
 
     def begin(self) -> None:

@@ -9,9 +9,9 @@ import numpy as np
 from gymnasium.spaces import Box
 from gymnasium.utils import EzPickle
 
-from kinematify.envs.base import OpeningEnv, made, one_of, world_class
+from kinematify.envs.base import OpeningEnv, made, one_of
 from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
-from kinematify.envs.mujoco_worlds import FORCE, POSITION, MujocoHand
+from kinematify.envs.worlds import hand_facts
 from kinematify.errors import InputError
 
 if TYPE_CHECKING:
@@ -21,12 +21,15 @@ if TYPE_CHECKING:
     from gymnasium import spaces
     from numpy.typing import NDArray
 
-    from kinematify.envs.goal import Goal, ObjectState
-    from kinematify.envs.mujoco_worlds import HandFacts
-    from kinematify.envs.pybullet_worlds import PybulletHand
+    from kinematify.envs.goal import Goal
+    from kinematify.envs.worlds import HandFacts
     from kinematify.robot.arrays import FloatArray
+    from kinematify.simulation.world import ObjectState
 
     Space = spaces.Space[NDArray[np.float32]]
+
+
+FORCE, POSITION = "force", "position"
 
 
 class OpenPartEnv(OpeningEnv):
@@ -95,8 +98,6 @@ class OpenPartEnv(OpeningEnv):
     move, those without friction 0.3 m/s^2 or rad/s^2 times it, or 1.3 times what their own weight would move them with.
     """
 
-    _world: MujocoHand | PybulletHand
-
     def __init__(
         self,
         model: str | Path | None = None,
@@ -157,33 +158,49 @@ class OpenPartEnv(OpeningEnv):
         self.bounds = hand_bounds(self.goal)
 
     def _make_world(self) -> None:
-        kind = world_class(self.engine, "Hand")
-        self._world = kind(self.articulated_object, self.target, self.control, self.settings)
+        self.facts: HandFacts = hand_facts(self.articulated_object, self.target, spring=self.control == POSITION)
+        self.world = self.facts.opened(self.engine)
+        self._command = self._hold = np.zeros(3)
+        self._stride = self.facts.speed * self.settings.time.control_step
+        self._lead = self.facts.hand.force / self.facts.hand.stiffness
 
     def _place(self, leaders: FloatArray) -> float:
-        return self._world.place(leaders)
+        """The hand's spring is slack."""
+        self.world.place(self.articulated_object.scene.mechanism.all_values(leaders[None])[0])
+        self._hold = self.world.state().hold
+        if self.control == POSITION:
+            self._command = self._hold.copy()
+            self.world.pull(self._command)
+        return self.world.depth()
 
     @property
     def full_force(self) -> float:
         """Force of a full action, or of the spring at most [N]."""
-        return self.hand_facts.force
+        return self.facts.hand.force
 
-    @property
-    def hand_facts(self) -> HandFacts:
-        """What the hand can do."""
-        return self._world.facts
+    def commanded(self, before: FloatArray, hold: FloatArray, action: FloatArray) -> FloatArray:
+        """Return what an action commands of the hand, shapes (..., 3): forces in shares, or a place [m].
 
-    @property
-    def hand(self) -> MujocoHand:
-        """The world, if it is MuJoCo's."""
-        assert isinstance(self._world, MujocoHand)
-        return self._world
+        Args:
+            before: What was commanded until now.
+            hold: Where the part is held [m].
+            action: Within -1 and 1.
+        """
+        if self.control == FORCE:
+            return action
+        lead = before - hold + self._stride * action
+        return np.asarray(hold + np.minimum(np.maximum(lead, -self._lead), self._lead))
 
     def _act(self, action: NDArray[np.float32]) -> None:
-        self._world.act(np.minimum(np.maximum(action, -1.0), 1.0))
+        action = np.minimum(np.maximum(action, -1.0), 1.0)
+        self._command = self.commanded(self._command, self._hold, action)
+        self.world.pull(self._command)
+        self.world.step(self.settings.time.substeps)
 
     def _observe(self, reading: ObjectState) -> NDArray[np.float32]:
-        return observe_hand(self.goal, reading, self.middle, self._world.command(), self.bounds)
+        self._hold = reading.hold
+        command = self._command - reading.hold if self.control == POSITION else np.zeros(3)
+        return observe_hand(self.goal, reading, self.middle, command, self.bounds)
 
 
 def hand_space(goal: Goal) -> Space:

@@ -60,11 +60,6 @@ class EnvRobot:
         """Links of the fingers."""
         return tuple(self.arm.declared.joint_by_name[name].child for name in self.robot.finger_joints)
 
-    def finger_values(self, share: float) -> FloatArray:
-        """Values of the finger joints, 0 with the pads together, 1 apart, shape (fingers,)."""
-        closed, opened = np.array(self.robot.fingers_closed), np.array(self.robot.fingers_open)
-        return np.asarray(closed + share * (opened - closed))
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RobotPlan:
@@ -105,7 +100,7 @@ def env_robot(articulated_object: ArticulatedObject, robot: str | None, tool: st
         )
     folder = articulated_object.folder / hashlib.sha256(f"{robot} {tool}".encode()).hexdigest()[:12]
     folder.mkdir(parents=True, exist_ok=True)
-    found = builtin_robot(folder) if robot is None or tool is None else user_robot(Path(robot), tool, folder=folder)
+    found = builtin_robot() if robot is None or tool is None else user_robot(Path(robot), tool, folder=folder)
     settings, loaded = load_settings(), loadable(found.urdf, folder)
     scene = read_scene(read_robot(loaded), settings.geometry)
     return EnvRobot(robot=found, arm=Arm(found, settings.task.plan), loaded=loaded, scene=scene)

@@ -7,12 +7,12 @@ more link, whose frame is the grasp frame of all planning: +z approaches, +y clo
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.manipulation import arm
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Joint, Link, forward_kinematics, joint_values, rest_configuration
@@ -20,7 +20,6 @@ from kinematify.robot.write import write_robot
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from kinematify.manipulation.request import TaskRequest
     from kinematify.robot.arrays import FloatArray
@@ -30,6 +29,7 @@ ROBOT_FILE = "robot.urdf"
 GRASP_LINK = "kinematify_grasp_frame"
 """Link that is added to a user's robot."""
 
+_TRAVEL = 0.05  # of each finger of the built-in arm [m]
 _TIP_DEPTH = 0.01  # a finger holds with the last centimetre; the origin stands so far behind its end [m]
 _TIP_SHARE = 0.35  # of a finger's length: its end, where the gap between the fingers is measured
 _NARROW = 0.004  # a gripper that opens less holds nothing [m]
@@ -57,16 +57,25 @@ class TaskRobot:
     home: tuple[float, ...]
     """Values of `arm_joints` from which a reach starts [rad or m]."""
 
+    def finger_values(self, share: float) -> FloatArray:
+        """Values of `finger_joints`, 0 with the pads together, 1 apart, shape (fingers,)."""
+        closed, opened = np.array(self.fingers_closed), np.array(self.fingers_open)
+        return np.asarray(closed + share * (opened - closed))
+
+    def fingers_at(self, gap: float) -> FloatArray:
+        """The same with the pads at a distance [m]."""
+        return self.finger_values(min(max(gap / self.opening, 0.0), 1.0))
+
 
 def robot_of(task: TaskRequest, folder: Path) -> TaskRobot:
-    """Write the robot of a task into an existing folder and describe it.
+    """Describe the robot of a task; a user's is written into an existing folder.
 
     Raises:
         InputError: There is no such robot, tool or gripper.
         OSError: The folder cannot be written.
     """
     if task.robot is None:
-        return builtin_robot(folder)
+        return builtin_robot()
     if task.tool is None:
         raise InputError(
             f"--robot {task.robot} needs --tool with the link that carries the fingers, e.g. --tool gripper_link."
@@ -74,23 +83,21 @@ def robot_of(task: TaskRequest, folder: Path) -> TaskRobot:
     return user_robot(task.robot, task.tool, task.gripper, folder=folder, package_dirs=task.package_dirs)
 
 
-def builtin_robot(folder: Path) -> TaskRobot:
-    """Write the project's own arm into an existing folder and describe it.
+def builtin_robot() -> TaskRobot:
+    """Describe the project's own arm: seven turning joints and a parallel gripper, of boxes and cylinders only.
 
-    Raises:
-        OSError: The folder cannot be written.
+    Its proportions and limits are those of common research arms with a reach of 0.85 m. Collision shapes leave gaps of
+    a few millimetres at the joints, so that neighbours touch in no configuration and no pair has to be ignored.
     """
-    path = folder.resolve() / ROBOT_FILE
-    arm.write_arm(path)
     return TaskRobot(
-        urdf=path,
-        tool=arm.TOOL,
-        arm_joints=arm.ARM_JOINTS,
-        finger_joints=arm.FINGERS,
-        opening=2.0 * arm.TRAVEL,
-        fingers_open=(arm.TRAVEL, arm.TRAVEL),
+        urdf=Path(__file__).with_name("arm.urdf").resolve(),
+        tool="tool",
+        arm_joints=tuple(f"joint_{number}" for number in range(1, 8)),
+        finger_joints=("left_finger_joint", "right_finger_joint"),
+        opening=2.0 * _TRAVEL,
+        fingers_open=(_TRAVEL, _TRAVEL),
         fingers_closed=(0.0, 0.0),
-        home=arm.HOME,
+        home=(0.0, -0.7, 0.0, -2.3, 0.0, 1.6, 0.0),  # folded over its base, hand pointing down
     )
 
 

@@ -35,6 +35,7 @@ from kinematify.simulation.mujoco_model import (
     with_floor,
     with_servos,
 )
+from kinematify.simulation.mujoco_world import MujocoWorld
 from kinematify.simulation.raw_model import MovesFreely, Reproductions, RunningFile, Unloadable
 from kinematify.simulation.servos import commands
 from kinematify.simulation.stepped import count_steps
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
     from kinematify.simulation.contacts import Contacts, Touching
     from kinematify.simulation.prepared import Prepared
     from kinematify.simulation.servos import Drive, Servos
+    from kinematify.simulation.world import WorldSpec
 
 _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
 _NUMBERS = 20_000_000
@@ -71,6 +73,11 @@ class MujocoEngine:
         """Load a file as users do; MuJoCo knows no packages."""
         del package_dirs
         return MujocoFile(urdf, root)
+
+    @staticmethod
+    def open_world(spec: WorldSpec) -> MujocoWorld:
+        """Build a world that runs."""
+        return MujocoWorld(spec)
 
     def load(self, prepared: Prepared, mechanism: LeaderMechanism) -> MujocoModel:
         """Load a prepared file."""

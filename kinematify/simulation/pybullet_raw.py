@@ -16,7 +16,7 @@ import pybullet as bullet
 from kinematify.robot.urdf_numbers import passing_links
 from kinematify.robot.urdf_text import parse_description
 from kinematify.simulation.configurations import GRAVITY
-from kinematify.simulation.pybullet_world import Client, text_of
+from kinematify.simulation.pybullet_body import Client, text_of
 from kinematify.simulation.raw_model import MotorFile, Reproductions, Unloadable
 
 if TYPE_CHECKING:

@@ -224,7 +224,7 @@ def test_nothing_leaks_over_a_thousand_resets(engine: str) -> None:
 
 def test_close_frees_the_engine() -> None:
     worlds = [OpenPartEnv("bundled:box", engine="pybullet") for _ in range(3)]
-    clients = [env._world.client for env in worlds]
+    clients = [env.world.client for env in worlds]
     assert all(client.isConnected() for client in clients)
     for env in worlds:
         env.close()
