@@ -49,16 +49,29 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
     articulated_object: ArticulatedObject
     target: Target
 
-    def _begin(
-        self, *, model: str | Path | None, joint: str, open_fraction: float, engine: str, reward: str,
-        randomize: bool | str | Collection[str], terminate_on_success: bool, allow_invalid: bool,
-        render_mode: str | None, closing: bool = False,
+    def __init__(
+        self, model: str | Path | None = None, *, joint: str = AUTO, open_fraction: float = 0.9, engine: str = "mujoco",
+        reward: str = "dense", randomize: bool | str | Collection[str] = False, terminate_on_success: bool = False,
+        allow_invalid: bool = False, render_mode: str | None = None,
     ) -> None:  # fmt: skip
         """Check the keywords and read the object; subclasses then make their world and spaces.
 
+        Args:
+            model: URDF, folder with it, ``bundled:NAME``, ``procedural:FAMILY`` or ``procedural:FAMILY:SEED``; a chest
+                of drawers if None.
+            joint: Joint that is opened; ``auto`` takes the one whose part moves farthest, for a robot the drawer that
+                goes farthest if there is one.
+            open_fraction: Share of the way that counts as open, above 0 and at most 1.
+            engine: ``mujoco`` or ``pybullet``.
+            reward: ``dense`` or ``sparse``.
+            randomize: What is drawn again in each episode.
+            terminate_on_success: End the episode on success.
+            allow_invalid: Take a model that fails `kinematify validate`.
+            render_mode: None, ``rgb_array`` or ``human``.
+
         Raises:
-            InputError: A keyword is impossible, or the model cannot be used.
-            EnvironmentFault: The engine or the screen is missing.
+            InputError: A keyword is impossible, or the model cannot be used; the message says what to do.
+            EnvironmentFault: The engine or the screen is missing, or the validation itself failed.
         """
         one_of("engine", engine, ENGINES)
         one_of("reward", reward, ("dense", "sparse"))
@@ -71,7 +84,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         self.engine, self.render_mode = engine, render_mode
         self._sparse, self.terminates = reward == "sparse", terminate_on_success
         self._drawn_names = drawing(randomize)
-        self.open_fraction, self._closing = open_fraction, closing
+        self.open_fraction = open_fraction
         self.articulated_object = shared_articulated_object(model)
         self.validation = require_valid(self.articulated_object, engine, allow_invalid=allow_invalid)
         self.T_world_root = self.articulated_object.T_world_root
@@ -101,8 +114,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     def _targeted(self, joint: str) -> Target:
         """Return the joint with the point at which its part is held."""
-        found = shared_target(self.articulated_object, joint)
-        return found.reversed if self._closing else found
+        return shared_target(self.articulated_object, joint)
 
     @property
     def _counts(self) -> tuple[int, int]:

@@ -20,7 +20,7 @@ from kinematify.geometry.convex import convex_hull
 from kinematify.simulation.world import ROBOT
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from gymnasium import spaces
@@ -105,49 +105,28 @@ class DrawerPullEnv(OpeningEnv):
         self,
         model: str | Path | None = None,
         *,
-        joint: str = AUTO,
-        open_fraction: float = 0.9,
-        engine: str = "mujoco",
+        control: str = TOOL,
         robot: str | Path | None = None,
         tool: str | None = None,
-        control: str = TOOL,
-        reward: str = "dense",
-        randomize: bool | str | Collection[str] = False,
-        terminate_on_success: bool = False,
-        allow_invalid: bool = False,
-        render_mode: str | None = None,
+        **keywords: Any,
     ) -> None:
         """Make the environment.
 
         Args:
-            model: URDF, folder with it, ``bundled:NAME`` or ``procedural:FAMILY``; a chest of drawers if None.
-            joint: Joint that is opened; ``auto`` takes the drawer that goes farthest, else the farthest joint.
-            open_fraction: Share of the way that counts as open, above 0 and at most 1.
-            engine: ``mujoco`` or ``pybullet``.
+            model: As for `OpeningEnv`.
+            control: ``tool`` or ``joint``.
             robot: URDF of a robot with a gripper of two fingers; the package's own arm if None.
             tool: Link of the robot that carries the fingers.
-            control: ``tool`` or ``joint``.
-            reward: ``dense`` or ``sparse``.
-            randomize: What is drawn again in each episode.
-            terminate_on_success: End the episode on success.
-            allow_invalid: Take a model that fails `kinematify validate`.
-            render_mode: None, ``rgb_array`` or ``human``.
+            keywords: Of `OpeningEnv`.
 
         Raises:
             InputError: A keyword is impossible, the model cannot be used, or the robot cannot open the joint.
             EnvironmentFault: The validation itself failed.
         """
-        EzPickle.__init__(
-            self, model, joint=joint, open_fraction=open_fraction, engine=engine, robot=robot, tool=tool,
-            control=control, reward=reward, randomize=randomize, terminate_on_success=terminate_on_success,
-            allow_invalid=allow_invalid, render_mode=render_mode,
-        )  # fmt: skip
+        EzPickle.__init__(self, model, control=control, robot=robot, tool=tool, **keywords)
         one_of("control", control, (TOOL, JOINT))
         self.control, self._robot_words = control, (None if robot is None else str(robot), tool)
-        self._begin(
-            model=model, joint=joint, open_fraction=open_fraction, engine=engine, reward=reward, randomize=randomize,
-            terminate_on_success=terminate_on_success, allow_invalid=allow_invalid, render_mode=render_mode,
-        )  # fmt: skip
+        super().__init__(model, **keywords)
         self._make_world()
         self._dof = len(self.robot.robot.arm_joints)
         self._count = len(self.robot.robot.finger_joints)

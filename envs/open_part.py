@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from gymnasium.spaces import Box
@@ -15,12 +15,12 @@ from kinematify.envs.worlds import hand_facts
 from kinematify.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
     from pathlib import Path
 
     from gymnasium import spaces
     from numpy.typing import NDArray
 
+    from kinematify.envs.articulated_object import Target
     from kinematify.envs.goal import Goal
     from kinematify.envs.worlds import HandFacts
     from kinematify.robot.arrays import FloatArray
@@ -102,60 +102,41 @@ class OpenPartEnv(OpeningEnv):
         self,
         model: str | Path | None = None,
         *,
-        joint: str = "auto",
-        open_fraction: float = 0.9,
-        engine: str = "mujoco",
-        robot: str | Path | None = None,
         control: str = FORCE,
-        reward: str = "dense",
-        randomize: bool | str | Collection[str] = False,
-        terminate_on_success: bool = False,
-        allow_invalid: bool = False,
-        render_mode: str | None = None,
+        robot: str | Path | None = None,
         closing: bool = False,
+        **keywords: Any,
     ) -> None:
         """Make the environment.
 
         Args:
-            model: URDF, folder with it, ``bundled:NAME``, ``procedural:FAMILY`` or ``procedural:FAMILY:SEED``; a chest
-                of drawers if None.
-            joint: Joint that is opened; ``auto`` takes the one whose part moves farthest.
-            open_fraction: Share of the way that counts as open, above 0 and at most 1.
-            engine: ``mujoco`` or ``pybullet``.
-            robot: None; `DrawerPullEnv` has robots.
+            model: As for `OpeningEnv`.
             control: ``force`` or ``position``.
-            reward: ``dense`` or ``sparse``.
-            randomize: What is drawn again in each episode.
-            terminate_on_success: End the episode on success.
-            allow_invalid: Take a model that fails `kinematify validate`.
-            render_mode: None, ``rgb_array`` or ``human``.
+            robot: None; `DrawerPullEnv` has robots.
             closing: Begin with the part open, and shut it: closed counts as open everywhere, and open as closed.
+            keywords: Of `OpeningEnv`.
 
         Raises:
             InputError: A keyword is impossible, or the model cannot be used; the message says what to do.
             EnvironmentFault: The validation itself failed.
         """
-        EzPickle.__init__(
-            self, model, joint=joint, open_fraction=open_fraction, engine=engine, robot=robot, control=control,
-            reward=reward, randomize=randomize, terminate_on_success=terminate_on_success,
-            allow_invalid=allow_invalid, render_mode=render_mode, closing=closing,
-        )  # fmt: skip
+        EzPickle.__init__(self, model, control=control, robot=robot, closing=closing, **keywords)
         one_of("control", control, (FORCE, POSITION))
         if robot is not None:
             raise InputError(
                 f"OpenPart has no robot, but robot={str(robot)!r} was given. Leave it out, or make "
                 "kinematify/DrawerPull-v0, which has one."
             )
-        self.control = control
-        self._begin(
-            model=model, joint=joint, open_fraction=open_fraction, engine=engine, reward=reward, randomize=randomize,
-            terminate_on_success=terminate_on_success, allow_invalid=allow_invalid, render_mode=render_mode,
-            closing=closing,
-        )  # fmt: skip
+        self.control, self._closing = control, closing
+        super().__init__(model, **keywords)
         self._make_world()
         self.action_space: Space = Box(-1.0, 1.0, (3,), np.float32)
         self.observation_space: Space = hand_space(self.goal)
         self.bounds = hand_bounds(self.goal)
+
+    def _targeted(self, joint: str) -> Target:
+        found = super()._targeted(joint)
+        return found.reversed if self._closing else found
 
     def _make_world(self) -> None:
         self.facts: HandFacts = hand_facts(self.articulated_object, self.target, spring=self.control == POSITION)
@@ -192,8 +173,8 @@ class OpenPartEnv(OpeningEnv):
         return np.asarray(hold + np.minimum(np.maximum(lead, -self._lead), self._lead))
 
     def _act(self, action: NDArray[np.float32]) -> None:
-        action = np.minimum(np.maximum(action, -1.0), 1.0)
-        self._command = self.commanded(self._command, self._hold, action)
+        clipped = np.clip(np.asarray(action, dtype=np.float64), -1.0, 1.0)
+        self._command = self.commanded(self._command, self._hold, clipped)
         self.world.pull(self._command)
         self.world.step(self.settings.time.substeps)
 

@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.contacts import Contacts, Touching
     from kinematify.simulation.prepared import Prepared
+    from kinematify.simulation.raw_model import Start
     from kinematify.simulation.servos import Drive, Servos
     from kinematify.simulation.world import WorldSpec
 
@@ -487,27 +488,16 @@ class MujocoFile(RunningFile):
         self.limits = {name: tuple(ends) if limited else (-np.inf, np.inf) for name, limited, ends in ranges}
         self.time_step = float(option.timestep)
 
-    def begin(
-        self,
-        values: Mapping[str, float],
-        speeds: Mapping[str, float] | None = None,
-        *,
-        contacts: bool,
-        gravity: bool = True,
-        released: Sequence[int] | None = None,
-    ) -> None:
-        """See `RunningFile`; joints have no motors."""
-        del released
+    def _start(self, start: Start) -> None:
         model, data, option = self._model, self._data, self._model.opt
         option.disableflags, option.gravity[:] = self._flags, self._gravity
         mujoco.mj_resetData(model, data)
-        data.qpos[:] = self.row(values)
+        data.qpos[:] = start.q
         mujoco.mj_forward(model, data)
-        if speeds is not None:
-            data.qvel[:] = self.row(speeds)
-            mujoco.mj_energyVel(model, data)
-        option.disableflags |= 0 if contacts else int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
-        option.gravity[:] *= gravity
+        data.qvel[:] = start.v
+        mujoco.mj_energyVel(model, data)
+        option.disableflags |= 0 if start.contacts else int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        option.gravity[:] *= start.gravity
 
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
         """See `RunningFile`."""

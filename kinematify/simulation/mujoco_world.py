@@ -58,7 +58,8 @@ def _compiled(spec: WorldSpec) -> _Compiled:
     world.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_FILTERPARENT.value
     world.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET.value
     world.worldbody.add_site(name=_WORLD)
-    source, robot_links = _parsed(spec.object, spec.step), ()
+    source = _parsed(spec.object, spec.step)
+    robot_links: tuple[str, ...] = ()
     if spec.robot is not None:
         _layer_object(spec, source)
     _attach(world, source.spec, _OBJECT, spec.object.T_world_root)
@@ -374,7 +375,8 @@ class MujocoWorld:
 
     def tool(self) -> FloatArray:
         """Pose of the tool."""
-        return self._poses([self._tool])[0]
+        pose: FloatArray = self._poses([self._tool])[0]
+        return pose
 
     def touch(self) -> FloatArray:
         """Force of each finger on the held body."""

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.engine import EngineModel
     from kinematify.simulation.prepared import Prepared
+    from kinematify.simulation.raw_model import Start
 
 _LOAD = """import newton, numpy as np, warp; warp.config.log_level = warp.LOG_WARNING
 builder = newton.ModelBuilder(); builder.add_urdf({path!r}, floating=False, package_dirs={folders})
@@ -167,22 +168,11 @@ class NewtonFile(RunningFile):
         self._contacts = self._pipeline.contacts()
         self._now, self._after, self._touch = model.state(), model.state(), True
 
-    def begin(
-        self,
-        values: Mapping[str, float],
-        speeds: Mapping[str, float] | None = None,
-        *,
-        contacts: bool,
-        gravity: bool = True,
-        released: Sequence[int] | None = None,
-    ) -> None:
-        """See `RunningFile`; joints have no motors."""
-        del released
-        self._touch = contacts
-        self._model.set_gravity((0.0, 0.0, -GRAVITY if gravity else 0.0))
+    def _start(self, start: Start) -> None:
+        self._touch = start.contacts
+        self._model.set_gravity((0.0, 0.0, -GRAVITY if start.gravity else 0.0))
         self._control.joint_f.zero_()
-        rest = self.row(values)
-        self.set_state(rest, np.zeros_like(rest) if speeds is None else self.row(speeds))
+        self.set_state(start.q, start.v)
 
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
         """See `RunningFile`."""

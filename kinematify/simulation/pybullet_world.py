@@ -6,6 +6,7 @@ that it does not depend on what happened before.
 
 from __future__ import annotations
 
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.pybullet_body import PybulletBody
-    from kinematify.simulation.world import HeldPoint, PlacedModel, PlacedRobot, PullingHand, Variation, WorldSpec
+    from kinematify.simulation.world import Grip, HeldPoint, PlacedModel, PlacedRobot, PullingHand, Variation, WorldSpec
 
 _BASE = -1
 _FOLLOWER_FORCE = 1e3  # holds a joint that follows another one [N m or N]
@@ -52,12 +53,9 @@ class PybulletWorld:
         self._T_base = pose_of(*self.client.getBasePositionAndOrientation(self._body))
         self._links = {index: self._link_facts(index) for index in self._object.link.tolist()}
         self._hand: PullingHand | None = None
-        self._robot: PybulletBody | None = None
         self._saved: int | None = None
-        self._target = self._speeds = None
         self._move_root(np.eye(4))
-        if spec.robot is not None:
-            self._add_robot(spec.robot)
+        self._robot = None if spec.robot is None else _Robot(self._object, spec.robot, spec.grip)
         if spec.point is not None:
             self._link = self._object.index_of(spec.point.link)
             self._look()
@@ -75,27 +73,6 @@ class PybulletWorld:
         if self._saved is not None:
             self.client.removeState(self._saved)
         self._saved = None
-
-    def _add_robot(self, placed: PlacedRobot) -> None:
-        """The robot meets the object and the floor; the object stands on the floor."""
-        client, grip = self.client, self._spec.grip
-        loaded = load_at(client, placed.mechanism, placed.urdf, placed.T_world_root, itself=grip is None)
-        self._robot = loaded
-        joints = dict(zip(placed.mechanism.joints, loaded.indices, strict=True))
-        self._driven = [joints[name] for name in placed.driven]
-        grips = np.full(len(placed.fingers), placed.settings.grip_force)
-        self._forces = np.concatenate([placed.strongest, grips]).tolist()
-        for index in loaded.link.tolist():
-            client.changeDynamics(loaded.body, index, lateralFriction=placed.settings.friction)
-        rest = zip(placed.mechanism.joints, placed.mechanism.values_at_rest.tolist(), strict=True)
-        _hold(loaded, {name: value for name, value in rest if name not in placed.driven})
-        for hand in () if grip is None else grip.hand:
-            for part in self._spec.grip.part:
-                first, second = loaded.index_of(hand), self._object.index_of(part)
-                client.setCollisionFilterPair(loaded.body, self._body, first, second, 0)
-        floor = client.createMultiBody(0.0, client.createCollisionShape(bullet.GEOM_PLANE))
-        for index in self._object.link.tolist():
-            client.setCollisionFilterPair(floor, self._body, _BASE, index, 0)
 
     def resist(self, damping: FloatArray, friction: FloatArray) -> None:
         """Give the object's joints damping and friction, with the next `vary`."""
@@ -147,19 +124,16 @@ class PybulletWorld:
             self._look()
         self.client.performCollisionDetection()
         if robot is not None and self._robot is not None:
-            for index, value in zip(self._driven, robot.tolist(), strict=True):
-                self.client.resetJointState(self._robot.body, index, value)
-            self._told = self._target = np.asarray(robot)
-            self._drive(self._target)
+            self._robot.place(robot)
             self.client.performCollisionDetection()
 
     def pull(self, command: FloatArray) -> None:
         """Command the hand."""
-        self._target = np.asarray(command, dtype=np.float64)
+        self._pulled = np.asarray(command, dtype=np.float64)
 
     def command(self, values: FloatArray, speeds: FloatArray | None = None) -> None:
         """Command the motors; they are led there in the steps that follow."""
-        self._target, self._speeds = values, speeds
+        self._arm.wanted, self._arm.speeds = values, speeds
 
     def step(self, count: int = 1) -> None:
         """Simulate so many steps."""
@@ -167,24 +141,25 @@ class PybulletWorld:
             if self._robot is None:
                 self._push()
             else:
-                self._drive(self._told + step / count * (self._target - self._told))
+                self._robot.lead(step / count)
             self._follow()
             self.client.stepSimulation()
         if self._robot is not None:
-            self._told = self._target
+            self._robot.led = self._robot.wanted
         if self._spec.point is not None:
             self._look()
 
     def _push(self) -> None:
         """Apply the hand's force in the next step."""
         hand, state = self._hand, self._link_state()
+        assert hand is not None
         at = self._at_hold(state)
         if hand.spring:
             velocity = np.array(state[6]) + np.cross(state[7], at - np.array(state[0]))
-            spring = hand.stiffness * (self._target - at) - hand.damping * velocity
+            spring = hand.stiffness * (self._pulled - at) - hand.damping * velocity
             force = np.clip(spring, -hand.force, hand.force)
         else:
-            force = hand.force * self._target
+            force = hand.force * self._pulled
         self.client.applyExternalForce(self._body, self._link, force.tolist(), at.tolist(), bullet.WORLD_FRAME)
 
     def _follow(self) -> None:
@@ -201,22 +176,6 @@ class PybulletWorld:
                 force=_FOLLOWER_FORCE,
             )
 
-    def _drive(self, values: FloatArray) -> None:
-        count = len(self._driven)
-        speeds = {}
-        if self._speeds is not None:
-            speeds["targetVelocities"] = [*self._speeds.tolist(), *[0.0] * (count - len(self._speeds))]
-        self.client.setJointMotorControlArray(
-            self._robot.body,
-            self._driven,
-            bullet.POSITION_CONTROL,
-            targetPositions=values.tolist(),
-            forces=self._forces,
-            positionGains=[_GAIN] * count,
-            velocityGains=[1.0] * count,
-            **speeds,
-        )
-
     def release(self, joints: Iterable[str]) -> None:
         """Let locked joints of the object go."""
         for name in joints:
@@ -224,7 +183,8 @@ class PybulletWorld:
 
     def weld(self) -> None:
         """Fix the tool to the part where it now is."""
-        robot, grip, tool = self._robot, self._spec.grip, self._spec.robot.tool
+        robot, grip, tool = self._arm.loaded, self._spec.grip, self._arm.placed.tool
+        assert grip is not None
         T_world_tool = robot.frame(tool)
         T_tool, T_part = (
             np.linalg.inv(side.centre(link)) @ T_world_tool for side, link in ((robot, tool), (self._object, grip.link))
@@ -281,21 +241,21 @@ class PybulletWorld:
 
     def robot_values(self) -> FloatArray:
         """Of all joints of the robot."""
-        return np.array(self._robot.state()[0])
+        return np.array(self._arm.loaded.state()[0])
 
     def driven(self) -> tuple[FloatArray, FloatArray]:
         """Values and speeds of the robot's joints with motors."""
-        return _motion(self._robot, self._driven)
+        return _motion(self._arm.loaded, self._arm.driven)
 
     def tool(self) -> FloatArray:
         """Pose of the tool."""
-        return self._robot.frame(self._spec.robot.tool)
+        return self._arm.loaded.frame(self._arm.placed.tool)
 
     def touch(self) -> FloatArray:
         """Force of each finger on the held body."""
-        links = self._spec.robot.finger_links
+        links = self._arm.placed.finger_links
         forces = np.zeros((len(links), 3))
-        rows = {self._robot.index_of(link): row for row, link in enumerate(links)}
+        rows = {self._arm.loaded.index_of(link): row for row, link in enumerate(links)}
         held = {self._object.index_of(link) for link in self._point.body}
         for point in self._contacts():
             if point[3] in rows and point[4] in held:
@@ -304,15 +264,20 @@ class PybulletWorld:
 
     def _contacts(self) -> list[tuple[Any, ...]]:
         """Contacts of the robot with the object."""
-        return self.client.getContactPoints(self._robot.body, self._body) or ()
+        return list(self.client.getContactPoints(self._arm.loaded.body, self._body) or ())
+
+    @property
+    def _arm(self) -> _Robot:
+        assert self._robot is not None
+        return self._robot
 
     def link_poses(self) -> dict[str, FloatArray]:
         """World poses of the links of both."""
         leaders = [travel.joint for travel in self._mechanism.travels]
         poses = forward_kinematics(self._mechanism.robot, dict(zip(leaders, self._state.values.tolist(), strict=True)))
         found = {name: self._T_root @ T for name, T in poses.items()}
-        for name in () if self._spec.robot is None else self._spec.robot.mechanism.links:
-            found[ROBOT + name] = self._robot.frame(name)
+        for name in () if self._robot is None else self._robot.placed.mechanism.links:
+            found[ROBOT + name] = self._arm.loaded.frame(name)
         return found
 
     def depth(self) -> float:
@@ -329,7 +294,7 @@ class PybulletWorld:
         deepest = min(self._contacts(), key=lambda point: point[8], default=None)
         if deepest is None or -deepest[8] - HULL_MARGIN <= than:
             return None
-        sides = ((self._robot, deepest[3]), (self._object, deepest[4]))
+        sides = ((self._arm.loaded, deepest[3]), (self._object, deepest[4]))
         link, other = (side.mechanism.links[side.link_of[index]] for side, index in sides)
         return -deepest[8] - HULL_MARGIN, (link, other)
 
@@ -345,6 +310,56 @@ class PybulletWorld:
     def close(self) -> None:
         """Free the world."""
         self.client.disconnect()
+
+
+class _Robot:
+    """A robot in the world of an object."""
+
+    def __init__(self, beside: PybulletBody, placed: PlacedRobot, grip: Grip | None) -> None:
+        """The robot meets the object and the floor; the object stands on the floor."""
+        client, self.placed = beside.client, placed
+        loaded = load_at(client, placed.mechanism, placed.urdf, placed.T_world_root, itself=grip is None)
+        self.loaded, joints = loaded, dict(zip(placed.mechanism.joints, loaded.indices, strict=True))
+        self.driven = [joints[name] for name in placed.driven]
+        self.wanted = self.led = np.zeros(len(self.driven))
+        """What is commanded, and what the motors have been led to."""
+        self.speeds: FloatArray | None = None
+        grips = np.full(len(placed.fingers), placed.settings.grip_force)
+        self._forces = np.concatenate([placed.strongest, grips]).tolist()
+        for index in loaded.link.tolist():
+            client.changeDynamics(loaded.body, index, lateralFriction=placed.settings.friction)
+        rest = zip(placed.mechanism.joints, placed.mechanism.values_at_rest.tolist(), strict=True)
+        _hold(loaded, {name: value for name, value in rest if name not in placed.driven})
+        for hand, part in () if grip is None else product(grip.hand, grip.part):
+            first, second = loaded.index_of(hand), beside.index_of(part)
+            client.setCollisionFilterPair(loaded.body, beside.body, first, second, 0)
+        floor = client.createMultiBody(0.0, client.createCollisionShape(bullet.GEOM_PLANE))
+        for index in beside.link.tolist():
+            client.setCollisionFilterPair(floor, beside.body, _BASE, index, 0)
+
+    def place(self, values: FloatArray) -> None:
+        """Set the joints with motors, and hold them."""
+        for index, value in zip(self.driven, values.tolist(), strict=True):
+            self.loaded.client.resetJointState(self.loaded.body, index, value)
+        self.wanted = self.led = np.asarray(values)
+        self.lead(1.0)
+
+    def lead(self, share: float) -> None:
+        """Lead the motors a share of the way to what is commanded."""
+        count = len(self.driven)
+        speeds: dict[str, list[float]] = {}
+        if self.speeds is not None:
+            speeds["targetVelocities"] = [*self.speeds.tolist(), *[0.0] * (count - len(self.speeds))]
+        self.loaded.client.setJointMotorControlArray(
+            self.loaded.body,
+            self.driven,
+            bullet.POSITION_CONTROL,
+            targetPositions=(self.led + share * (self.wanted - self.led)).tolist(),
+            forces=self._forces,
+            positionGains=[_GAIN] * count,
+            velocityGains=[1.0] * count,
+            **speeds,
+        )
 
 
 def _indices(placed: PlacedModel) -> list[tuple[int, int]]:
