@@ -143,7 +143,7 @@ class OpenPartEnv(OpeningEnv):
         self.world = self.facts.opened(self.engine)
         self._command = self._hold = np.zeros(3)
         self._stride = self.facts.speed * self.settings.time.control_step
-        self._lead = self.facts.hand.force / self.facts.hand.stiffness
+        self._lead, self._substeps = self.facts.hand.force / self.facts.hand.stiffness, self.settings.time.substeps
 
     def _place(self, leaders: FloatArray) -> float:
         """The hand's spring is slack."""
@@ -173,10 +173,10 @@ class OpenPartEnv(OpeningEnv):
         return np.asarray(hold + np.minimum(np.maximum(lead, -self._lead), self._lead))
 
     def _act(self, action: NDArray[np.float32]) -> None:
-        clipped = np.clip(np.asarray(action, dtype=np.float64), -1.0, 1.0)
+        clipped = np.minimum(np.maximum(np.asarray(action, dtype=np.float64), -1.0), 1.0)
         self._command = self.commanded(self._command, self._hold, clipped)
         self.world.pull(self._command)
-        self.world.step(self.settings.time.substeps)
+        self.world.step(self._substeps)
 
     def _observe(self, reading: ObjectState) -> NDArray[np.float32]:
         self._hold = reading.hold

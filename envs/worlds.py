@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from kinematify.config.validation import load_settings as load_validation_settings
 from kinematify.envs.articulated_object import held_links
 from kinematify.envs.dynamics import full_force, joint_dynamics
 from kinematify.envs.settings import load_settings
 from kinematify.geometry.rest import overlapping_links
+from kinematify.manipulation.robot import effort_limits
 from kinematify.simulation.engines import open_world
 from kinematify.simulation.world import HeldPoint, PlacedModel, PlacedRobot, PullingHand, WorldSpec
 
@@ -109,7 +111,7 @@ def arm_facts(articulated_object: ArticulatedObject, target: Target, robot: EnvR
             locked={travel.joint: travel.rest for travel in robot.mechanism.travels if travel.joint not in driven},
             arm=robot.robot.arm_joints,
             fingers=robot.robot.finger_joints,
-            strongest=robot.strongest,
+            strongest=effort_limits(robot.arm.declared, robot.robot, load_validation_settings().task.execution.effort),
             postures=(plan.reach[0], plan.pull[0], plan.pull[-1]),
             tool=robot.robot.tool,
             settings=settings.robot,

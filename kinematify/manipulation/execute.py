@@ -14,6 +14,7 @@ import numpy as np
 
 from kinematify.manipulation.grip import grip_piece
 from kinematify.manipulation.request import Hold
+from kinematify.manipulation.robot import effort_limits, hand_links
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import rest_configuration, rigid_groups
@@ -180,23 +181,13 @@ class Loaded:
 
     @property
     def hand_links(self) -> frozenset[str]:
-        """Links of the hand: what the tool is fixed to, and the fingers."""
-        robot = self.robot
-        fingers = [robot.joint_by_name[name].child for name in self.motion.robot.finger_joints]
-        links = set(_body(robot, self.motion.robot.tool))
-        for link in fingers:
-            links |= _below(robot, link)
-        return frozenset(links)
+        """Links of the hand (`kinematify.manipulation.robot.hand_links`)."""
+        return hand_links(self.robot, self.motion.robot)
 
     def fastest(self, settings: ExecutionSettings) -> FloatArray:
         """Speed limits of the arm joints [rad/s or m/s], shape (dof,)."""
         joints = [self.robot.joint_by_name[name] for name in self.motion.robot.arm_joints]
         return np.array([j.velocity if j.velocity and j.velocity > 0.0 else settings.velocity for j in joints])
-
-    def strongest(self, settings: ExecutionSettings) -> FloatArray:
-        """Effort limits of the arm joints [N m or N], shape (dof,)."""
-        joints = [self.robot.joint_by_name[name] for name in self.motion.robot.arm_joints]
-        return np.array([j.effort if j.effort and j.effort > 0.0 else settings.effort for j in joints])
 
 
 def load(motion: Motion, work: Path, settings: PrepareSettings) -> Loaded:
@@ -295,7 +286,7 @@ class _Run:
                 locked={travel.joint: travel.rest for travel in self._robot.travels if travel.joint not in driven},
                 arm=motion.robot.arm_joints,
                 fingers=motion.robot.finger_joints,
-                strongest=loaded.strongest(settings),
+                strongest=effort_limits(loaded.robot, motion.robot, settings.effort),
                 postures=(motion.reach[0], motion.pull[0], motion.pull[-1]),
                 tool=motion.robot.tool,
                 settings=settings,
@@ -397,10 +388,3 @@ def _judged(
 def _body(robot: Robot, link: str) -> frozenset[str]:
     """Links that are fixed to a link, itself included."""
     return frozenset(next(group.links for group in rigid_groups(robot) if link in group.links))
-
-
-def _below(robot: Robot, link: str) -> frozenset[str]:
-    links = [link]
-    for name in links:
-        links += [joint.child for joint in robot.joints_below[name]]
-    return frozenset(links)

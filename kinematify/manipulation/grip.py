@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from trimesh.intersections import slice_faces_plane
 
 from kinematify.geometry.convex import convex_hull, thickened
 from kinematify.geometry.scene import transformed
@@ -68,27 +69,7 @@ def _triangles(model: Robot, link: str, held: str, values: Mapping[str, float]) 
 
 def _clipped(triangles: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     """Corners of what is left of triangles (F, 3, 3) inside a box, shape (n, 3)."""
-    near = (triangles.min(axis=1) <= high).all(axis=1) & (triangles.max(axis=1) >= low).all(axis=1)
-    found = [np.empty((0, 3))]
-    for triangle in triangles[near]:
-        polygon = triangle
-        for axis in range(3):
-            for sign, bound in ((1.0, high[axis]), (-1.0, -low[axis])):
-                polygon = _below(polygon, sign * polygon[:, axis] - bound)
-        found.append(polygon)
-    return np.concatenate(found)
-
-
-def _below(polygon: FloatArray, above: FloatArray) -> FloatArray:
-    """Part of a polygon (n, 3) whose corners lie `above` a plane by so much (n,) that is not above it."""
-    if (above <= 0.0).all():
-        return polygon
-    kept: list[FloatArray] = []
-    for index in range(len(polygon)):
-        after = (index + 1) % len(polygon)
-        if above[index] <= 0.0:
-            kept.append(polygon[index])
-        if (above[index] <= 0.0) != (above[after] <= 0.0):
-            share = above[index] / (above[index] - above[after])
-            kept.append(polygon[index] + share * (polygon[after] - polygon[index]))
-    return np.array(kept).reshape(-1, 3)
+    vertices, faces = triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3)
+    for normal, bound in zip((*np.eye(3), *-np.eye(3)), (*low, *-high), strict=True):
+        vertices, faces, _ = slice_faces_plane(vertices, faces, normal, bound * normal)
+    return np.asarray(vertices[np.unique(faces)])
