@@ -18,7 +18,8 @@ TASK_IDS = {name: f"kinematify/{name}-v0" for name in TASKS}
 """Ids of `kinematify.envs.tasks.TASKS`."""
 
 EPISODE_STEPS = {"open_part": 100, "drawer_pull": 240}
-"""Actions after which episodes are truncated: 5 s and 12 s."""
+"""Actions after which episodes are truncated: 5 s is three times what a person needs for a drawer; in 12 s a robot
+reaches, grips and pulls with half of its speed."""
 
 
 def _register() -> None:

@@ -11,7 +11,7 @@ from gymnasium import spaces
 from gymnasium.utils import EzPickle
 
 from kinematify.envs.articulated_object import AUTO, ENGINES, held_links, shared_articulated_object, shared_target
-from kinematify.envs.dynamics import draw, drawing, no_draw
+from kinematify.envs.dynamics import draw, drawing
 from kinematify.envs.goal import Goal
 from kinematify.envs.picture import Piece, Renderer, View, ViewerWindow, has_screen, require_screen
 from kinematify.envs.settings import load_settings
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.envs.articulated_object import ArticulatedObject, Target
+    from kinematify.envs.dynamics import Draw
     from kinematify.envs.goal import Progress
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.world import EngineWorld, ObjectState
@@ -89,8 +90,8 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         self.validation = require_valid(self.articulated_object, engine, allow_invalid=allow_invalid)
         self.T_world_root = self.articulated_object.T_world_root
         self._asked_joint = joint
+        self._draw: Draw | None = None
         self._start_noise = np.array(self.settings.reset.start_open)
-        self._draw = no_draw(*self._counts)
         self._window: ViewerWindow | None = None
         self._renderer: Renderer | None = None
         self._progress: Progress | None = None
@@ -317,7 +318,9 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     @property
     def _tint(self) -> dict[str, FloatArray]:
-        """What is added to the colour of each link."""
+        """What is added to the colour of each link; nothing before the first episode."""
+        if self._draw is None:
+            return {}
         return dict(zip(self.articulated_object.scene.mechanism.links, self._draw.color, strict=True))
 
     def _pieces(self) -> Sequence[Piece]:

@@ -138,13 +138,5 @@ def draw(
     )
 
 
-def no_draw(joints: int, links: int) -> Draw:
-    """The object as it is."""
-    return Draw(
-        damping=np.ones(joints), friction=np.ones(joints), surface=1.0, mass=np.ones(links), T_root=np.eye(4),
-        color=np.zeros((links, 3)),
-    )  # fmt: skip
-
-
 def _factors(rng: np.random.Generator, ends: list[float], count: int) -> FloatArray:
     return np.asarray(np.exp(rng.uniform(np.log(ends[0]), np.log(ends[1]), count)))

@@ -11,6 +11,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from mujoco.rollout import Rollout
 
+from kinematify.envs import EPISODE_STEPS
 from kinematify.envs.base import STATE
 from kinematify.envs.open_part import POSITION, OpenPartEnv, hand_space, observe_hand
 from kinematify.errors import InputError
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     BoolArray = NDArray[np.bool_]
 
 _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS.value
-_EPISODE_STEPS = 100
 
 
 class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", "NDArray[Any]"]):
@@ -45,7 +45,12 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
     }
 
     def __init__(
-        self, num_envs: int = 1, *, max_episode_steps: int = _EPISODE_STEPS, threads: int | None = None, **keywords: Any
+        self,
+        num_envs: int = 1,
+        *,
+        max_episode_steps: int = EPISODE_STEPS["open_part"],
+        threads: int | None = None,
+        **keywords: Any,
     ) -> None:
         """Make the environments.
 

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
+from kinematify.envs import EPISODE_STEPS
 from kinematify.envs.drawer_pull import DrawerPullEnv
 from kinematify.envs.expert import ArmExpert
 from kinematify.envs.settings import load_settings
@@ -60,7 +61,7 @@ def test_the_documented_spaces_are_the_spaces(drawer: Path) -> None:
     for words in (
         f"`Box(-1, 1, {env.action_space.shape}, float32)`",
         "`Box((86,), float32)`",
-        f"after {env.settings.time.robot_episode_steps} steps of {env.settings.time.control_step:g} s",
+        f"after {EPISODE_STEPS['drawer_pull']} steps of {env.settings.time.control_step:g} s",
         f"shares of {robot.tool_step:g} m",
         f"shares of {robot.turn_step:g} rad",
         f"shares of {robot.joint_step:g} rad",
@@ -76,7 +77,7 @@ def test_the_documented_spaces_are_the_spaces(drawer: Path) -> None:
         f"and {env.settings.randomize.robot_yaw:g} rad",
     ):
         assert words in flat
-    assert gymnasium.spec(DRAWER_PULL.split(":")[1]).max_episode_steps == env.settings.time.robot_episode_steps
+    assert gymnasium.spec(DRAWER_PULL.split(":")[1]).max_episode_steps == EPISODE_STEPS["drawer_pull"]
     assert DrawerPullEnv(drawer, control="joint", allow_invalid=True).action_space.shape == (8,)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
+from kinematify.envs import EPISODE_STEPS
 from kinematify.envs.bundled import BUNDLED
 from kinematify.envs.open_part import OpenPartEnv
 from kinematify.errors import EnvironmentFault, InputError
@@ -31,9 +32,10 @@ def test_the_documented_spaces_are_the_spaces() -> None:
     assert f"`Box((57,), {env.observation_space.dtype})`" in doc
     assert f"`Box(-1, 1, {env.action_space.shape}, {env.action_space.dtype})`" in doc
     settings = env.settings
-    assert gymnasium.spec(OPEN_PART.split(":")[1]).max_episode_steps == settings.time.episode_steps
+    steps = EPISODE_STEPS["open_part"]
+    assert gymnasium.spec(OPEN_PART.split(":")[1]).max_episode_steps == steps
     numbers = {
-        f"after {settings.time.episode_steps} steps": "time",
+        f"after {EPISODE_STEPS['open_part']} steps": "time",
         f"of {settings.time.control_step:g} s": "time",
         f"shares of {settings.hand.speed:g} ways": "hand",
         f"{settings.hand.lag:.0%}".replace("%", " %"): "hand",
