@@ -71,5 +71,5 @@ def _clipped(triangles: FloatArray, low: FloatArray, high: FloatArray) -> FloatA
     """Corners of what is left of triangles (F, 3, 3) inside a box, shape (n, 3)."""
     vertices, faces = triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3)
     for normal, bound in zip((*np.eye(3), *-np.eye(3)), (*low, *-high), strict=True):
-        vertices, faces, _ = slice_faces_plane(vertices, faces, normal, bound * normal)
+        vertices, faces, _ = slice_faces_plane(vertices, faces, normal, bound * normal)  # type: ignore[no-untyped-call]
     return np.asarray(vertices[np.unique(faces)])
