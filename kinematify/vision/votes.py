@@ -88,15 +88,6 @@ class VoteResult:
         }  # fmt: skip
 
 
-@dataclass(frozen=True, kw_only=True)
-class AnsweredMotion:
-    """What an answer says of one part, without any doubt."""
-
-    child: str
-    motion: JointCandidate | None
-    """None for a part that is fixed."""
-
-
 def to_ask(
     inference: Inference, *, everything: bool = False, known: Collection[str] = ()
 ) -> tuple[list[int], list[int]]:
@@ -300,26 +291,6 @@ def _decided(
     likely = float(found[best])
     sure = likely * joint.evidence.get("parent_likely", 1.0)
     return replace(made, confidence=sure, evidence={**made.evidence, VISION: likely})
-
-
-def answered_motions(inference: Inference, answers: Mapping[int, Answer], shown: Shown) -> list[AnsweredMotion]:
-    """What answers say of each joint and its twins; of several motions that fit a twin, geometry's best one."""
-    found = []
-    for place, (source, answer) in sorted(_spread(inference, answers, shown).items()):
-        part = inference.assembly.parts[inference.joints[place].child]
-        own = source == place and place in shown
-        options = tuple(shown[place]) if own else offered(inference.joints[place], part, inference.config.vision)
-        if answer.choice == FIXED:
-            found.append(AnsweredMotion(child=part.name, motion=None))
-        elif own and answer.option is not None:
-            found.append(AnsweredMotion(child=part.name, motion=options[answer.option]))
-        elif answer.option is not None:
-            named = _named(inference, source, place, shown[source][answer.option], options)
-            fitting = [item for item, fits in zip(options, named, strict=True) if fits]
-            found += (
-                [AnsweredMotion(child=part.name, motion=max(fitting, key=lambda item: item.score))] if fitting else []
-            )
-    return found
 
 
 def with_types(
