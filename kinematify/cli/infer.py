@@ -354,7 +354,7 @@ def _as_answer(inference: Inference, out: Path) -> dict[str, Any]:
         "joints": [_joint_answer(inference, joint) for joint in inference.model.joints],
         "set_aside": [{"name": item.part.name, "reason": item.reason} for item in inference.assembly.set_aside],
         "warnings": list(inference.warnings),
-        "closed_chains": [chain.told for chain in inference.closed_chains],
+        "closed_chains": [chain.description for chain in inference.closed_chains],
         "seconds": dict(inference.timings),
         "refinement": None if inference.refinement is None else dict(inference.refinement),
         "vision": None if inference.vision is None else dict(inference.vision),

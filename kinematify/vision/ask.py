@@ -128,8 +128,8 @@ def voter_record(oracle: ChatOracle, known: Callable[[], Iterable[KnownQuestion]
     questions = list(known())
     answers = oracle.ask([question for question, _ in questions])
     pairs = zip(answers, questions, strict=True)
-    told = [(answer, right) for answer, (_, right) in pairs if answer.counts(oracle.config.least_confidence)]
-    record = VoterRecord(right=sum(answer.choice in right for answer, right in told), asked=len(told))
+    counted = [(answer, right) for answer, (_, right) in pairs if answer.counts(oracle.config.least_confidence)]
+    record = VoterRecord(right=sum(answer.choice in right for answer, right in counted), asked=len(counted))
     if not oracle.fault:
         write_kept(oracle.record_path, {"right": record.right, "asked": record.asked})
     return record

@@ -170,13 +170,13 @@ def _spread(inference: Inference, answers: Mapping[int, Answer], shown: Shown) -
         inference.config.vision.least_confidence,
     )
     for group in groups(inference):
-        told = [place for place in group if place in answers and answers[place].counts(least)]
-        if any(not _agree(inference, told[0], other, answers, shown) for other in told[1:]):
+        counted = [place for place in group if place in answers and answers[place].counts(least)]
+        if any(not _agree(inference, counted[0], other, answers, shown) for other in counted[1:]):
             fault = "congruent parts were answered differently"
-            found |= {place: (place, replace(answers[place], choice=UNSURE, fault=fault)) for place in told}
-        elif told:
-            silent = [place for place in group if place not in told]
-            found |= dict.fromkeys(silent, (told[0], answers[told[0]]))
+            found |= {place: (place, replace(answers[place], choice=UNSURE, fault=fault)) for place in counted}
+        elif counted:
+            silent = [place for place in group if place not in counted]
+            found |= dict.fromkeys(silent, (counted[0], answers[counted[0]]))
     return found
 
 
