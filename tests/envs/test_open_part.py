@@ -188,7 +188,7 @@ def test_reset_options() -> None:
 
 def test_what_is_randomised_and_what_is_not() -> None:
     env = OpenPartEnv("bundled:drawers", randomize=["mass", "pose"])
-    model = env.hand.model
+    model = env.world.model
     seen = []
     for seed in (0, 1):
         env.reset(seed=seed)
@@ -197,14 +197,14 @@ def test_what_is_randomised_and_what_is_not() -> None:
         )
     for before, after, differ in zip(*seen, (True, True, False, False), strict=True):
         assert bool((before != after).any()) is differ
-    ratio = seen[0][0][1:] / OpenPartEnv("bundled:drawers").hand.model.body_mass[1:]
+    ratio = seen[0][0][1:] / OpenPartEnv("bundled:drawers").world.model.body_mass[1:]
     assert 0.79 < ratio.min() < ratio.max() < 1.26
 
 
 def test_the_objects_own_damping_and_friction_are_kept(tmp_path: Path) -> None:
     env = OpenPartEnv(write_slider(tmp_path / "slider.urdf"))
-    assert env.hand.model.dof_damping.tolist() == [4.0]
-    assert env.hand.model.dof_frictionloss.tolist() == [1.0]
+    assert env.world.model.dof_damping.tolist() == [4.0]
+    assert env.world.model.dof_frictionloss.tolist() == [1.0]
     assert env.validation in {"pass", "warn"}
 
 
