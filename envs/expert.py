@@ -8,6 +8,7 @@ import numpy as np
 
 from kinematify.envs.drawer_pull import JOINT, damped_step
 from kinematify.envs.open_part import POSITION
+from kinematify.manipulation.execute import eased
 from kinematify.robot.robot import forward_kinematics
 
 if TYPE_CHECKING:
@@ -167,10 +168,4 @@ def _paced(rows: FloatArray, step: float, least: float = 1e-9) -> FloatArray:
     """
     times = np.maximum(np.abs(np.diff(rows, axis=0)).max(axis=1) / step, least)
     along = np.concatenate([[0.0], np.cumsum(times)])
-    count = max(2, int(np.ceil(1.5 * along[-1])))
-    at = along[-1] * _eased(np.linspace(0.0, 1.0, count))
-    return np.stack([np.interp(at, along, column) for column in rows.T], axis=1)
-
-
-def _eased(share: FloatArray) -> FloatArray:
-    return share * share * (3.0 - 2.0 * share)
+    return eased(rows, along, max(2, int(np.ceil(1.5 * along[-1]))))

@@ -11,9 +11,9 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from mujoco.rollout import Rollout
 
-from kinematify.envs import EPISODE_STEPS
 from kinematify.envs.base import STATE
 from kinematify.envs.open_part import POSITION, OpenPartEnv, hand_space, observe_hand
+from kinematify.envs.tasks import EPISODE_STEPS
 from kinematify.errors import InputError
 
 if TYPE_CHECKING:

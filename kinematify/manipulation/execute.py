@@ -115,7 +115,12 @@ def _along(path: FloatArray, allowed: FloatArray, least: float, step: float) -> 
     times += 1e-9 * np.arange(len(times))  # rows that are the same still follow one another
     # The derivative of the smooth step is at most 1.5 times that of the straight one.
     seconds = max(1.5 * float(times[-1]), least, step)
-    phase = np.linspace(0.0, 1.0, max(2, round(seconds / step) + 1))
+    return eased(path, times, max(2, round(seconds / step) + 1))
+
+
+def eased(path: FloatArray, times: FloatArray, count: int) -> FloatArray:
+    """Rows on a path with a smooth start and end, `times` those of its own rows, shape (count, dof)."""
+    phase = np.linspace(0.0, 1.0, count)
     at = times[-1] * phase**2 * (3.0 - 2.0 * phase)
     return np.stack([np.interp(at, times, column) for column in path.T], axis=1)
 

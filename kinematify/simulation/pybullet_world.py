@@ -164,7 +164,7 @@ class PybulletWorld:
 
     def _follow(self) -> None:
         """Let joints that mimic others follow them, which PyBullet does not care for."""
-        if not self._followers or self._spec.object.locked:
+        if not self._followers:
             return
         values = self._mechanism.all_values(self._object_leaders()[0][None])[0]
         for k in self._followers:

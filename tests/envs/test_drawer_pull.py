@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-from kinematify.envs import EPISODE_STEPS
 from kinematify.envs.drawer_pull import DrawerPullEnv
 from kinematify.envs.expert import ArmExpert
 from kinematify.envs.settings import load_settings
+from kinematify.envs.tasks import EPISODE_STEPS
 from kinematify.errors import EnvironmentFault, InputError
 from kinematify.manipulation.robot import builtin_robot
 from kinematify.simulation.world import ROBOT

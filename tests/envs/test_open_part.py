@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-from kinematify.envs import EPISODE_STEPS
 from kinematify.envs.bundled import BUNDLED
 from kinematify.envs.open_part import OpenPartEnv
+from kinematify.envs.tasks import EPISODE_STEPS
 from kinematify.errors import EnvironmentFault, InputError
 from tests.envs.hands import OPEN_PART, documented_rows, run, steady, write_slider
 
