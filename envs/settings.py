@@ -20,8 +20,6 @@ class TimeSettings(StageConfig):
     """Of the engine [s]."""
     control_rate: float = 20.0  # what most benchmarks of manipulation use
     """Actions per second [1/s]."""
-    solver_iterations: int = 80  # as in `validate --task`
-    """Of PyBullet, per step."""
 
     @property
     def substeps(self) -> int:

@@ -67,7 +67,6 @@ def hand_facts(articulated_object: ArticulatedObject, target: Target, *, spring:
     settings, mechanism = load_settings(), articulated_object.scene.mechanism
     spec = WorldSpec(
         step=settings.time.step,
-        iterations=settings.time.solver_iterations,
         object=_placed(articulated_object, articulated_object.T_world_root),
         point=_point(articulated_object, target),
     )
@@ -101,7 +100,6 @@ def arm_facts(articulated_object: ArticulatedObject, target: Target, robot: EnvR
     settings, driven = load_settings(), {*robot.robot.arm_joints, *robot.robot.finger_joints}
     spec = WorldSpec(
         step=settings.time.step,
-        iterations=settings.time.solver_iterations,
         object=_placed(articulated_object, plan.T_world_object),
         robot=PlacedRobot(
             urdf=robot.loaded,

@@ -74,8 +74,6 @@ class ExecutionSettings(StageConfig):
 
     time_step: float = 0.002
     """Of both engines [s]."""
-    solver_iterations: int = 80
-    """Of PyBullet, per step."""
     speed_share: float = 0.6  # of what the arm can do: servos keep up
     """Of the speed limit of each arm joint."""
     pull_seconds: float = 1.5  # people open doors in one to two seconds

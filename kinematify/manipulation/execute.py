@@ -276,7 +276,6 @@ class _Run:
         held, leaders = loaded.held, self._start
         return WorldSpec(
             step=settings.time_step,
-            iterations=settings.solver_iterations,
             object=PlacedModel(
                 urdf=loaded.object_prepared.urdf,
                 mechanism=self._object,

@@ -116,12 +116,12 @@ class WorldSpec:
 
     step: float
     """[s]."""
-    iterations: int
-    """Of PyBullet's solver."""
     object: PlacedModel
     robot: PlacedRobot | None = None
     point: HeldPoint | None = None
     grip: Grip | None = None
+    iterations: int = 80
+    """Of PyBullet's solver, per step."""
 
 
 @dataclass(frozen=True, kw_only=True)
