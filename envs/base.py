@@ -99,13 +99,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     def _choose(self, joint: str) -> str:
         """Return the joint that ``auto`` represents."""
-        if joint != AUTO:
-            return joint
-        return (
-            self.articulated_object.suggested
-            if self.articulated_object.suggested != AUTO
-            else self.articulated_object.farthest
-        )
+        return self.articulated_object.usual if joint == AUTO else joint
 
     def _aim(self, joint: str) -> None:
         self.target = self._targeted(joint)
