@@ -7,6 +7,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.stats import rankdata
 
 from kinematify.grouping.lattice import CELLS, PAD
 from kinematify.grouping.measure import FREE
@@ -120,9 +121,18 @@ def measure_candidates(
         }
         for row, inside in enumerate(member)
     ]
-    names = tuple(rows[0])
-    table = np.array([[row[name] for name in names] for row in rows])
-    return np.column_stack([table, _twins(member, measured.grid)]), (*names, "twins", "twins_apart")
+    names = (*rows[0], "twins", "twins_apart")
+    table = np.column_stack([[list(row.values()) for row in rows], _twins(member, measured.grid)])
+    return with_ranks(table, names)
+
+
+def with_ranks(table: FloatArray, names: tuple[str, ...]) -> tuple[FloatArray, tuple[str, ...]]:
+    """The table (c, k) with the rank of every value among those of all candidates, in (0, 1], shape (c, 2 k).
+
+    What is large or free for one object is not for another; ranks compare the candidates of one object.
+    """
+    ranks = rankdata(table, axis=0) / len(table)
+    return np.column_stack([table, ranks]), (*names, *(f"{name}_rank" for name in names))
 
 
 def _links(inside: BoolArray, measured: MeasuredPieces, odds: FloatArray, areas: FloatArray) -> dict[str, float]:
