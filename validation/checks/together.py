@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from kinematify.validation.check import CauseScope, FeedbackRow, check
 from kinematify.validation.checks.follow import AT_REST
 from kinematify.validation.finding import Blame, Severity, not_finished
@@ -11,6 +13,7 @@ from kinematify.validation.geometry.formatting import configuration, joint_value
 from kinematify.validation.geometry.twins import twins_at_odds
 
 if TYPE_CHECKING:
+    from kinematify.robot.robot import Joint
     from kinematify.validation.check import OpenCheck
     from kinematify.validation.geometry.look import GeometryContext
 
@@ -163,24 +166,27 @@ def hulls_block(result: OpenCheck, look: GeometryContext) -> None:
     needs=(_two_joints,),
 )
 def unlike_twins(result: OpenCheck, look: GeometryContext) -> None:
-    """Two parts of one size that mirror or repeat each other at rest, and so do their joints' lines, are of one type
-    and have ranges of about the same width that lead the same way. It is a finding only if no symmetry of the two
-    explains both joints.
+    """Two parts of one size that mirror or repeat each other at rest have joints of one type that do so too: their axes
+    run alike and through the same place of both parts, and their ranges are about as wide and lead the same way. It is
+    a finding only if no symmetry of the two explains both joints. Axes that differ are one only if the surfaces of both
+    parts agree, and the axes differ either in direction or in place.
 
     Why it matters: One leg that bends the wrong way, or one door that opens inwards, is stopped by nothing in an
     engine.
 
-    Remedy: Compare the two joints; reverse <axis>, correct the type or the limits of the one that is wrong.
+    Remedy: Compare the two joints; correct <axis>, <origin>, the type or the limits of the one that is wrong.
     """
     for found in twins_at_odds(look.scene):
         first, second = found.joints
-        ranges = " and ".join(
-            f"{joint.name} ({joint.kind} {joint.lower:.4g} to {joint.upper:.4g})" for joint in found.joints
-        )
         result.find(
-            f"{first.child} and {second.child} mirror or repeat each other, and so do the axes of their joints, but "
-            f"{found.how}: {ranges}.",
-            "Compare the two: reverse <axis> of the one that is wrong, or correct its type or its limits.",
+            f"{first.child} and {second.child} mirror or repeat each other, but {found.how}: "
+            f"{' and '.join(f'{joint.name} ({_line_and_range(joint)})' for joint in found.joints)}.",
+            "Compare the two: correct <axis> or <origin> of the one that is wrong, or its type or its limits.",
             pair=(first.child, second.child),
             line=second.line,
         )
+
+
+def _line_and_range(joint: Joint) -> str:
+    axis = " ".join(f"{value + 0.0:.4g}" for value in np.round(joint.axis, 4))
+    return f"{joint.kind}, axis {axis}, {joint.lower:.4g} to {joint.upper:.4g}"
