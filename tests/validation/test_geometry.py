@@ -271,15 +271,6 @@ def test_a_drawer_longer_out_than_it_is_long_has_left_its_guide(tmp_path: Path) 
     assert finding.value == pytest.approx(0.45)
 
 
-def test_two_joints_that_meet_only_together_are_noted(tmp_path: Path) -> None:
-    left = block("left", -0.2, axis=(1.0, 0.0, 0.0), limits=(0.0, 0.09))
-    right = block("right", 0.0, axis=(-1.0, 0.0, 0.0), limits=(0.0, 0.09))
-    assert found(beam(left, right), tmp_path) == {}
-    (note,) = notes(beam(left, right), tmp_path, "KV330")
-    assert note.pair == ("left", "right")
-    assert "neither of them alone" in note.message
-
-
 def doors(
     left: tuple[float, float], right: tuple[float, float], *, right_hinge: float = 0.2, right_tilt: float = 0.0
 ) -> Model:

@@ -1,4 +1,4 @@
-"""KV330 to KV333: several joints at once, what engines see that collide convex hulls, and joints of twins."""
+"""KV331 to KV333: several joints at once, what engines see that collide convex hulls, and joints of twins."""
 
 from __future__ import annotations
 
@@ -22,47 +22,6 @@ _HULL_SAMPLES = 24
 
 def _two_joints(look: GeometryContext) -> str | None:
     return look.late or ("only one joint moves" if len(look.scene.travels) < 2 else None)
-
-
-@check(
-    "KV330",
-    title="Two joints at once bring nothing together",
-    fails="Two joints at once bring bodies together",
-    severity=Severity.NOTE,
-    blame=Blame.KINEMATICS,
-    follows={"KV311": CauseScope.PAIR},
-    needs=(_two_joints,),
-)
-def in_each_others_way(result: OpenCheck, look: GeometryContext) -> None:
-    """Every two joints that can bring the same two bodies together are moved over a grid of their values.
-
-    Why it matters: Doors and drawers that stop one another are common; a planner must know.
-
-    Remedy: Nothing to do.
-    """
-    scene = look.scene
-    found, result.measured["pairs_left_out"] = look.pairs_of_joints
-    ranked = sorted(found, key=lambda item: -item.share)
-    for item in ranked[: scene.settings.listed]:
-        standing = dict(zip(item.leaders, item.values, strict=True))
-        first, second = look.links_at(item.pair, standing)
-        travels = [scene.travels[leader] for leader in item.leaders]
-        where = " and ".join(
-            f"{travel.joint} at {joint_value(value, turns=travel.turns)}"
-            for travel, value in zip(travels, item.values, strict=True)
-        )
-        result.find(
-            f"{first} and {second} meet in {item.share:.0%} of the combinations of these two joints, though "
-            f"neither of them alone brings them together: for example {where}.",
-            "Nothing to do; a planner must keep them apart.",
-            joint=travels[0].joint,
-            pair=(first, second),
-            q=configuration(scene, standing),
-            value=item.share,
-        )
-    if len(ranked) > scene.settings.listed:
-        more = len(ranked) - scene.settings.listed
-        result.find(f"{more} more pairs of bodies meet when two joints move.", "Nothing to do.")
 
 
 @check(
