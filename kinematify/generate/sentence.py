@@ -310,18 +310,16 @@ def _plans(specification: Specification, *, alone: bool = True) -> Iterator[_Pla
     name = specification.name
     for start in range(len(name)):
         words = [specification.tokens[k].given for k in name[start:]]
-        if any(specification.tokens[k].given not in _MANNERS for k in name[:start]):
-            break  # a hand truck is no truck
+        needed = {k for k in name[:start] if specification.tokens[k].given not in _MANNERS}
         kinds = _library().get(tuple(words)) or _library().get((*words[:-1], lemma(words[-1]))) or []
         # Where `sliding door` cannot be double, a door can be double and sliding.
         meant = replace(specification, name=name[start:])
         reasons: list[InputError] = []
         for kind in kinds:
             try:
-                if isinstance(kind, Family):
-                    yield _family_plan(meant, kind)
-                else:
-                    yield _composed_plan(meant, kind, alone)
+                plan = _family_plan(meant, kind) if isinstance(kind, Family) else _composed_plan(meant, kind, alone)
+                if needed <= plan.used:  # a hand truck is no truck; a barn door is a door of a kind
+                    yield plan
             except InputError as error:
                 if start == 0 and isinstance(kind, Family):
                     raise

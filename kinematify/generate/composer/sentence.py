@@ -136,7 +136,7 @@ class Asked:
         first = min(part.claims[0].at)
         said = [claim for claim in part.claims if claim.about == "place"]
         said = [claim for claim in said if min(claim.at) > first or claim.value in _ENDS]
-        if not said:
+        if not said or "one" in said[0].words.split():  # all on the same side
             return "", 0
         if said[0].value == "side":
             flank = next((side for side in kind.sides if side in _FLANKS), "right")
