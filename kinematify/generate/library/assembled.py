@@ -48,7 +48,7 @@ def builder_of(
 
     def build(values: Values, workshop: Workshop) -> None:
         differs = MODELING[values.choice("modeling")] if values.has("modeling") else {"sides": SEGMENTS}
-        style = replace(CAREFUL, gap=values.number("clearance"), **differs)
+        style = replace(CAREFUL, **{"gap": values.number("clearance"), **differs})
         builder = ObjectBuilder(name, style, values.rng if values.drawn else None)
         said = carried_out(steps, builder, {key: values.value(key) for key in names})
         try:

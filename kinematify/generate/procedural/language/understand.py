@@ -244,7 +244,7 @@ def _buildable(reading: ParseState) -> Blueprint:
 
 def _built_so_that_it_matters(reading: ParseState, parameter: Parameter, made: Blueprint) -> Blueprint:
     """The object with the kind that has what was asked for: two handles are of a tap with a handle on either side."""
-    for kind in reading.family.parameters:
+    for kind in _spoken(reading.family):
         for choice in kind.choices if kind.name not in reading.values else ():
             values = {**reading.values, kind.name: choice}
             other = build(reading.family, values)
@@ -292,10 +292,15 @@ def _choice_words(parameter: Parameter, choice: str) -> tuple[str, ...]:
     return (choice.replace("_", " "), *parameter.choice_words.get(choice, ()), *common) if choice else ()
 
 
+def _spoken(family: Family) -> list[Parameter]:
+    """Parameters that a sentence may set; how it is modelled is none: a door of solid oak."""
+    return [parameter for parameter in family.parameters if parameter.name != "modeling"]
+
+
 def _choices(reading: ParseState) -> None:
     """`with knobs`, `sliding`, `barrel hinges`."""
     known = frozenset(word for token in reading.tokens for word in [token.text])
-    for parameter in reading.family.parameters:
+    for parameter in _spoken(reading.family):
         phrases = [(tuple(words.split()), c) for c in parameter.choices for words in _choice_words(parameter, c)]
         for words, choice in sorted(phrases, key=lambda item: -len(item[0])):  # `lifts off` before `lifts`
             for k in range(len(reading.tokens) - len(words) + 1):
