@@ -272,8 +272,7 @@ def _journal(cache: PartCache, parent: int, child: int, frame: BoxFrame, config:
         return None
     reach = edge.gap + config.contact_band * cache.diagonal
     facing = facing_faces(cache, parent, child, reach, config.journal)
-    rng = np.random.default_rng([parent, child])
-    return find_journal(facing, float(frame.extents.max()), config.journal, rng)
+    return find_journal(facing, float(frame.extents.max()), config.journal)
 
 
 def _with_journal(bearing: EdgeBearing | None, edge: tuple[int, int], journal: Journal) -> EdgeBearing:
