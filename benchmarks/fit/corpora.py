@@ -212,7 +212,6 @@ def _measure(source: CorpusSource, path: Path, seed: int) -> None:
         origin=source.origin,
         source=opened.source,
         fits=opened.fits,
-        style=opened.style,
         broken=source.broken,
     )
     write_examples(path, found)
@@ -260,8 +259,6 @@ class _Opened:
     """Whose work it is."""
     fits: bool
     """It may enter weights that ship."""
-    style: str = ""
-    """Way of modelling that was drawn."""
 
 
 def _read(folder: Path) -> _Opened:
@@ -297,7 +294,6 @@ def _generated(source: CorpusSource, seed: int) -> _Opened:
         category=category,
         source=source.origin,
         fits=source.origin != DESCRIBED,
-        style=str(blueprint.parameters.get("modelled", "")),
     )
 
 
