@@ -188,7 +188,8 @@ def _key(source: CorpusSource, seed: int) -> str:
     files = [] if source.folder is None else sorted(source.folder.rglob("*.*"))
     sizes = [(path.name, path.stat().st_size) for path in files]
     facts = asdict(source) | {"folder": None}
-    return content_key(facts, sizes, seed, load_config().joints.model_dump(mode="json"))
+    settings = load_config().joints.model_dump(mode="json", exclude={"confidence"})  # of what is chosen, not measured
+    return content_key(facts, sizes, seed, settings)
 
 
 def _measure(source: CorpusSource, path: Path, seed: int) -> None:
