@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from gymnasium.envs.registration import register
 
-from kinematify.envs.tasks import TASKS
+from kinematify.envs.tasks import EPISODE_STEPS, TASKS
 
 OPEN_PART, DRAWER_PULL = "kinematify/OpenPart-v0", "kinematify/DrawerPull-v0"
 OPEN_PART_SPARSE, DRAWER_PULL_SPARSE = "kinematify/OpenPart-Sparse-v0", "kinematify/DrawerPull-Sparse-v0"
@@ -16,9 +16,6 @@ IDS = (OPEN_PART, OPEN_PART_SPARSE, DRAWER_PULL, DRAWER_PULL_SPARSE)
 """All ids but those of tasks."""
 TASK_IDS = {name: f"kinematify/{name}-v0" for name in TASKS}
 """Ids of `kinematify.envs.tasks.TASKS`."""
-
-EPISODE_STEPS = {"open_part": 100, "drawer_pull": 240}
-"""Actions after which episodes are truncated: 5 s and 12 s."""
 
 
 def _register() -> None:

@@ -23,7 +23,7 @@ from kinematify.manipulation.grasp import moved_bodies, search_grasps
 from kinematify.manipulation.request import Hold
 from kinematify.model.collision import collides_as_it_is
 from kinematify.model.masses import prepared_inertials
-from kinematify.model.output import MODEL_FILE
+from kinematify.model.output import urdf_of
 from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rigid_groups
@@ -89,8 +89,10 @@ class ArticulatedObject:
         )
 
     @cached_property
-    def farthest(self) -> str:
-        """Joint whose part moves farthest over its range, which is what people open."""
+    def usual(self) -> str:
+        """The suggested joint, else the one whose part moves farthest over its range, which is what people open."""
+        if self.suggested != AUTO:
+            return self.suggested
         return max(self.joints, key=lambda joint: round(_longest_way(self, joint), 3))
 
     @cached_property
@@ -165,8 +167,13 @@ def _read(source: str, folder: Path) -> ArticulatedObject:
     if source.startswith((PREFIX, FAMILY_PREFIX)):
         bundled = find_bundled(source)
         urdf, suggested = write_bundled(bundled, folder / "object"), bundled.joint
+    elif Path(source).exists():
+        urdf = urdf_of(Path(source)).resolve()
     else:
-        urdf = urdf_of(source)
+        raise InputError(
+            f"There is no model {source}. Give a URDF file, a folder that kinematify infer or generate has written, "
+            f"{PREFIX}NAME for an object that comes with the package, or {FAMILY_PREFIX}FAMILY."
+        )
     loaded = loadable(urdf, folder)
     declared = read_robot(loaded)
     scene = read_scene(declared, load_settings().geometry)
@@ -206,23 +213,6 @@ def loadable(urdf: Path, folder: Path) -> Path:
     return editor.write()
 
 
-def urdf_of(source: str) -> Path:
-    """Return the URDF that a path names.
-
-    Raises:
-        InputError: There is none.
-    """
-    path = Path(source)
-    if path.is_dir():
-        path = path / MODEL_FILE
-    if not path.is_file():
-        raise InputError(
-            f"There is no model {source}. Give a URDF file, a folder that kinematify infer or generate has written, "
-            f"{PREFIX}NAME for an object that comes with the package, or {FAMILY_PREFIX}FAMILY."
-        )
-    return path.resolve()
-
-
 def find_target(articulated_object: ArticulatedObject, joint: str, hand: HandSettings) -> Target:
     """Find where the part of a joint is held, and the way of that point.
 
@@ -230,14 +220,12 @@ def find_target(articulated_object: ArticulatedObject, joint: str, hand: HandSet
 
     Args:
         articulated_object: The object.
-        joint: A joint that leads, or ``auto``.
+        joint: A joint that leads.
         hand: How wide a hold may be.
 
     Raises:
         InputError: There is no such joint, or it moves nothing.
     """
-    if joint == AUTO:
-        joint = articulated_object.suggested if articulated_object.suggested != AUTO else articulated_object.farthest
     leader = articulated_object.leader(joint)
     opened = open_end(articulated_object.travels[leader])
     link = articulated_object.declared.joint_by_name[joint].child
@@ -364,9 +352,8 @@ def _standing(scene: Scene) -> FloatArray:
 
 def shared_articulated_object(model: str | Path | None) -> ArticulatedObject:
     """Return the object of a `model` keyword, read once per process as long as its file stays the same."""
-    path = Path(model) if isinstance(model, Path) or (isinstance(model, str) and Path(model).exists()) else None
-    file = path / "model.urdf" if path is not None and path.is_dir() else path
-    stamp = (file.stat().st_mtime_ns, file.stat().st_size) if file is not None and file.is_file() else None
+    file = urdf_of(Path(model)) if model is not None and Path(model).exists() else None
+    stamp = None if file is None else (file.stat().st_mtime_ns, file.stat().st_size)
     return _loaded(None if model is None else str(model), stamp)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -12,9 +11,9 @@ from gymnasium import spaces
 from gymnasium.utils import EzPickle
 
 from kinematify.envs.articulated_object import AUTO, ENGINES, held_links, shared_articulated_object, shared_target
-from kinematify.envs.dynamics import draw, drawing, no_draw
+from kinematify.envs.dynamics import draw, drawing
 from kinematify.envs.goal import Goal
-from kinematify.envs.picture import Painter, Piece, View, ViewerWindow, has_screen, require_screen
+from kinematify.envs.picture import Piece, Renderer, View, ViewerWindow, has_screen, require_screen
 from kinematify.envs.settings import load_settings
 from kinematify.envs.verdict import require_valid
 from kinematify.errors import InputError
@@ -28,12 +27,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.envs.articulated_object import ArticulatedObject, Target
-    from kinematify.envs.goal import ObjectState, Progress
-    from kinematify.envs.low_res_picture import LowResRenderer
-    from kinematify.envs.mujoco_object import MujocoWorld
-    from kinematify.envs.pybullet_worlds import PybulletWorld
-    from kinematify.envs.settings import PictureSettings
+    from kinematify.envs.dynamics import Draw
+    from kinematify.envs.goal import Progress
     from kinematify.robot.arrays import FloatArray
+    from kinematify.simulation.world import EngineWorld, ObjectState
 
 _HELD, _OTHERS, _BODY = (0.16, 0.62, 0.56), (0.62, 0.72, 0.80), (0.86, 0.80, 0.71)
 _OPTIONS = ("joint", "qpos", "open_fraction")
@@ -48,20 +45,34 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         "render_fps": 20,
     }
     _with_robot: ClassVar[bool] = False
-    _world: MujocoWorld | PybulletWorld
+    world: EngineWorld
+    """What runs."""
     articulated_object: ArticulatedObject
     target: Target
 
-    def _begin(
-        self, *, model: str | Path | None, joint: str, open_fraction: float, engine: str, reward: str,
-        randomize: bool | str | Collection[str], terminate_on_success: bool, allow_invalid: bool,
-        render_mode: str | None, closing: bool = False,
+    def __init__(
+        self, model: str | Path | None = None, *, joint: str = AUTO, open_fraction: float = 0.9, engine: str = "mujoco",
+        reward: str = "dense", randomize: bool | str | Collection[str] = False, terminate_on_success: bool = False,
+        allow_invalid: bool = False, render_mode: str | None = None,
     ) -> None:  # fmt: skip
         """Check the keywords and read the object; subclasses then make their world and spaces.
 
+        Args:
+            model: URDF, folder with it, ``bundled:NAME``, ``procedural:FAMILY`` or ``procedural:FAMILY:SEED``; a chest
+                of drawers if None.
+            joint: Joint that is opened; ``auto`` takes the one whose part moves farthest, for a robot the drawer that
+                goes farthest if there is one.
+            open_fraction: Share of the way that counts as open, above 0 and at most 1.
+            engine: ``mujoco`` or ``pybullet``.
+            reward: ``dense`` or ``sparse``.
+            randomize: What is drawn again in each episode.
+            terminate_on_success: End the episode on success.
+            allow_invalid: Take a model that fails `kinematify validate`.
+            render_mode: None, ``rgb_array`` or ``human``.
+
         Raises:
-            InputError: A keyword is impossible, or the model cannot be used.
-            EnvironmentFault: The engine or the screen is missing.
+            InputError: A keyword is impossible, or the model cannot be used; the message says what to do.
+            EnvironmentFault: The engine or the screen is missing, or the validation itself failed.
         """
         one_of("engine", engine, ENGINES)
         one_of("reward", reward, ("dense", "sparse"))
@@ -74,28 +85,21 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         self.engine, self.render_mode = engine, render_mode
         self._sparse, self.terminates = reward == "sparse", terminate_on_success
         self._drawn_names = drawing(randomize)
-        self.open_fraction, self._closing = open_fraction, closing
+        self.open_fraction = open_fraction
         self.articulated_object = shared_articulated_object(model)
         self.validation = require_valid(self.articulated_object, engine, allow_invalid=allow_invalid)
         self.T_world_root = self.articulated_object.T_world_root
         self._asked_joint = joint
+        self._draw: Draw | None = None
         self._start_noise = np.array(self.settings.reset.start_open)
-        self._draw = no_draw(*self._counts)
-        self._painter: Painter | None = None
         self._window: ViewerWindow | None = None
-        self._tiny: LowResRenderer | None = None
+        self._renderer: Renderer | None = None
         self._progress: Progress | None = None
         self._aim(self._choose(joint))
 
     def _choose(self, joint: str) -> str:
         """Return the joint that ``auto`` represents."""
-        if joint != AUTO:
-            return joint
-        return (
-            self.articulated_object.suggested
-            if self.articulated_object.suggested != AUTO
-            else self.articulated_object.farthest
-        )
+        return self.articulated_object.usual if joint == AUTO else joint
 
     def _aim(self, joint: str) -> None:
         self.target = self._targeted(joint)
@@ -105,8 +109,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     def _targeted(self, joint: str) -> Target:
         """Return the joint with the point at which its part is held."""
-        found = shared_target(self.articulated_object, joint)
-        return found.reversed if self._closing else found
+        return shared_target(self.articulated_object, joint)
 
     @property
     def _counts(self) -> tuple[int, int]:
@@ -131,7 +134,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
             self._retarget(joint)
         rng = self.np_random
         self._draw = draw(self._drawn_names, *self._counts, self.settings.randomize, rng, robot=self._with_robot)
-        self._world.draw(self._draw)
+        self.world.vary(self._draw)
         if "qpos" in given or "open_fraction" in given:
             self._place(self._asked_start(given))
             return
@@ -152,7 +155,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
     def _retarget(self, joint: str) -> None:
         """Open another joint from now on."""
         self._aim(joint)
-        self._world.close()
+        self.world.close()
         self._make_world()
         self._close_pictures()
 
@@ -181,7 +184,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     def reading(self) -> ObjectState:
         """State of the object now."""
-        return self._world.reading()
+        return self.world.state()
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -192,7 +195,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
             InputError: An option does not exist or is out of range.
         """
         self.begin_episode(seed, options)
-        reading = self._world.reading()
+        reading = self.world.state()
         self._progress = self.goal.begin(reading)
         self._last = self._observe(reading)
         if self.render_mode == "human":
@@ -207,9 +210,9 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
     def step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Act for 0.05 s; actions beyond -1 and 1 are clipped."""
         self._act(action)
-        if not self._world.stable():
+        if not self.world.stable():
             return self._failed(self._last)
-        reading = self._world.reading()
+        reading = self.world.state()
         self._last = self._observe(reading)
         reward, ended, info = self._outcome(reading, self._helped())
         if self.render_mode == "human":
@@ -268,10 +271,10 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
             "is_success": is_success,
             "open_fraction": float(self._progress.fraction),
             "thrown": bool(self._progress.thrown),
-            "max_penetration": self._world.depth(),
+            "max_penetration": self.world.depth(),
             "escaped": escaped,
             "unstable": False,
-            "warnings": self._world.warnings(),
+            "warnings": self.world.warnings(),
             "joint": self.target.joint,
             "validation": self.validation,
         }
@@ -282,39 +285,37 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         """Return a picture, shape (height, width, 3), for ``rgb_array``; show it for ``human``.
 
         Raises:
-            EnvironmentFault: A renderer that MUJOCO_GL asks for is missing, or there is no screen.
+            EnvironmentFault: There is no screen for ``human``.
         """
         if self.render_mode is None:
             gymnasium.logger.warn(
                 'render() was called without render_mode; make the environment with render_mode="rgb_array".'
             )
             return None
-        poses, tint = self._world.link_poses(), self._tint
+        poses, tint = self.world.link_poses(), self._tint
         if self.render_mode == "human":
             self._window = self._window or ViewerWindow(self._pieces(), self._view(), self.settings.picture)
             self._window.draw(poses, tint)
             return None
-        self._painter = self._painter or Painter(self._pieces(), self._view(), self.settings.picture)
-        return self._painter.draw(poses, tint)
+        height, width = self.settings.picture.height, self.settings.picture.width
+        fine = self.camera().draw(poses, tint, (2 * height, 2 * width)).reshape(height, 2, width, 2, 3)
+        return fine.mean(axis=(1, 3)).round().astype(np.uint8)
 
     def pixels(self, size: tuple[int, int]) -> NDArray[np.uint8]:
         """Return what a camera sees, shape (*size, 3), the same on every machine; `size` is height and width."""
-        return self.camera().draw(self._world.link_poses(), self._tint, size)
+        return self.camera().draw(self.world.link_poses(), self._tint, size)
 
-    def camera(self) -> LowResRenderer:
-        """Return what `pixels` are taken with; it is made when it is first asked for, in some tenths of a second."""
-        self._tiny = self._tiny or _tiny_painter(self._pieces(), self._view(), self.settings.picture)
-        return self._tiny
+    def camera(self) -> Renderer:
+        """Return what pictures are taken with; it is made when it is first asked for, in some tenths of a second."""
+        self._renderer = self._renderer or Renderer(self._pieces(), self._view(), self.settings.picture)
+        return self._renderer
 
     @property
     def _tint(self) -> dict[str, FloatArray]:
-        """What is added to the colour of each link."""
+        """What is added to the colour of each link; nothing before the first episode."""
+        if self._draw is None:
+            return {}
         return dict(zip(self.articulated_object.scene.mechanism.links, self._draw.color, strict=True))
-
-    @property
-    def renderer(self) -> str | None:
-        """``egl``, ``osmesa`` or ``software`` once a picture was drawn."""
-        return None if self._painter is None else self._painter.kind
 
     def _pieces(self) -> Sequence[Piece]:
         declared = self.articulated_object.declared
@@ -322,10 +323,15 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         colors = {name: _HELD if name in held else _OTHERS for name in self.articulated_object.scene.mechanism.links}
         colors[declared.root] = _BODY
         return [
-            Piece(link=link.name, vertices=mesh.vertices, faces=mesh.faces, color=np.array(colors[link.name]))
+            Piece(
+                link=link.name,
+                vertices=shape.mesh.vertices,
+                faces=shape.mesh.faces,
+                color=np.array(colors[link.name] if shape.color is None or link.name in held else shape.color[:3]),
+            )
             for link in declared.links
-            for mesh in link.meshes
-            if len(mesh.faces)
+            for shape in link.visuals or link.collisions
+            if len(shape.mesh.faces)
         ]
 
     def _view(self) -> View:
@@ -351,21 +357,15 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         return ()
 
     def _close_pictures(self) -> None:
-        for shown in (self._painter, self._window, self._tiny):
+        for shown in (self._window, self._renderer):
             if shown is not None:
                 shown.close()
-        self._painter = self._window = self._tiny = None
+        self._window = self._renderer = None
 
     def close(self) -> None:
         """Free the engine, OpenGL and the window."""
         self._close_pictures()
-        self._world.close()
-
-
-def world_class(engine: str, kind: str) -> Any:
-    """The class of an engine's worlds with a ``Hand`` or an ``Arm``; PyBullet takes a second to load."""
-    module = importlib.import_module(f"{__package__}.{engine}_worlds")  # the full name would mean all of the package
-    return getattr(module, f"{engine.capitalize()}{kind}")
+        self.world.close()
 
 
 def one_of(name: str, value: object, choices: Sequence[object]) -> None:
@@ -382,12 +382,6 @@ def _pose_at_rest(articulated_object: ArticulatedObject, target: Target) -> Floa
     """Link that is moved, frame of the root link, shape (4, 4)."""
     values = {travel.joint: travel.rest for travel in articulated_object.travels}
     return forward_kinematics(articulated_object.declared, values)[target.link]
-
-
-def _tiny_painter(pieces: Sequence[Piece], view: View, settings: PictureSettings) -> LowResRenderer:
-    from kinematify.envs.low_res_picture import LowResRenderer  # noqa: PLC0415  # loads PyBullet
-
-    return LowResRenderer(pieces, view, settings)
 
 
 STATE, PIXELS, BOTH = "state", "pixels", "pixels+state"

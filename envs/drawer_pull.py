@@ -11,25 +11,25 @@ from gymnasium.spaces import Box
 from gymnasium.utils import EzPickle
 
 from kinematify.envs.articulated_object import AUTO, shared_target
-from kinematify.envs.base import OpeningEnv, made, one_of, world_class
+from kinematify.envs.base import OpeningEnv, made, one_of
 from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
-from kinematify.envs.mujoco_worlds import ROBOT, MujocoArm
 from kinematify.envs.picture import Piece
 from kinematify.envs.robot_plan import env_robot, robot_plan
+from kinematify.envs.worlds import arm_facts
 from kinematify.geometry.convex import convex_hull
+from kinematify.simulation.world import ROBOT
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from gymnasium import spaces
     from numpy.typing import NDArray
 
     from kinematify.envs.articulated_object import Target
-    from kinematify.envs.goal import ObjectState
-    from kinematify.envs.pybullet_worlds import PybulletArm
     from kinematify.envs.robot_plan import EnvRobot, RobotPlan
     from kinematify.robot.arrays import FloatArray
+    from kinematify.simulation.world import ObjectState
 
     Space = spaces.Space[NDArray[np.float32]]
 
@@ -100,55 +100,33 @@ class DrawerPullEnv(OpeningEnv):
     """
 
     _with_robot = True
-    _world: MujocoArm | PybulletArm
 
     def __init__(
         self,
         model: str | Path | None = None,
         *,
-        joint: str = AUTO,
-        open_fraction: float = 0.9,
-        engine: str = "mujoco",
+        control: str = TOOL,
         robot: str | Path | None = None,
         tool: str | None = None,
-        control: str = TOOL,
-        reward: str = "dense",
-        randomize: bool | str | Collection[str] = False,
-        terminate_on_success: bool = False,
-        allow_invalid: bool = False,
-        render_mode: str | None = None,
+        **keywords: Any,
     ) -> None:
         """Make the environment.
 
         Args:
-            model: URDF, folder with it, ``bundled:NAME`` or ``procedural:FAMILY``; a chest of drawers if None.
-            joint: Joint that is opened; ``auto`` takes the drawer that goes farthest, else the farthest joint.
-            open_fraction: Share of the way that counts as open, above 0 and at most 1.
-            engine: ``mujoco`` or ``pybullet``.
+            model: As for `OpeningEnv`.
+            control: ``tool`` or ``joint``.
             robot: URDF of a robot with a gripper of two fingers; the package's own arm if None.
             tool: Link of the robot that carries the fingers.
-            control: ``tool`` or ``joint``.
-            reward: ``dense`` or ``sparse``.
-            randomize: What is drawn again in each episode.
-            terminate_on_success: End the episode on success.
-            allow_invalid: Take a model that fails `kinematify validate`.
-            render_mode: None, ``rgb_array`` or ``human``.
+            keywords: Of `OpeningEnv`.
 
         Raises:
             InputError: A keyword is impossible, the model cannot be used, or the robot cannot open the joint.
             EnvironmentFault: The validation itself failed.
         """
-        EzPickle.__init__(
-            self, model, joint=joint, open_fraction=open_fraction, engine=engine, robot=robot, tool=tool,
-            control=control, reward=reward, randomize=randomize, terminate_on_success=terminate_on_success,
-            allow_invalid=allow_invalid, render_mode=render_mode,
-        )  # fmt: skip
+        EzPickle.__init__(self, model, control=control, robot=robot, tool=tool, **keywords)
         one_of("control", control, (TOOL, JOINT))
         self.control, self._robot_words = control, (None if robot is None else str(robot), tool)
-        self._begin(
-            model=model, joint=joint, open_fraction=open_fraction, engine=engine, reward=reward, randomize=randomize,
-            terminate_on_success=terminate_on_success, allow_invalid=allow_invalid, render_mode=render_mode,
-        )  # fmt: skip
+        super().__init__(model, **keywords)
         self._make_world()
         self._dof = len(self.robot.robot.arm_joints)
         self._count = len(self.robot.robot.finger_joints)
@@ -169,8 +147,7 @@ class DrawerPullEnv(OpeningEnv):
         return _held_at(found, self.plan)
 
     def _make_world(self) -> None:
-        kind = world_class(self.engine, "Arm")
-        self._world = kind(self.articulated_object, self.target, self.robot, self.plan, self.settings)
+        self.world = arm_facts(self.articulated_object, self.target, self.robot, self.plan).opened(self.engine)
 
     def _place(self, leaders: FloatArray) -> float:
         for name, value in self.plan.first.items():
@@ -180,17 +157,24 @@ class DrawerPullEnv(OpeningEnv):
         drawn = self.plan.reach[0] + self.np_random.uniform(-noise, noise, len(self.plan.reach[0]))
         self.wanted = np.clip(drawn, arm.lower, arm.upper)
         self._gap = 1.0
-        return self._world.place(leaders, self.wanted)
+        values = self.articulated_object.scene.mechanism.all_values(leaders[None])[0]
+        self.world.place(values, self._commands())
+        return self.world.depth()
+
+    def _commands(self) -> FloatArray:
+        """Of the servos: arm, then fingers."""
+        return np.concatenate([self.wanted, self.robot.robot.finger_values(self._gap)])
 
     def _act(self, action: NDArray[np.float32]) -> None:
         self._command(np.clip(np.asarray(action, dtype=np.float64), -1.0, 1.0))
-        self._world.act(self.wanted, self.robot.finger_values(self._gap))
+        self.world.command(self._commands())
+        self.world.step(self.settings.time.substeps)
 
     def _command(self, action: FloatArray) -> None:
         """Move what the servos are told: never far from where the joints are, so that nothing winds up."""
         values, arm = self.settings.robot, self.robot.arm
         step = values.joint_step * action[:-1] if self.control == JOINT else self._joint_step(action[:6])
-        now = self._world.joints()[0][: self._dof]
+        now = self.world.driven()[0][: self._dof]
         wanted = np.clip(self.wanted + step, now - values.lead, now + values.lead)
         self.wanted = np.clip(wanted, arm.lower, arm.upper)
         rate = self.settings.time.control_step / values.finger_seconds
@@ -216,7 +200,7 @@ class DrawerPullEnv(OpeningEnv):
     def _observe(self, reading: ObjectState) -> NDArray[np.float32]:
         found = np.zeros(self.observation_space.shape or ())
         self.goal.fill_joints(reading, found)
-        tool, (values, speeds), touch = self._world.tool(), self._world.joints(), self._world.touch()
+        tool, (values, speeds), touch = self.world.tool(), self.world.driven(), self.world.touch()
         planned = self._link_turn() @ self.plan.T_link_tool[:3, :3]
         away = reading.hold - tool[:3, 3]
         self._distance = float(np.sqrt(away @ away))
@@ -232,11 +216,11 @@ class DrawerPullEnv(OpeningEnv):
 
     def _link_turn(self) -> FloatArray:
         """Orientation of the link that is opened, shape (3, 3)."""
-        return self._world.link_poses()[self.target.link][:3, :3]
+        return self.world.link_poses()[self.target.link][:3, :3]
 
     def _opening(self, fingers: FloatArray) -> float:
         """Gap between the pads, share of the widest."""
-        closed, opened = self.robot.finger_values(0.0), self.robot.finger_values(1.0)
+        closed, opened = self.robot.robot.finger_values(0.0), self.robot.robot.finger_values(1.0)
         return float(np.mean((fingers - closed) / (opened - closed)))
 
     def _space(self) -> Space:
@@ -290,7 +274,7 @@ class DrawerPullEnv(OpeningEnv):
     @property
     def link_poses(self) -> Mapping[str, FloatArray]:
         """World poses of the object's links, and of the robot's under ``robot `` and their names, shape (4, 4) each."""
-        return self._world.link_poses()
+        return self.world.link_poses()
 
 
 def damped_step(jacobian: FloatArray, twist: FloatArray, damping: float) -> FloatArray:

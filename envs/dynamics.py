@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import InputError
+from kinematify.simulation.world import Variation
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -21,16 +22,6 @@ RANDOMIZED = ("damping", "friction", "mass", "pose", "color")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Loads:
-    """What each joint carries, in the order of `Mechanism.joints`."""
-
-    inertia: FloatArray
-    """That each joint moves at rest [kg m^2 or kg], shape (J,)."""
-    gravity: FloatArray
-    """Torque or force that holds each joint still at rest [N m or N], shape (J,)."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class JointDynamics:
     """In the order of `Mechanism.joints`."""
 
@@ -40,16 +31,24 @@ class JointDynamics:
     """[N m or N], shape (J,)."""
 
 
-def joint_dynamics(articulated_object: ArticulatedObject, loads: Loads, settings: ObjectSettings) -> JointDynamics:
+def joint_dynamics(
+    articulated_object: ArticulatedObject, inertia: FloatArray, gravity: FloatArray, settings: ObjectSettings
+) -> JointDynamics:
     """What the file declares; where it declares nothing, values in proportion to what the joint moves.
 
     Friction then also holds what its own weight would move from where it was given into its range.
+
+    Args:
+        articulated_object: The object.
+        inertia: That each joint moves at rest [kg m^2 or kg], shape (J,).
+        gravity: Torque or force that holds each joint still at rest [N m or N], shape (J,).
+        settings: Proportions.
     """
     mechanism, declared = articulated_object.scene.mechanism, articulated_object.declared.joint_by_name
-    damping, friction = settings.damping_rate * loads.inertia, settings.friction_acceleration * loads.inertia
+    damping, friction = settings.damping_rate * inertia, settings.friction_acceleration * inertia
     travels = {travel.joint: travel for travel in articulated_object.travels}
     for k, name in enumerate(mechanism.joints):
-        joint, travel, torque = declared[name], travels.get(name), float(loads.gravity[k])
+        joint, travel, torque = declared[name], travels.get(name), float(gravity[k])
         slack = 0.01 * travel.range if travel is not None else 0.0
         moves = travel is None or (
             travel.lower < travel.rest - slack if torque > 0.0 else travel.upper > travel.rest + slack
@@ -83,19 +82,9 @@ def full_force(
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Draw:
-    """One object of many: factors are 1 and offsets 0 where nothing is randomised."""
+class Draw(Variation):
+    """One object of many, and its colours."""
 
-    damping: FloatArray
-    """Factor of each joint, shape (J,)."""
-    friction: FloatArray
-    """Factor of each joint, shape (J,)."""
-    surface: float
-    """Factor of the friction of all surfaces."""
-    mass: FloatArray
-    """Factor of each link, shape (L,)."""
-    T_root: FloatArray
-    """World motion of the object from its usual place, shape (4, 4)."""
     color: FloatArray
     """Added to sRGB of each link, shape (L, 3)."""
 
@@ -147,14 +136,6 @@ def draw(
         T_root=pose if given["pose"] else np.eye(4),
         color=color if given["color"] else np.zeros((links, 3)),
     )
-
-
-def no_draw(joints: int, links: int) -> Draw:
-    """The object as it is."""
-    return Draw(
-        damping=np.ones(joints), friction=np.ones(joints), surface=1.0, mass=np.ones(links), T_root=np.eye(4),
-        color=np.zeros((links, 3)),
-    )  # fmt: skip
 
 
 def _factors(rng: np.random.Generator, ends: list[float], count: int) -> FloatArray:

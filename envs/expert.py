@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.envs.drawer_pull import JOINT, damped_step
-from kinematify.envs.mujoco_worlds import POSITION
+from kinematify.envs.open_part import POSITION
+from kinematify.manipulation.execute import eased
 from kinematify.robot.robot import forward_kinematics
 
 if TYPE_CHECKING:
@@ -39,9 +40,11 @@ class HandExpert:
         self._control, self._goal = env.control, min(env.open_fraction + _AHEAD, 0.995)
         self._slots, self._stride = env.goal.slots, env.settings.hand.speed
         self._push = 0.0
-        facts, target = env.hand_facts, env.target
+        facts, target = env.facts, env.target
         # Change of speed by a full action [ways/s]: heavy lids have weak hands, light ones strong hands.
-        change = facts.force * target.path_ratio / facts.inertia * env.settings.time.control_step / abs(target.range)
+        change = (
+            facts.hand.force * target.path_ratio / facts.inertia * env.settings.time.control_step / abs(target.range)
+        )
         self._gain, self._sum = min(_GAIN / change, 1.0), min(_SUM / change, 0.5)
 
     def begin(self) -> None:
@@ -165,10 +168,4 @@ def _paced(rows: FloatArray, step: float, least: float = 1e-9) -> FloatArray:
     """
     times = np.maximum(np.abs(np.diff(rows, axis=0)).max(axis=1) / step, least)
     along = np.concatenate([[0.0], np.cumsum(times)])
-    count = max(2, int(np.ceil(1.5 * along[-1])))
-    at = along[-1] * _eased(np.linspace(0.0, 1.0, count))
-    return np.stack([np.interp(at, along, column) for column in rows.T], axis=1)
-
-
-def _eased(share: FloatArray) -> FloatArray:
-    return share * share * (3.0 - 2.0 * share)
+    return eased(rows, along, max(2, int(np.ceil(1.5 * along[-1]))))

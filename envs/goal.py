@@ -14,22 +14,7 @@ if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.settings import EnvSettings
     from kinematify.robot.arrays import FloatArray
-
-
-@dataclass(slots=True, eq=False)
-class ObjectState:
-    """State of the object, world frame."""
-
-    values: FloatArray
-    """Joints that lead [rad or m], shape (..., J)."""
-    speeds: FloatArray
-    """Their speeds [rad/s or m/s], shape (..., J)."""
-    hold: FloatArray
-    """Point at which the part is held [m], shape (..., 3)."""
-    anchor: FloatArray
-    """Origin of the joint that is opened [m], shape (..., 3)."""
-    axis: FloatArray
-    """Its axis, unit, shape (..., 3)."""
+    from kinematify.simulation.world import ObjectState
 
 
 OPEN_BOUND, SPEED_BOUND, PLACE_BOUND = 2.0, 20.0, 10.0

@@ -3,30 +3,33 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from gymnasium.spaces import Box
 from gymnasium.utils import EzPickle
 
-from kinematify.envs.base import OpeningEnv, made, one_of, world_class
+from kinematify.envs.base import OpeningEnv, made, one_of
 from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
-from kinematify.envs.mujoco_worlds import FORCE, POSITION, MujocoHand
+from kinematify.envs.worlds import hand_facts
 from kinematify.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
     from pathlib import Path
 
     from gymnasium import spaces
     from numpy.typing import NDArray
 
-    from kinematify.envs.goal import Goal, ObjectState
-    from kinematify.envs.mujoco_worlds import HandFacts
-    from kinematify.envs.pybullet_worlds import PybulletHand
+    from kinematify.envs.articulated_object import Target
+    from kinematify.envs.goal import Goal
+    from kinematify.envs.worlds import HandFacts
     from kinematify.robot.arrays import FloatArray
+    from kinematify.simulation.world import ObjectState
 
     Space = spaces.Space[NDArray[np.float32]]
+
+
+FORCE, POSITION = "force", "position"
 
 
 class OpenPartEnv(OpeningEnv):
@@ -95,95 +98,90 @@ class OpenPartEnv(OpeningEnv):
     move, those without friction 0.3 m/s^2 or rad/s^2 times it, or 1.3 times what their own weight would move them with.
     """
 
-    _world: MujocoHand | PybulletHand
-
     def __init__(
         self,
         model: str | Path | None = None,
         *,
-        joint: str = "auto",
-        open_fraction: float = 0.9,
-        engine: str = "mujoco",
-        robot: str | Path | None = None,
         control: str = FORCE,
-        reward: str = "dense",
-        randomize: bool | str | Collection[str] = False,
-        terminate_on_success: bool = False,
-        allow_invalid: bool = False,
-        render_mode: str | None = None,
+        robot: str | Path | None = None,
         closing: bool = False,
+        **keywords: Any,
     ) -> None:
         """Make the environment.
 
         Args:
-            model: URDF, folder with it, ``bundled:NAME``, ``procedural:FAMILY`` or ``procedural:FAMILY:SEED``; a chest
-                of drawers if None.
-            joint: Joint that is opened; ``auto`` takes the one whose part moves farthest.
-            open_fraction: Share of the way that counts as open, above 0 and at most 1.
-            engine: ``mujoco`` or ``pybullet``.
-            robot: None; `DrawerPullEnv` has robots.
+            model: As for `OpeningEnv`.
             control: ``force`` or ``position``.
-            reward: ``dense`` or ``sparse``.
-            randomize: What is drawn again in each episode.
-            terminate_on_success: End the episode on success.
-            allow_invalid: Take a model that fails `kinematify validate`.
-            render_mode: None, ``rgb_array`` or ``human``.
+            robot: None; `DrawerPullEnv` has robots.
             closing: Begin with the part open, and shut it: closed counts as open everywhere, and open as closed.
+            keywords: Of `OpeningEnv`.
 
         Raises:
             InputError: A keyword is impossible, or the model cannot be used; the message says what to do.
             EnvironmentFault: The validation itself failed.
         """
-        EzPickle.__init__(
-            self, model, joint=joint, open_fraction=open_fraction, engine=engine, robot=robot, control=control,
-            reward=reward, randomize=randomize, terminate_on_success=terminate_on_success,
-            allow_invalid=allow_invalid, render_mode=render_mode, closing=closing,
-        )  # fmt: skip
+        EzPickle.__init__(self, model, control=control, robot=robot, closing=closing, **keywords)
         one_of("control", control, (FORCE, POSITION))
         if robot is not None:
             raise InputError(
                 f"OpenPart has no robot, but robot={str(robot)!r} was given. Leave it out, or make "
                 "kinematify/DrawerPull-v0, which has one."
             )
-        self.control = control
-        self._begin(
-            model=model, joint=joint, open_fraction=open_fraction, engine=engine, reward=reward, randomize=randomize,
-            terminate_on_success=terminate_on_success, allow_invalid=allow_invalid, render_mode=render_mode,
-            closing=closing,
-        )  # fmt: skip
+        self.control, self._closing = control, closing
+        super().__init__(model, **keywords)
         self._make_world()
         self.action_space: Space = Box(-1.0, 1.0, (3,), np.float32)
         self.observation_space: Space = hand_space(self.goal)
         self.bounds = hand_bounds(self.goal)
 
+    def _targeted(self, joint: str) -> Target:
+        found = super()._targeted(joint)
+        return found.reversed if self._closing else found
+
     def _make_world(self) -> None:
-        kind = world_class(self.engine, "Hand")
-        self._world = kind(self.articulated_object, self.target, self.control, self.settings)
+        self.facts: HandFacts = hand_facts(self.articulated_object, self.target, spring=self.control == POSITION)
+        self.world = self.facts.opened(self.engine)
+        self._command = self._hold = np.zeros(3)
+        self._stride = self.facts.speed * self.settings.time.control_step
+        self._lead, self._substeps = self.facts.hand.force / self.facts.hand.stiffness, self.settings.time.substeps
 
     def _place(self, leaders: FloatArray) -> float:
-        return self._world.place(leaders)
+        """The hand's spring is slack."""
+        self.world.place(self.articulated_object.scene.mechanism.all_values(leaders[None])[0])
+        self._hold = self.world.state().hold
+        if self.control == POSITION:
+            self._command = self._hold.copy()
+            self.world.pull(self._command)
+        return self.world.depth()
 
     @property
     def full_force(self) -> float:
         """Force of a full action, or of the spring at most [N]."""
-        return self.hand_facts.force
+        return self.facts.hand.force
 
-    @property
-    def hand_facts(self) -> HandFacts:
-        """What the hand can do."""
-        return self._world.facts
+    def commanded(self, before: FloatArray, hold: FloatArray, action: FloatArray) -> FloatArray:
+        """Return what an action commands of the hand, shapes (..., 3): forces in shares, or a place [m].
 
-    @property
-    def hand(self) -> MujocoHand:
-        """The world, if it is MuJoCo's."""
-        assert isinstance(self._world, MujocoHand)
-        return self._world
+        Args:
+            before: What was commanded until now.
+            hold: Where the part is held [m].
+            action: Within -1 and 1.
+        """
+        if self.control == FORCE:
+            return action
+        lead = before - hold + self._stride * action
+        return np.asarray(hold + np.minimum(np.maximum(lead, -self._lead), self._lead))
 
     def _act(self, action: NDArray[np.float32]) -> None:
-        self._world.act(np.minimum(np.maximum(action, -1.0), 1.0))
+        clipped = np.minimum(np.maximum(np.asarray(action, dtype=np.float64), -1.0), 1.0)
+        self._command = self.commanded(self._command, self._hold, clipped)
+        self.world.pull(self._command)
+        self.world.step(self._substeps)
 
     def _observe(self, reading: ObjectState) -> NDArray[np.float32]:
-        return observe_hand(self.goal, reading, self.middle, self._world.command(), self.bounds)
+        self._hold = reading.hold
+        command = self._command - reading.hold if self.control == POSITION else np.zeros(3)
+        return observe_hand(self.goal, reading, self.middle, command, self.bounds)
 
 
 def hand_space(goal: Goal) -> Space:

@@ -6,7 +6,7 @@ The plan is that of `kinematify validate --task pull`. It is kept between runs, 
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -49,21 +49,9 @@ class EnvRobot:
         return self.scene.mechanism
 
     @property
-    def strongest(self) -> FloatArray:
-        """Effort limits of the arm joints [N m or N], shape (dof,)."""
-        joints = [self.arm.declared.joint_by_name[name] for name in self.robot.arm_joints]
-        usual = load_settings().task.execution.effort
-        return np.array([joint.effort if joint.effort and joint.effort > 0.0 else usual for joint in joints])
-
-    @property
     def finger_links(self) -> tuple[str, ...]:
         """Links of the fingers."""
         return tuple(self.arm.declared.joint_by_name[name].child for name in self.robot.finger_joints)
-
-    def finger_values(self, share: float) -> FloatArray:
-        """Values of the finger joints, 0 with the pads together, 1 apart, shape (fingers,)."""
-        closed, opened = np.array(self.robot.fingers_closed), np.array(self.robot.fingers_open)
-        return np.asarray(closed + share * (opened - closed))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -76,10 +64,6 @@ class RobotPlan:
     """Root link of the object, shape (4, 4)."""
     T_link_tool: FloatArray
     """Tool at the grasp, frame of the link that the joint moves, shape (4, 4)."""
-    width: float
-    """Of what is held [m]."""
-    spread: float
-    """Gap between the pads on the way in [m]."""
     reach: FloatArray
     """Arm joints from the start to the grasp [rad or m], shape (n, dof)."""
     pull: FloatArray
@@ -105,7 +89,7 @@ def env_robot(articulated_object: ArticulatedObject, robot: str | None, tool: st
         )
     folder = articulated_object.folder / hashlib.sha256(f"{robot} {tool}".encode()).hexdigest()[:12]
     folder.mkdir(parents=True, exist_ok=True)
-    found = builtin_robot(folder) if robot is None or tool is None else user_robot(Path(robot), tool, folder=folder)
+    found = builtin_robot() if robot is None or tool is None else user_robot(Path(robot), tool, folder=folder)
     settings, loaded = load_settings(), loadable(found.urdf, folder)
     scene = read_scene(read_robot(loaded), settings.geometry)
     return EnvRobot(robot=found, arm=Arm(found, settings.task.plan), loaded=loaded, scene=scene)
@@ -127,8 +111,9 @@ def robot_plan(articulated_object: ArticulatedObject, joint: str, robot: EnvRobo
         tell(f"planning how the robot opens {joint} of {articulated_object.source}; it takes seconds, once")
         known = _planned(articulated_object, joint, robot)
         keep("plans", digest, known)
+    values = {field.name: known[field.name] for field in fields(RobotPlan)}
     facts: dict[str, Any] = {
-        name: np.array(value) if isinstance(value, list) else value for name, value in known.items()
+        name: np.array(value) if isinstance(value, list) else value for name, value in values.items()
     }
     return RobotPlan(**facts)
 
@@ -144,13 +129,10 @@ def _planned(articulated_object: ArticulatedObject, joint: str, robot: EnvRobot)
             "validate --task pull shows the reasons). Give another joint, or make kinematify/OpenPart-v0, which needs "
             "no robot."
         )
-    grasp = plan.place.grasp
     return {
         "T_world_base": plan.place.T_world_base.tolist(),
         "T_world_object": plan.T_world_object.tolist(),
         "T_link_tool": plan.place.T_link_tool.tolist(),
-        "width": grasp.width,
-        "spread": grasp.spread,
         "reach": plan.reach.tolist(),
         "pull": plan.pull.tolist(),
         "opened": plan.opened.tolist(),

@@ -20,12 +20,6 @@ class TimeSettings(StageConfig):
     """Of the engine [s]."""
     control_rate: float = 20.0  # what most benchmarks of manipulation use
     """Actions per second [1/s]."""
-    episode_steps: int = 100  # 5 s: three times what a person needs for a drawer
-    """Actions of an episode of OpenPart."""
-    robot_episode_steps: int = 240  # 12 s: reach, grasp and pull with half of the arm's speed
-    """Actions of an episode of DrawerPull."""
-    solver_iterations: int = 80  # as in `validate --task`
-    """Of PyBullet, per step."""
 
     @property
     def substeps(self) -> int:

@@ -13,6 +13,11 @@ if TYPE_CHECKING:
     import gymnasium
 
 
+EPISODE_STEPS = {"open_part": 100, "drawer_pull": 240}
+"""Actions after which episodes are truncated: 5 s is three times what a person needs for a drawer; in 12 s a robot
+reaches, grips and pulls with half of its speed."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Task:
     """One joint of a family of objects, and what is to be done with it."""

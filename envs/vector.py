@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import mujoco
 import numpy as np
@@ -12,21 +12,21 @@ from gymnasium.vector.utils import batch_space
 from mujoco.rollout import Rollout
 
 from kinematify.envs.base import STATE
-from kinematify.envs.mujoco_worlds import POSITION
-from kinematify.envs.open_part import OpenPartEnv, hand_space, observe_hand
+from kinematify.envs.open_part import POSITION, OpenPartEnv, hand_space, observe_hand
+from kinematify.envs.tasks import EPISODE_STEPS
 from kinematify.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.envs.goal import ObjectState, Progress
-    from kinematify.envs.mujoco_worlds import MujocoHand
+    from kinematify.envs.goal import Progress
     from kinematify.robot.arrays import FloatArray
+    from kinematify.simulation.mujoco_world import MujocoWorld
+    from kinematify.simulation.world import ObjectState
 
     BoolArray = NDArray[np.bool_]
 
 _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS.value
-_EPISODE_STEPS = 100
 
 
 class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", "NDArray[Any]"]):
@@ -45,7 +45,12 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
     }
 
     def __init__(
-        self, num_envs: int = 1, *, max_episode_steps: int = _EPISODE_STEPS, threads: int | None = None, **keywords: Any
+        self,
+        num_envs: int = 1,
+        *,
+        max_episode_steps: int = EPISODE_STEPS["open_part"],
+        threads: int | None = None,
+        **keywords: Any,
     ) -> None:
         """Make the environments.
 
@@ -84,8 +89,8 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
         self._allocate()
 
     def _allocate(self) -> None:
-        worlds = [env.hand for env in self._envs]
-        self._models, model = [world.model for world in worlds], worlds[0].model
+        self._worlds = [cast("MujocoWorld", env.world) for env in self._envs]
+        self._models, model = [world.model for world in self._worlds], self._worlds[0].model
         self._workers = [mujoco.MjData(model) for _ in range(self._threads)]
         self._rollout = Rollout(nthread=self._threads if self._threads > 1 else 0)
         size, steps = mujoco.mj_stateSize(model, _STATE), self._envs[0].settings.time.substeps
@@ -141,15 +146,14 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
         env.begin_episode(seed, options)
         if env.target is not self.goal.target:
             raise InputError("All environments of OpenPartVectorEnv open one joint; give it as the keyword joint.")
-        world = env.hand
+        world = self._worlds[k]
         mujoco.mj_getState(world.model, world.data, self._state[k], _STATE)
         self._sensors[k], self._control[k], self._warmstart[k] = world.data.sensordata, world.data.ctrl, 0.0
         self._elapsed[k] = 0
 
     def _advance(self, actions: FloatArray) -> None:
         """Simulate one action in all environments."""
-        world: MujocoHand = self._envs[0].hand
-        self._control[:] = world.commanded(self._control[:, 0], self._sensors[:, :3], actions)[:, None]
+        self._control[:] = self._envs[0].commanded(self._control[:, 0], self._sensors[:, :3], actions)[:, None]
         self._rollout.rollout(
             self._models, self._workers, self._state, self._control, skip_checks=True,
             nstep=self._control.shape[1], initial_warmstart=self._warmstart, state=self._states,
@@ -161,7 +165,7 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
         start = 1  # time
         qpos = self._state[:, start : start + self._nq]
         qvel = self._state[:, start + self._nq : start + self._nq + self._nv]
-        return self._envs[0].hand.object.split(qpos, qvel, self._sensors)
+        return self._worlds[0].split(qpos, qvel, self._sensors)
 
     def _forget(self, over: Any, reading: ObjectState) -> None:
         """Episodes that began have no past."""
@@ -184,8 +188,7 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
 
     def render(self) -> tuple[Any, ...]:
         """Return a picture of every environment."""
-        for k, env in enumerate(self._envs):
-            world = env.hand
+        for k, world in enumerate(self._worlds):
             mujoco.mj_setState(world.model, world.data, self._state[k], _STATE)
             mujoco.mj_kinematics(world.model, world.data)
         return tuple(env.render() for env in self._envs)

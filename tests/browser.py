@@ -29,14 +29,14 @@ def opened(address: str, *, dark: bool = False, width: int = 1200) -> Iterator[t
             pytest.skip(str(fault))
         page = browser.new_page(viewport={"width": width, "height": 800}, color_scheme="dark" if dark else "light")
         page.set_default_timeout(_PATIENCE)
-        told: list[str] = []
-        page.on("console", lambda message: told.append(f"{message.type}: {message.text}"))
-        page.on("pageerror", lambda error: told.append(f"error: {error}"))
-        page.on("request", lambda request: _note_request(request.url, told))
+        messages: list[str] = []
+        page.on("console", lambda message: messages.append(f"{message.type}: {message.text}"))
+        page.on("pageerror", lambda error: messages.append(f"error: {error}"))
+        page.on("request", lambda request: _note_request(request.url, messages))
         page.goto(address)
-        yield page, told
+        yield page, messages
 
 
-def _note_request(url: str, told: list[str]) -> None:
+def _note_request(url: str, messages: list[str]) -> None:
     if not url.startswith(("file:", "data:", "blob:")):
-        told.append(f"request: {url}")
+        messages.append(f"request: {url}")

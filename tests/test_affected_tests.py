@@ -41,6 +41,6 @@ def test_what_nothing_names_reaches_no_test() -> None:
     assert affected("named" + ".nowhere") == set()
 
 
-def test_a_base_that_does_not_exist_is_told() -> None:
+def test_a_base_that_does_not_exist_is_reported() -> None:
     with pytest.raises(SystemExit, match="git merge-base no-such-branch HEAD failed"):
         changed_files("no-such-branch")

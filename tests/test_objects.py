@@ -17,7 +17,7 @@ from tests.objects import BUILDERS, KnownJoint, KnownObject, build_all, moved, p
 
 STEPS = 11
 LOOSE = {"gapped_pair": {"door"}}
-"""Joints that nothing but the gap defines: no wrong axis can be told from the right one by collisions."""
+"""Joints that nothing but the gap defines: no wrong axis can be distinguished from the right one by collisions."""
 LIFTS_OFF = {"edge_door": {"slide +a", "slide +b", "turn +a", "turn -a"}, "nested_drawer": {"slide -a"}}
 """Other motions that are free as well: a plate that lies on an edge can be lifted off."""
 

@@ -72,7 +72,7 @@ def report_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_sliders_move_the_model(report_page: Path) -> None:
-    with opened(report_page.as_uri()) as (page, told):
+    with opened(report_page.as_uri()) as (page, messages):
         page.wait_for_selector(".viewer[data-ready=yes]")
         canvas, slider = page.locator(".viewer canvas"), page.locator("input[data-joint=hinge_1]")
         assert page.locator(".viewer input[type=range]").count() == 1, "a follower has no slider"
@@ -95,11 +95,11 @@ def test_sliders_move_the_model(report_page: Path) -> None:
         right, up, back = (np.array(axis) for axis in page.evaluate("viewers[0].axes()"))
         assert np.allclose(np.cross(right, up), back), "the picture is not mirrored"
         assert page.evaluate("viewers[0].poses()[2][3]") == pytest.approx(0.4, abs=1e-6)  # latch, by its leader
-        assert told == []
+        assert messages == []
 
 
 def test_a_finding_is_shown_where_it_was_seen(report_page: Path) -> None:
-    with opened(report_page.as_uri(), dark=True) as (page, told):
+    with opened(report_page.as_uri(), dark=True) as (page, messages):
         page.wait_for_selector(".viewer[data-ready=yes]")
         page.locator(".finding button[data-show]").first.click()
         assert page.evaluate("viewers[0].q.hinge_1") == pytest.approx(0.5)
@@ -107,11 +107,11 @@ def test_a_finding_is_shown_where_it_was_seen(report_page: Path) -> None:
         assert page.evaluate("viewers[0].q.hinge_1") == pytest.approx(1.2)
         assert set(page.evaluate("[...viewers[0].marked]")) == {"frame", "door"}
         assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(20, 22, 26)"
-        assert told == []
+        assert messages == []
 
 
 def test_report_filters_sorts_links_and_opens_fast(report_page: Path) -> None:
-    with opened(report_page.as_uri()) as (page, told):
+    with opened(report_page.as_uri()) as (page, messages):
         loaded = page.evaluate("performance.getEntriesByType('navigation')[0].domContentLoadedEventEnd")
         assert loaded < 2000.0, "below 1000 ms on a free machine, and tests share theirs"
         cards = page.locator(".finding:visible").count()
@@ -122,7 +122,7 @@ def test_report_filters_sorts_links_and_opens_fast(report_page: Path) -> None:
         assert head.get_attribute("aria-sort") == "ascending"
         assert page.locator("figure svg path.second").count() == 4, "both engines in each of the four charts"
         assert page.locator("#matrix-0 td.fail").count() == 2
-        assert told == []
+        assert messages == []
         page.emulate_media(media="print")
         assert not page.locator(".filters").is_visible()
         assert not page.locator(".viewer").is_visible()
@@ -159,16 +159,16 @@ def runs(objects: int, night: int) -> tuple[Run, ...]:
 def nights(objects: int, count: int) -> list[Night]:
     settings, found = load_nightly(), []
     for number in range(count):
-        told = runs(objects, number)
-        changes = compare(told, earlier_runs(found), settings, same_machine=True)
+        done = runs(objects, number)
+        changes = compare(done, earlier_runs(found), settings, same_machine=True)
         header = {
             "night": f"2026-01-{number + 1:02d}-abc", "started": f"2026-01-{number + 1:02d}", "commit": "abc",
             "dirty": False, "sessions": 1, "code": "0", "method": "0", "command": "kinematify nightly",
             "processor": "2 x none", "workers": 2, "python": "3.11", "packages": {}, "objects": objects, "settings": {},
-            "seconds": 60.0, "runs": len(told), "last": found[-1].name if found else None, "baseline": None,
+            "seconds": 60.0, "runs": len(done), "last": found[-1].name if found else None, "baseline": None,
             "counts": {"new": 0}, "baseline_counts": {}, "gate": "pass",
         }  # fmt: skip
-        found.append(Night(name=str(header["night"]), header=header, runs=told, changes=changes))
+        found.append(Night(name=str(header["night"]), header=header, runs=done, changes=changes))
     return found
 
 
@@ -185,7 +185,7 @@ def test_night_and_trend_pages(tmp_path: Path) -> None:
         (tmp_path / night.name / "index.html").write_text(night_page(night), encoding="utf-8")
     (tmp_path / "index.html").write_text(trend_page(history), encoding="utf-8")
     anchor = problem_anchor("object_03", "accuracy", "rest", AXIS.id)
-    with opened(f"{(tmp_path / history[1].name / 'index.html').as_uri()}#{anchor}") as (page, told):
+    with opened(f"{(tmp_path / history[1].name / 'index.html').as_uri()}#{anchor}") as (page, messages):
         assert page.locator(f"#{anchor}").is_visible(), "a link to a problem opens the section that holds it"
         assert page.evaluate("document.documentElement.scrollHeight") <= 4 * 800, "the night is folded"
         page.locator("details", has=page.locator("#accuracy")).locator("summary").first.click()
@@ -205,7 +205,7 @@ def test_night_and_trend_pages(tmp_path: Path) -> None:
         page.locator("#objects a", has_text="object_03").click()
         page.locator("#object-object_03 figure").first.wait_for(state="visible")
         assert page.locator("#object-object_03 figure").first.locator("circle").count() == 2
-        assert told == []
+        assert messages == []
 
 
 @pytest.mark.parametrize("name", ["</script><script>document.title='x'</script>", '"><img src=x onerror=alert(1)>'])
@@ -216,7 +216,7 @@ def test_names_cannot_break_out_of_the_viewer(tmp_path: Path, name: str) -> None
     scene["joints"][0]["name"] = name
     page = tmp_path / "report.html"
     page.write_text(as_html([full_report()], {}, {_MODEL: json.dumps(scene)}), encoding="utf-8")
-    with opened(page.as_uri()) as (shown, told):
+    with opened(page.as_uri()) as (shown, messages):
         assert shown.title().startswith("kinematify validate")
         assert shown.locator("img[src=x]").count() == 0
-        assert not [line for line in told if line.startswith("request")]
+        assert not [line for line in messages if line.startswith("request")]

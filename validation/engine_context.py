@@ -90,7 +90,7 @@ class EngineContext:
 
         if not simplified(self._whole):
             return None
-        return read_scene(self._whole, self.request.settings.geometry, visible_shapes)
+        return read_scene(self._whole, self.request.settings.geometry, visible_shapes, solids=self.surfaces.solids)
 
     @cached_property
     def _whole(self) -> Robot:

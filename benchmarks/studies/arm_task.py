@@ -102,7 +102,7 @@ def opened_joints(asked: OpeningTask) -> Record:
     settings = load_settings()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        arm = Arm(builtin_robot(folder), settings.task.plan, seed=settings.seed)
+        arm = Arm(builtin_robot(), settings.task.plan, seed=settings.seed)
         scene = _sized(asked.item.urdf, folder, settings)
         plans = [plan_pull(arm, scene, travel.joint, settings.task, seed=settings.seed) for travel in scene.travels]
         joints = []

@@ -136,7 +136,7 @@ def _single_speed(name: str, seconds: float) -> dict[str, float]:
     env = gymnasium.make(OPEN_PART, model=f"bundled:{name}")
     bare: Any = env.unwrapped
     actions = np.random.default_rng(0).uniform(-1.0, 1.0, (99, 3)).astype(np.float32)
-    world, substeps = bare.hand, bare.settings.time.substeps
+    world, substeps = bare.world, bare.settings.time.substeps
     steps: dict[str, Callable[[Any], Any]] = {
         "env": env.step,
         "loop": partial(_native, world, substeps),

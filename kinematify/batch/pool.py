@@ -52,7 +52,7 @@ class Pool:
             adapter: Of the results' type.
             ledger: Name of the file in the folder, without suffix.
             timeout: Wall time after which a task is stopped with all that it has started [s].
-            said: What progress is told of a key and its result.
+            said: What progress is given of a key and its result.
             preload: Modules that are imported once for all processes.
             reuse: Tasks that a process takes one after the other; 1 gives each its own.
 

@@ -140,7 +140,7 @@ def run_batch(request: BatchRequest, engine: Executor, progress: Progress | None
     conversion, start = request.conversion(), time.perf_counter()
     out = absolute(*filesystem(request.out))
     sources = _share(find_sources(request.patterns, besides=out), request.share)
-    told = progress or (lambda what, share: None)
+    report = progress or (lambda what, share: None)
     with Manifest(out, request.share) as manifest, _staging(out, request.share) as staging:
         if manifest.records and not request.resume:
             raise OutputError(
@@ -150,7 +150,7 @@ def run_batch(request: BatchRequest, engine: Executor, progress: Progress | None
         missing = [source for source in sources if not _has_ended(source, manifest, conversion, request)]
         manifest.forget(source.place for source in missing)
         if len(missing) < len(sources):
-            told("taken up from an earlier run", 1.0 - len(missing) / len(sources))
+            report("taken up from an earlier run", 1.0 - len(missing) / len(sources))
         by_place = {source.place: source for source in missing}
         tasks = (
             WorkItem(
@@ -168,7 +168,7 @@ def run_batch(request: BatchRequest, engine: Executor, progress: Progress | None
                     manifest.add(record)
                     new += 1
                     words = f"{record.object}: {record.verdict or record.status}, {record.seconds:.1f} s"
-                    told(words, 1.0 - (len(missing) - new) / len(sources))
+                    report(words, 1.0 - (len(missing) - new) / len(sources))
         except KeyboardInterrupt:
             interrupted = True
         return BatchResult(

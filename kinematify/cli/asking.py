@@ -1,4 +1,4 @@
-"""Options of `kinematify infer` that ask a vision-language model, or a person, about joints."""
+"""Options of `kinematify infer` that ask a vision-language model about joints."""
 
 from __future__ import annotations
 
@@ -13,10 +13,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection
 
     from kinematify.pipeline import Inference
-    from kinematify.refinement.hints import Hint
     from kinematify.vision.ask import Voting
     from kinematify.vision.client import ChatOracle
-    from kinematify.vision.votes import AnsweredMotion
 
     Progress = Callable[[str], None]
 
@@ -28,7 +26,6 @@ class Asking:
     vlm: str
     everything: bool
     types_first: bool
-    person: bool
 
 
 def asking_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -44,9 +41,6 @@ def asking_options(command: Callable[..., Any]) -> Callable[..., Any]:
         click.option("--vlm-all", is_flag=True, help="Ask about all joints, without a budget."),
         click.option(
             "--vlm-first", is_flag=True, help="Ask for the types alone, before axes are chosen, as the paper does."
-        ),
-        click.option(
-            "--ask", is_flag=True, help="Show the questions as a page in a browser; your answers are kept as hints."
         ),
     )
     for option in reversed(options):
@@ -67,12 +61,7 @@ def with_answers(
 
     Raises:
         InputError: `--vlm` is neither off, auto nor an address.
-        UsageError: Both a model and a person are to be asked.
     """
-    if asking.person and asking.vlm not in ("off", "auto"):
-        raise click.UsageError("Both --ask and --vlm are given. Leave one out.")
-    if asking.person:
-        return (*_told_by_person(inference, asking, known), 0)
     from kinematify.vision.client import oracle_of
 
     oracle = oracle_of(asking.vlm, inference.config.vision)
@@ -100,31 +89,3 @@ def _voted(
     record = voter_record(oracle, lambda: screening_questions(load_config()))
     progress("asking a vision model about the joints")
     return with_votes(inference, oracle, record, everything=asking.everything, known=known)
-
-
-def _told_by_person(inference: Inference, asking: Asking, known: Collection[str]) -> tuple[Inference, str]:
-    from kinematify.refinement.hints import with_hints
-    from kinematify.vision.ask import motions_told
-    from kinematify.vision.page import QuestionPage
-
-    page = QuestionPage(said=lambda url: click.echo(f"Questions about the joints: {url}", err=True))
-    told, voting = motions_told(inference, page, everything=asking.everything, known=known)
-    hints = [_hint(inference, item) for item in told]
-    words = [voting.described().replace(" and changed 0 joints", "")]
-    words += [f"Kept as hints: {' '.join(text for hint in hints for text in hint.texts)}"] if hints else []
-    return (with_hints(inference, hints) if hints else inference), "\n".join(words)
-
-
-def _hint(inference: Inference, told: AnsweredMotion) -> Hint:
-    from kinematify.robot.joint_type import JointType
-    from kinematify.view.alternatives import JointAlternative
-    from kinematify.view.keep import hint_of
-
-    names = inference.assembly.names
-    before = next(joint.kind for joint in inference.joints if names[joint.child] == told.child)
-    motion = told.motion
-    if motion is None:
-        motion_kind, axis, pivot = JointType.FIXED, inference.joints[0].axis, inference.joints[0].pivot
-    else:
-        motion_kind, axis, pivot = motion.kind, motion.axis, motion.pivot
-    return hint_of(told.child, JointAlternative(kind=motion_kind, axis=axis, pivot=pivot), before)

@@ -47,7 +47,6 @@ _LONGEST = 86400.0
         "kinematify infer parts.zip -o out/parts --config paper --seed 7",
         "kinematify infer parts/ -o out/parts --refine 3 --tier engines",
         "kinematify infer parts/ -o out/parts --vlm http://localhost:11434/v1",
-        "kinematify infer parts/ -o out/parts --ask",
         "kinematify infer examples/cabinet -o out/cabinet --force --json - > answer.json",
     ),
 )
@@ -149,7 +148,6 @@ def command(
     vlm: str,
     vlm_all: bool,
     vlm_first: bool,
-    ask: bool,
     collision: str | None,
     force: bool,
     no_preview: bool,
@@ -198,7 +196,7 @@ def command(
         settings = _weighing(settings, density, masses, parts)
         stated = _parsed(hints, _names(parts), base)
         inference = infer(parts, config=settings, base=base, progress=_share(progress, 0.0, _INFERRED))
-        asking = Asking(vlm=vlm, everything=vlm_all, types_first=vlm_first, person=ask)
+        asking = Asking(vlm=vlm, everything=vlm_all, types_first=vlm_first)
         inference, heard, status = with_answers(
             inference, asking, {hint.part for hint in stated}, lambda stage: progress(stage, _INFERRED)
         )
@@ -356,7 +354,7 @@ def _as_answer(inference: Inference, out: Path) -> dict[str, Any]:
         "joints": [_joint_answer(inference, joint) for joint in inference.model.joints],
         "set_aside": [{"name": item.part.name, "reason": item.reason} for item in inference.assembly.set_aside],
         "warnings": list(inference.warnings),
-        "closed_chains": [chain.told for chain in inference.closed_chains],
+        "closed_chains": [chain.description for chain in inference.closed_chains],
         "seconds": dict(inference.timings),
         "refinement": None if inference.refinement is None else dict(inference.refinement),
         "vision": None if inference.vision is None else dict(inference.vision),

@@ -106,7 +106,7 @@ def _describe_doubts(inference: Inference) -> list[str]:
         more = f" and {len(changed) - _RENAMED} more (--json lists all)" if len(changed) > _RENAMED else ""
         lines.append(f"Renamed for simulators: {said}{more}.")
     lines += [f"Note: {warning}" for warning in inference.warnings]
-    lines += [f"Closed chain: {chain.told}" for chain in inference.closed_chains]
+    lines += [f"Closed chain: {chain.description}" for chain in inference.closed_chains]
     if doubtful:
         names = ", ".join(doubtful)
         count = f"{len(doubtful)} joint{'s' if len(doubtful) > 1 else ''} to look at"

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kinematify.evaluation.nightly.run import NightResult
 
 _SHOWN = 20
-"""Changes of a class that are told on the terminal; the page has all."""
+"""Changes of a class that the terminal shows; the page has all."""
 
 
 @click.command(
@@ -145,14 +145,14 @@ def _described(result: NightResult) -> str:
     compared = header["last"] or "nothing: it is the first night"
     verdict = f"{header['gate']}: night {night.name}"
     size = f"{header['objects']} objects, {header['runs']} runs, {header['seconds'] / 60.0:.1f} min"
-    lines = [f"{verdict}, {size}, compared with {compared}", *_told(night.changes)]
+    lines = [f"{verdict}, {size}, compared with {compared}", *_change_lines(night.changes)]
     if night.baseline_changes:
-        lines += [f"Compared with the baseline {header['baseline']}:", *_told(night.baseline_changes)]
+        lines += [f"Compared with the baseline {header['baseline']}:", *_change_lines(night.baseline_changes)]
     pages = f"Pages: {result.place / 'index.html'} and {result.place.parent / 'index.html'}"
     return "\n".join([*lines, pages])
 
 
-def _told(changes: Sequence[Change]) -> list[str]:
+def _change_lines(changes: Sequence[Change]) -> list[str]:
     from kinematify.evaluation.nightly.compare import Class
 
     lines = []

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def progress_reporter() -> Iterator[Reporter]:
-    """Yield a function that is told the stage and the fraction done in [0, 1]; stdout stays untouched."""
+    """Yield a function that is given the stage and the fraction done in [0, 1]; stdout stays untouched."""
     if sys.stderr.isatty():
         with _bar() as report:
             yield report

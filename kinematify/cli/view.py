@@ -72,8 +72,8 @@ def command(
     if len(joints) != len(values):
         raise InputError(f"There are {len(joints)} --joint and {len(values)} --q. Give one value for each joint.")
     urdf = urdf_of(model)
-    told = report or urdf.parent / "validation.json"
-    sights = _sights(told) if report is not None or told.is_file() else []
+    findings = report or urdf.parent / "validation.json"
+    sights = _sights(findings) if report is not None or findings.is_file() else []
     window = Window(urdf, package_dirs=package_dirs, sights=sights, host=host, port=port)
     try:
         known = window.viewer.values

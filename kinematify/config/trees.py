@@ -164,7 +164,7 @@ class RefineConfig(StageConfig):
     widest_tolerance: float = 0.03  # farther apart are parts of different things
     """And at most this, fraction of the diagonal."""
     twin_lead: float = 0.0  # their evidence is added up, and the sum decides
-    """Twins are told what most of them are if their common evidence leads by so much [log odds]."""
+    """Twins get what most of them are if their common evidence leads by so much [log odds]."""
     survival_weight: float = 0.5  # half of what the quality of joints weighs
     """Weight of R_sim, the mean survival of a tree's edges, in the reward of the tree search."""
     feedback: FeedbackConfig = section()

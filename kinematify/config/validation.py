@@ -245,10 +245,6 @@ class GeometrySettings(StageConfig):
     """Share of configurations in which a pair that always collides does so."""
     random_rows: int = 128  # a power of two, as Sobol points want
     """Quasi-random configurations of all joints."""
-    pair_steps: int = 5
-    """Values of each joint of a pair of joints."""
-    pair_rows: int = 1500  # half a second on a humanoid
-    """Configurations of all pairs of joints together."""
     hull_planes: int = 96
     """Directions in which a hull is kept where collision shapes are looked at as engines see them."""
     listed: int = 8

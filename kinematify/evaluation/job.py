@@ -200,7 +200,7 @@ def _infer(job: Job, erased: ErasedModel, assembly: Assembly, given: Degraded | 
 
 
 def _known(job: Job, erased: ErasedModel) -> dict[str, str]:
-    """What a method is told beside the parts: the base link, where its configuration takes that as input."""
+    """What a method is given beside the parts: the base link, where its configuration takes that as input."""
     if job.config.topology.base_rule != "given":
         return {}
     return {"base": erased.truth.part_names[erased.truth.parents.index(-1)]}

@@ -61,7 +61,7 @@ def body_name(link: str) -> str:
     return f"{link}_link" if link == WORLD else link
 
 
-def told_renaming(content: Content) -> list[str]:
+def renaming_notes(content: Content) -> list[str]:
     """A sentence where a link had to be renamed."""
     renamed = WORLD in content.robot.link_by_name
     return [f"The link {WORLD!r} is named {body_name(WORLD)!r}, since the outside is called so."] if renamed else []

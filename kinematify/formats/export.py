@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError, OutputError
-from kinematify.formats.content import read_content, told_renaming
+from kinematify.formats.content import read_content, renaming_notes
 from kinematify.formats.losses import losses
 from kinematify.model.output import urdf_of
 
@@ -84,7 +84,7 @@ def export(
         content = read_content(urdf, chosen, package_dirs=package_dirs)
         _writer(to)(content, path, free=free)
         notes = content.notes if to != "glb" else ()
-        renamed = told_renaming(content) if to in ("mjcf", "sdf") else []
+        renamed = renaming_notes(content) if to in ("mjcf", "sdf") else []
         return Exported(path=path, notes=(*notes, *renamed), lost=losses(content.robot, to))
     except OSError as error:
         reason = error.strerror or str(error)
@@ -97,8 +97,8 @@ def _srdf(
 ) -> Exported:  # fmt: skip
     write_srdf = _writer("srdf")
     counts = write_srdf(urdf, path, settings, tool=tool, gripper=gripper, package_dirs=package_dirs)
-    told = ", ".join(f"{counts[reason]} {reason.lower()}" for reason in ("Adjacent", "Default", "Always", "Never"))
-    note = f"Pairs of links without checks: {told}; {counts['checked']} are left to check."
+    unchecked = ", ".join(f"{counts[reason]} {reason.lower()}" for reason in ("Adjacent", "Default", "Always", "Never"))
+    note = f"Pairs of links without checks: {unchecked}; {counts['checked']} are left to check."
     return Exported(path=path, notes=(note,), lost=())
 
 

@@ -1,4 +1,4 @@
-"""glTF: what is seen, in a tree of nodes that stand where the joints are; joints are told in the nodes' extras."""
+"""glTF: what is seen, in a tree of nodes that stand where the joints are; joints are in the nodes' extras."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ def write_glb(content: Content, out: Path, *, free: bool) -> None:
 
 def _described(joint: Joint) -> dict[str, object]:
     """A joint as JSON."""
-    told: dict[str, object] = {"joint": joint.name, "type": joint.kind.value}
+    extras: dict[str, object] = {"joint": joint.name, "type": joint.kind.value}
     if joint.kind is not JointType.FIXED:
-        told["axis"] = joint.axis.tolist()
+        extras["axis"] = joint.axis.tolist()
     if np.isfinite([joint.lower, joint.upper]).all() and joint.kind is not JointType.FIXED:
-        told |= {"lower": float(joint.lower), "upper": float(joint.upper)}
-    return told
+        extras |= {"lower": float(joint.lower), "upper": float(joint.upper)}
+    return extras
 
 
 def _mesh(surface: Surface) -> trimesh.Trimesh:

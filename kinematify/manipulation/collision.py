@@ -17,7 +17,7 @@ import pinocchio as pin
 from kinematify.geometry.convex import convex_piece
 from kinematify.geometry.scene import judged_shapes
 from kinematify.manipulation.grasp import moved_bodies
-from kinematify.robot.joint_type import JointType
+from kinematify.manipulation.robot import hand_links
 from kinematify.robot.robot import rigid_groups
 
 if TYPE_CHECKING:
@@ -69,7 +69,8 @@ class CollisionWorld:
         self._floor = self._add(FLOOR, coal.Box(2.0 * _FAR, 2.0 * _FAR, 2.0))
         self._column = self._add(COLUMN, coal.Box(*_COLUMN))
         moved = {robots + body for bodies in moved_bodies(scene, joint) for body in bodies}
-        hand = {k for k in range(robots) if self._links[k] in hand_links(arm)}
+        hand_names = hand_links(arm.declared, arm.robot)
+        hand = {k for k in range(robots) if self._links[k] in hand_names}
         pairs = list(self._pairs(range(robots), hand, moved))
         for first, second, _, _ in pairs:
             self._geometry.addCollisionPair(pin.CollisionPair(first, second))
@@ -189,17 +190,6 @@ class CollisionWorld:
             if kind == "self" and (at_home or hits[k] > self._settings.always * len(rows)):
                 for data in (self._free, self._holding):
                     data.deactivateCollisionPair(k)
-
-
-def hand_links(arm: Arm) -> frozenset[str]:
-    """Links that may touch what is held: the body of the tool, what carries the fingers, and all that hangs on it."""
-    robot = arm.declared
-    fingers = [robot.joint_by_name[name] for name in arm.robot.finger_joints]
-    tops = {arm.robot.tool, *(joint.parent for joint in fingers)}
-    links = [link for group in rigid_groups(robot) if tops & set(group.links) for link in group.links]
-    for link in links:
-        links += [joint.child for joint in robot.joints_below[link] if joint.kind is not JointType.FIXED]
-    return frozenset(links)
 
 
 def _shifted(place: FloatArray, z: float) -> FloatArray:

@@ -7,16 +7,20 @@ part but, with contact, for the piece between the pads (`grip_piece`).
 
 from __future__ import annotations
 
-import importlib
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.manipulation.grip import grip_piece
 from kinematify.manipulation.request import Hold
+from kinematify.manipulation.robot import effort_limits, hand_links
+from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
-from kinematify.robot.robot import rigid_groups
+from kinematify.robot.robot import rest_configuration, rigid_groups
+from kinematify.simulation.engines import open_world
 from kinematify.simulation.prepared import prepare
+from kinematify.simulation.world import Grip, PlacedModel, PlacedRobot, WorldSpec
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,6 +33,11 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
     from kinematify.simulation.prepared import Prepared
+    from kinematify.simulation.world import EngineWorld
+
+
+_BLOWN_UP = {"badqpos", "badqvel", "badqacc"}
+"""Warnings of MuJoCo after which a run counts for nothing."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -106,7 +115,12 @@ def _along(path: FloatArray, allowed: FloatArray, least: float, step: float) -> 
     times += 1e-9 * np.arange(len(times))  # rows that are the same still follow one another
     # The derivative of the smooth step is at most 1.5 times that of the straight one.
     seconds = max(1.5 * float(times[-1]), least, step)
-    phase = np.linspace(0.0, 1.0, max(2, round(seconds / step) + 1))
+    return eased(path, times, max(2, round(seconds / step) + 1))
+
+
+def eased(path: FloatArray, times: FloatArray, count: int) -> FloatArray:
+    """Rows on a path with a smooth start and end, `times` those of its own rows, shape (count, dof)."""
+    phase = np.linspace(0.0, 1.0, count)
     at = times[-1] * phase**2 * (3.0 - 2.0 * phase)
     return np.stack([np.interp(at, times, column) for column in path.T], axis=1)
 
@@ -172,30 +186,13 @@ class Loaded:
 
     @property
     def hand_links(self) -> frozenset[str]:
-        """Links of the hand: what the tool is fixed to, and the fingers."""
-        robot = self.robot
-        fingers = [robot.joint_by_name[name].child for name in self.motion.robot.finger_joints]
-        links = set(_body(robot, self.motion.robot.tool))
-        for link in fingers:
-            links |= _below(robot, link)
-        return frozenset(links)
+        """Links of the hand (`kinematify.manipulation.robot.hand_links`)."""
+        return hand_links(self.robot, self.motion.robot)
 
     def fastest(self, settings: ExecutionSettings) -> FloatArray:
         """Speed limits of the arm joints [rad/s or m/s], shape (dof,)."""
         joints = [self.robot.joint_by_name[name] for name in self.motion.robot.arm_joints]
         return np.array([j.velocity if j.velocity and j.velocity > 0.0 else settings.velocity for j in joints])
-
-    def strongest(self, settings: ExecutionSettings) -> FloatArray:
-        """Effort limits of the arm joints [N m or N], shape (dof,)."""
-        joints = [self.robot.joint_by_name[name] for name in self.motion.robot.arm_joints]
-        return np.array([j.effort if j.effort and j.effort > 0.0 else settings.effort for j in joints])
-
-    def fingers(self, gap: float) -> FloatArray:
-        """Values of the finger joints with the pads at a distance [m], shape (fingers,)."""
-        robot = self.motion.robot
-        share = min(max(gap / robot.opening, 0.0), 1.0)
-        closed, opened = np.array(robot.fingers_closed), np.array(robot.fingers_open)
-        return np.asarray(closed + share * (opened - closed))
 
 
 def load(motion: Motion, work: Path, settings: PrepareSettings) -> Loaded:
@@ -217,56 +214,13 @@ def load(motion: Motion, work: Path, settings: PrepareSettings) -> Loaded:
     )
 
 
-class ExecutionWorld(Protocol):
-    """Robot and object in an engine, at the start of a motion."""
-
-    def step(self, arm: FloatArray, speed: FloatArray) -> bool:
-        """Simulate one time step.
-
-        Args:
-            arm: What the servos of the arm are told [rad or m], shape (dof,).
-            speed: Its derivative, shape (dof,).
-
-        Returns:
-            False: the simulation blew up.
-        """
-
-    def squeeze(self) -> None:
-        """Let the fingers close with their full force."""
-
-    def take_hold(self) -> None:
-        """Let the joint go; with a weld, fix the hand to the part where it now is."""
-
-    def opened(self) -> float:
-        """Value of the joint that is opened [rad or m]."""
-
-    def arm(self) -> FloatArray:
-        """Values of the arm's joints [rad or m], shape (dof,)."""
-
-    def joints(self) -> tuple[dict[str, float], dict[str, float]]:
-        """Values of all joints of robot and object [rad or m]."""
-
-    def deeper(self, than: float) -> tuple[float, tuple[str, str]] | None:
-        """Deepest contact of the robot, but for the hand in what it holds, if it is deeper than so much.
-
-        Args:
-            than: [m].
-
-        Returns:
-            Its depth [m], and the link of the robot with what it is in.
-        """
-
-    def close(self) -> None:
-        """Free what the engine holds."""
-
-
 def execute(loaded: Loaded, settings: ExecutionSettings, *, engine: str, hold: Hold) -> Execution:
     """Run a planned motion.
 
     Args:
         loaded: Both models and the motion.
         settings: Servos, forces and tolerances.
-        engine: One of those that execute: ``mujoco``, or ``pybullet``, which welds only.
+        engine: One with `hold` among `EngineEntry.holds`.
         hold: What connects the hand with the part.
 
     Returns:
@@ -275,13 +229,12 @@ def execute(loaded: Loaded, settings: ExecutionSettings, *, engine: str, hold: H
     Raises:
         Refused: The engine cannot load a model.
     """
-    module = importlib.import_module(f"kinematify.manipulation.execute_{engine}")
-    world = cast("ExecutionWorld", module.open_world(loaded, settings, hold))
+    run = _Run(loaded, settings, engine, hold)
     reference = timed(loaded.motion, loaded.fastest(settings), settings, settings.time_step)
     try:
-        values, log = _tracked(world, reference, settings, hold)
+        values, log = run.tracked(reference)
     finally:
-        world.close()
+        run.world.close()
     return _judged(loaded, log, values, reference, settings, engine=engine, hold=hold)
 
 
@@ -295,27 +248,100 @@ class _Log:
     tracking: float = 0.0
 
 
-def _tracked(
-    world: ExecutionWorld, reference: Reference, settings: ExecutionSettings, hold: Hold
-) -> tuple[FloatArray, _Log]:
-    """Track the reference; returns the value of the object's joint after every step, shape (steps,), and the log."""
-    every = max(1, round(1.0 / (settings.frame_rate * settings.time_step)))
-    values, log = np.full(reference.steps, np.nan), _Log()
-    for step in range(reference.steps):
-        if step == reference.grasped and hold is Hold.CONTACT:
-            world.squeeze()
-        if step == reference.pulls:
-            world.take_hold()
-        if not world.step(reference.arm[step], reference.speed[step]):
-            break
-        values[step] = world.opened()
-        log.tracking = max(log.tracking, float(np.abs(world.arm() - reference.arm[step]).max()))
-        if (contact := world.deeper(log.depth)) is not None:
-            log.depth, log.deepest = contact
-        if step % every == 0 or step == reference.steps - 1:
-            robot, articulated = world.joints()
-            log.frames.append(Frame(time=step * settings.time_step, robot=robot, object=articulated))
-    return values, log
+class _Run:
+    """Robot and object in an engine, at the start of a motion."""
+
+    def __init__(self, loaded: Loaded, settings: ExecutionSettings, engine: str, hold: Hold) -> None:
+        self._motion, self._settings, self._hold = loaded.motion, settings, hold
+        self._robot, self._object = (LeaderMechanism(robot=model) for model in (loaded.robot, loaded.object))
+        start = {**self._motion.start, self._motion.joint: float(self._motion.opened[0])}
+        rest = rest_configuration(loaded.object)
+        self._start = {travel.joint: start.get(travel.joint, rest[travel.joint]) for travel in self._object.travels}
+        self._opened = self._object.joints.index(self._motion.joint)
+        self._fingers = self._motion.robot.fingers_at(self._motion.grasp.spread)
+        self._squeezed = self._squeeze()
+        self.world: EngineWorld = open_world(engine, self._spec(loaded))
+        leaders = np.array([list(self._start.values())])
+        self.world.place(self._object.all_values(leaders)[0], np.concatenate([self._motion.reach[0], self._fingers]))
+
+    def _squeeze(self) -> FloatArray:
+        """Fingers a centimetre inside of what they hold, so that they press with their full force."""
+        grasp, closed = self._motion.grasp, self._motion.robot.fingers_at(0.0)
+        gap = max(grasp.spread, 1e-6)
+        return np.asarray(self._fingers + (closed - self._fingers) * (gap - grasp.width + 0.02) / gap)
+
+    def _spec(self, loaded: Loaded) -> WorldSpec:
+        motion, settings, friction = self._motion, self._settings, self._hold is Hold.CONTACT
+        driven = {*motion.robot.arm_joints, *motion.robot.finger_joints}
+        held, leaders = loaded.held, self._start
+        return WorldSpec(
+            step=settings.time_step,
+            object=PlacedModel(
+                urdf=loaded.object_prepared.urdf,
+                mechanism=self._object,
+                T_world_root=motion.T_world_object,
+                locked=leaders,
+                damping={motion.joint: settings.joint_damping},
+            ),
+            robot=PlacedRobot(
+                urdf=loaded.robot_prepared.urdf,
+                mechanism=self._robot,
+                T_world_root=motion.T_world_base,
+                locked={travel.joint: travel.rest for travel in self._robot.travels if travel.joint not in driven},
+                arm=motion.robot.arm_joints,
+                fingers=motion.robot.finger_joints,
+                strongest=effort_limits(loaded.robot, motion.robot, settings.effort),
+                postures=(motion.reach[0], motion.pull[0], motion.pull[-1]),
+                tool=motion.robot.tool,
+                settings=settings,
+            ),
+            grip=Grip(
+                hand=loaded.hand_links,
+                part=loaded.held_links,
+                link=held,
+                piece=grip_piece(loaded.object, held, leaders, motion.grasp, settings) if friction else None,
+                weld_force=settings.weld_force,
+            ),
+        )
+
+    def tracked(self, reference: Reference) -> tuple[FloatArray, _Log]:
+        """Track the reference; returns the value of the object's joint after every step, shape (steps,), and a log."""
+        settings, world = self._settings, self.world
+        every = max(1, round(1.0 / (settings.frame_rate * settings.time_step)))
+        values, log = np.full(reference.steps, np.nan), _Log()
+        for step in range(reference.steps):
+            if step == reference.grasped and self._hold is Hold.CONTACT:
+                self._fingers = self._squeezed
+            if step == reference.pulls:
+                self._take_hold()
+            world.command(np.concatenate([reference.arm[step], self._fingers]), reference.speed[step])
+            world.step()
+            if not world.stable() or _BLOWN_UP & world.warnings().keys():
+                break
+            values[step] = world.values()[self._opened]
+            arm = world.driven()[0][: len(reference.arm[step])]
+            log.tracking = max(log.tracking, float(np.abs(arm - reference.arm[step]).max()))
+            if (contact := world.deeper(log.depth)) is not None:
+                log.depth, log.deepest = contact
+            if step % every == 0 or step == reference.steps - 1:
+                log.frames.append(self._frame(step * settings.time_step))
+        return values, log
+
+    def _take_hold(self) -> None:
+        """Let the joint go; with a weld, fix the hand to the part."""
+        self.world.release((self._motion.joint, *self._motion.freed))
+        if self._hold is Hold.WELD:
+            self.world.weld()
+
+    def _frame(self, seconds: float) -> Frame:
+        robot, articulated = (
+            dict(zip(mechanism.joints, values.tolist(), strict=True))
+            for mechanism, values in (
+                (self._robot, self.world.robot_values()),
+                (self._object, self.world.values()),
+            )
+        )
+        return Frame(time=seconds, robot=robot, object=articulated)
 
 
 def _judged(
@@ -366,10 +392,3 @@ def _judged(
 def _body(robot: Robot, link: str) -> frozenset[str]:
     """Links that are fixed to a link, itself included."""
     return frozenset(next(group.links for group in rigid_groups(robot) if link in group.links))
-
-
-def _below(robot: Robot, link: str) -> frozenset[str]:
-    links = [link]
-    for name in links:
-        links += [joint.child for joint in robot.joints_below[name]]
-    return frozenset(links)

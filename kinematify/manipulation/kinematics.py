@@ -59,9 +59,7 @@ class Arm:
         """Values of arm joints (dof,) as a configuration of `model`, the pads `gap` apart [m]."""
         values = pin.neutral(self.model)
         values[self._rows] = q
-        share = min(max(gap / self.robot.opening, 0.0), 1.0)
-        closed, opened = np.array(self.robot.fingers_closed), np.array(self.robot.fingers_open)
-        values[self._fingers] = closed + share * (opened - closed)
+        values[self._fingers] = self.robot.fingers_at(gap)
         return np.asarray(values)
 
     def pose(self, q: FloatArray) -> FloatArray:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from kinematify.geometry.scene import Scene
     from kinematify.manipulation.grasp import GraspReport
     from kinematify.manipulation.kinematics import Arm
-    from kinematify.manipulation.place import Placement
+    from kinematify.manipulation.place import ObjectMotion, Placement
     from kinematify.manipulation.robot import TaskRobot
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import Travel
@@ -205,7 +205,9 @@ def plan_pull(
     way = _longest_way(scene, joint, settings.plan)
     moves = way >= settings.plan.least_way
     clearing = clear_way(scene, joint, settings.plan) if moves else Clearing(scene=scene, freedom=Freedom())
-    planning = _Planning(arm, clearing, joint, settings, point=point, base=base, seed=seed, started=started, way=way)
+    planning = JointPlanning(
+        arm, clearing, joint, settings, point=point, base=base, seed=seed, started=started, way=way
+    )
     return planning.run()
 
 
@@ -238,19 +240,34 @@ def _longest_way(scene: Scene, joint: str, settings: PlanSettings) -> float:
     return max(ways)
 
 
-class _Planning:
-    """One joint."""
+class JointPlanning:
+    """One joint of an object."""
 
     def __init__(
-        self, arm: Arm, clearing: Clearing, joint: str, settings: TaskSettings, *, point: FloatArray | None,
-        base: FloatArray | None, seed: int, started: float, way: float,
+        self, arm: Arm, clearing: Clearing, joint: str, settings: TaskSettings, *, way: float, started: float,
+        point: FloatArray | None = None, base: FloatArray | None = None, motion: ObjectMotion | None = None,
+        seed: int = 0,
     ) -> None:  # fmt: skip
+        """Keep what is given; see `plan_pull`.
+
+        Args:
+            arm: The robot.
+            clearing: The object.
+            joint: Joint that leads.
+            settings: Thresholds.
+            way: Longest way of a point that the joint moves [m].
+            started: Processor time at which planning began [s].
+            point: Where the part is held.
+            base: Where the robot stands.
+            motion: Of the object; the joint's own if None.
+            seed: Of all that is random.
+        """
         scene = clearing.scene
         self._arm, self._clearing, self._scene, self._joint = arm, clearing, scene, joint
         self._settings, self._plan, self._seed = settings, settings.plan, seed
         self._point, self._started, self._way = point, started, way
         self._travel = next(travel for travel in scene.travels if travel.joint == joint)
-        self._motion = object_motion(scene, joint, pull_end(self._travel, self._plan), self._plan)
+        self._motion = motion or object_motion(scene, joint, pull_end(self._travel, self._plan), self._plan)
         self._base = None if base is None else self._motion.T_world_object @ base
         self._places = Places(arm, self._motion, object_box(scene), self._plan)
         self._grasps: GraspReport | None = None

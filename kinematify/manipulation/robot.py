@@ -7,20 +7,19 @@ more link, whose frame is the grasp frame of all planning: +z approaches, +y clo
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.manipulation import arm
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
-from kinematify.robot.robot import Joint, Link, forward_kinematics, joint_values, rest_configuration
+from kinematify.robot.robot import Joint, Link, forward_kinematics, joint_values, rest_configuration, rigid_groups
 from kinematify.robot.write import write_robot
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from kinematify.manipulation.request import TaskRequest
     from kinematify.robot.arrays import FloatArray
@@ -30,6 +29,7 @@ ROBOT_FILE = "robot.urdf"
 GRASP_LINK = "kinematify_grasp_frame"
 """Link that is added to a user's robot."""
 
+_TRAVEL = 0.05  # of each finger of the built-in arm [m]
 _TIP_DEPTH = 0.01  # a finger holds with the last centimetre; the origin stands so far behind its end [m]
 _TIP_SHARE = 0.35  # of a finger's length: its end, where the gap between the fingers is measured
 _NARROW = 0.004  # a gripper that opens less holds nothing [m]
@@ -57,16 +57,25 @@ class TaskRobot:
     home: tuple[float, ...]
     """Values of `arm_joints` from which a reach starts [rad or m]."""
 
+    def finger_values(self, share: float) -> FloatArray:
+        """Values of `finger_joints`, 0 with the pads together, 1 apart, shape (fingers,)."""
+        closed, opened = np.array(self.fingers_closed), np.array(self.fingers_open)
+        return np.asarray(closed + share * (opened - closed))
+
+    def fingers_at(self, gap: float) -> FloatArray:
+        """The same with the pads at a distance [m]."""
+        return self.finger_values(min(max(gap / self.opening, 0.0), 1.0))
+
 
 def robot_of(task: TaskRequest, folder: Path) -> TaskRobot:
-    """Write the robot of a task into an existing folder and describe it.
+    """Describe the robot of a task; a user's is written into an existing folder.
 
     Raises:
         InputError: There is no such robot, tool or gripper.
         OSError: The folder cannot be written.
     """
     if task.robot is None:
-        return builtin_robot(folder)
+        return builtin_robot()
     if task.tool is None:
         raise InputError(
             f"--robot {task.robot} needs --tool with the link that carries the fingers, e.g. --tool gripper_link."
@@ -74,23 +83,21 @@ def robot_of(task: TaskRequest, folder: Path) -> TaskRobot:
     return user_robot(task.robot, task.tool, task.gripper, folder=folder, package_dirs=task.package_dirs)
 
 
-def builtin_robot(folder: Path) -> TaskRobot:
-    """Write the project's own arm into an existing folder and describe it.
+def builtin_robot() -> TaskRobot:
+    """Describe the project's own arm: seven turning joints and a parallel gripper, of boxes and cylinders only.
 
-    Raises:
-        OSError: The folder cannot be written.
+    Its proportions and limits are those of common research arms with a reach of 0.85 m. Collision shapes leave gaps of
+    a few millimetres at the joints, so that neighbours touch in no configuration and no pair has to be ignored.
     """
-    path = folder.resolve() / ROBOT_FILE
-    arm.write_arm(path)
     return TaskRobot(
-        urdf=path,
-        tool=arm.TOOL,
-        arm_joints=arm.ARM_JOINTS,
-        finger_joints=arm.FINGERS,
-        opening=2.0 * arm.TRAVEL,
-        fingers_open=(arm.TRAVEL, arm.TRAVEL),
+        urdf=Path(__file__).with_name("arm.urdf").resolve(),
+        tool="tool",
+        arm_joints=tuple(f"joint_{number}" for number in range(1, 8)),
+        finger_joints=("left_finger_joint", "right_finger_joint"),
+        opening=2.0 * _TRAVEL,
+        fingers_open=(_TRAVEL, _TRAVEL),
         fingers_closed=(0.0, 0.0),
-        home=arm.HOME,
+        home=(0.0, -0.7, 0.0, -2.3, 0.0, 1.6, 0.0),  # folded over its base, hand pointing down
     )
 
 
@@ -149,6 +156,22 @@ def user_robot(
         fingers_closed=tuple(closed[joint.name] for joint in fingers),
         home=tuple(rest[name] for name in chain),
     )
+
+
+def hand_links(robot: Robot, task: TaskRobot) -> frozenset[str]:
+    """Links that may touch what is held: the body of the tool, what carries the fingers, and all that hangs on it."""
+    fingers = [robot.joint_by_name[name] for name in task.finger_joints]
+    tops = {task.tool, *(joint.parent for joint in fingers)}
+    links = [link for group in rigid_groups(robot) if tops & set(group.links) for link in group.links]
+    for link in links:
+        links += [joint.child for joint in robot.joints_below[link] if joint.kind is not JointType.FIXED]
+    return frozenset(links)
+
+
+def effort_limits(robot: Robot, task: TaskRobot, usual: float) -> FloatArray:
+    """Effort limits of the arm joints, `usual` for those that state none [N m or N], shape (dof,)."""
+    efforts = [robot.joint_by_name[name].effort for name in task.arm_joints]
+    return np.array([effort if effort and effort > 0.0 else usual for effort in efforts])
 
 
 def arm_chain(robot: Robot, tool: str) -> tuple[str, ...]:
@@ -294,20 +317,25 @@ class _Hand:
 
     def _surfaces(self, q: dict[str, float]) -> list[FloatArray]:
         """Corners of every finger in the tool frame [m], shape (n, 3) each."""
-        robot = self.robot
-        poses = forward_kinematics(robot, {**rest_configuration(robot), **q})
-        T_tool_world = np.asarray(np.linalg.inv(poses[self.tool]), dtype=np.float64)
-        return [self._corners(joint.child, T_tool_world, poses) for joint in self.fingers]
+        poses, found = self._in_tool(q), []
+        for finger in self.fingers:
+            links = [finger.child]
+            for link in links:
+                links += [joint.child for joint in self.robot.joints_below[link] if joint not in self.fingers]
+            found.append(self._corners(links, poses))
+        return found
 
-    def _corners(self, top: str, T_tool_world: FloatArray, poses: dict[str, FloatArray]) -> FloatArray:
-        robot = self.robot
-        links = [top]
-        for link in links:
-            links += [joint.child for joint in robot.joints_below[link] if joint not in self.fingers]
+    def _in_tool(self, q: dict[str, float]) -> dict[str, FloatArray]:
+        """Pose of every link in the tool frame, shape (4, 4) each."""
+        poses = forward_kinematics(self.robot, {**rest_configuration(self.robot), **q})
+        T_tool_world = np.asarray(np.linalg.inv(poses[self.tool]), dtype=np.float64)
+        return {name: T_tool_world @ T for name, T in poses.items()}
+
+    def _corners(self, links: Sequence[str], poses: dict[str, FloatArray]) -> FloatArray:
+        """Corners of links in the tool frame [m], shape (n, 3)."""
         found = [np.empty((0, 3))]
         for link in links:
-            T = T_tool_world @ poses[link]
-            declared = self.robot.link_by_name[link]
+            declared, T = self.robot.link_by_name[link], poses[link]
             for shape in declared.collisions or declared.visuals:
                 used = shape.mesh.vertices[np.unique(shape.mesh.faces)]
                 found.append(used @ T[:3, :3].T + T[:3, 3])
@@ -323,10 +351,7 @@ class _Hand:
 
     def _approach(self, fingers: FloatArray, closing: FloatArray) -> FloatArray:
         """Unit direction from what carries the fingers to their tips, tool frame, shape (3,)."""
-        robot = self.robot
-        poses = forward_kinematics(robot, {**rest_configuration(robot), **self.apart})
-        T_tool_world = np.asarray(np.linalg.inv(poses[self.tool]), dtype=np.float64)
-        carrier = self._carrier(T_tool_world, poses)
+        carrier = self._carrier(self._in_tool(self.apart))
         away = fingers.mean(axis=0) - carrier
         away = away - (away @ closing) * closing
         # Fingers are longer than they are wide: their long side across the closing direction is the approach.
@@ -338,25 +363,16 @@ class _Hand:
         best = best - (best @ closing) * closing
         return np.asarray(best / np.linalg.norm(best) * (1.0 if float(best @ away) >= 0.0 else -1.0))
 
-    def _carrier(self, T_tool_world: FloatArray, poses: dict[str, FloatArray]) -> FloatArray:
+    def _carrier(self, poses: dict[str, FloatArray]) -> FloatArray:
         """Middle of the body that the fingers hang on, tool frame [m], shape (3,)."""
-        robot = self.robot
         link = self.fingers[0].parent
-        found = [self._alone(link, T_tool_world, poses)]
-        while not len(np.concatenate(found)) and link in robot.joint_above:
-            link = robot.joint_above[link].parent
-            found.append(self._alone(link, T_tool_world, poses))
-        points = np.concatenate(found)
+        points = self._corners([link], poses)
+        while not len(points) and link in self.robot.joint_above:
+            link = self.robot.joint_above[link].parent
+            points = self._corners([link], poses)
         if len(points):
             return np.asarray(0.5 * (points.min(axis=0) + points.max(axis=0)))
-        return np.asarray((T_tool_world @ poses[self.fingers[0].parent])[:3, 3])
-
-    def _alone(self, link: str, T_tool_world: FloatArray, poses: dict[str, FloatArray]) -> FloatArray:
-        T = T_tool_world @ poses[link]
-        declared = self.robot.link_by_name[link]
-        shapes = declared.collisions or declared.visuals
-        parts = [shape.mesh.vertices @ T[:3, :3].T + T[:3, 3] for shape in shapes]
-        return np.concatenate([np.empty((0, 3)), *parts])
+        return np.asarray(poses[self.fingers[0].parent][:3, 3])
 
 
 def _end(points: FloatArray, along: FloatArray) -> FloatArray:

@@ -50,7 +50,7 @@ _THINNEST = 1e-4
 _MARKS = 2000
 """Points of a link's surface that pieces represent while they are carved."""
 _PROBES = 400
-"""Points of a link's surface by which it is told how much the pieces leave out."""
+"""Points of a link's surface by which it is measured how much the pieces omit."""
 _CORNERS = 160
 """Of a sphere or a cylinder while it is carved, at most; around a sphere it reaches 2.5 % of its radius beyond it."""
 _MANY_FACES, _CELLS = 150_000, 300

@@ -46,7 +46,7 @@ class CutChain:
     """What was written for it."""
 
     @property
-    def told(self) -> str:
+    def description(self) -> str:
         """Which joint was cut, why, and what to do, in words."""
         first, second = self.parts
         kept = "no tree that was kept has it"

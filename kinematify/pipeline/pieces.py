@@ -1,4 +1,4 @@
-"""Pieces of one part: what was inferred with them as one, told of each of them."""
+"""Pieces of one part: what was inferred with them as one, reported of each of them."""
 
 from __future__ import annotations
 

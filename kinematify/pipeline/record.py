@@ -191,7 +191,7 @@ def _closed_chain(chain: CutChain) -> dict[str, Any]:
         "loop": chain.closing.loop,
         "driver": chain.closing.driver,
         "by": chain.closing.by or None,
-        "told": chain.told,
+        "description": chain.description,
     }
 
 

@@ -35,7 +35,7 @@ def warnings_of(
     *,
     config: Config,
 ) -> tuple[str, ...]:
-    """Everything to tell of an inference; what was already told of the assembly comes first."""
+    """Everything to tell of an inference; what was already reported of the assembly comes first."""
     return (
         *assembly.warnings,
         *_doubtful_base(assembly, trees, config.topology.base_doubt),

@@ -278,7 +278,7 @@ def _serve(
 def _end_with_caller(channel: int) -> None:
     """A run that is killed takes its processes with it, so that they do not slow down the one that resumes."""
     poll = select.poll()
-    poll.register(channel, 0)  # the end of the other side is told in any case
+    poll.register(channel, 0)  # the end of the other side is reported in any case
     poll.poll()
     os.killpg(0, signal.SIGKILL)
 

@@ -17,13 +17,16 @@ import numpy as np
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointCandidate
 from kinematify.joints.choice.twins import TwinJoints
+from kinematify.pipeline.stages import choose_joints, tree_reward, with_doubt_of_parents
+from kinematify.pipeline.warnings import floating_parts
 from kinematify.refinement.candidates import CandidateJoints, described
-from kinematify.refinement.parents import with_parents
 from kinematify.robot.joint_type import JointType
+from kinematify.topology.arborescence import tree_with_parents
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from kinematify.contact.tree import KinematicTree
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline import Inference
     from kinematify.robot.arrays import FloatArray
@@ -237,7 +240,7 @@ def with_hints(inference: Inference, hints: Sequence[Hint]) -> Inference:
         if inference.trees[0].parents[child] < 0:
             raise _about_the_base(names[child])
     if parents:
-        inference = with_parents(inference, parents)
+        inference = _with_parents(inference, parents)
     maker = CandidateJoints(inference.assembly, inference.graph, inference.bearings, inference.config)
     joints, warnings = list(inference.joints), list(inference.warnings)
     place = {names[joint.child]: k for k, joint in enumerate(joints)}
@@ -360,3 +363,36 @@ def _objections(joint: JointEstimate, hint: Hint, inference: Inference, before: 
         return []
     said = f"The hint on {hint.part} is followed, but the part only {stopped} before it meets another one."
     return [f"{said} Without the hint it is {described(before)}."]
+
+
+def _with_parents(inference: Inference, parents: Mapping[int, int]) -> Inference:
+    """The inference on the tree that hints ask for: parts hang where a hint says, others where they did if possible.
+
+    Joints stay where neither parent nor what the part carries has changed; the others are chosen as `infer` would.
+
+    Args:
+        inference: As it is.
+        parents: Parent of parts by index, neither the root nor in a circle.
+    """
+    before = inference.trees[0]
+    if all(before.parents[child] == parent for child, parent in parents.items()):
+        return inference
+    assembly, graph, config = inference.assembly, inference.graph, inference.config
+    tree = tree_with_parents(tree_reward(assembly, graph, inference.bearings, config), before, parents)
+    known = {(joint.parent, joint.child): joint for joint in inference.joints}
+    chosen = with_doubt_of_parents(choose_joints(assembly, graph, tree, inference.bearings, config), tree)
+    joints = tuple(
+        known[edge] if _is_as_before(edge, before, tree) else joint
+        for edge, joint in zip(tree.edges(), chosen, strict=True)
+    )
+    old, new = (set(floating_parts(assembly, graph, item)) for item in (before, tree))
+    warnings = tuple(warning for warning in inference.warnings if warning not in old - new)
+    added = tuple(sorted(new - old - set(warnings)))
+    others = tuple(other for other in inference.trees if other.parents != tree.parents)
+    return replace(inference, trees=(tree, *others), joints=joints, warnings=(*warnings, *added))
+
+
+def _is_as_before(edge: tuple[int, int], before: KinematicTree, after: KinematicTree) -> bool:
+    """Whether a part has the parent that it had, and carries what it carried."""
+    parent, child = edge
+    return before.parents[child] == parent and before.subtree(child) == after.subtree(child)

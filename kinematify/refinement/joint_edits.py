@@ -224,4 +224,7 @@ def _size(robot: Robot, link: str) -> float:
 
 def _child(element: _Element, tag: str) -> _Element:
     found = element.find(tag)
-    return element.makeelement(tag) if found is None else found
+    if found is None:
+        found = element.makeelement(tag)
+        element.append(found)
+    return found

@@ -85,7 +85,7 @@ class RawMesh:
 def read_meshes(path: Path, *, empty_ok: bool = False, appearance: bool = False) -> tuple[RawMesh, ...]:
     """Read a mesh file: one mesh per node of a scene, group of an OBJ, or object of a 3MF, transforms applied.
 
-    COLLADA lengths are turned into metres by the unit that the file states, and its up axis is told but ignored: so
+    COLLADA lengths are turned into metres by the unit that the file states, and its up axis is reported but ignored: so
     does RViz, in which robots are checked by eye (Pinocchio and yourdfpy ignore the unit too). Unreferenced vertices
     may remain.
 
@@ -376,6 +376,6 @@ def read_step(path: Path, *, appearance: bool = False) -> tuple[GltfNode, ...]:
         return read_gltf(converted, appearance=appearance, unnamed=_NUMBERED)
 
 
-def _reason(told: str) -> str:
-    lines = [_CONTROLS.sub("", line).strip() for line in told.splitlines()]
+def _reason(output: str) -> str:
+    lines = [_CONTROLS.sub("", line).strip() for line in output.splitlines()]
     return next((line for line in lines if "ERR" in line), "the converter gave no reason")

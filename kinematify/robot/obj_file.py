@@ -124,9 +124,9 @@ def _appearances(path: Path, content: _Content) -> dict[str, Appearance]:
     known: dict[str, Material] = {}
     notes: list[str] = []
     for name in content.libraries:
-        found, told = read_mtl(path.with_name(name.replace("\\", "/").rpartition("/")[2]))
+        found, said = read_mtl(path.with_name(name.replace("\\", "/").rpartition("/")[2]))
         known |= found
-        notes += told
+        notes += said
     if not known:
         return {name: replace(item, notes=tuple(notes)) for name, item in _painted_groups(content).items()}
     uv = np.array(content.uv).reshape(-1, 2)

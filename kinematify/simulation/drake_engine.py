@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from kinematify.simulation.contacts import Contacts, Touching
     from kinematify.simulation.engine import DriveRun, Dropped, FreeRun
     from kinematify.simulation.prepared import Prepared
+    from kinematify.simulation.raw_model import Start
     from kinematify.simulation.servos import Drive, Servos
 
 _RESERVED = ("world", "WorldBody")
@@ -615,19 +616,9 @@ class DrakeFile(RunningFile):
             self._worlds[contacts, gravity] = known
         return known
 
-    def begin(
-        self,
-        values: Mapping[str, float],
-        speeds: Mapping[str, float] | None = None,
-        *,
-        contacts: bool,
-        gravity: bool = True,
-        released: Sequence[int] | None = None,
-    ) -> None:
-        """See `RunningFile`; joints have no motors."""
-        del released
-        self._now, rest = self._world(contacts=contacts, gravity=gravity), self.row(values)
-        self.set_state(rest, np.zeros_like(rest) if speeds is None else self.row(speeds))
+    def _start(self, start: Start) -> None:
+        self._now = self._world(contacts=start.contacts, gravity=start.gravity)
+        self.set_state(start.q, start.v)
         self.apply(0, 0.0)
 
     def steps(self, count: int, every: int = 1) -> Iterator[int]:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from kinematify.simulation.prepared import Prepared
     from kinematify.simulation.raw_model import RawEngineModel
     from kinematify.simulation.servos import Drive, Servos
+    from kinematify.simulation.world import EngineWorld, WorldSpec
 
 FINER = 4
 """Small steps per step of `Simulation.release` with `fine`."""
@@ -155,6 +156,18 @@ class Engine(Protocol):
 
     def messages(self) -> list[str]:
         """What the engine itself has said so far, each message once."""
+
+
+class WorldEngine(Engine, Protocol):
+    """An engine in which environments and planned motions run."""
+
+    @staticmethod
+    def open_world(spec: WorldSpec) -> EngineWorld:
+        """Build a world that runs.
+
+        Raises:
+            Refused: The engine cannot load a model.
+        """
 
 
 class EngineModel(Protocol):

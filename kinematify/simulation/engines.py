@@ -14,8 +14,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config.validation import EngineSettings
-    from kinematify.simulation.engine import Engine
+    from kinematify.simulation.engine import Engine, WorldEngine
     from kinematify.simulation.raw_model import RawEngineModel
+    from kinematify.simulation.world import EngineWorld, WorldSpec
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +49,7 @@ class EngineEntry:
     """Of its loader: without it links of one file pass through each other; None: they collide by default."""
     holds: tuple[str, ...] = ()
     """What may connect a hand with a part (values of `kinematify.manipulation.request.Hold`) where plans are executed
-    in it, by ``manipulation/execute_NAME.py``; there environments run too, by ``envs/NAME_worlds.py``."""
+    and environments run in it: its class is a `WorldEngine`."""
     prints_when_loaded: bool = False
     """True: it may be loaded only where what is printed goes to a file."""
 
@@ -116,6 +117,20 @@ def open_engine(name: str, settings: EngineSettings, log: Path) -> Engine:
         EnvironmentFault: It is not installed.
     """
     return _class_of(name)(settings, log)
+
+
+def open_world(name: str, spec: WorldSpec) -> EngineWorld:
+    """Build a world that runs.
+
+    Args:
+        name: Of an engine with `EngineEntry.holds`.
+        spec: What is in it.
+
+    Raises:
+        EnvironmentFault: The engine is not installed.
+        Refused: It cannot load a model.
+    """
+    return cast("type[WorldEngine]", _class_of(name)).open_world(spec)
 
 
 def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> RawEngineModel:

@@ -35,6 +35,7 @@ from kinematify.simulation.mujoco_model import (
     with_floor,
     with_servos,
 )
+from kinematify.simulation.mujoco_world import MujocoWorld
 from kinematify.simulation.raw_model import MovesFreely, Reproductions, RunningFile, Unloadable
 from kinematify.simulation.servos import commands
 from kinematify.simulation.stepped import count_steps
@@ -48,7 +49,9 @@ if TYPE_CHECKING:
     from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.contacts import Contacts, Touching
     from kinematify.simulation.prepared import Prepared
+    from kinematify.simulation.raw_model import Start
     from kinematify.simulation.servos import Drive, Servos
+    from kinematify.simulation.world import WorldSpec
 
 _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
 _NUMBERS = 20_000_000
@@ -71,6 +74,11 @@ class MujocoEngine:
         """Load a file as users do; MuJoCo knows no packages."""
         del package_dirs
         return MujocoFile(urdf, root)
+
+    @staticmethod
+    def open_world(spec: WorldSpec) -> MujocoWorld:
+        """Build a world that runs."""
+        return MujocoWorld(spec)
 
     def load(self, prepared: Prepared, mechanism: LeaderMechanism) -> MujocoModel:
         """Load a prepared file."""
@@ -480,27 +488,16 @@ class MujocoFile(RunningFile):
         self.limits = {name: tuple(ends) if limited else (-np.inf, np.inf) for name, limited, ends in ranges}
         self.time_step = float(option.timestep)
 
-    def begin(
-        self,
-        values: Mapping[str, float],
-        speeds: Mapping[str, float] | None = None,
-        *,
-        contacts: bool,
-        gravity: bool = True,
-        released: Sequence[int] | None = None,
-    ) -> None:
-        """See `RunningFile`; joints have no motors."""
-        del released
+    def _start(self, start: Start) -> None:
         model, data, option = self._model, self._data, self._model.opt
         option.disableflags, option.gravity[:] = self._flags, self._gravity
         mujoco.mj_resetData(model, data)
-        data.qpos[:] = self.row(values)
+        data.qpos[:] = start.q
         mujoco.mj_forward(model, data)
-        if speeds is not None:
-            data.qvel[:] = self.row(speeds)
-            mujoco.mj_energyVel(model, data)
-        option.disableflags |= 0 if contacts else int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
-        option.gravity[:] *= gravity
+        data.qvel[:] = start.v
+        mujoco.mj_energyVel(model, data)
+        option.disableflags |= 0 if start.contacts else int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        option.gravity[:] *= start.gravity
 
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
         """See `RunningFile`."""

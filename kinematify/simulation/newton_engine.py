@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import newton
 import numpy as np
 import warp
+from scipy.spatial.transform import Rotation
 
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.engine import Refused
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.engine import EngineModel
     from kinematify.simulation.prepared import Prepared
+    from kinematify.simulation.raw_model import Start
 
 _LOAD = """import newton, numpy as np, warp; warp.config.log_level = warp.LOG_WARNING
 builder = newton.ModelBuilder(); builder.add_urdf({path!r}, floating=False, package_dirs={folders})
@@ -167,22 +169,11 @@ class NewtonFile(RunningFile):
         self._contacts = self._pipeline.contacts()
         self._now, self._after, self._touch = model.state(), model.state(), True
 
-    def begin(
-        self,
-        values: Mapping[str, float],
-        speeds: Mapping[str, float] | None = None,
-        *,
-        contacts: bool,
-        gravity: bool = True,
-        released: Sequence[int] | None = None,
-    ) -> None:
-        """See `RunningFile`; joints have no motors."""
-        del released
-        self._touch = contacts
-        self._model.set_gravity((0.0, 0.0, -GRAVITY if gravity else 0.0))
+    def _start(self, start: Start) -> None:
+        self._touch = start.contacts
+        self._model.set_gravity((0.0, 0.0, -GRAVITY if start.gravity else 0.0))
         self._control.joint_f.zero_()
-        rest = self.row(values)
-        self.set_state(rest, np.zeros_like(rest) if speeds is None else self.row(speeds))
+        self.set_state(start.q, start.v)
 
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
         """See `RunningFile`."""
@@ -221,7 +212,7 @@ class NewtonFile(RunningFile):
         mass, centre, tensor = model.body_mass.numpy(), model.body_com.numpy(), model.body_inertia.numpy()
         potential = kinetic = 0.0
         for pose, motion, m, c, inertia in zip(at, speed, mass, centre, tensor, strict=True):
-            R = _rotation(pose)
+            R = Rotation.from_quat(pose[3:]).as_matrix()
             turning = R.T @ motion[3:]
             potential += float(m) * GRAVITY * float(pose[2] + (R @ c)[2])
             kinetic += 0.5 * float(m * motion[:3] @ motion[:3] + turning @ inertia @ turning)
@@ -238,7 +229,9 @@ class NewtonFile(RunningFile):
         body, at = self._model.shape_body.numpy(), self._now.body_q.numpy()
         for shape0, shape1, normal, *points, margin0, margin1 in zip(*arrays, strict=True):
             bodies = [int(body[shape]) for shape in (shape0, shape1)]
-            places = [_rotation(at[k]) @ point + at[k][:3] for k, point in zip(bodies, points, strict=True)]
+            places = [
+                Rotation.from_quat(at[k][3:]).apply(point) + at[k][:3] for k, point in zip(bodies, points, strict=True)
+            ]
             depth = float(margin0 + margin1 - normal @ (places[1] - places[0]))
             first, second = sorted(_name(self._model.body_label[k]) for k in bodies)
             if depth > 0.0:
@@ -258,15 +251,3 @@ class NewtonFile(RunningFile):
 def _name(label: str) -> str:
     """Of a joint or link, without that of the model before it."""
     return label.partition("/")[2]
-
-
-def _rotation(pose: FloatArray) -> FloatArray:
-    """Of a place and a quaternion x, y, z, w, shape (3, 3)."""
-    x, y, z, w = (float(value) for value in pose[3:])
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )

@@ -14,8 +14,9 @@ from scipy.spatial.transform import Rotation
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import Contacts
 from kinematify.simulation.engine import FINER, LoadedJoint, LoadedModel, Measured, Refused
+from kinematify.simulation.pybullet_body import PybulletBody, load, text_of
 from kinematify.simulation.pybullet_raw import PybulletFile
-from kinematify.simulation.pybullet_world import PybulletBody, load, text_of
+from kinematify.simulation.pybullet_world import PybulletWorld
 from kinematify.simulation.servos import acting_pairs
 from kinematify.simulation.stepped import count_steps, drive_run, drop_run, free_run
 
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from kinematify.simulation.engine import DriveRun, Dropped, FreeRun
     from kinematify.simulation.prepared import Prepared
     from kinematify.simulation.servos import Drive, Servos
+    from kinematify.simulation.world import WorldSpec
 
 _CHATTER = ("pybullet build time", "numActiveThreads", "argc=", "started thread", "stopping threads", "Thread with")
 _DECIMALS = 6
@@ -52,6 +54,11 @@ class PybulletEngine:
         """Load a file as users do; PyBullet looks for packages by itself."""
         del package_dirs
         return PybulletFile(urdf, root)
+
+    @staticmethod
+    def open_world(spec: WorldSpec) -> PybulletWorld:
+        """Build a world that runs."""
+        return PybulletWorld(spec)
 
     def load(self, prepared: Prepared, mechanism: LeaderMechanism) -> PybulletModel:
         """Load a prepared file; a second time with a free base, because a fixed one has no mass."""

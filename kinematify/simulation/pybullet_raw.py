@@ -16,15 +16,15 @@ import pybullet as bullet
 from kinematify.robot.urdf_numbers import passing_links
 from kinematify.robot.urdf_text import parse_description
 from kinematify.simulation.configurations import GRAVITY
-from kinematify.simulation.pybullet_world import Client, text_of
+from kinematify.simulation.pybullet_body import Client, text_of
 from kinematify.simulation.raw_model import MotorFile, Reproductions, Unloadable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.raw_model import Push
+    from kinematify.simulation.raw_model import Push, Start
 
 
 def _without_contacts(lines: str) -> str:
@@ -141,25 +141,17 @@ class PybulletFile(MotorFile):
         above = {k: info[16] for k, info in enumerate(infos)}
         self._below = {k: [link for link in above if k in _chain(above, link)] for k in self._index.values()}
 
-    def begin(
-        self,
-        values: Mapping[str, float],
-        speeds: Mapping[str, float] | None = None,
-        *,
-        contacts: bool,
-        gravity: bool = True,
-        released: Sequence[int] | None = None,
-    ) -> None:
-        """See `RunningFile`: the world as it was after loading; motors of joints that were released are put back."""
-        world = self._worlds.get(contacts)
-        if world is None or (released is None and world.pushed):
-            world = self._opened(contacts=contacts, seen=False)
-        self._now = self._worlds[contacts] = world
+    def _start(self, start: Start) -> None:
+        """The world as it was after loading; motors of joints that were released are put back."""
+        world = self._worlds.get(start.contacts)
+        if world is None or (start.released is None and world.pushed):
+            world = self._opened(contacts=start.contacts, seen=False)
+        self._now = self._worlds[start.contacts] = world
         world.client.restoreState(world.state)
-        for name, k in self._index.items():
-            world.client.resetJointState(world.body, k, values[name], 0.0 if speeds is None else speeds[name])
-        world.client.setGravity(0.0, 0.0, -GRAVITY if gravity else 0.0)
-        freed = [self._places[number] for number in released or ()]
+        for k, value, speed in zip(self._places, start.q.tolist(), start.v.tolist(), strict=True):
+            world.client.resetJointState(world.body, k, value, speed)
+        world.client.setGravity(0.0, 0.0, -GRAVITY if start.gravity else 0.0)
+        freed = [self._places[number] for number in start.released or ()]
         for k in world.freed - set(freed):
             world.client.setJointMotorControl2(world.body, k, bullet.VELOCITY_CONTROL, force=_MOTOR)
         for k in freed:

@@ -118,6 +118,22 @@ class Pushed:
     """Where it ended, the deepest first."""
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Start:
+    """How a run begins."""
+
+    q: FloatArray
+    """Values of all joints [rad or m], shape (joints,)."""
+    v: FloatArray
+    """Their speeds [rad/s or m/s], shape (joints,)."""
+    contacts: bool
+    """Links collide with each other."""
+    gravity: bool
+    """It acts."""
+    released: Sequence[int] | None
+    """Indices of joints without motors, where an engine gives joints some; None: motors as loaded."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Reproductions:
     """Templates of plain code of an engine, which repeats what was found; `RawEngineModel` fills them in."""
@@ -187,6 +203,9 @@ class RunningFile(RawEngineModel):
         return None
 
     @abstractmethod
+    def _start(self, start: Start) -> None:
+        """Begin a run."""
+
     def begin(
         self,
         values: Mapping[str, float],
@@ -201,10 +220,13 @@ class RunningFile(RawEngineModel):
         Args:
             values: Of all joints [rad or m].
             speeds: The same [rad/s or m/s]; None: all stand still.
-            contacts: Links collide with each other.
+            contacts: See `Start`; so are the others.
             gravity: It acts.
-            released: Indices of joints without motors, where an engine gives joints some; None: motors as loaded.
+            released: Indices of joints without motors.
         """
+        q = self.row(values)
+        v = np.zeros_like(q) if speeds is None else self.row(speeds)
+        self._start(Start(q=q, v=v, contacts=contacts, gravity=gravity, released=released))
 
     @abstractmethod
     def steps(self, count: int, every: int = 1) -> Iterator[int]:

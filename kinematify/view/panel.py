@@ -178,7 +178,7 @@ class Panel:
         words += [f"{factor * lower:z.4g} to {factor * upper:z.4g} {unit}"] if limited else []
         words += [] if probability is None else [f"{probability:.0%} sure"]
         moves = _plain(f"{joint.child} on {joint.parent}: {', '.join(words)}.")
-        self._told.content = f"**{_plain(joint.name)}** moves {moves}"
+        self._text.content = f"**{_plain(joint.name)}** moves {moves}"
 
     def offer_keeping(self, offered: bool) -> None:  # whether something is tried
         """Show or hide the button that writes what is tried."""
@@ -238,7 +238,7 @@ class Panel:
             self._add_slider(joint)
         if not self._scene.leaders:
             gui.add_markdown("No joint of this model moves.")
-        self._told = gui.add_markdown(said)
+        self._text = gui.add_markdown(said)
         self._play = gui.add_button("Play", visible=False)
         self._play.on_click(_ignoring_event(actions.play))
         self._options = [_AS_WRITTEN]
@@ -320,7 +320,7 @@ def said_of(shown: Shown) -> str:
     if shown.doubtful:
         names = _plain(", ".join(shown.doubtful))
         said.append(f"Check these joints first, their confidence is below {shown.doubtful_below:.0%}: **{names}**.")
-    said += [f"Dashed line: {_plain(chain.told)}" for chain in shown.chains]
+    said += [f"Dashed line: {_plain(chain.description)}" for chain in shown.chains]
     return "\n\n".join(said)
 
 

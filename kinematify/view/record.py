@@ -38,7 +38,7 @@ class DrawnChain:
     """The pin in the frame of either link [m], each of shape (3,)."""
     axis: FloatArray
     """Of the pin, unit, frame of the first link, shape (3,); zero where it is a point."""
-    told: str
+    description: str
     """Which joint was cut, and why."""
 
     def dashes(self, poses: Mapping[str, FloatArray], size: float) -> FloatArray:
@@ -187,7 +187,7 @@ def _chain(item: dict[str, Any], robot: Robot) -> DrawnChain:
         links=(first, second),
         points=((T_first_world @ pin)[:3], (T_second_world @ pin)[:3]),
         axis=np.asarray(T_first_world[:3, :3] @ item["axis"], dtype=np.float64),
-        told=str(item["told"]),
+        description=str(item["description"]),
     )
 
 
@@ -198,7 +198,8 @@ def declared_chains(robot: Robot) -> tuple[DrawnChain, ...]:
             links=loop.links,
             points=loop.points,
             axis=_pin_axis(robot, loop),
-            told=f"{loop.links[0]} and {loop.links[1]} share a point; the loop joint {loop.name} closes the chain.",
+            description=f"{loop.links[0]} and {loop.links[1]} share a point; the loop joint {loop.name} closes the "
+            "chain.",
         )
         for loop in robot.loops
     )

@@ -139,7 +139,7 @@ class ModelViewer:
         return self._panel.status
 
     def run(self, stop: threading.Event) -> None:
-        """Sweep what is to be swept and look for collisions until told to stop."""
+        """Sweep what is to be swept and look for collisions until `stop` is set."""
         start, last = time.monotonic(), ""
         first: float | None = None
         checked = time.monotonic()

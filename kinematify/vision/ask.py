@@ -1,4 +1,4 @@
-"""Questions about the joints of an inference, to a model or to a person, and what comes of their answers."""
+"""Questions about the joints of an inference, to a model, and what comes of their answers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from kinematify.refinement.candidates import CandidateJoints
 from kinematify.vision.client import read_kept, write_kept
 from kinematify.vision.pictures import joint_question
-from kinematify.vision.votes import VoterRecord, answered_motions, choose_again, to_ask, with_types
+from kinematify.vision.votes import VoterRecord, choose_again, to_ask, with_types
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from kinematify.vision.client import ChatOracle
     from kinematify.vision.question import Answer, JointOracle
     from kinematify.vision.screening import KnownQuestion
-    from kinematify.vision.votes import AnsweredMotion, VoteResult
+    from kinematify.vision.votes import VoteResult
 
 _NAMED = 5
 
@@ -115,14 +115,6 @@ def with_types_first(inference: Inference, oracle: JointOracle) -> tuple[Inferen
     return replace(chosen, vision=voting.as_json()), voting
 
 
-def motions_told(
-    inference: Inference, oracle: JointOracle, *, everything: bool = False, known: Collection[str] = ()
-) -> tuple[list[AnsweredMotion], Voting]:
-    """Ask somebody who is believed, and return the motion of each part that was answered, congruent ones included."""
-    heard, voting = _heard(inference, oracle, everything=everything, known=known)
-    return answered_motions(inference, heard.answers, heard.shown), voting
-
-
 def voter_record(oracle: ChatOracle, known: Callable[[], Iterable[KnownQuestion]]) -> VoterRecord:
     """The record of a model, from the user's cache, or else from questions whose right answers are known.
 
@@ -136,8 +128,8 @@ def voter_record(oracle: ChatOracle, known: Callable[[], Iterable[KnownQuestion]
     questions = list(known())
     answers = oracle.ask([question for question, _ in questions])
     pairs = zip(answers, questions, strict=True)
-    told = [(answer, right) for answer, (_, right) in pairs if answer.counts(oracle.config.least_confidence)]
-    record = VoterRecord(right=sum(answer.choice in right for answer, right in told), asked=len(told))
+    counted = [(answer, right) for answer, (_, right) in pairs if answer.counts(oracle.config.least_confidence)]
+    record = VoterRecord(right=sum(answer.choice in right for answer, right in counted), asked=len(counted))
     if not oracle.fault:
         write_kept(oracle.record_path, {"right": record.right, "asked": record.asked})
     return record

@@ -88,15 +88,6 @@ class VoteResult:
         }  # fmt: skip
 
 
-@dataclass(frozen=True, kw_only=True)
-class AnsweredMotion:
-    """What an answer says of one part, without any doubt."""
-
-    child: str
-    motion: JointCandidate | None
-    """None for a part that is fixed."""
-
-
 def to_ask(
     inference: Inference, *, everything: bool = False, known: Collection[str] = ()
 ) -> tuple[list[int], list[int]]:
@@ -179,13 +170,13 @@ def _spread(inference: Inference, answers: Mapping[int, Answer], shown: Shown) -
         inference.config.vision.least_confidence,
     )
     for group in groups(inference):
-        told = [place for place in group if place in answers and answers[place].counts(least)]
-        if any(not _agree(inference, told[0], other, answers, shown) for other in told[1:]):
+        counted = [place for place in group if place in answers and answers[place].counts(least)]
+        if any(not _agree(inference, counted[0], other, answers, shown) for other in counted[1:]):
             fault = "congruent parts were answered differently"
-            found |= {place: (place, replace(answers[place], choice=UNSURE, fault=fault)) for place in told}
-        elif told:
-            silent = [place for place in group if place not in told]
-            found |= dict.fromkeys(silent, (told[0], answers[told[0]]))
+            found |= {place: (place, replace(answers[place], choice=UNSURE, fault=fault)) for place in counted}
+        elif counted:
+            silent = [place for place in group if place not in counted]
+            found |= dict.fromkeys(silent, (counted[0], answers[counted[0]]))
     return found
 
 
@@ -300,26 +291,6 @@ def _decided(
     likely = float(found[best])
     sure = likely * joint.evidence.get("parent_likely", 1.0)
     return replace(made, confidence=sure, evidence={**made.evidence, VISION: likely})
-
-
-def answered_motions(inference: Inference, answers: Mapping[int, Answer], shown: Shown) -> list[AnsweredMotion]:
-    """What answers say of each joint and its twins; of several motions that fit a twin, geometry's best one."""
-    found = []
-    for place, (source, answer) in sorted(_spread(inference, answers, shown).items()):
-        part = inference.assembly.parts[inference.joints[place].child]
-        own = source == place and place in shown
-        options = tuple(shown[place]) if own else offered(inference.joints[place], part, inference.config.vision)
-        if answer.choice == FIXED:
-            found.append(AnsweredMotion(child=part.name, motion=None))
-        elif own and answer.option is not None:
-            found.append(AnsweredMotion(child=part.name, motion=options[answer.option]))
-        elif answer.option is not None:
-            named = _named(inference, source, place, shown[source][answer.option], options)
-            fitting = [item for item, fits in zip(options, named, strict=True) if fits]
-            found += (
-                [AnsweredMotion(child=part.name, motion=max(fitting, key=lambda item: item.score))] if fitting else []
-            )
-    return found
 
 
 def with_types(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import shutil
 import sys
 import warnings
 from pathlib import Path
@@ -14,10 +15,11 @@ from gymnasium.utils.env_checker import check_env
 
 from kinematify.envs.drawer_pull import DrawerPullEnv
 from kinematify.envs.expert import ArmExpert
-from kinematify.envs.mujoco_worlds import ROBOT
 from kinematify.envs.settings import load_settings
+from kinematify.envs.tasks import EPISODE_STEPS
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.manipulation.arm import write_arm
+from kinematify.manipulation.robot import builtin_robot
+from kinematify.simulation.world import ROBOT
 from tests.envs.hands import documented_rows, write_slider
 
 DRAWER_PULL = "kinematify.envs:kinematify/DrawerPull-v0"
@@ -59,7 +61,7 @@ def test_the_documented_spaces_are_the_spaces(drawer: Path) -> None:
     for words in (
         f"`Box(-1, 1, {env.action_space.shape}, float32)`",
         "`Box((86,), float32)`",
-        f"after {env.settings.time.robot_episode_steps} steps of {env.settings.time.control_step:g} s",
+        f"after {EPISODE_STEPS['drawer_pull']} steps of {env.settings.time.control_step:g} s",
         f"shares of {robot.tool_step:g} m",
         f"shares of {robot.turn_step:g} rad",
         f"shares of {robot.joint_step:g} rad",
@@ -75,7 +77,7 @@ def test_the_documented_spaces_are_the_spaces(drawer: Path) -> None:
         f"and {env.settings.randomize.robot_yaw:g} rad",
     ):
         assert words in flat
-    assert gymnasium.spec(DRAWER_PULL.split(":")[1]).max_episode_steps == env.settings.time.robot_episode_steps
+    assert gymnasium.spec(DRAWER_PULL.split(":")[1]).max_episode_steps == EPISODE_STEPS["drawer_pull"]
     assert DrawerPullEnv(drawer, control="joint", allow_invalid=True).action_space.shape == (8,)
 
 
@@ -107,7 +109,7 @@ def test_the_expert_grips_and_opens(drawer: Path, engine: str, control: str) -> 
 def test_without_friction_the_fingers_slip(drawer: Path) -> None:
     """Nothing is welded and nothing is snapped: the pull is friction."""
     env = gymnasium.make(DRAWER_PULL, model=drawer, control="joint", allow_invalid=True)
-    model = env.unwrapped._world.model
+    model = env.unwrapped.world.model
     for geom in range(model.ngeom):
         if model.body(model.geom_bodyid[geom]).name.startswith(ROBOT):
             model.geom_friction[geom] = 1e-4
@@ -132,7 +134,7 @@ def test_seeds_and_pickles(drawer: Path, engine: str) -> None:
 
 
 def test_a_robot_of_the_users(drawer: Path, tmp_path: Path) -> None:
-    write_arm(tmp_path / "arm.urdf")
+    shutil.copy(builtin_robot().urdf, tmp_path / "arm.urdf")
     env = DrawerPullEnv(drawer, robot=tmp_path / "arm.urdf", tool="hand", control="joint", allow_invalid=True)
     assert env.action_space.shape == (8,)
     assert run_expert(gymnasium.wrappers.TimeLimit(env, 240), seed=0)["is_success"]

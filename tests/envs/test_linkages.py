@@ -45,7 +45,7 @@ def test_a_hand_opens_a_linkage_that_stays_closed(model: Path, engine: str) -> N
         if info["is_success"] or ended:
             break
     assert info["is_success"], info
-    poses, robot = env._world.link_poses(), env.articulated_object.declared
+    poses, robot = env.world.link_poses(), env.articulated_object.declared
     ends = [
         [(poses[link] @ np.append(point, 1.0))[:3] for link, point in zip(loop.links, loop.points, strict=True)]
         for loop in robot.loops

@@ -15,6 +15,7 @@ from gymnasium.utils.env_checker import check_env
 
 from kinematify.envs.bundled import BUNDLED
 from kinematify.envs.open_part import OpenPartEnv
+from kinematify.envs.tasks import EPISODE_STEPS
 from kinematify.errors import EnvironmentFault, InputError
 from tests.envs.hands import OPEN_PART, documented_rows, run, steady, write_slider
 
@@ -31,9 +32,10 @@ def test_the_documented_spaces_are_the_spaces() -> None:
     assert f"`Box((57,), {env.observation_space.dtype})`" in doc
     assert f"`Box(-1, 1, {env.action_space.shape}, {env.action_space.dtype})`" in doc
     settings = env.settings
-    assert gymnasium.spec(OPEN_PART.split(":")[1]).max_episode_steps == settings.time.episode_steps
+    steps = EPISODE_STEPS["open_part"]
+    assert gymnasium.spec(OPEN_PART.split(":")[1]).max_episode_steps == steps
     numbers = {
-        f"after {settings.time.episode_steps} steps": "time",
+        f"after {EPISODE_STEPS['open_part']} steps": "time",
         f"of {settings.time.control_step:g} s": "time",
         f"shares of {settings.hand.speed:g} ways": "hand",
         f"{settings.hand.lag:.0%}".replace("%", " %"): "hand",
@@ -186,7 +188,7 @@ def test_reset_options() -> None:
 
 def test_what_is_randomised_and_what_is_not() -> None:
     env = OpenPartEnv("bundled:drawers", randomize=["mass", "pose"])
-    model = env.hand.model
+    model = env.world.model
     seen = []
     for seed in (0, 1):
         env.reset(seed=seed)
@@ -195,14 +197,14 @@ def test_what_is_randomised_and_what_is_not() -> None:
         )
     for before, after, differ in zip(*seen, (True, True, False, False), strict=True):
         assert bool((before != after).any()) is differ
-    ratio = seen[0][0][1:] / OpenPartEnv("bundled:drawers").hand.model.body_mass[1:]
+    ratio = seen[0][0][1:] / OpenPartEnv("bundled:drawers").world.model.body_mass[1:]
     assert 0.79 < ratio.min() < ratio.max() < 1.26
 
 
 def test_the_objects_own_damping_and_friction_are_kept(tmp_path: Path) -> None:
     env = OpenPartEnv(write_slider(tmp_path / "slider.urdf"))
-    assert env.hand.model.dof_damping.tolist() == [4.0]
-    assert env.hand.model.dof_frictionloss.tolist() == [1.0]
+    assert env.world.model.dof_damping.tolist() == [4.0]
+    assert env.world.model.dof_frictionloss.tolist() == [1.0]
     assert env.validation in {"pass", "warn"}
 
 
@@ -224,7 +226,7 @@ def test_nothing_leaks_over_a_thousand_resets(engine: str) -> None:
 
 def test_close_frees_the_engine() -> None:
     worlds = [OpenPartEnv("bundled:box", engine="pybullet") for _ in range(3)]
-    clients = [env._world.client for env in worlds]
+    clients = [env.world.client for env in worlds]
     assert all(client.isConnected() for client in clients)
     for env in worlds:
         env.close()

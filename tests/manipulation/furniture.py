@@ -95,14 +95,13 @@ def planned(
     """Plan with the first grasp whose pull the arm can follow: no obstacle is looked at but the grasp's own.
 
     Args:
-        folder: Where the arm is written.
         urdf: The furniture, front towards -x.
         joint: What is opened.
         end: Value of the joint at the end [rad or m].
         base: Where the arm stands: x, y [m] and yaw [rad].
         steps: Rows of the pull.
     """
-    robot = builtin_robot(folder)
+    robot = builtin_robot()
     scene = read_scene(read_robot(urdf), SETTINGS.geometry)
     names = [travel.joint for travel in scene.travels]
     opened = np.linspace(scene.mechanism.rest[names.index(joint)], end, steps)

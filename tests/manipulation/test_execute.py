@@ -10,8 +10,8 @@ import pytest
 from PIL import Image
 
 from kinematify.manipulation.execute import Execution, Loaded, Motion, execute, load, timed
-from kinematify.manipulation.execute_mujoco import grip_piece
 from kinematify.manipulation.film import write_film
+from kinematify.manipulation.grip import grip_piece
 from kinematify.manipulation.request import Hold
 from tests.manipulation import furniture
 

@@ -31,8 +31,8 @@ PLAN = SETTINGS.task.plan
 
 
 @pytest.fixture(scope="module")
-def arm(tmp_path_factory: pytest.TempPathFactory) -> Arm:
-    return Arm(builtin_robot(tmp_path_factory.mktemp("arm")), PLAN)
+def arm() -> Arm:
+    return Arm(builtin_robot(), PLAN)
 
 
 def scene_of(urdf: Path) -> Scene:
@@ -191,7 +191,7 @@ def test_fresh_process_makes_the_same_plan(tmp_path: Path) -> None:
     program = (
         "import sys, hashlib; from pathlib import Path; import numpy as np\n"
         "from tests.manipulation.test_planning import *\n"
-        f"arm = Arm(builtin_robot(Path({str(tmp_path)!r})), PLAN)\n"
+        "arm = Arm(builtin_robot(), PLAN)\n"
         f"plan = plan_pull(arm, scene_of(Path({str(urdf)!r})), 'slide', SETTINGS.task)\n"
         "print(hashlib.sha256(plan.reach.tobytes() + plan.pull.tobytes()).hexdigest())\n"
     )

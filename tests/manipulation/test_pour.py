@@ -48,7 +48,7 @@ def vessels(tmp_path_factory: pytest.TempPathFactory) -> tuple[Vessel, Vessel, P
 @pytest.fixture(scope="module")
 def plan(vessels: tuple[Vessel, Vessel, Path]) -> PourPlan:
     cup, bowl, folder = vessels
-    return plan_pour(Arm(builtin_robot(folder), SETTINGS.task.plan), cup, bowl, folder, SETTINGS)
+    return plan_pour(Arm(builtin_robot(), SETTINGS.task.plan), cup, bowl, folder, SETTINGS)
 
 
 @pytest.mark.parametrize("yaw", [0.0, 1.0])
@@ -101,7 +101,7 @@ def test_a_cup_that_is_too_wide_is_not_held(vessels: tuple[Vessel, Vessel, Path]
     block = tmp_path / "block.urdf"
     block.write_text(f'<robot name="box"><link name="b">{box((0.3, 0.3, 0.3), (0, 0, 0.15))}</link></robot>')
     vessel = read_vessel(block, tmp_path / "c.urdf", SETTINGS)
-    arm = Arm(builtin_robot(tmp_path), SETTINGS.task.plan)
+    arm = Arm(builtin_robot(), SETTINGS.task.plan)
     assert plan_pour(arm, vessel, vessels[1], tmp_path, SETTINGS).failure is Failure.NO_GRASP
 
 

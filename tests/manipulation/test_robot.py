@@ -21,7 +21,7 @@ needs_bench = pytest.mark.skipif(not BENCH.is_dir(), reason="the benchmark folde
 
 @pytest.fixture(scope="module")
 def arm(tmp_path_factory: pytest.TempPathFactory) -> TaskRobot:
-    return builtin_robot(tmp_path_factory.mktemp("arm"))
+    return builtin_robot()
 
 
 def tool_pose(robot: TaskRobot, arm: tuple[float, ...], fingers: tuple[float, ...]) -> dict[str, np.ndarray]:

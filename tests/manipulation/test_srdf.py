@@ -42,7 +42,7 @@ STUCK = """<robot name="stuck">
 @pytest.fixture(scope="module")
 def arm(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     folder = tmp_path_factory.mktemp("arm")
-    urdf = builtin_robot(folder).urdf
+    urdf = builtin_robot().urdf
     write_srdf(urdf, folder / "robot.srdf", SETTINGS)
     return urdf, folder / "robot.srdf"
 
@@ -135,7 +135,7 @@ def test_reasons_agree_with_those_of_kv3(tmp_path: Path) -> None:
 
 
 def test_the_command_writes_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    urdf = builtin_robot(tmp_path).urdf
+    urdf = builtin_robot().urdf
     assert run(["export", str(urdf), "--to", "srdf", "-o", str(tmp_path / "r.srdf"), "--tool", "tool"]) == 0
     assert "left to check" in capsys.readouterr().out
     root = etree.parse(str(tmp_path / "r.srdf")).getroot()
@@ -143,7 +143,7 @@ def test_the_command_writes_the_file(tmp_path: Path, capsys: pytest.CaptureFixtu
 
 
 def test_the_command_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    urdf = builtin_robot(tmp_path).urdf
+    urdf = builtin_robot().urdf
     assert run(["export", str(urdf), "--to", "srdf", "-o", str(tmp_path / "r.srdf"), "--tool", "nose"]) == 2
     assert "no link 'nose'" in capsys.readouterr().err
     assert run(["export", str(urdf), "--to", "srdf", "-o", str(tmp_path / "none" / "r.srdf")]) == 2

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kinematify.cli.app import run
-from kinematify.manipulation.arm import write_arm
+from kinematify.manipulation.robot import builtin_robot
 from tests.manipulation.furniture import write_drawer_cabinet
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    import shutil
+from pathlib import Path
 
 
 @pytest.mark.parametrize(
@@ -37,7 +38,7 @@ def test_robot_that_cannot_do_it_ends_with_2_and_the_remedy(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], said: str
 ) -> None:
     cabinet = write_drawer_cabinet(tmp_path / "cabinet.urdf")
-    write_arm(tmp_path / "arm.urdf")
+    shutil.copy(builtin_robot().urdf, tmp_path / "arm.urdf")
     filled = [word.format(arm=tmp_path / "arm.urdf", cabinet=cabinet) for word in words]
     assert run(["validate", str(cabinet), *filled]) == 2
     assert said.lower() in " ".join(capsys.readouterr().err.split()).lower()

@@ -37,8 +37,8 @@ def test_the_pin_that_was_cut_is_told_with_the_chain_and_the_reason(tmp_path: Pa
     assert chain.opening.distance > 0.02
     assert chain.rival is None or chain.rival <= chain.reward
     told = describe(inferred(), tmp_path)
-    assert f"Closed chain: {chain.told}" in told
-    assert all(part in chain.told for part in chain.parts)
+    assert f"Closed chain: {chain.description}" in told
+    assert all(part in chain.description for part in chain.parts)
 
 
 def test_what_does_not_close_is_not_told() -> None:

@@ -18,10 +18,14 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.errors import OutputError
 from kinematify.refinement.fix import Fix, fix_urdf
+from kinematify.refinement.joint_edits import JointEdits
 from kinematify.refinement.opening import refusals
 from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import DEFAULT_ENGINES
+from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
+from kinematify.validation.run.report import ValidationReport
+from kinematify.validation.summary import JointSummary
 
 WALLS = {  # a case that is open in front: extents and middle of each board
     "bottom": ((0.4, 0.5, 0.02), (0.0, 0.0, 0.01)),
@@ -245,6 +249,23 @@ def test_an_axis_that_leads_into_the_parent_is_reversed(tmp_path: Path) -> None:
     assert "+" in reversed_axis.lines
     assert read_robot(done.path).joint_by_name["hinge"].axis.tolist() == [0.0, 0.0, -1.0]
     assert not any(finding.check == "KV310" for finding in done.after.report.counted)
+
+
+def test_an_axis_that_the_file_omits_is_written(tmp_path: Path) -> None:
+    model = hinged(tmp_path, '<limit lower="0" upper="1.5" effort="5" velocity="1"/>', 0.09)
+    model.write_text(model.read_text(encoding="utf-8").replace('<axis xyz="0 0 1"/>', ""), encoding="utf-8")
+    blocked = Finding(
+        check="KV310", severity=Severity.ERROR, blame=Blame.KINEMATICS, message="", remedy="", joint="hinge"
+    )
+    report = ValidationReport(
+        model="",
+        checks=(CheckResult(check="KV310", engine=None, status=Status.FAIL, findings=(blocked,)),),
+        joints=(JointSummary(joint="hinge", kind="revolute", declared_limits=(0.0, 1.5), free_travel=(-1.5, 0.0)),),
+    )
+    editor = UrdfEditor(model, tmp_path / "out.urdf")
+    assert JointEdits(editor=editor, look=lambda _: report).apply(report, read_robot(model))
+    assert '<axis xyz="-1.0 0.0 0.0"/>' in editor.diffs[0].lines
+    assert read_robot(editor.write()).joint_by_name["hinge"].axis.tolist() == [-1.0, 0.0, 0.0]
 
 
 def test_without_kinematics_no_joint_changes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

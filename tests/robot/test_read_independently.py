@@ -12,7 +12,7 @@ import pytest
 from benchmarks.corruption.bases import Base, built_base
 from benchmarks.corruption.cases import KINDS, write_case
 from kinematify.errors import KinematifyError
-from kinematify.manipulation.arm import write_arm
+from kinematify.manipulation.robot import builtin_robot
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Joint, Robot, forward_kinematics, rest_configuration, rigid_groups
@@ -33,10 +33,8 @@ def configurations(robot: Robot, count: int) -> list[dict[str, float]]:
 
 
 @pytest.fixture(scope="module")
-def arm(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("arm") / "arm.urdf"
-    write_arm(path)
-    return path
+def arm() -> Path:
+    return builtin_robot().urdf
 
 
 def disagreements(path: Path) -> list[str]:

@@ -114,7 +114,7 @@ def test_what_a_check_needs_is_the_reason_why_it_is_skipped() -> None:
         random = None
 
     recorder.run(CHECKS["KV331"], Late())
-    recorder.run(CHECKS["KV330"], Late())  # it was not asked for, and would fail
+    recorder.run(CHECKS["KV332"], Late())  # it was not asked for, and would fail
     (result,) = told
     assert (result.status, result.reason) == (Status.SKIPPED, "not finished: time ran out before it")
 

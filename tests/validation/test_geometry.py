@@ -271,38 +271,41 @@ def test_a_drawer_longer_out_than_it_is_long_has_left_its_guide(tmp_path: Path) 
     assert finding.value == pytest.approx(0.45)
 
 
-def test_two_joints_that_meet_only_together_are_noted(tmp_path: Path) -> None:
-    left = block("left", -0.2, axis=(1.0, 0.0, 0.0), limits=(0.0, 0.09))
-    right = block("right", 0.0, axis=(-1.0, 0.0, 0.0), limits=(0.0, 0.09))
-    assert found(beam(left, right), tmp_path) == {}
-    (note,) = notes(beam(left, right), tmp_path, "KV330")
-    assert note.pair == ("left", "right")
-    assert "neither of them alone" in note.message
-
-
-def doors(left: tuple[float, float], right: tuple[float, float], *, right_hinge: float = 0.2) -> Model:
-    """Two doors of one size above a beam, hinged at its ends or both on their left."""
-    hinged = {"parent": "beam", "kind": "revolute", "axis": (0.0, 0.0, 1.0)}
-    panels = [Box(size=(0.2, 0.01, 0.3), at=(x, -0.06, 0.0)) for x in (0.1, 0.1 if right_hinge == 0.0 else -0.1)]
+def doors(
+    left: tuple[float, float], right: tuple[float, float], *, right_hinge: float = 0.2, right_tilt: float = 0.0
+) -> Model:
+    """Two doors of one size above a beam, hinged at its ends, or the right one elsewhere or about a tilted axis."""
+    hinged = {"parent": "beam", "kind": "revolute"}
+    panels = [Box(size=(0.2, 0.01, 0.3), at=(x, -0.06, 0.0)) for x in (0.1, 0.1 - right_hinge)]
     return beam(
-        Part(name="left", boxes=(panels[0],), at=(-0.2, 0.0, 0.21), limits=left, **hinged),  # type: ignore[arg-type]
-        Part(name="right", boxes=(panels[1],), at=(right_hinge, 0.0, 0.21), limits=right, **hinged),  # type: ignore[arg-type]
+        Part(name="left", boxes=(panels[0],), at=(-0.2, 0.0, 0.21), limits=left, axis=(0.0, 0.0, 1.0), **hinged),  # type: ignore[arg-type]
+        Part(
+            name="right",
+            boxes=(panels[1],),
+            at=(right_hinge, 0.0, 0.21),
+            limits=right,
+            axis=(right_tilt, 0.0, 1.0 - right_tilt),
+            **hinged,  # type: ignore[arg-type]
+        ),
     )
 
 
 @pytest.mark.parametrize(
-    ("left", "right", "hinge", "says"),
+    ("right", "hinge", "tilt", "says"),
     [
-        ((-1.5, 0.0), (0.0, 1.5), 0.2, None),  # mirrored, as double doors are
-        ((-1.5, 0.0), (-1.5, 0.0), 0.0, None),  # repeated, as wardrobes in a row are
-        ((-1.5, 0.0), (-1.5, 0.0), 0.2, "the other way round"),
-        ((-1.5, 0.0), (0.0, 3.0), 0.2, "twice as wide"),
+        ((0.0, 1.5), 0.2, 0.0, None),  # mirrored, as double doors are
+        ((-1.5, 0.0), 0.0, 0.0, None),  # repeated, as wardrobes in a row are
+        ((-1.5, 0.0), 0.2, 0.0, "the other way round"),
+        ((0.0, 3.0), 0.2, 0.0, "twice as wide"),
+        ((0.0, 1.5), 0.2, 0.3, "in different directions"),
+        ((0.0, 1.5), 0.2, 1.0, "in different directions"),
+        ((0.0, 1.5), 0.15, 0.0, "in different places"),
     ],
 )
 def test_twins_whose_joints_differ_are_named(
-    tmp_path: Path, left: tuple[float, float], right: tuple[float, float], hinge: float, says: str | None
+    tmp_path: Path, right: tuple[float, float], hinge: float, tilt: float, says: str | None
 ) -> None:
-    told = found(doors(left, right, right_hinge=hinge), tmp_path).get("KV333", [])
+    told = found(doors((-1.5, 0.0), right, right_hinge=hinge, right_tilt=tilt), tmp_path).get("KV333", [])
     assert [finding.pair for finding in told] == ([] if says is None else [("left", "right")])
     assert all(says in finding.message for finding in told if says)
 

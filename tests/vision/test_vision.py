@@ -7,8 +7,6 @@ import io
 import json
 import threading
 import time
-import urllib.error
-import urllib.request
 from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING, Any
@@ -25,10 +23,9 @@ from kinematify.errors import InputError
 from kinematify.joints.candidate import JointCandidate
 from kinematify.refinement.candidates import CandidateJoints, is_same
 from kinematify.robot.joint_type import JointType
-from kinematify.vision.ask import motions_told, voter_record, with_types_first, with_votes
+from kinematify.vision.ask import voter_record, with_types_first, with_votes
 from kinematify.vision.client import ADDRESS, ChatOracle, oracle_of
 from kinematify.vision.options import look_alike, offered, shuffled
-from kinematify.vision.page import QuestionPage
 from kinematify.vision.pictures import joint_question
 from kinematify.vision.question import FIXED, NONE, UNSURE, Answer, JointQuestion, read_answer
 from kinematify.vision.screening import right_choices
@@ -431,37 +428,6 @@ def test_address_comes_from_the_option_or_the_environment(monkeypatch: pytest.Mo
         oracle_of("gpt", VISION)
 
 
-def click_through(address: str, choices: Sequence[str]) -> None:
-    """Answer the questions of a page as its buttons would."""
-    with urllib.request.urlopen(address, timeout=10) as page:
-        assert page.read().count(b"<section") == len(choices)
-    home, key = address.split("?")
-    wrong = urllib.request.Request(f"{home}answer?nokey", data=b"{}", method="POST")
-    with pytest.raises(urllib.error.HTTPError):
-        urllib.request.urlopen(wrong, timeout=10)
-    for place, choice in enumerate(choices):
-        body = json.dumps({"question": place, "choice": choice}).encode()
-        urllib.request.urlopen(f"{home}answer?{key}", data=body, timeout=10).close()
-    urllib.request.urlopen(f"{home}answer?{key}", data=b'{"done": true}', timeout=10).close()
-
-
-def test_a_person_answers_by_clicks_for_congruent_parts_too(twins: Inference) -> None:
-    threads = []
-
-    def said(address: str) -> None:
-        threads.append(threading.Thread(target=click_through, args=(address, ["1"])))
-        threads[0].start()
-
-    told, voting = motions_told(twins, QuestionPage(said=said))
-    threads[0].join()
-    assert [item.child for item in told] == ["left", "right"]
-    assert voting.reached
-    first, second = (item.motion for item in told)
-    assert first is not None
-    assert second is not None
-    assert first.kind == second.kind
-
-
 def infer_box(folder: Path, *words: str) -> int:
     return run(["infer", str(folder / "box"), "-o", str(folder / "out"), "--base", "body", "--no-preview",
                 "--no-validation", "--force", *words])  # fmt: skip
@@ -489,19 +455,3 @@ def test_command_line_reports_answers_and_writes_what_geometry_says_without_any(
     record = json.loads((tmp_path / "out" / "inference.json").read_text(encoding="utf-8"))
     assert record["vision"]["joints"][0]["choice"] == UNSURE
     assert infer_box(tmp_path, "--vlm", "nonsense") == 2
-    assert infer_box(tmp_path, "--vlm", server.url, "--ask") == 2
-
-
-def test_clicks_of_the_command_line_are_kept_as_hints(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    box_with_lid(tmp_path / "box", hinge=False)
-    real = QuestionPage.ask
-
-    def clicking(page: QuestionPage, questions: Sequence[JointQuestion]) -> list[Answer]:
-        page.said = lambda address: threading.Thread(target=click_through, args=(address, [FIXED])).start()
-        return real(page, questions)
-
-    monkeypatch.setattr(QuestionPage, "ask", clicking)
-    assert infer_box(tmp_path, "--ask", "--vlm-all") == 0
-    record = json.loads((tmp_path / "out" / "inference.json").read_text(encoding="utf-8"))
-    assert record["hints"] == ["lid=fixed"]
-    assert record["joints"][0]["type"] == "fixed"

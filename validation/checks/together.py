@@ -1,8 +1,10 @@
-"""KV330 to KV333: several joints at once, what engines see that collide convex hulls, and joints of twins."""
+"""KV331 to KV333: several joints at once, what engines see that collide convex hulls, and joints of twins."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from kinematify.validation.check import CauseScope, FeedbackRow, check
 from kinematify.validation.checks.follow import AT_REST
@@ -11,6 +13,7 @@ from kinematify.validation.geometry.formatting import configuration, joint_value
 from kinematify.validation.geometry.twins import twins_at_odds
 
 if TYPE_CHECKING:
+    from kinematify.robot.robot import Joint
     from kinematify.validation.check import OpenCheck
     from kinematify.validation.geometry.look import GeometryContext
 
@@ -19,47 +22,6 @@ _HULL_SAMPLES = 24
 
 def _two_joints(look: GeometryContext) -> str | None:
     return look.late or ("only one joint moves" if len(look.scene.travels) < 2 else None)
-
-
-@check(
-    "KV330",
-    title="Two joints at once bring nothing together",
-    fails="Two joints at once bring bodies together",
-    severity=Severity.NOTE,
-    blame=Blame.KINEMATICS,
-    follows={"KV311": CauseScope.PAIR},
-    needs=(_two_joints,),
-)
-def in_each_others_way(result: OpenCheck, look: GeometryContext) -> None:
-    """Every two joints that can bring the same two bodies together are moved over a grid of their values.
-
-    Why it matters: Doors and drawers that stop one another are common; a planner must know.
-
-    Remedy: Nothing to do.
-    """
-    scene = look.scene
-    found, result.measured["pairs_left_out"] = look.pairs_of_joints
-    ranked = sorted(found, key=lambda item: -item.share)
-    for item in ranked[: scene.settings.listed]:
-        standing = dict(zip(item.leaders, item.values, strict=True))
-        first, second = look.links_at(item.pair, standing)
-        travels = [scene.travels[leader] for leader in item.leaders]
-        where = " and ".join(
-            f"{travel.joint} at {joint_value(value, turns=travel.turns)}"
-            for travel, value in zip(travels, item.values, strict=True)
-        )
-        result.find(
-            f"{first} and {second} meet in {item.share:.0%} of the combinations of these two joints, though "
-            f"neither of them alone brings them together: for example {where}.",
-            "Nothing to do; a planner must keep them apart.",
-            joint=travels[0].joint,
-            pair=(first, second),
-            q=configuration(scene, standing),
-            value=item.share,
-        )
-    if len(ranked) > scene.settings.listed:
-        more = len(ranked) - scene.settings.listed
-        result.find(f"{more} more pairs of bodies meet when two joints move.", "Nothing to do.")
 
 
 @check(
@@ -163,24 +125,27 @@ def hulls_block(result: OpenCheck, look: GeometryContext) -> None:
     needs=(_two_joints,),
 )
 def unlike_twins(result: OpenCheck, look: GeometryContext) -> None:
-    """Two parts of one size that mirror or repeat each other at rest, and so do their joints' lines, are of one type
-    and have ranges of about the same width that lead the same way. It is a finding only if no symmetry of the two
-    explains both joints.
+    """Two parts of one size that mirror or repeat each other at rest have joints of one type that do so too: their axes
+    run alike and through the same place of both parts, and their ranges are about as wide and lead the same way. It is
+    a finding only if no symmetry of the two explains both joints. Axes that differ are one only if the surfaces of both
+    parts agree, and the axes differ either in direction or in place.
 
     Why it matters: One leg that bends the wrong way, or one door that opens inwards, is stopped by nothing in an
     engine.
 
-    Remedy: Compare the two joints; reverse <axis>, correct the type or the limits of the one that is wrong.
+    Remedy: Compare the two joints; correct <axis>, <origin>, the type or the limits of the one that is wrong.
     """
     for found in twins_at_odds(look.scene):
         first, second = found.joints
-        ranges = " and ".join(
-            f"{joint.name} ({joint.kind} {joint.lower:.4g} to {joint.upper:.4g})" for joint in found.joints
-        )
         result.find(
-            f"{first.child} and {second.child} mirror or repeat each other, and so do the axes of their joints, but "
-            f"{found.how}: {ranges}.",
-            "Compare the two: reverse <axis> of the one that is wrong, or correct its type or its limits.",
+            f"{first.child} and {second.child} mirror or repeat each other, but {found.how}: "
+            f"{' and '.join(f'{joint.name} ({_line_and_range(joint)})' for joint in found.joints)}.",
+            "Compare the two: correct <axis> or <origin> of the one that is wrong, or its type or its limits.",
             pair=(first.child, second.child),
             line=second.line,
         )
+
+
+def _line_and_range(joint: Joint) -> str:
+    axis = " ".join(f"{value + 0.0:.4g}" for value in np.round(joint.axis, 4))
+    return f"{joint.kind}, axis {axis}, {joint.lower:.4g} to {joint.upper:.4g}"

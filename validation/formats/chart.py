@@ -72,13 +72,13 @@ def line_chart(
         *(_line(line, x, y) for line in series),
     ]
     names = f" ({', '.join(f'{line.label} {_dash(line)}' for line in series)})" if legend and len(series) > 1 else ""
-    told = "; ".join(
+    spans = "; ".join(
         f"{s.label}: {min(p[1] for p in s.points):.3g} to {max(p[1] for p in s.points):.3g}" for s in series
     )
     return (
         f"<figure><figcaption>{text(title)} {text(axes.y)}{text(names)}</figcaption>"
-        f'<svg width="{width}" height="{height}" viewBox="0 0 {width} {height}" role="img" '
-        f'aria-label="{text(f"{title}, {axes.y}: {told}")}">{"".join(shapes)}</svg></figure>'
+        f'<svg width="{width}" height="{height}" viewBox="0 0 {width} {height}" role="group" '
+        f'aria-label="{text(f"{title}, {axes.y}: {spans}")}">{"".join(shapes)}</svg></figure>'
     )
 
 

@@ -16,7 +16,7 @@ from kinematify.geometry.overlap import OverlapQueries, boxes_meet
 from kinematify.geometry.rest import DepthAllowance, Reason
 from kinematify.geometry.scene import inverse, read_scene, relative, simplified, transformed, visible_shapes
 from kinematify.geometry.sweep import Sweeper
-from kinematify.geometry.together import joint_pairs, looked_at, random_rows
+from kinematify.geometry.together import looked_at, random_rows
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.finding import not_finished
 from kinematify.validation.geometry.formatting import in_document_order
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from kinematify.geometry.scene import Connection, Pair, Scene
     from kinematify.geometry.solid import Solid
     from kinematify.geometry.sweep import JointSweep, Meeting, SweepSide
-    from kinematify.geometry.together import JointPair, JudgedConfigurations
+    from kinematify.geometry.together import JudgedConfigurations
     from kinematify.robot.arrays import FloatArray
 
 _ALIKE = 0.8
@@ -205,12 +205,6 @@ class GeometryContext:
     def hulls(self) -> HullView:
         """The bodies as engines see them that collide convex hulls."""
         return HullView(self.scene, self.sweeper, self.allowance)
-
-    @cached_property
-    def pairs_of_joints(self) -> tuple[list[JointPair], int]:
-        """Pairs of joints that bring bodies together which neither of them alone does, and how many were omitted."""
-        alone = [frozenset(m.pair for side in sweep.sides for m in side.meetings) for sweep in self.sweeps]
-        return joint_pairs(self.scene, self.overlap, self.allowance, alone, self.in_time)
 
     def pair_table(self) -> PairTable:
         """Return what is known of every pair that touches at rest or meets while one joint moves."""

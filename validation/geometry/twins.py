@@ -2,7 +2,8 @@
 
 A pair counts only where the shapes at rest and what carries them agree. A difference counts only if no symmetry of
 the pair explains the two joints: knobs side by side may turn the same way or mirrored, doors with both hinges on the
-left repeat each other.
+left repeat each other. Of lines that differ, only one thing may: the direction where both pass through one place of
+the two parts, or the place where both run the same way; and the surfaces must agree, not only the boxes.
 """
 
 from __future__ import annotations
@@ -34,9 +35,22 @@ _LOPSIDED = 0.2
 _WIDER = 1.8
 """A range that is this many times that of its twin is another one."""
 
+_OTHER_DEG = 10.0
+"""Axes of twins that differ by more are at odds."""
+_BESIDE = 0.05
+"""Lines of twins that run farther beside each other are at odds, fraction of the part's size."""
+_SOME = 5
+"""Every so many of a surface's points are compared."""
+_FITS = 0.02
+"""How far the surface of a part may be from that of its twin, fraction of the part's size."""
+
 OTHER_WAY = "one moves the other way round"
 OTHER_TYPE = "one turns and the other slides"
 TWICE = "the range of one is about twice as wide"
+OTHER_AXIS = "their axes run in different directions"
+OTHER_PLACE = "their axes are in different places"
+_RANKED = (OTHER_PLACE, OTHER_AXIS, OTHER_WAY, OTHER_TYPE, TWICE)
+"""If several symmetries show a difference, the last of these is reported: that of the most alike lines."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,7 +99,7 @@ def twins_at_odds(scene: Scene) -> Iterator[Difference]:
         ]
         shown = [how for how, turned in compared if how and not turned]  # half a turn explains, but shows no fault
         if shown and all(how is not None for how, _ in compared):
-            yield Difference(joints=(first.joint, second.joint), how=max(shown))
+            yield Difference(joints=(first.joint, second.joint), how=max(shown, key=_RANKED.index))
 
 
 def _box(scene: Scene, body: int) -> FloatArray:
@@ -161,12 +175,9 @@ def _difference(scene: Scene, first: _Part, second: _Part, sign: FloatArray) -> 
     turns = first.joint.kind is JointType.REVOLUTE
     kinds = first.joint.kind is second.joint.kind
     axis = sign * first.axis * (np.prod(sign) if turns else 1.0)
-    if np.degrees(np.arccos(np.clip(abs(axis @ second.axis), 0.0, 1.0))) > _SAME_DEG:
-        return ""
-    if turns and kinds:
-        off = _mapped(first.point, sign, first, second) - second.point
-        if np.abs(off - (off @ second.axis) * second.axis).max() > _tolerance(scene, first):
-            return ""
+    other = _other_line(scene, first, second, sign, axis, turns=turns and kinds)
+    if other is not None:
+        return other if kinds else ""
     if not kinds:
         return OTHER_TYPE
     ends = first.ends if axis @ second.axis > 0.0 else -first.ends[::-1]
@@ -177,3 +188,30 @@ def _difference(scene: Scene, first: _Part, second: _Part, sign: FloatArray) -> 
     if turned_round and abs(second.ends.sum()) > _LOPSIDED * wide:
         return OTHER_WAY
     return TWICE if wide > _WIDER * narrow else None
+
+
+def _other_line(
+    scene: Scene, first: _Part, second: _Part, sign: FloatArray, axis: FloatArray, *, turns: bool
+) -> str | None:
+    """How the mapped line of the first joint differs from that of the second: None if not, "" if nothing is shown."""
+    angle = np.degrees(np.arccos(np.clip(abs(axis @ second.axis), 0.0, 1.0)))
+    off = _mapped(first.point, sign, first, second) - second.point
+    off = off - (off @ second.axis) * second.axis if angle <= _SAME_DEG else off
+    beside = float(np.abs(off).max()) if turns else 0.0
+    same = _tolerance(scene, first)
+    if angle <= _SAME_DEG and beside <= same:
+        return None
+    size = float(np.linalg.norm(first.high - first.low))
+    clear = beside > _BESIDE * size if angle <= _SAME_DEG else angle > _OTHER_DEG and beside <= same
+    if not clear or not _fits(scene, first, second, sign, _FITS * size):
+        return ""
+    return OTHER_PLACE if angle <= _SAME_DEG else OTHER_AXIS
+
+
+def _fits(scene: Scene, first: _Part, second: _Part, sign: FloatArray, most: float) -> bool:
+    """Whether the surface of one part, mapped, is that of the other one."""
+    T = scene.at_rest[first.child]
+    points = scene.bodies[first.child].solid.points[::_SOME] @ T[:3, :3].T + T[:3, 3]
+    T = scene.at_rest[second.child]
+    local = (_mapped(points, sign, first, second) - T[:3, 3]) @ T[:3, :3]
+    return bool((scene.bodies[second.child].solid.distance(local) <= most).all())

@@ -76,7 +76,7 @@ def compare(
         before: Earlier runs of each place, the latest first.
         settings: Gates.
         same_machine: Whether times may be compared.
-        complete: Whether a run that is missing is told as gone.
+        complete: Whether a run that is missing is reported as gone.
 
     Returns:
         Changes in the order of the classes, those that fail the night first within a class.
@@ -119,7 +119,7 @@ def _quality(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]
         gate = kind is Class.NEW and problem.severity in settings.gate_severities
         yield _change(run, kind, name, f"{problem.severity}: {problem.text}", gate=gate)
     for name, problem in old.items():
-        # What a check that no longer runs has found is not fixed; the check is told as skipped below.
+        # What a check that no longer runs has found is not fixed; the check is reported as skipped below.
         if name not in now and problem.check not in run.not_run:
             yield _change(run, Class.FIXED, name, f"It was: {problem.text}")
     if same.answered:

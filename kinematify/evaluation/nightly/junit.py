@@ -44,8 +44,8 @@ def _add_case(suite: _Element, run: Run, changes: list[Change]) -> None:
     )
     failing = [change for change in changes if change.gate]
     if failing:
-        element = etree.SubElement(case, "failure", message=_told(failing[0]), type=failing[0].kind.value)
-        element.text = "\n".join(dict.fromkeys(map(_told, failing)))
+        element = etree.SubElement(case, "failure", message=_message(failing[0]), type=failing[0].kind.value)
+        element.text = "\n".join(dict.fromkeys(map(_message, failing)))
     elif not run.answered:
         etree.SubElement(case, "skipped", message=printable(f"{run.status}: {run.message}"))
     elif run.problems:
@@ -53,8 +53,8 @@ def _add_case(suite: _Element, run: Run, changes: list[Change]) -> None:
         etree.SubElement(case, "skipped", message=printable(f"known problems, nothing new: {ids}"))
     others = [change for change in changes if not change.gate and change.kind is not Class.STILL_FAILING]
     if others:
-        etree.SubElement(case, "system-out").text = "\n".join(dict.fromkeys(map(_told, others)))
+        etree.SubElement(case, "system-out").text = "\n".join(dict.fromkeys(map(_message, others)))
 
 
-def _told(change: Change) -> str:
+def _message(change: Change) -> str:
     return printable(f"{change.kind.value}: {change.subject} {change.text}".replace("  ", " "))

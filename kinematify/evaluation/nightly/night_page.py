@@ -85,11 +85,11 @@ def _changes(night: Night) -> list[str]:
 
 
 def _change_table(changes: Sequence[Change], name: str) -> str:
-    told = [change for change in changes if change.kind not in (Class.STILL_FAILING, Class.NEW_SERIES)]
+    listed_changes = [change for change in changes if change.kind not in (Class.STILL_FAILING, Class.NEW_SERIES)]
     counted = ", ".join(f"{sum(change.kind is kind for change in changes)} {kind.value}" for kind in Class)
     failing = sum(change.gate for change in changes)
     words = f"<p>{failing} of them fail the night. {counted}. Timing never fails a night.</p>"
-    if not told:
+    if not listed_changes:
         return words
     rows: list[tuple[Cell, ...]] = [
         (
@@ -99,7 +99,7 @@ def _change_table(changes: Sequence[Change], name: str) -> str:
             _subject(change),
             text(change.text),
         )
-        for change in told
+        for change in listed_changes
     ]
     listed = table(("class", "object", "run", "what", "report"), rows, name=name)
     return words + (listed if len(rows) <= _SEEN else _folded(f"All {len(rows)} changes", listed))
@@ -183,10 +183,10 @@ def _metric(run: Run, metric: str) -> str:
 
 def _runs(night: Night) -> list[str]:
     """A section for each run that has something to tell, closed at first."""
-    told = [_run(run) for run in night.runs if _told(run)]
+    sections = [_run(run) for run in night.runs if _has_problems(run)]
     return [
         "<h2>Runs with problems</h2>",
-        _folded(f"{len(told)} runs", "".join(told)) if len(told) > _SEEN else "".join(told),
+        _folded(f"{len(sections)} runs", "".join(sections)) if len(sections) > _SEEN else "".join(sections),
     ]
 
 
@@ -216,10 +216,11 @@ def _not_run(run: Run) -> str:
 
 def _linked(run: Run) -> str:
     """Name of the object, leading to its section where it has one."""
-    return f'<a href="#{text(_run_anchor(*run.place))}">{text(run.object)}</a>' if _told(run) else text(run.object)
+    name = text(run.object)
+    return f'<a href="#{text(_run_anchor(*run.place))}">{name}</a>' if _has_problems(run) else name
 
 
-def _told(run: Run) -> bool:
+def _has_problems(run: Run) -> bool:
     """Whether a run has a section."""
     return bool(run.problems) or not run.answered
 
