@@ -389,8 +389,10 @@ def test_permuting_the_parts_permutes_the_bearings(name: str) -> None:
     permuted = replace(known, parts=known.parts[::-1])
     found = fitted(permuted)
     assert_exact(permuted, found)
-    scores = [sorted(line.score for item in each.values() for line in item.lines) for each in (found, bearings_of(name))]
-    np.testing.assert_allclose(scores[0], scores[1], atol=1e-9)
+    here, there = (
+        sorted(line.score for item in each.values() for line in item.lines) for each in (found, bearings_of(name))
+    )
+    np.testing.assert_allclose(here, there, atol=1e-9)
 
 
 def test_the_same_seed_gives_the_same_lines() -> None:

@@ -124,6 +124,15 @@ def _fitted(
     )
 
 
+def score_line(
+    surfaces: Sequence[PartSurface], edge: ContactEdge, line: Line, *, diagonal: float, config: BearingConfig
+) -> BearingLine:
+    """Score one given line as a bearing of a contact edge, as `fit_edge` scores its own, without refining it."""
+    config = config.for_roughness(max(surfaces[edge.a].roughness, surfaces[edge.b].roughness))
+    sides = contact_sides(surfaces, edge, diagonal=diagonal, config=config)
+    return scored_line(sides, line, contact_centroid(sides), diagonal, config)
+
+
 def _directions(surfaces: Sequence[PartSurface], edge: ContactEdge) -> FloatArray:
     """Along which either part is built, shape (k, 3)."""
     return distinct_directions(np.concatenate([surfaces[part].main_directions for part in (edge.a, edge.b)]))
