@@ -54,7 +54,7 @@ _MOVES = {
     "num_leaves": 7,
     "min_data_in_leaf": 30,
     "min_sum_hessian_in_leaf": 1e-3,
-    "feature_fraction": 0.15,
+    "feature_fraction": 0.08,
     "bagging_fraction": 0.5,
     "lambda_l2": 30.0,
     "objective": "cross_entropy",

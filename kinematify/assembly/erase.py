@@ -138,12 +138,25 @@ def write_erased(erased: ErasedModel, folder: Path, *, overwrite: bool = False) 
     Raises:
         OutputError: The folder or the truth exists already, or cannot be written. Nothing is left half-written.
     """
-    if overwrite and truth_path(folder).is_file() and folder.is_dir():
-        if any(not re.fullmatch(r"part_\d+\.obj", item.name) for item in folder.iterdir()):
+    target, truth_file = folder.absolute(), truth_path(folder)
+    if overwrite and truth_file.is_file() and target.is_dir():
+        if any(not re.fullmatch(r"part_\d+\.obj", item.name) for item in target.iterdir()):
             raise OutputError(f"The output {folder} holds more than erased parts, so --force leaves it. Remove it.")
-        shutil.rmtree(folder)
-        truth_path(folder).unlink()
-    return write_parts(erased.parts, erased.truth, folder)
+        shutil.rmtree(target)
+        truth_file.unlink()
+    if truth_file.exists() or (target.exists() and not (target.is_dir() and not any(target.iterdir()))):
+        raise OutputError(
+            f"The output {folder} (or the truth {truth_file.name} beside it) exists already. Remove both, or give "
+            "another folder."
+        )
+    try:
+        _write_aside_and_rename(erased, target, truth_file)
+    except OSError as error:
+        raise OutputError(
+            f"The output {folder} cannot be written ({error.strerror}). Give a folder that you may write to, on a disk "
+            "with space."
+        ) from error
+    return truth_file
 
 
 def _configuration(robot: Robot, pose: str, random: Generator) -> dict[str, float]:
@@ -270,44 +283,14 @@ def truth_path(folder: Path) -> Path:
     return absolute.with_name(absolute.name + TRUTH_SUFFIX)
 
 
-def write_parts(parts: Sequence[Part], truth: GroundTruth, folder: Path) -> Path:
-    """Write one OBJ per part into a new folder, without loss, and the truth beside the folder.
-
-    Args:
-        parts: The anonymous parts.
-        truth: What is known about them.
-        folder: Does not exist yet, or is empty.
-
-    Returns:
-        The path of the truth, ``FOLDER.truth.json``.
-
-    Raises:
-        OutputError: The folder or the truth exists already, or cannot be written. Nothing is left half-written.
-    """
-    target, truth_file = folder.absolute(), truth_path(folder)
-    if truth_file.exists() or (target.exists() and not (target.is_dir() and not any(target.iterdir()))):
-        raise OutputError(
-            f"The output {folder} (or the truth {truth_file.name} beside it) exists already. Remove both, or give "
-            "another folder."
-        )
-    try:
-        _write_aside_and_rename(parts, truth, target, truth_file)
-    except OSError as error:
-        raise OutputError(
-            f"The output {folder} cannot be written ({error.strerror}). Give a folder that you may write to, on a disk "
-            "with space."
-        ) from error
-    return truth_file
-
-
-def _write_aside_and_rename(parts: Sequence[Part], truth: GroundTruth, target: Path, truth_file: Path) -> None:
+def _write_aside_and_rename(erased: ErasedModel, target: Path, truth_file: Path) -> None:
     target.parent.mkdir(parents=True, exist_ok=True)
     aside = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent))
     try:
         (aside / "parts").mkdir()
-        for part in parts:
+        for part in erased.parts:
             write_obj(aside / "parts" / f"{part.name}.obj", part.vertices, part.faces)
-        (aside / "truth").write_text(truth.to_json(), encoding="utf-8")
+        (aside / "truth").write_text(erased.truth.to_json(), encoding="utf-8")
         (aside / "truth").rename(truth_file)
         (aside / "parts").rename(target)
     finally:

@@ -7,6 +7,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.stats import rankdata
 
 from kinematify.grouping.lattice import CELLS, PAD
 from kinematify.grouping.measure import FREE
@@ -24,9 +25,6 @@ _POINTS = 160
 """Of a candidate, which are turned."""
 _ANGLES, _NAMES = (12.0, 40.0, 80.0), ("slightly", "half", "wide")
 """Turns about an edge of the box around a candidate [deg]."""
-_COARSE = 3.0
-"""Cells to one of those in which a shape is compared with itself."""
-_TWIN = 0.03
 
 Candidate = frozenset[int]
 
@@ -120,9 +118,16 @@ def measure_candidates(
         }
         for row, inside in enumerate(member)
     ]
-    names = tuple(rows[0])
-    table = np.array([[row[name] for name in names] for row in rows])
-    return np.column_stack([table, _twins(member, measured.grid)]), (*names, "twins", "twins_apart")
+    return with_ranks(np.array([list(row.values()) for row in rows]), tuple(rows[0]))
+
+
+def with_ranks(table: FloatArray, names: tuple[str, ...]) -> tuple[FloatArray, tuple[str, ...]]:
+    """The table (c, k) with the rank of every value among those of all candidates, in (0, 1], shape (c, 2 k).
+
+    What is large or free for one object is not for another; ranks compare the candidates of one object.
+    """
+    ranks = rankdata(table, axis=0) / len(table)
+    return np.column_stack([table, ranks]), (*names, *(f"{name}_rank" for name in names))
 
 
 def _links(inside: BoolArray, measured: MeasuredPieces, odds: FloatArray, areas: FloatArray) -> dict[str, float]:
@@ -226,7 +231,7 @@ def _slides(member: BoolArray, grid: Lattice) -> dict[str, FloatArray]:
 
 
 class _Turns:
-    """Turns of candidates about the edges of their boxes, and about their middles."""
+    """Turns of candidates about the edges of their boxes."""
 
     def __init__(self, grid: Lattice) -> None:
         self.sizes = grid.sizes
@@ -240,9 +245,6 @@ class _Turns:
         self.first[keys[~again]], self.second[keys[again]] = pieces[~again], pieces[again]
         self.starts = np.searchsorted(grid.piece, np.arange(grid.count + 1))
         self.points = grid.points * CELLS + PAD
-        self.coarse = [
-            np.unique(_keys(np.floor(places[pieces == k] / _COARSE).astype(np.int64))) for k in range(grid.count)
-        ]
         self.rotations = np.array(
             [[_rotation(a, np.radians(s * angle)) for s in (1, -1) for angle in _ANGLES] for a in range(3)]
         )
@@ -270,7 +272,7 @@ class _Turns:
             group = values.reshape(8, -1)
             columns |= {f"{name}_{angle}": float(group[:, k].min()) for k, angle in enumerate(_NAMES)}
             columns[f"{name}_ways"] = float((group[:, 1] < FREE).sum())
-        return {**columns, **self._spins(points, inside, outside, rest)}
+        return columns
 
     def _points_of(self, inside: BoolArray) -> FloatArray:
         """About `_POINTS` samples [cells], as many of each piece as its size asks for."""
@@ -282,21 +284,6 @@ class _Turns:
         ]
         return np.asarray(self.points[np.concatenate(rows)])
 
-    def _spins(self, points: FloatArray, inside: BoolArray, outside: BoolArray, rest: float) -> dict[str, float]:
-        """Whether it looks the same after a turn about its middle, and what it meets."""
-        middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-        turned = np.stack([(points - middle) @ _rotation(a, np.radians(40.0)).T + middle for a in range(3)])
-        own = np.concatenate([self.coarse[k] for k in np.flatnonzero(inside)])
-        alike = np.isin(_keys(np.floor(turned / _COARSE).astype(np.int64)), own).mean(axis=1)
-        met = np.maximum(self._hits(turned, outside) - rest, 0.0)
-        best = int(np.argmax(alike))
-        return {
-            "spin_alike": float(alike[best]),
-            "spin_met": float(met[best]),
-            "spin_up": float(alike[2]),
-            "spin_least_met": float(met.min()),
-        }
-
     def _hits(self, points: FloatArray, outside: BoolArray) -> FloatArray:
         """Share of points (t, n, 3) [cells] in cells of pieces that are outside (count + 1,), shape (t,)."""
         cells = np.floor(points).astype(np.int64) - self.low
@@ -307,28 +294,9 @@ class _Turns:
         return np.asarray((met & ~beyond).mean(axis=1))
 
 
-def _keys(cells: IntArray) -> IntArray:
-    """One number for each cell (..., 3)."""
-    keys: IntArray = (cells[..., 0] << 40) + (cells[..., 1] << 20) + cells[..., 2]
-    return keys
-
-
 def _rotation(axis: int, angle: float) -> FloatArray:
     a, b = [k for k in range(3) if k != axis]
     turn = np.eye(3)
     turn[a, a] = turn[b, b] = np.cos(angle)
     turn[a, b], turn[b, a] = -np.sin(angle), np.sin(angle)
     return turn
-
-
-def _twins(member: BoolArray, grid: Lattice) -> FloatArray:
-    """Candidates of the same size elsewhere, disjoint from each, and how near the nearest is, shape (c, 2)."""
-    low = np.array([grid.bounds[inside, 0].min(axis=0) for inside in member])
-    high = np.array([grid.bounds[inside, 1].max(axis=0) for inside in member])
-    extents = np.sort(high - low, axis=1)
-    length = np.maximum(extents[:, 2:], extents[:, 2:].T)
-    alike = (np.abs(extents[:, None] - extents[None]) <= _TWIN * length[..., None]).all(axis=2)
-    alike &= (member.astype(np.float32) @ member.T.astype(np.float32)) == 0
-    centre = 0.5 * (low + high)
-    apart = np.where(alike, np.linalg.norm(centre[:, None] - centre[None], axis=2), np.inf).min(axis=1, initial=np.inf)
-    return np.column_stack([np.minimum(alike.sum(axis=1), 12), np.minimum(apart, 3.0)])

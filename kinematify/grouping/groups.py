@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.optimize import Bounds, LinearConstraint, milp
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.errors import AssemblyError, InputError
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config import GroupingConfig
+    from kinematify.joints.candidate import JointEstimate
     from kinematify.joints.choice.scorer import Scorer
     from kinematify.robot.arrays import FloatArray, IntArray
 
@@ -172,22 +174,61 @@ def odds_of(scorer: Scorer, columns: FloatArray, names: tuple[str, ...]) -> Floa
 
 
 def select(candidates: Sequence[Candidate], likely: FloatArray, config: GroupingConfig) -> tuple[list[int], list[int]]:
-    """The likeliest candidates that have no piece in common, and the likeliest of those that were not taken.
+    """Disjoint candidates that move, and the likeliest others that are disjoint from them; each the likeliest first.
+
+    Those move that together have the most probability above the least one that a moving part must have: a packing of
+    sets by an integer programme, so that one wide set does not displace two narrow ones that are as likely.
 
     Args:
         candidates: Sets of pieces.
         likely: How likely each is a moving part, shape (c,).
         config: How likely a set must be, absolutely and beside the likeliest one.
     """
+    order = np.argsort(-likely, kind="stable")
     least = max(config.threshold, config.share * float(likely.max(initial=0.0)))
-    taken: set[int] = set()
-    chosen: list[int] = []
+    able = [row for row in order.tolist() if likely[row] > least]
+    chosen = able[:1]
+    if len(able) > 1:
+        member = np.array([[piece in candidates[row] for row in able] for piece in set().union(*candidates)])
+        packing = LinearConstraint(member.astype(np.float64), ub=1.0)
+        found = milp(least - likely[able], constraints=packing, integrality=1, bounds=Bounds(0.0, 1.0))
+        chosen = [row for row, taken in zip(able, found.x, strict=True) if taken > 0.5]
+    taken = set[int]().union(*(candidates[row] for row in chosen))
     rejected: list[int] = []
-    for row in np.argsort(-likely, kind="stable").tolist():
+    for row in order.tolist():
         if taken.isdisjoint(candidates[row]):
             taken |= candidates[row]
-            (chosen if likely[row] >= least else rejected).append(row)
+            rejected.append(row)
     return chosen, rejected
+
+
+def fixed_merged(grouping: Grouping, joints: Sequence[JointEstimate], config: GroupingConfig) -> Grouping:
+    """Merge every group that is likelier fixed to its parent than not into that parent; one that moves is kept.
+
+    Args:
+        grouping: The groups; those that a user stated are left alone.
+        joints: Inferred between them, parents first.
+        config: How likely a group must be fixed.
+    """
+    groups, owner = grouping.groups, np.arange(len(grouping.groups))
+    for joint in joints:
+        likely = joint.evidence.get("probability_fixed", 0.0)
+        if groups[joint.child].moves is not None and likely > config.fixed:
+            owner[joint.child] = owner[joint.parent]
+    kept = np.unique(owner)
+    if not 1 < len(kept) < len(groups):
+        return grouping
+    indices = [np.flatnonzero(owner == k) for k in kept]
+    assembly = joined_pieces(grouping.assembly, indices)
+    gone = [group for group, k in zip(groups, owner, strict=True) if groups[k] is not group]
+    return Grouping(
+        assembly=assembly,
+        groups=tuple(
+            Group(name=name, pieces=tuple(piece for j in index for piece in groups[j].pieces), moves=groups[k].moves)
+            for name, index, k in zip(assembly.names, indices, kept, strict=True)
+        ),
+        rejected=(*sorted(gone, key=lambda group: -(group.moves or 0.0)), *grouping.rejected),
+    )
 
 
 def crumb_owners(parts: Sequence[Part], size: float) -> IntArray:

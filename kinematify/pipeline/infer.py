@@ -18,7 +18,7 @@ from kinematify.contact.build import build_contact_graph
 from kinematify.contact.seams import find_cuts, joined, rigid_pieces
 from kinematify.errors import InputError
 from kinematify.geometry.surface import part_surfaces
-from kinematify.grouping.groups import Grouping, group_pieces
+from kinematify.grouping.groups import Grouping, fixed_merged, group_pieces
 from kinematify.joints.bearings.fit import fit_bearings
 from kinematify.pipeline.heading import heading_of, turned, with_heading
 from kinematify.pipeline.inference import Inference
@@ -98,6 +98,9 @@ def infer(
             assembly = group_pieces(assembly, config.grouping)
     if isinstance(assembly, Grouping):
         found = infer(assembly.assembly, config=config, base=base, graph=graph, progress=progress)
+        merged = fixed_merged(assembly, found.joints, config.grouping)
+        if merged is not assembly and (base is None or base in merged.assembly.names):
+            return infer(merged, config=config, base=base, progress=progress)
         seconds = MappingProxyType({**clock.seconds, **found.timings})
         return replace(found, grouping=assembly, timings=seconds, warnings=(*assembly.told, *found.warnings))
     if base is not None and base not in assembly.names:

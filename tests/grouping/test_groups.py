@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,8 @@ from kinematify.assembly.load import load_assembly
 from kinematify.assembly.pieces import connected_sheets
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
-from kinematify.grouping.groups import group_pieces, read_groups
+from kinematify.grouping.groups import Group, Grouping, fixed_merged, group_pieces, joined_pieces, read_groups
+from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.robot.mesh_file import RawMesh
 from tests.one_mesh import box, write_bin_with_lid
 
@@ -42,6 +44,37 @@ def test_every_piece_is_in_one_group_and_the_file_brings_the_groups_back(bin_wit
     path.write_text(found.to_json(), encoding="utf-8")
     again = read_groups(path, pieces)
     assert {group.pieces for group in again.groups} == {group.pieces for group in found.groups}
+
+
+def test_a_group_whose_joint_says_fixed_is_merged_into_its_parent_unless_a_user_stated_it(bin_with_lid: Path) -> None:
+    pieces = load_assembly(bin_with_lid)
+    groups = tuple(
+        Group(name=name, pieces=(name,), moves=moves)
+        for name, moves in zip(pieces.names, (None, *[0.6] * 5, None), strict=True)
+    )
+    joints = [
+        JointEstimate(
+            parent=1 if child == 2 else 0,
+            child=child,
+            kind=JointType.PRISMATIC,
+            axis=np.array([0.0, 0.0, 1.0]),
+            pivot=np.zeros(3),
+            lower=0.0,
+            upper=1.0,
+            confidence=0.5,
+            evidence={"probability_fixed": 0.4 if child == 5 else 0.9},
+        )
+        for child in range(1, 7)
+    ]
+    config = load_config().grouping
+    merged = fixed_merged(Grouping(assembly=pieces, groups=groups), joints, config)
+    assert [len(group.pieces) for group in merged.groups] == [5, 1, 1], "what hangs on a merged one goes with it"
+    assert [group.moves for group in merged.groups] == [None, 0.6, None]
+    assert len(merged.rejected) == 4
+    assert sum(len(part.faces) for part in merged.assembly.parts) == sum(len(part.faces) for part in pieces.parts)
+    everything = [replace(joint, evidence={"probability_fixed": 0.9}) for joint in joints[:5]]
+    alone = Grouping(assembly=joined_pieces(pieces, [np.array([6, 0]), np.arange(1, 6)]), groups=(groups[6], groups[1]))
+    assert fixed_merged(alone, everything[:1], config) is alone, "something moves"
 
 
 def test_a_groups_file_with_an_unknown_or_repeated_piece_is_refused(bin_with_lid: Path, tmp_path: Path) -> None:
