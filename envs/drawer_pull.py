@@ -16,7 +16,8 @@ from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
 from kinematify.envs.picture import Piece
 from kinematify.envs.robot_plan import env_robot, robot_plan
 from kinematify.envs.worlds import arm_facts
-from kinematify.geometry.convex import convex_hull
+from kinematify.manipulation.place import column_mesh
+from kinematify.manipulation.robot import hand_links
 from kinematify.simulation.world import ROBOT
 
 if TYPE_CHECKING:
@@ -37,8 +38,6 @@ TOOL, JOINT = "tool", "joint"
 ARM_BOUND = 7.0
 """Ends of observed joint values [rad or m]."""
 _ARM_COLOR, _HAND_COLOR, _COLUMN_COLOR = (0.80, 0.83, 0.88), (0.96, 0.58, 0.20), (0.55, 0.58, 0.63)
-_COLUMN_WIDTH = 0.14  # of what the robot stands on [m]
-_STANDING = 0.01  # lower robots stand on the floor [m]
 _ELBOW = 0.5  # of the reach: so high above the shoulder an elbow gets
 
 
@@ -244,7 +243,7 @@ class DrawerPullEnv(OpeningEnv):
         return Box(low, high, dtype=np.float32)
 
     def _pieces(self) -> Sequence[Piece]:
-        hand = {*self.robot.finger_links, self.robot.robot.tool}
+        hand = hand_links(self.robot.arm.declared, self.robot.robot)
         robot = [
             Piece(
                 link=ROBOT + link.name, vertices=mesh.vertices, faces=mesh.faces,
@@ -263,13 +262,11 @@ class DrawerPullEnv(OpeningEnv):
 
     def _column(self) -> Sequence[Piece]:
         """What the robot stands on, if it does not stand on the floor."""
-        height = float(self.plan.T_world_base[2, 3])
-        if height < _STANDING:
+        found = column_mesh(float(self.plan.T_world_base[2, 3]))
+        if found is None:
             return ()
-        box = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-1.0, 0.0)])
-        vertices, faces = convex_hull(box * [_COLUMN_WIDTH, _COLUMN_WIDTH, height])
         root = ROBOT + self.robot.mechanism.robot.root
-        return (Piece(link=root, vertices=vertices, faces=faces, color=np.array(_COLUMN_COLOR)),)
+        return (Piece(link=root, vertices=found[0], faces=found[1], color=np.array(_COLUMN_COLOR)),)
 
     @property
     def link_poses(self) -> Mapping[str, FloatArray]:

@@ -48,11 +48,6 @@ class EnvRobot:
         """Its tree."""
         return self.scene.mechanism
 
-    @property
-    def finger_links(self) -> tuple[str, ...]:
-        """Links of the fingers."""
-        return tuple(self.arm.declared.joint_by_name[name].child for name in self.robot.finger_joints)
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RobotPlan:

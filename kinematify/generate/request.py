@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ from kinematify.generate.composer.attached import attached
 from kinematify.generate.composer.compose import compose
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.language.parts import PartRequirement, looking
+from kinematify.generate.procedural.language.parts import looking, opened
 from kinematify.generate.procedural.language.sizes import OVERALL
 from kinematify.robot.transforms import rotation_about
 
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 _SCALES = 3.0  # to so many times the usual size and as much smaller, walls and gaps stay those of such an object
-_DRAWS, _NEXT_DRAW = 20, 1_000_003
 _GAP = 0.05  # between several [m]
 _TOY_LENGTH, _TOY_SCALE = 0.4, 0.2  # longest side [m], and at most so much smaller than usual
 _BESIDE = 0.3  # between what stands side by side [m]
@@ -45,14 +45,14 @@ class Request:
 
     family: str
     values: Mapping[str, Value]
-    requirements: tuple[PartRequirement, ...] = ()
-    """What is asked of its parts, besides the values."""
     composition: Composition | None = None
     """Of mechanisms on a body, where no family builds it."""
     added: tuple[MechanismSpec, ...] = ()
     """Mechanisms that such an object has not, and that are put on it where there is a place."""
     looks: tuple[tuple[tuple[str, ...], str, str], ...] = ()
     """Names of parts, and the material or the colour of these alone."""
+    opened: tuple[tuple[tuple[str, ...], str, float], ...] = ()
+    """Names of parts, and how far these alone are open: see `opened`."""
     overall: tuple[str, float] | None = None
     """A size of the whole [m] that it is scaled to."""
     copies: int = 1
@@ -68,11 +68,14 @@ class Request:
         """Build the object; a seed draws what was not asked for.
 
         Raises:
-            InputError: A value is out of its bounds, or the parts are not as they are asked for.
+            InputError: A value is out of its bounds.
         """
         blueprint = self._single(seed)
         for names, material, color in self.looks:
             blueprint = looking(blueprint, names, material, color)
+        for names, how, much in self.opened:
+            with suppress(InputError):  # who compares it with the sentence reports it
+                blueprint = opened(blueprint, [name for name in names if name in blueprint.joint_above], how, much)
         if self.copies > 1:
             width = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[0])
             blueprint = blueprint.repeated(self.copies, width + _GAP)
@@ -82,32 +85,15 @@ class Request:
         return blueprint if self.other is None else _JOINED[self.how](blueprint, self.other.build(seed=seed))
 
     def _single(self, seed: int | None) -> Blueprint:
-        if self.composition is None:
-            made = self._as_required(seed)
-            for item in self.added:
-                try:
-                    made = attached(made, item)
-                except InputError:
-                    continue  # who compares it with the sentence reports it
-            return made
-        return compose(self.composition, seed=seed, may_stand_still=bool(self.how))
-
-    def _as_required(self, seed: int | None) -> Blueprint:
-        """The object as its parts are asked for; where what a seed draws has no such parts, the next draw is taken."""
-        for attempt in range(1 if seed is None else _DRAWS):
-            blueprint = build(
-                known_families()[self.family], self.values, seed=None if seed is None else seed + attempt * _NEXT_DRAW
-            )
-            if self.overall is not None:
-                blueprint = _scaled_to(blueprint, *self.overall)
-            try:
-                for requirement in self.requirements:
-                    blueprint = requirement.applied(blueprint)
-            except InputError as error:
-                reason = error
-            else:
-                return blueprint
-        raise reason
+        if self.composition is not None:
+            return compose(self.composition, seed=seed, may_stand_still=bool(self.how))
+        made = build(known_families()[self.family], self.values, seed=seed)
+        if self.overall is not None:
+            made = _scaled_to(made, *self.overall)
+        for item in self.added:
+            with suppress(InputError):  # as above
+                made = attached(made, item)
+        return made
 
 
 def _scaled_to(blueprint: Blueprint, size: str, metres: float) -> Blueprint:

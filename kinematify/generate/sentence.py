@@ -14,8 +14,16 @@ from typing import TYPE_CHECKING, Any
 from kinematify.errors import InputError
 from kinematify.generate.procedural.language.contradictions import refuse_contradictions
 from kinematify.generate.procedural.language.motions import GOING, MOTIONS
-from kinematify.generate.procedural.language.parse import FUNCTION_WORDS, NOT_DONE, parse, unknown_object
+from kinematify.generate.procedural.language.parse import (
+    FUNCTION_WORDS,
+    MATERIAL_WORDS,
+    NOT_DONE,
+    parse,
+    unknown_object,
+)
+from kinematify.generate.procedural.language.sizes import SIZE_WORDS
 from kinematify.generate.procedural.language.words import (
+    KINDS,
     PLAIN_WORDS,
     PURPOSES,
     STOP_WORDS,
@@ -23,6 +31,7 @@ from kinematify.generate.procedural.language.words import (
     without_purposes,
     without_rough_sizes,
 )
+from kinematify.generate.procedural.materials import COLOR_WORDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -50,6 +59,9 @@ _AND = re.compile(
     re.IGNORECASE,
 )
 _TOY = re.compile(r"\b(?:toy|model|miniature|dolls?(?:'s)?)\s+", re.IGNORECASE)
+_DRAWS, _NEXT_DRAW = 20, 1_000_003
+_MANNERS = frozenset({*MOTIONS, *GOING, *KINDS, *STOP_WORDS, *MATERIAL_WORDS, *COLOR_WORDS, *SIZE_WORDS})
+"""Words of a name without which it names an object of the same kind."""
 _SEVERAL = 400  # characters at most that may name several objects
 
 
@@ -147,17 +159,45 @@ class Sentence:
     def made(self, *, seed: int | None = None) -> Made:
         """Build the object, and compare it with what was asked for.
 
+        Args:
+            seed: Draws what is not asked for; of some draws the one that lacks least is taken.
+
         Raises:
             InputError: It contradicts itself, or nothing of it can be built.
         """
         plan = self.plan
-        blueprint = plan.blueprint if seed is None else plan.request.build(seed=seed)
+        blueprint, missing = plan.blueprint, plan.missing(plan.blueprint)
+        if seed is not None:
+            blueprint, missing = _drawn(plan, seed, len(missing))
         called = blueprint.renamed(plan.names(blueprint))
-        return Made(blueprint=called, specification=plan.specification, not_built=plan.missing(blueprint))
+        return Made(blueprint=called, specification=plan.specification, not_built=missing)
 
     def build(self, *, seed: int | None = None) -> Blueprint:
         """Build the object as far as it can be built; see `made`."""
         return self.made(seed=seed).blueprint
+
+
+def _drawn(plan: _Plan, seed: int, least: int) -> tuple[Blueprint, tuple[str, ...]]:
+    """What a seed draws of a plan, and what it misses; the next draw is taken where that is more than `least` words.
+
+    Raises:
+        InputError: No draw can be built.
+    """
+    found: list[tuple[Blueprint, tuple[str, ...]]] = []
+    reason: InputError | None = None
+    for attempt in range(_DRAWS):
+        try:
+            blueprint = plan.request.build(seed=seed + attempt * _NEXT_DRAW)
+        except InputError as error:
+            reason = error
+            continue
+        found.append((blueprint, plan.missing(blueprint)))
+        if len(found[-1][1]) <= least:
+            break
+    if not found:
+        assert reason is not None, "each draw is built, or has a reason against it"
+        raise reason
+    return min(found, key=lambda item: len(item[1]))
 
 
 def from_text(sentence: str) -> Sentence:
@@ -195,15 +235,21 @@ def from_text(sentence: str) -> Sentence:
 
 @cache
 def _library() -> dict[tuple[str, ...], list[Family | BodyKind]]:
-    """Names of all kinds of object, as words -> what builds them, families first."""
+    """Names of all kinds of object, as words -> what builds them: families, bodies, then variants of families."""
     from kinematify.generate.composer.bodies import BODIES  # noqa: PLC0415 - the library takes a while to load
-    from kinematify.generate.described import known_families  # noqa: PLC0415
+    from kinematify.generate.described import known_families, library  # noqa: PLC0415
 
     found: dict[tuple[str, ...], list[Family | BodyKind]] = {}
-    kinds: list[Family | BodyKind] = [*known_families().values(), *BODIES]
-    for kind in kinds:
-        for word in kind.words:
-            found.setdefault(tuple(re.findall(r"[0-9]+|[a-z]+", word.lower())), []).append(kind)
+    families = known_families()
+    variants = [(families[name], families[item.like].words) for name, item in library().items() if item.like]
+    kinds: list[Family | BodyKind] = [*families.values(), *BODIES]
+    for kind, words in (*((kind, kind.words) for kind in kinds), *variants):
+        for word in words:
+            if " with " in word:
+                continue  # a table with a drawer is a table, and has a drawer
+            named = found.setdefault(tuple(re.findall(r"[0-9]+|[a-z]+", word.lower())), [])
+            if kind not in named:
+                named.append(kind)
     return found
 
 
@@ -264,16 +310,16 @@ def _plans(specification: Specification, *, alone: bool = True) -> Iterator[_Pla
     name = specification.name
     for start in range(len(name)):
         words = [specification.tokens[k].given for k in name[start:]]
+        needed = {k for k in name[:start] if specification.tokens[k].given not in _MANNERS}
         kinds = _library().get(tuple(words)) or _library().get((*words[:-1], lemma(words[-1]))) or []
         # Where `sliding door` cannot be double, a door can be double and sliding.
         meant = replace(specification, name=name[start:])
         reasons: list[InputError] = []
         for kind in kinds:
             try:
-                if isinstance(kind, Family):
-                    yield _family_plan(meant, kind)
-                else:
-                    yield _composed_plan(meant, kind, alone)
+                plan = _family_plan(meant, kind) if isinstance(kind, Family) else _composed_plan(meant, kind, alone)
+                if needed <= plan.used:  # a hand truck is no truck; a barn door is a door of a kind
+                    yield plan
             except InputError as error:
                 if start == 0 and isinstance(kind, Family):
                     raise
@@ -311,7 +357,6 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
     request = Request(
         family=meant.family,
         values=meant.values,
-        requirements=meant.requirements,
         overall=meant.overall,
         copies=meant.copies,
         is_toy=specification.is_toy,
@@ -320,8 +365,8 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
     nouns = {" ".join(words): names for words, names in part_nouns(family, made).items()}
     compared = compare(specification, made, nouns)
     added = tuple(item for part in compared.absent if (item := mechanism_for(part)) is not None)
-    if added or compared.looks:
-        request = replace(request, added=added, looks=compared.looks)
+    if added or compared.looks or compared.opened:
+        request = replace(request, added=added, looks=compared.looks, opened=compared.opened)
         made = request.build()
     return _Plan(
         specification=specification,
@@ -334,12 +379,11 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
 
 
 def _composed_plan(specification: Specification, body: BodyKind, alone: bool) -> _Plan:
-    from kinematify.generate.composer.sentence import read_composition  # noqa: PLC0415 - with solids
+    from kinematify.generate.composer.sentence import asked_composition  # noqa: PLC0415 - with solids
     from kinematify.generate.procedural.language.compare import compare  # noqa: PLC0415
     from kinematify.generate.request import Request  # noqa: PLC0415
 
-    meant = read_composition(specification, body, may_stand_still=not alone)
-    composition = meant.composition
+    composition, asked = asked_composition(specification, body, may_stand_still=not alone)
     request = Request(
         family=composition.title.replace(" ", "_"),
         values={},
@@ -350,30 +394,24 @@ def _composed_plan(specification: Specification, body: BodyKind, alone: bool) ->
     )
     nouns = {word: (item.stem,) for item in composition.wanted for word in item.mechanism.words}
     made = request.build()
-    if looks := compare(specification, made, nouns).looks:
-        request = replace(request, looks=looks)
+    compared = compare(specification, made, nouns)
+    if compared.looks or compared.opened:
+        request = replace(request, looks=compared.looks, opened=compared.opened)
         made = request.build()
     return _Plan(
         specification=specification,
         request=request,
         blueprint=made,
-        used=meant.used,
-        dropped=meant.dropped,
+        used=frozenset(asked.used),
+        dropped=tuple(asked.dropped),
         nouns=nouns,
     )
 
 
 def _scene_plan(specification: Specification) -> Iterator[_Plan]:
-    from kinematify.generate.procedural.language.parts import PartRequirement  # noqa: PLC0415 - with solids
-    from kinematify.generate.request import hand_of  # noqa: PLC0415
-
     for how, first, second in specification.scene:
         one, other = (_best(item) for item in (first, second))
         request = replace(one.request, how=how, other=replace(other.request, how=""))
-        if how == "holding":
-            # What a seed draws may have hands that are one with the arms.
-            hand = PartRequirement(nouns=(hand_of(one.blueprint).name,), words="a hand")
-            request = replace(request, requirements=(*request.requirements, hand))
         made = request.build()
         if made.joints:
             yield replace(one, specification=specification, request=request, blueprint=made, others=(one, other))

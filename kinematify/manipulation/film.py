@@ -11,6 +11,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from kinematify.config import load_config
 from kinematify.geometry.scene import transformed
+from kinematify.manipulation.place import column_mesh
 from kinematify.model.scene import camera_for
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from kinematify.robot.robot import forward_kinematics, rigid_groups
@@ -29,15 +30,7 @@ if TYPE_CHECKING:
 _ARM, _HAND = np.array([0.80, 0.83, 0.88]), np.array([0.96, 0.58, 0.20])
 _HELD, _OTHERS, _CARCASS = np.array([0.16, 0.62, 0.56]), np.array([0.62, 0.72, 0.80]), np.array([0.86, 0.80, 0.71])
 _STAND = np.array([0.55, 0.58, 0.63])
-_BOX_FACES = np.array(
-    [
-        *([0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1]),
-        *([2, 3, 7], [2, 7, 6], [1, 5, 7], [1, 7, 3], [0, 2, 6], [0, 6, 4]),
-    ]
-)
 _INK = (45, 50, 60)
-_COLUMN_WIDTH = 0.14  # of what the robot stands on [m]
-_STANDING = 0.01  # lower robots stand on the floor [m]
 _MARGIN = 14  # [pixels]
 _CAPTION = 34  # height of the line above a panel of the still [pixels]
 
@@ -131,11 +124,10 @@ class _FilmStage:
     def column(self) -> tuple[PosedMesh, ...]:
         """What the robot stands on, if it does not stand on the floor."""
         T = self.loaded.motion.T_world_base
-        if T[2, 3] < _STANDING:
+        found = column_mesh(float(T[2, 3]))
+        if found is None:
             return ()
-        corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (0.0, 1.0)])
-        level = corners * [_COLUMN_WIDTH, _COLUMN_WIDTH, 0.0] @ T[:3, :3].T + T[:3, 3] * [1.0, 1.0, 0.0]
-        return (PosedMesh(vertices=level + corners * [0.0, 0.0, T[2, 3]], faces=_BOX_FACES, color=_STAND),)
+        return (PosedMesh(vertices=transformed(found[0], T), faces=found[1], color=_STAND),)
 
     def moments(self, execution: Execution) -> tuple[Frame, Frame, Frame]:
         """Start, grasp and end."""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.geometry.convex import convex_hull
 from kinematify.geometry.scene import transformed
 from kinematify.manipulation.grasp import moved_bodies
 from kinematify.robot.joint_type import JointType
@@ -24,12 +25,13 @@ if TYPE_CHECKING:
     from kinematify.geometry.scene import Scene
     from kinematify.manipulation.grasp import Grasp
     from kinematify.manipulation.kinematics import Arm
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 _FLIP = np.diag([-1.0, -1.0, 1.0, 1.0])  # half a turn about the approach direction holds as well
 _GRASP_RANK, _PLACE_RANK = 0.01, 0.02  # dearness of one more try with the same grasp, or the same place [m]
 _SINKS = 0.005  # a part that folds down gets so much lower than it was [m]
 _ALIKE = np.cos(np.radians(30.0))
+_COLUMN_WIDTH, _ON_FLOOR = 0.14, 0.01  # of what a robot stands on; lower ones stand on the floor [m]
 _QUALITY = 0.06  # a grasp of no quality at all may be so much easier to reach [m]
 
 
@@ -68,6 +70,18 @@ def standing_at(x: float, y: float, z: float, yaw: float) -> FloatArray:
     T[:2, :2] = [[cosine, -sine], [sine, cosine]]
     T[:3, 3] = x, y, z
     return T
+
+
+def column_mesh(height: float) -> tuple[FloatArray, IntArray] | None:
+    """What a robot stands on whose root link is so high [m], as pictures show it; None on the floor.
+
+    Returns:
+        Vertices in the frame of the root link [m], shape (8, 3), and faces, shape (12, 3).
+    """
+    if height < _ON_FLOOR:
+        return None
+    box = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-1.0, 0.0)])
+    return convex_hull(box * [_COLUMN_WIDTH, _COLUMN_WIDTH, height])
 
 
 def object_motion(scene: Scene, joint: str, end: float, settings: PlanSettings) -> ObjectMotion:

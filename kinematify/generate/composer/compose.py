@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from kinematify.generate.composer.side import BodySide
     from kinematify.generate.procedural.blueprint import Blueprint
-    from kinematify.generate.procedural.language.parts import PartRequirement
     from kinematify.generate.procedural.pieces.fronts import Bay
 
 BANDS = ("grid", "row", "stack", "foot")
@@ -95,8 +94,6 @@ class Composition:
     """Material and colour of the handles of doors and drawers; metal if nothing is said."""
     rest: float = 0.0
     """Share of the way that moving parts stand open."""
-    requirements: tuple[PartRequirement, ...] = ()
-    """How some of its mechanisms move, or how far they stand open."""
     copies: int = 1
     """How many, side by side."""
     scale: float = 1.0
@@ -162,10 +159,7 @@ def compose(
     parameters = {"seed": seed, "size": layout.size, **details, **placed}
     rng = np.random.default_rng(0)
     named = name or composition.title.replace(" ", "_")
-    made = layout.workshop.finish(named, parameters, style="clean", clearance=clearance, rng=rng)
-    for requirement in composition.requirements:
-        made = requirement.applied(made)
-    return made
+    return layout.workshop.finish(named, parameters, style="clean", clearance=clearance, rng=rng)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

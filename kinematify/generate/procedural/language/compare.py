@@ -63,7 +63,9 @@ _MOVING = frozenset({
 """Parts that move wherever they are."""
 _NUMBERED = re.compile(r"(?:_(?:\d+|left|right))+$")
 _LOOKS = ("color", "material")
-_MEASURED = ("size", "moves", "way", "hinge", "place", "relation", "color", "material", "open", "like", "count")
+_MEASURED = (
+    "size", "moves", "way", "range", "hinge", "place", "relation", "color", "material", "open", "like", "count"
+)  # fmt: skip
 """What is said of a part that is there, and can be measured of it."""
 _ABOVE = {"above": 1, "over": 1, "below": -1, "under": -1, "beneath": -1, "underneath": -1}
 _AXES = {"width": (0, 1), "length": (0, 1, 2), "depth": (1, 0), "height": (2,), "diameter": (0, 1, 2), "": (0, 1, 2)}
@@ -98,6 +100,9 @@ class Comparison:
     """Parts that are not there."""
     looks: tuple[tuple[tuple[str, ...], str, str], ...]
     """Parts that look otherwise than asked for: their names, and the material or the colour, the other one empty."""
+    opened: tuple[tuple[tuple[str, ...], str, float], ...]
+    """Parts that are not so far open as is asked for: their names; ``share``, ``angle`` [rad] or ``distance`` [m], and
+    how much. ``range``: that they go further than asked for, and how far they may [rad or m]."""
 
 
 @dataclass(kw_only=True)
@@ -113,6 +118,7 @@ class _Compared:
     names: dict[str, str] = field(default_factory=dict)
     absent: list[PartSpecification] = field(default_factory=list)
     looks: list[tuple[tuple[str, ...], str, str]] = field(default_factory=list)
+    opened: list[tuple[tuple[str, ...], str, float]] = field(default_factory=list)
 
     # ---- parts by their nouns --------------------------------------------------------------------------------------
 
@@ -184,7 +190,10 @@ class _Compared:
         whole = self.specification.whole
         for claim in whole.claims:
             if claim.about not in ("there", "count"):
-                self._judge(claim, self._whole_keeps(claim))
+                wrong = self._whole_keeps(claim)
+                if wrong is not None and claim.about == "range":
+                    self._to_be_limited(claim, self.made.joints if len(self.made.joints) == 1 else ())
+                self._judge(claim, wrong)
         groups: dict[str, list[PartSpecification]] = defaultdict(list)
         for part in self.specification.parts:
             groups[part.noun.split()[-1]].append(part)
@@ -196,6 +205,7 @@ class _Compared:
             names=self.names,
             absent=tuple(self.absent),
             looks=tuple(self.looks),
+            opened=tuple(self.opened),
         )
 
     def _judge(self, claim: Claim, wrong: str | None) -> None:
@@ -243,14 +253,30 @@ class _Compared:
                     ones = [_chosen(found, other) for other in parts if other is not part and _is_one(other)]
                     meant = [item for item in chosen if not any(item in one for one in ones)] or chosen
                 wrong = self._part_keeps(part, claim, meant, found)
-                if wrong is not None and claim.about in _LOOKS and meant:
-                    look = (claim.value, "") if claim.about == "material" else ("", claim.value)
-                    self.looks.append((tuple(item.name for item in meant), *look))
+                if wrong is not None and meant:
+                    self._to_be_changed(claim, meant)
                 self._judge_part(part, claim, wrong, is_there=bool(chosen))
             if not self._joints_of(found) and self._would_move(part):
                 self._miss(there.words, there.at, "it does not move")
             if len(self.missing) == before and len(chosen) == len(found) and part.count in (None, len(found)):
                 self._call(found, "_".join(part.noun.split()[-known:]), part.noun)
+
+    def _to_be_changed(self, claim: Claim, parts: Sequence[Part]) -> None:
+        """Take up parts that are to look otherwise, or to be open."""
+        if claim.about in _LOOKS:
+            look = (claim.value, "") if claim.about == "material" else ("", claim.value)
+            self.looks.append((tuple(part.name for part in parts), *look))
+        elif claim.about == "open":
+            self.opened.append((tuple(joint.child for joint in self._joints_of(parts)), *claim.value))
+        elif claim.about == "range":
+            self._to_be_limited(claim, self._joints_of(parts))
+
+    def _to_be_limited(self, claim: Claim, joints: Sequence[BlueprintJoint]) -> None:
+        """Take up joints that go further than is asked for; to go further than they are built for is none's to ask."""
+        how, much = claim.value
+        names = tuple(j.child for j in joints if j.kind.turns is (how == "angle") and j.upper - j.lower > much)
+        if names:
+            self.opened.append((names, "range", much))
 
     def _miss(self, words: str, at: Iterable[int], reason: str) -> None:
         """Take up what was measured and is not as it was asked for."""
@@ -263,7 +289,7 @@ class _Compared:
         there, numbers = part.claims[0], self._numbers(part.noun, found)
         said = next((claim for claim in part.claims if claim.about == "count"), None)
         built = f"{len(found) or self.counted(part.noun)} built"
-        if said is not None and (_is_one(part) or numbers & {*asked, said.value}):
+        if said is not None and ((_is_one(part) and said.words != "single") or numbers & {*asked, said.value}):
             self.held.update(said.at)
         elif said is not None:
             words, at = f"{said.words} {there.words}", frozenset((*said.at, there.at[-1]))
@@ -285,7 +311,7 @@ class _Compared:
             and len(stems) == 1
             and not stems & set(said.split())
             and noun not in taken
-            and not _ends_with(found[0].name, noun)
+            and not f"_{_stem(found[0].name)}".endswith(f"_{noun}")
         ):
             several = len(found) > 1
             self.names |= {part.name: f"{noun}_{k}" if several else noun for k, part in enumerate(found, start=1)}
@@ -349,9 +375,9 @@ class _Compared:
     ) -> str | None:
         """What is wrong with a claim about some of the parts of a noun; None if it holds."""
         joints = self._joints_of(chosen)
-        if not chosen and claim.about not in ("moves", "way", "hinge", "open", "color", "material"):
+        if not chosen and claim.about not in ("moves", "way", "hinge", "open", "range", "color", "material"):
             return "a solid of another part"
-        if claim.about in ("moves", "way", "hinge", "open"):
+        if claim.about in ("moves", "way", "hinge", "open", "range"):
             return self._joints_keep(claim, joints) if joints else "it is fixed"
         judges: dict[str, Callable[[], str | None]] = {
             "size": lambda: self._sized(claim.value, chosen),
@@ -392,6 +418,8 @@ class _Compared:
             return None if self._any_goes(joints, claim.value) else f"{joints[0].kind.value}, another way"
         if claim.about == "hinge":
             return self._hinged(joints[0], claim.value)
+        if claim.about == "range":
+            return self._ranges(joints, claim.value)
         return self._opened(joints, claim.value)
 
     def _whole_keeps(self, claim: Claim) -> str | None:
@@ -403,6 +431,7 @@ class _Compared:
         if claim.value == "tilts":  # ribs do not tilt an umbrella
             stems = Counter(_stem(joint.child) for joint in self.made.joints)
             joints = [joint for joint in joints if stems[_stem(joint.child)] == 1 or len(stems) == 1]
+        joints_of_doors = [joint for joint in self.made.joints if joint.kind is JointType.REVOLUTE]
         judges: dict[str, Callable[[], str | None]] = {
             "moves": lambda: None if any(moves_so(self.made, item, claim.value) for item in joints) else "no part does",
             "way": lambda: None if self._any_goes(joints, claim.value) else "no part goes there",
@@ -411,9 +440,14 @@ class _Compared:
             "color": lambda: _looks(claim, self.made.parts[:1]),
             "material": lambda: _looks(claim, self.made.parts[:1]),
             "relation": lambda: None if self._is_there(claim.value[1]) else "no such part",
+            "range": lambda: self._ranges(self.made.joints, claim.value),
+            "hinge": lambda: self._any_hinged(joints_of_doors, claim.value),
             "does": lambda: "no such motion",
         }
         return judges[claim.about]() if claim.about in judges else None
+
+    def _any_hinged(self, joints: Sequence[BlueprintJoint], side: str) -> str | None:
+        return None if any(self._hinged(joint, side) is None for joint in joints) else "hinged on another side"
 
     def _is_there(self, noun: str) -> bool:
         return noun.rsplit(maxsplit=1)[-1] in _OF_ANY_OBJECT or bool(self.parts_called(noun)[0])
@@ -428,9 +462,31 @@ class _Compared:
         aside = (self.closed.joint_above[joint.child].pivot - middle) @ np.array(_PLACES.get(side, (0, 0, 0)))
         return None if aside > 0.0 else "hinged on another side"
 
-    def _opened(self, joints: Sequence[BlueprintJoint], share: float) -> str | None:
-        is_open = any(abs(joint.value) > 1e-6 for joint in joints)
-        return None if is_open == (share > 0.0) else ("it is open" if is_open else "it is closed")
+    def _ranges(self, joints: Sequence[BlueprintJoint], asked: tuple[str, float]) -> str | None:
+        how, much = asked
+        there = [joint.upper - joint.lower for joint in joints if joint.kind.turns is (how == "angle")]
+        if any(math.isclose(way, much, rel_tol=_SIZE) for way in there):
+            return None
+        far = max(there, default=0.0)
+        return f"it goes {math.degrees(far):.0f} degrees" if how == "angle" else f"it goes {far:.2g} m"
+
+    def _opened(self, joints: Sequence[BlueprintJoint], asked: tuple[str, float]) -> str | None:
+        """What is wrong with how far joints are open: of several, the one that is open furthest is meant."""
+        how, much = asked
+        there = {
+            "share": [
+                joint.value / (joint.upper + joint.value)
+                for joint in joints
+                if math.isfinite(joint.upper) and joint.upper + joint.value > 0.0
+            ],
+            "angle": [joint.value for joint in joints if joint.kind.turns],
+            "distance": [joint.value for joint in joints if not joint.kind.turns],
+        }[how]
+        far = max(there, default=0.0)
+        if there and math.isclose(far, much, rel_tol=_SIZE, abs_tol=1e-6):
+            return None
+        shown = f"{math.degrees(far):.0f} degrees" if how == "angle" else f"{far:.2g} m" if how == "distance" else ""
+        return "it is closed" if far < 1e-6 else f"it is open by {shown or f'{far:.0%}'}"
 
     def _sized(self, asked: tuple[str, float], chosen: Sequence[Part]) -> str | None:
         name, metres = asked
@@ -541,11 +597,13 @@ def _said(part: PartSpecification) -> str:
 
 def _chosen(found: Sequence[Part], part: PartSpecification) -> list[Part]:
     """Those that are meant: of several, the one that is furthest in the place that is said."""
-    place = next((claim.value for claim in part.claims if claim.about == "place" and claim.value in _PLACES), None)
-    if place is None or part.count is None or part.count >= len(found):
+    places = [_PLACES[claim.value] for claim in part.claims if claim.about == "place" and claim.value in _PLACES]
+    if not places or part.count is None or part.count >= len(found):
         return list(found)
-    toward = np.array(_PLACES[place], dtype=np.float64)
-    return sorted(found, key=lambda item: -float(item.bounds.mean(axis=0) @ toward))[: part.count]
+    middles = np.array([item.bounds.mean(axis=0) for item in found])
+    spread = np.where(np.ptp(middles, axis=0) > _EDGE, np.ptp(middles, axis=0), 1.0)
+    reach = (middles / spread) @ np.sum(places, axis=0, dtype=np.float64)
+    return [found[k] for k in np.argsort(-reach, kind="stable")[: part.count]]
 
 
 def _looks(claim: Claim, parts: Sequence[Part]) -> str | None:

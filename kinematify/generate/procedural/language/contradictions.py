@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
+from kinematify.generate.procedural.language.words import UNITS, lemma
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -62,6 +63,10 @@ def _faults(specification: Specification) -> Iterator[_Fault]:
             yield word, "no object with links and joints is or does that"
         if word in _NO_SOLID and tuple(words[max(k - 2, 0) : k]) in _MADE:
             yield f"made of {word}", "parts are solid"
+    for k in range(1, len(words) - 2):
+        broken = words[k : k + 3] == ["and", "a", "half"] and specification.tokens[k - 1].number is not None
+        if broken and words[k + 3 : k + 4] and lemma(words[k + 3]) not in UNITS:
+            yield " ".join(words[k - 1 : k + 4]), "parts are counted by whole numbers"
     for one, other in pairwise(words):
         if one in _SHAPES and other in _SHAPES and one != other:
             yield f"{one} {other}", "these shapes exclude each other"
@@ -74,13 +79,14 @@ def _faults(specification: Specification) -> Iterator[_Fault]:
 def _two_values(part: PartSpecification) -> Iterator[_Fault]:
     said: dict[tuple[str, str], Claim] = {}
     for claim in part.claims:
-        name, value = claim.value if claim.about == "size" else ("", claim.value)
+        name, value = claim.value if claim.about in ("size", "open") else ("", claim.value)
+        name = "" if claim.about == "open" else name
         if claim.about == "size" and value <= 0.0:
             yield claim.words, "a size is above zero"
         if claim.about not in _ONE_OF or (claim.about == "size" and not name):
             continue  # two lengths whose direction is not said
         before = said.setdefault((claim.about, name), claim)
-        other = before.value[1] if claim.about == "size" else before.value
+        other = before.value[1] if claim.about in ("size", "open") else before.value
         if other != value and (claim.about != "open" or 0.0 in (other, value)):
             of = f" for the {name}" if name else ""
             yield f"{before.words}, {claim.words}", f"two {_ONE_OF[claim.about]}{of} of one {part.noun}"

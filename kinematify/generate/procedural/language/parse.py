@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.language.motions import DONE, GOING, MOTIONS, PARTICLES, WAYS
+from kinematify.generate.procedural.language.openness import NOT_A_STATE, PULLED, amount_at, measured_at
 from kinematify.generate.procedural.language.sizes import DIMENSIONS, SIZE_WORDS, length_at
 from kinematify.generate.procedural.language.specification import Claim, PartSpecification, Specification
 from kinematify.generate.procedural.language.words import (
@@ -40,16 +41,21 @@ _JOINERS = ("and", ",", ";", ":", ".", "or", "but", "also", "as", "well", "then"
 _RELATIVE = ("that", "which", "who")
 _PREPOSITIONS = (
     "on", "at", "in", "inside", "under", "underneath", "below", "beneath", "above", "over", "behind", "beside",
-    "between",
-    "next", "around", "along", "from", "to", "into", "of", "for", "by", "through", "onto", "against", "near", "across",
+    "between", "about", "across",
+    "next", "around", "along", "from", "to", "into", "of", "for", "by", "through", "onto", "against", "near",
 )  # fmt: skip
 _AT = ("on", "at", "in", "to", "near", "from", "against", "by", "along", "onto")
 """Before a place they say that something is there."""
 _BEGINS_PART = (*_WITH, *_RELATIVE, "whose", "where", "without", *_JOINERS)
 _BEING = ("is", "are", "can", "could", "be", "may", "will", "each", "all", "both", "it", "they", "being", "also")
 _CAN = ("be", "can", "to", "may")
-_PULLED = ("pulled", "slid", "swung")
-"""With `out` they are as good as opened."""
+_BARE = frozenset(word for word in MOTIONS if not word.endswith(("s", "ing", "able", "ible", "ic")))
+"""Verbs that a singular noun right before them makes a noun."""
+_GOES = ("go", "goes", "opens", "come", "comes")
+_ANYHOW = ("away", "aside", "open", "over")
+"""Behind a particle they say no direction: a swing-away arm."""
+_DROPPED = ("up", "down")
+"""Behind a part at the end of a statement they say that it is open there."""
 _DETERMINERS = (
     "a", "an", "the", "its", "their", "some", "any", "each", "every", "both", "all", "other", "another", "either",
 )  # fmt: skip
@@ -58,12 +64,17 @@ PLACES = (
     "inside",
     "outside", "center", "centre", "corner", "end", "uppermost", "lowest", "outer", "inner", "central", "underneath",
 )  # fmt: skip
-_MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word in material.words}
+LEVELS = {
+    "underneath": "bottom", "below": "bottom", "beneath": "bottom", "under": "bottom", "above": "top", "over": "top",
+    "overhead": "top",
+}  # fmt: skip
+"""Places that are said without a noun behind them: `with a drawer below`."""
+MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word in material.words}
 _UNDER_WHOLE = ("wheel", "caster", "castor", "leg", "foot", "roller", "runner", "base", "stand", "track", "skid")
 _GROUPS = ("row", "column", "stack", "grid", "pair", "set", "bank", "line")
 """What is counted behind them is counted in each."""
 _ADJUSTABLE = ("adjustable", "variable", "changeable")
-_MEASURES = {"height": "up", "angle": "", "length": "", "width": "", "tilt": "", "reach": "", "position": "", "arm": ""}
+_MEASURES = {"height": "up", "angle": "", "length": "", "width": "", "tilt": "", "reach": "", "position": ""}
 FUNCTION_WORDS = frozenset(
     {*_BEGINS_PART, *_PREPOSITIONS, *_BEING, *_DETERMINERS, "other", "way", "flat", "one", "ones", "side"}
 )
@@ -74,6 +85,8 @@ _QUOTED = 15  # words of a sentence in a message
 _SHORTEST_DONE = 5
 NOT_DONE = frozenset({"spring", "string", "bearing", "railing", "awning", "ceiling", "building", "painting"})
 """Nouns that end as verbs do."""
+_HAVING = {"lockable": "lock", "locking": "lock", "locked": "lock"}
+"""Adjectives -> what has to be there."""
 _STATES = (
     "half",
     "way",
@@ -123,7 +136,7 @@ def parse(
     name = head_of(tokens, kinds, mechanisms)
     if not name:
         raise InputError(unknown_object(tokens, kinds))
-    return _specified(sentence, tokens, name, harmless)
+    return _specified(sentence, tokens, name, harmless, mechanisms)
 
 
 def parse_any(sentence: str) -> Specification:
@@ -140,16 +153,23 @@ def parse_any(sentence: str) -> Specification:
 
 
 def _specified(
-    sentence: str, tokens: tuple[Token, ...], name: tuple[int, ...], harmless: tuple[str, ...]
+    sentence: str,
+    tokens: tuple[Token, ...],
+    name: tuple[int, ...],
+    harmless: tuple[str, ...],
+    mechanisms: Collection[str] = (),
 ) -> Specification:
-    reader = _Parser(tokens, name)
+    reader = _Parser(tokens, name, mechanisms)
     reader.read()
     return Specification(
         text=sentence,
         tokens=tokens,
         name=name,
         whole=reader.finished(reader.whole, " ".join(lemmas(tokens, name))),
-        parts=tuple(reader.finished(part, reader.noun(part)) for part in reader.parts if part.nouns),
+        parts=(
+            *(reader.finished(part, reader.noun(part)) for part in reader.parts if part.nouns),
+            *reader.implied,
+        ),
         harmless=harmless,
     )
 
@@ -214,7 +234,7 @@ def _may_follow(tokens: Sequence[Token], k: int) -> bool:
         or lemma(word) in UNITS
         or word in UNITS
         or word in COLOR_WORDS
-        or word in _MATERIAL_WORDS
+        or word in MATERIAL_WORDS
         or word in OPENNESS
     )
     known = known or token.number is not None or token.is_sign or word in MOTIONS or word in DONE or word in GOING
@@ -261,12 +281,17 @@ def _dimension(word: str) -> str:
 class _Parser(Words):
     """Goes through a sentence once; every word belongs to the part that was named last, or to the object."""
 
-    def __init__(self, tokens: tuple[Token, ...], name: Sequence[int]) -> None:
+    def __init__(self, tokens: tuple[Token, ...], name: Sequence[int], mechanisms: Collection[str]) -> None:
         """Begin before the first word."""
         super().__init__(tokens)
         self.name = name
+        self.mechanisms = mechanisms
         self.whole = _Draft(nouns=list(name))
         self.parts: list[_Draft] = []
+        self.pending: list[Claim] = []
+        """Said of a part whose noun is still to come."""
+        self.implied: list[PartSpecification] = []
+        """By an adjective."""
         self.current = self.whole
         self.subject = self.whole
         """Of the verbs to come."""
@@ -277,7 +302,9 @@ class _Parser(Words):
 
     def noun(self, part: _Draft) -> str:
         """What a part is called, singular."""
-        return " ".join(lemmas(self.tokens, part.nouns))
+        words = lemmas(self.tokens, part.nouns)
+        wheel = words[-1].removesuffix("ed") if words else ""
+        return " ".join([*words[:-1], wheel] if wheel in self.mechanisms else words)
 
     def finished(self, part: _Draft, noun: str) -> PartSpecification:
         """A part that was read."""
@@ -294,9 +321,18 @@ class _Parser(Words):
 
     def read(self) -> None:
         """Take up every word."""
-        k = self._noun_phrase(0, self.whole)
+        on = (k for k in range(1, self.name[0]) if self.given(k) == "on" and self._is_mechanism(k - 1))
+        k = next(on, -1) + 1
+        if k:  # a turntable on a red table
+            self._part(0)
+            self.current = self.subject = self.whole
+        k = self._noun_phrase(k, self.whole)
         while k < len(self.tokens):
             k = max(self._clause(k), k + 1)
+
+    def _is_mechanism(self, k: int) -> bool:
+        """Whether a word, as in `wheels` or `wheeled`, names a mechanism."""
+        return bool({lemma(self.given(k)), self.given(k).removesuffix("ed")} & set(self.mechanisms))
 
     def _clause(self, k: int) -> int:
         """What begins at word k: another part, or what is said of the last one."""
@@ -344,7 +380,7 @@ class _Parser(Words):
     def _is_adjective(self, word: str) -> bool:
         """Whether a word is of a look, a size or a state."""
         return (
-            word in COLOR_WORDS or word in _MATERIAL_WORDS or word in SIZE_WORDS or word in OPENNESS
+            word in COLOR_WORDS or word in MATERIAL_WORDS or word in SIZE_WORDS or word in OPENNESS
             or word in PLAIN_WORDS or word in ("dark", "light")
         )  # fmt: skip
 
@@ -356,20 +392,32 @@ class _Parser(Words):
         if length_at(self, k) and not self._noun_behind(k):
             return False
         verb = word in MOTIONS or word in DONE or word in GOING or word in OPENNESS
-        verb = verb or word in _PULLED
+        verb = verb or word in PULLED
         return not verb or self._noun_behind(k)
 
     def _noun_behind(self, k: int) -> bool:
         """Whether a noun follows word k before the clause ends: `sliding door`, not `slides out`."""
         for at in range(k + 1, min(k + 6, len(self.tokens))):
             word = self.given(at)
-            if word in _BEGINS_PART or word in _PREPOSITIONS or word in _BEING or self.tokens[at].is_sign:
+            ends = word in _BEGINS_PART or word in _PREPOSITIONS or word in _BEING or word in _GOES
+            if ends or self.tokens[at].is_sign:
                 return False
-            if word in WAYS or word in _DETERMINERS or self._is_adjective(word) or word in UNITS:
+            if word in ("one", "ones"):
+                return True
+            if word in WAYS or word in PLACES or word in _DETERMINERS or self._is_adjective(word) or word in UNITS:
                 continue
             if self.tokens[at].number is None and not any(word in words for words in DIMENSIONS.values()):
                 return word not in MOTIONS or self._noun_behind(at)
         return False
+
+    def _has(self, k: int, part: _Draft) -> bool:
+        """Whether a word says that a part has another one: what is lockable has a lock."""
+        noun = _HAVING.get(self.given(k))
+        if noun is not None:
+            of = "" if part is self.whole else self.noun(part)
+            there = Claim(about="there", value=True, words=self.given(k), at=(k,))
+            self.implied.append(PartSpecification(noun=noun, claims=(there,), of=of))
+        return noun is not None
 
     def _part(self, k: int, *, count: int | None = 1, of: _Draft | None = None) -> int:
         """A noun phrase that names a part; what has no noun is said of the part before."""
@@ -380,8 +428,11 @@ class _Parser(Words):
             # `two on the left and one on the right`
             part.nouns = list(next((item for item in reversed(self.parts) if not item.of), self.parts[-1]).nouns)
         if part.nouns:
+            part.claims, self.pending = [*self.pending, *part.claims], []
             self.parts.append(part)
             self.current = self.subject = part
+        elif self.given(end) == "and" and self.given(k - 1) in _WITH and self._begins_noun(end + 1):
+            self.pending = part.claims  # red and blue knobs
         else:
             self.current.claims += [claim for claim in part.claims if claim.about != "count"]
         return end
@@ -397,11 +448,13 @@ class _Parser(Words):
             ends = word in _BEGINS_PART or (word in _PREPOSITIONS and k > start) or self.tokens[k].is_sign
             if ends and not (part is self.whole and k < self.name[0]):
                 break
-            if part.nouns and (word in _BEING or word in _PULLED or self._verb_at(k) or word in WAYS or word in PLACES):
+            named = bool(part.nouns) or self.given(k - 1) in ("one", "ones")
+            if named and (word in _BEING or word in PULLED or self._verb_at(k) or word in WAYS or word in PLACES):
                 break
-            taken = self._look_or_size(k, part) or self._described(k, part)
+            taken = self._open(k, part) or self._look_or_size(k, part) or self._described(k, part)
             if word in ("every", "each", "either") and part is not self.whole:
                 part.count = None
+            taken = taken or int(self._has(k, part))
             if not taken and word.isalpha() and word not in _DETERMINERS and word not in _NO_NOUN:
                 if word in STOP_WORDS and part.nouns:
                     break
@@ -416,7 +469,9 @@ class _Parser(Words):
         return k
 
     def _verb_at(self, k: int) -> bool:
-        word = self.given(k)
+        word, before = self.given(k), self.given(k - 1)
+        if word in _BARE and before == lemma(before) and before not in _BEING:
+            return False  # a scissor lift
         return (word in MOTIONS or word in DONE or word in GOING) and not self._noun_behind(k)
 
     def _described(self, k: int, part: _Draft) -> int:
@@ -432,13 +487,50 @@ class _Parser(Words):
         elif word in PARTICLES and behind in WAYS and (part is not self.whole or k < self.name[0]):
             self.claim(part, "way", behind, k, k + 1)
             return 2
+        elif word in PARTICLES and word in MOTIONS and behind in _ANYHOW and self._noun_behind(k + 1):
+            self.claim(part, "moves", MOTIONS[word], k, k + 1)
+            return 2
         elif word in MOTIONS and (part is self.whole or self._noun_behind(k)):
             self.claim(part, "moves", MOTIONS[word], k)
-        elif word in OPENNESS and behind not in ("shelf", "front", "compartment", "top"):
-            self.claim(part, "open", OPENNESS[word], k)
         else:
             return 0
         return 1
+
+    def _open(self, k: int, part: _Draft) -> int:
+        """`half open`, `ajar`, `opened by 30 degrees`, `pulled out 20 cm`, `open 30 %`; how many words."""
+        before = measured_at(self, k)
+        at = before[2] if before else k
+        while before and self.given(at) in ("of", "the", "way"):
+            at += 1
+        word = self.given(at)
+        if word not in (*OPENNESS, *PULLED) or self.given(at + 1) in NOT_A_STATE:
+            return 0
+        how, much = before[:2] if before else ("share", OPENNESS.get(word, 1.0))
+        if before and OPENNESS.get(word) == 0.0:
+            how, much = "share", 1.0 - much if how == "share" else 0.0  # fully closed
+        end = at + 1 + (self.given(at + 1) in ("out", "up"))
+        if amount := amount_at(self, end) if (how, much) == ("share", 1.0) else None:
+            how, much, end = amount
+        self.claim(part, "open", (how, much), *range(k, end))
+        return end - k
+
+    def _range(self, k: int) -> int:
+        """`from 70 to 120 cm`, `up to 45 degrees`, said of how something moves; how many words."""
+        first, at = None, k + 1
+        if self.given(k) == "from":
+            first = measured_at(self, k + 1)
+            at = first[2] if first else k + 2
+        high = measured_at(self, at + 1) if self.given(at) == "to" else None
+        if high is None or high[0] == "share" or self.given(k) not in ("from", "up"):
+            return 0
+        low = first[1] if first else 0.0
+        number, bare = self.tokens[at + 1].number, self.tokens[k + 1].number
+        if self.given(k) == "from" and first is None and bare is not None and number:
+            low = bare / number * high[1]  # of the same unit
+        if low >= high[1]:
+            return 0
+        self.claim(self.subject, "range", (high[0], high[1] - low), *range(k, high[2]))
+        return high[2] - k
 
     def _counted(self, k: int, part: _Draft) -> int:
         """`four`, `no`; an article counts nothing."""
@@ -447,6 +539,11 @@ class _Parser(Words):
         if part is self.whole:  # a two-door wardrobe is no two wardrobes
             between = range(k + 1, self.name[0])
             says_its_kind = word in KINDS or not all(_may_follow(self.tokens, at) for at in between)
+            if number > 1 and word not in KINDS and k + 1 < self.name[0] and self._is_mechanism(k + 1):
+                counted = _Draft(nouns=[k + 1], count=int(number))
+                self.claim(counted, "count", int(number), k)
+                self.parts.append(counted)
+                return 2
         if word not in ARTICLES and not says_its_kind and number == int(number):
             part.count = 0 if part.count == 0 else int(number)
             self.claim(part, "count", int(number), k)
@@ -473,14 +570,14 @@ class _Parser(Words):
             self.claim(part, "like", "mirrored", k)
             return 1
         is_purpose = word in PURPOSES and self._noun_behind(k)  # a paper tray
-        if word in _MATERIAL_WORDS and not is_purpose and not self._is_mirror(k, part):
-            self.claim(part, "material", _MATERIAL_WORDS[word], k)
+        if word in MATERIAL_WORDS and not is_purpose and not self._is_mirror(k):
+            self.claim(part, "material", MATERIAL_WORDS[word], k)
             return 1
         return self._size(k, part)
 
-    def _is_mirror(self, k: int, part: _Draft) -> bool:
+    def _is_mirror(self, k: int) -> bool:
         """Whether a mirror is meant, and not what something is made of."""
-        return self.given(k) == "mirror" and (part is not self.whole or not self._noun_behind(k))
+        return self.given(k) == "mirror" and not self._noun_behind(k)
 
     def _size(self, k: int, part: _Draft) -> int:
         """`60 cm wide`, `a height of 2 m`, `15 cm`; how many words."""
@@ -501,22 +598,27 @@ class _Parser(Words):
     def _said_behind(self, k: int) -> int:
         """What is said of a part behind its noun: a verb, a place, a state, a look, or what it stands on."""
         word, part, before = self.given(k), self.current, self.given(k - 1)
-        taken = self._look_or_size(k, part) or self._adjustable(k, self.whole)
+        able = word in OPENNESS and before in (*_RELATIVE, *_CAN)
+        taken = 0 if able else self._open(k, part) or (self._range(k) if word == "up" else 0)
+        taken = taken or self._look_or_size(k, part) or self._adjustable(k, self.whole)
         if taken:
             return k + taken
+        if tuple(self.given(at) for at in range(k, k + 3)) == ("side", "by", "side"):
+            return k + 3
         does = word in GOING and (word not in OPENNESS or before in (*_RELATIVE, *_CAN))
         if word in MOTIONS or does or (word in DONE and before == "be"):
             return self._verb(k)
-        if word in _PULLED:
-            self.claim(part, "open", 1.0, k)
-            return k + (2 if self.given(k + 1) == "out" else 1)
         if word in _PREPOSITIONS:
             return self._preposition(k)
-        if word in OPENNESS:
-            able = before in (*_RELATIVE, *_CAN)
-            self.claim(part, "moves" if able else "open", "moves" if able else OPENNESS[word], k)
+        if able:
+            self.claim(part, "moves", "moves", k)
+        elif word in _DROPPED and self.given(k + 1) in ("", *_BEGINS_PART):
+            self.claim(part, "way", word, k)
+            self.claim(part, "open", ("share", 1.0), k)
         elif word in WAYS:
             self.claim(part, "place", word, k)
+        elif self._has(k, part):
+            pass
         elif before in (*_RELATIVE, "can") and word.isalpha() and word not in FUNCTION_WORDS | STOP_WORDS:
             self.claim(self.subject, "does", word, k)
         return k + 1
@@ -528,7 +630,7 @@ class _Parser(Words):
         while self.given(end) in ("to", "the", "on", "at", "towards", "sideways"):
             end += 1
         way = self.given(end).removesuffix("s")
-        if way in WAYS:
+        if way in WAYS and not (way == "up" and self.given(end + 1) == "to"):
             both = self.given(end + 1) == "and" and self.given(end + 2).removesuffix("s") in WAYS
             if word in ("hinged", "hinges", "hinge"):
                 self.claim(subject, "hinge", way, k, end)
@@ -547,12 +649,14 @@ class _Parser(Words):
             and not (self.given(at) == "top" and self.given(at + 1) != "of")
         ):
             at += 1
+        if taken := self._range(k):
+            return k + taken
         word = self.given(at)
         sided = self.given(at + 1) in ("side", "hand", "end", "edge")
         if word in PLACES and (sided or not self._noun_behind(at)) and self.given(k) in _AT:
             self.claim(self.current, "place", word, *range(k, at + 1))
             return at + (2 if sided else 1)
-        if word in _MATERIAL_WORDS and self.given(k) in ("of", "in", "from"):
+        if word in MATERIAL_WORDS and self.given(k) in ("of", "in", "from"):
             return k + 1
         target = _Draft()
         end = self._noun_phrase(k + 1, target)
@@ -569,4 +673,6 @@ class _Parser(Words):
                 self.parts.append(target)
         else:
             self.current.claims += target.claims
+            if self.given(k) in LEVELS and end == k + 1:
+                self.claim(self.current, "place", LEVELS[self.given(k)], k)
         return max(end, k + 1)

@@ -1,4 +1,4 @@
-"""What a specification asks of a family: its parameters, what is required of its parts, and what it cannot have.
+"""What a specification asks of a family: its parameters, and what it cannot have.
 
 Driven by what the families declare: nothing here knows a family.
 """
@@ -16,8 +16,8 @@ from kinematify.generate.procedural.family import build, checked
 from kinematify.generate.procedural.language.arrangement import layout_of
 from kinematify.generate.procedural.language.counts import read_copies, read_counted_name, read_counts, read_grids
 from kinematify.generate.procedural.language.motions import MOTIONS
-from kinematify.generate.procedural.language.openness import FRACTIONS, read_openness
-from kinematify.generate.procedural.language.parts import PartReader
+from kinematify.generate.procedural.language.openness import FRACTIONS
+from kinematify.generate.procedural.language.parts import part_nouns
 from kinematify.generate.procedural.language.reading import ParseState, nouns_of
 from kinematify.generate.procedural.language.sizes import (
     DIMENSIONS,
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.language.compare import Missing
-    from kinematify.generate.procedural.language.parts import PartRequirement
     from kinematify.generate.procedural.language.specification import Specification
     from kinematify.generate.procedural.parameter import Parameter, Value
 
@@ -49,6 +48,9 @@ _PLACES = {
 _NOT = ("no", "without")
 _SWINGS = {"hinged", "hinge", "hinges", "opens", "opening", "swings"}
 _DOUBLED = ("leaves", "sashes", "doors")
+_OPEN = {"share": "open", "angle": "open_angle", "distance": "open_distance"}
+_HANDLES = ("handle", "knob", "pull", "grip")
+"""Words for handles, which are no parts of their own."""
 _SIZE = 0.02  # of a size, by which it may be off
 _ABSURD = 4.0  # times out of its range, something is no such object
 
@@ -64,8 +66,6 @@ class Understanding:
     """Words that were taken up."""
     dropped: tuple[Missing, ...]
     """What such an object cannot have."""
-    requirements: tuple[PartRequirement, ...]
-    """What is asked of the parts that no parameter sets."""
     overall: tuple[str, float] | None
     """``width``, ``depth`` or ``height`` of the whole [m], where no parameter sets it."""
     copies: int
@@ -102,18 +102,16 @@ def understand(specification: Specification, family: Family) -> Understanding:
     _arrangement(reading)
     read_size_words(reading)
     _usual_of_its_kind(reading)
-    parts = PartReader(reading=reading, made=_built(reading))
-    parts.looks()
-    read_openness(reading, parts)
-    parts.read()
+    made = _built(reading)
+    _said_of_whole(reading, specification)
+    _looks_of_handles(reading, specification, made)
     read_copies(reading)
-    _fit_sizes(reading, parts)
+    _fit_sizes(reading, made)
     return Understanding(
         family=family.name,
         values=dict(reading.values),
         used=frozenset(reading.used),
         dropped=tuple(reading.dropped),
-        requirements=tuple(parts.requirements),
         overall=reading.overall,
         copies=reading.copies,
     )
@@ -127,23 +125,48 @@ def _double(reading: ParseState) -> None:
             reading.take(parameter.name, NUMBERS[reading.text(k)], reading.text(k), k)
 
 
-def _fit_sizes(reading: ParseState, parts: PartReader) -> None:
+def _said_of_whole(reading: ParseState, specification: Specification) -> None:
+    """Colour, material and openness of the object."""
+    for claim in specification.whole.claims:
+        name, value = claim.about, claim.value
+        if name == "open":
+            how, value = claim.value
+            name = _OPEN[how]
+        elif name not in ("material", "color"):
+            continue
+        if not reading.used & set(claim.at):
+            reading.take(name, value, claim.words, *claim.at)
+
+
+def _looks_of_handles(reading: ParseState, specification: Specification, made: Blueprint) -> None:
+    """`brass knobs`, of what has handles that are no parts of their own."""
+    nouns = part_nouns(reading.family, made)
+    for part in specification.parts:
+        word = part.noun.split()[-1]
+        if word not in _HANDLES or (word,) in nouns or reading.parameter("handle") is None:
+            continue
+        for claim in part.claims:
+            if claim.about in ("material", "color"):
+                reading.take(f"handle_{claim.about}", claim.value, claim.words, *claim.at)
+
+
+def _fit_sizes(reading: ParseState, made: Blueprint) -> None:
     """Where a frame makes the whole larger than its opening, the whole is as large as is asked for."""
     for axis, name in enumerate(OVERALL):
-        value, base = reading.values.get(name), parts.made.parts[0].bounds
+        value, base = reading.values.get(name), made.parts[0].bounds
         said = reading.said.get(name, "").split()
         if not set(DIMENSIONS[name]) & set(said) or not isinstance(value, float):
             continue
-        there = [float(np.ptp(bounds, axis=0)[axis]) for bounds in (base, parts.made.assembly.bounds)]
+        there = [float(np.ptp(bounds, axis=0)[axis]) for bounds in (base, made.assembly.bounds)]
         fits = reading.copies > 1 or any(math.isclose(size, value, rel_tol=_SIZE) for size in there)
         for size in () if fits else there[::-1]:
             values = {**reading.values, name: value + value - size}
             try:
-                made = build(reading.family, values)
+                other = build(reading.family, values)
             except InputError:
                 continue
-            if math.isclose(float(np.ptp(made.assembly.bounds, axis=0)[axis]), value, rel_tol=_SIZE):
-                reading.values, parts.made = values, made
+            if math.isclose(float(np.ptp(other.assembly.bounds, axis=0)[axis]), value, rel_tol=_SIZE):
+                reading.values, made = values, other
                 break
 
 

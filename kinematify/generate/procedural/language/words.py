@@ -86,7 +86,7 @@ _WRITTEN = (
     (r"\bw/o\b", "without"),
     (r"\bw/", "with"),
     ("&", "and"),
-    (r"\bcarrying handle", "carry handle"),
+    (r"\bcarrying(?= handle)", "carry"),
     (r"\b(?:one|each)? ?(?:above|below|under|over|on top of) (?:the|each|one) (?:other|another)\b", "stacked"),
     (r"\b(in|on|of|for|to) both\b(?! sides)(?= \w+s\b)", r"\1 each"),
     *((rf"\b{body}[ -](?:high|tall)\b", f"{cm} cm tall") for body, cm in _BODY_CM.items()),
