@@ -188,7 +188,8 @@ def _key(source: CorpusSource, seed: int) -> str:
     files = [] if source.folder is None else sorted(source.folder.rglob("*.*"))
     sizes = [(path.name, path.stat().st_size) for path in files]
     facts = asdict(source) | {"folder": None}
-    return content_key(facts, sizes, seed, load_config().joints.model_dump(mode="json"))
+    settings = load_config().joints.model_dump(mode="json", exclude={"confidence"})  # of what is chosen, not measured
+    return content_key(facts, sizes, seed, settings)
 
 
 def _measure(source: CorpusSource, path: Path, seed: int) -> None:
@@ -212,7 +213,6 @@ def _measure(source: CorpusSource, path: Path, seed: int) -> None:
         origin=source.origin,
         source=opened.source,
         fits=opened.fits,
-        style=opened.style,
         broken=source.broken,
     )
     write_examples(path, found)
@@ -260,8 +260,6 @@ class _Opened:
     """Whose work it is."""
     fits: bool
     """It may enter weights that ship."""
-    style: str = ""
-    """Way of modelling that was drawn."""
 
 
 def _read(folder: Path) -> _Opened:
@@ -297,7 +295,6 @@ def _generated(source: CorpusSource, seed: int) -> _Opened:
         category=category,
         source=source.origin,
         fits=source.origin != DESCRIBED,
-        style=str(blueprint.parameters.get("modelled", "")),
     )
 
 

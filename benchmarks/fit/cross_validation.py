@@ -93,25 +93,20 @@ def row_of(examples: Sequence[Example], picks: Sequence[int]) -> Row:
 
 
 def judge_left_out(
-    examples: Sequence[Example],
-    group: Callable[[Example], str],
-    progress: Callable[[str, float], None],
-    folder: Path | None = None,
+    examples: Sequence[Example], progress: Callable[[str, float], None], folder: Path | None
 ) -> dict[int, FloatArray]:
-    """Probabilities of the hypotheses of every example by trees whose fit had none of its group.
+    """Probabilities of the hypotheses of every example by a fit that had nothing of its category.
 
-    Groups (categories or styles) fall into five folds; nothing of a fold is fitted to when it is judged. What
-    has no group is fitted to in all of them and not judged: all its hypotheses are alike. Fits are kept in `folder`.
+    Categories fall into five folds; nothing of a fold is fitted to when it is evaluated. Fits are kept in `folder`.
     """
-    found = {k: np.full(len(item.kinds), 1.0 / len(item.kinds)) for k, item in enumerate(examples) if not group(item)}
-    folds = folds_of(examples, group)
+    found: dict[int, FloatArray] = {}
+    folds = folds_of(examples)
     for fold in range(_FOLDS):
         progress(f"left out {fold + 1} of {_FOLDS}", fold / _FOLDS)
-        judged = [k for k, at in enumerate(folds) if at == fold and k not in found]
+        judged = [k for k, at in enumerate(folds) if at == fold]
         if not judged:
             continue
-        kept = [at != fold or k in found for k, at in enumerate(folds)]
-        fitted = [example for example, stays in zip(examples, kept, strict=True) if example.teaches and stays]
+        fitted = [example for example, at in zip(examples, folds, strict=True) if example.teaches and at != fold]
         scorer = kept_scorer(fitted, folder)
         found |= {k: _likely(scorer, examples[k]) for k in judged}
     return dict(enumerate(agreed_examples(examples, [found[k] for k in range(len(examples))])))
@@ -176,7 +171,7 @@ class RigidityRow:
 def judge_rigidity_left_out(examples: Sequence[Example]) -> dict[str, RigidityRow]:
     """What is fixed, by trees whose fit had nothing of the category; by set."""
     odds = np.zeros(len(examples))
-    folds = np.array(folds_of(examples, category_of))
+    folds = np.array(folds_of(examples))
     for fold in sorted(set(folds.tolist())):
         fitted = [example for example, at in zip(examples, folds, strict=True) if example.teaches and at != fold]
         judged = np.flatnonzero(folds == fold).tolist()
@@ -197,7 +192,7 @@ def judge_rigidity_left_out(examples: Sequence[Example]) -> dict[str, RigidityRo
 
 def judge_edges_left_out(examples: Sequence[TreeExample]) -> dict[str, EdgesRow]:
     """How many edges of the true trees are found with weights whose fit had nothing of the category; by set."""
-    folds = folds_of(examples, category_of)
+    folds = folds_of(examples)
     scores: dict[int, FloatArray] = {}
     for fold in sorted(set(folds)):
         fitted = [example for example, at in zip(examples, folds, strict=True) if example.fits and at != fold]
@@ -221,7 +216,7 @@ def judge_opening_left_out(examples: Sequence[Example]) -> dict[str, OpeningRow]
     """Which way turns open, by trees whose fit had nothing of the category; by set."""
     turning = [example for example in examples if example.sides]
     right = np.zeros(len(turning))
-    folds = np.array(folds_of(turning, category_of))
+    folds = np.array(folds_of(turning))
     for fold in sorted(set(folds.tolist())):
         fitted = [example for example, at in zip(turning, folds, strict=True) if example.teaches and at != fold]
         scorer = fit_opening(fitted, seeds=(0,), provenance={})
@@ -248,7 +243,7 @@ def judge_turning_left_out(examples: Sequence[Example]) -> dict[str, TurningRow]
     """What goes round, by trees whose fit had nothing of the category; by set. Links in series are told otherwise."""
     turning = [example for example in examples if turns_known(example)]
     taken = np.zeros(len(turning), dtype=bool)
-    folds = np.array(folds_of(turning, category_of))
+    folds = np.array(folds_of(turning))
     for fold in sorted(set(folds.tolist())):
         fitted = [example for example, at in zip(turning, folds, strict=True) if example.teaches and at != fold]
         scorer = fit_turning(fitted, seeds=(0,), provenance={})
@@ -270,19 +265,9 @@ def _share(taken: NDArray[np.bool_]) -> float | None:
     return float(taken.mean()) if len(taken) else None
 
 
-def folds_of(examples: Sequence[_Kind], group: Callable[[_Kind], str]) -> list[int]:
-    """The fold of each example: by the name of its group alone, so that a new group moves no other."""
-    return [zlib.crc32(group(example).encode()) % _FOLDS for example in examples]
-
-
-def surprise_of(examples: Sequence[Example], likely: Sequence[FloatArray]) -> float:
-    """Mean over the objects of -log of the probability that is given to what is right; smoother than shares right."""
-    by_object: dict[str, list[float]] = {}
-    for example, given in zip(examples, likely, strict=True):
-        if example.right.max() >= _RIGHT:
-            value = -np.log(max(float(given[example.right >= _RIGHT].sum()), 1e-4))
-            by_object.setdefault(f"{example.origin}/{example.object}", []).append(value)
-    return float(np.mean([np.mean(values) for values in by_object.values()])) if by_object else 0.0
+def folds_of(examples: Sequence[_Kind]) -> list[int]:
+    """The fold of each example: by the name of its category alone, so that a new category moves no other."""
+    return [zlib.crc32(category_of(example).encode()) % _FOLDS for example in examples]
 
 
 def judgement_of(example: Example, probabilities: FloatArray) -> Posterior:

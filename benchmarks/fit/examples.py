@@ -72,8 +72,6 @@ class Example:
     """Position of what the weighted cues alone would choose."""
     alike: int
     """The same number for edges of an object that are alike (`twins.alike_edges`), -1 for all others."""
-    style: str = ""
-    """Way of modelling that was drawn for it (`modelling.WAYS`); empty where none was."""
     broken: bool = False
     """The object has pieces broken off; such edges teach what is fixed, not which joint is right."""
     sides: Mapping[str, FloatArray] = field(default_factory=dict)
@@ -109,7 +107,6 @@ def examples_of(
     origin: str,
     source: str,
     fits: bool,
-    style: str = "",
     broken: bool = False,
 ) -> list[Example]:
     """Measure all hypotheses of the edges of the true tree of an object.
@@ -124,7 +121,6 @@ def examples_of(
         origin: Of which corpus it is.
         source: Whose work it is.
         fits: See `Example`.
-        style: See `Example`.
         broken: See `Example`.
     """
     lessened = {joint.parent for joint in truth.joints if joint.kind is JointType.FIXED}
@@ -160,7 +156,6 @@ def examples_of(
                 origin=origin,
                 source=source,
                 fits=fits,
-                style=style,
                 hypotheses=hypotheses,
                 size=size,
                 measured={name: value for values in groups.values() for name, value in values.items()},
@@ -231,7 +226,6 @@ def write_examples(path: Path, examples: Sequence[Example]) -> None:
                 "origin": example.origin,
                 "source": example.source,
                 "fits": example.fits,
-                "style": example.style,
                 "broken": example.broken,
                 "by_cues": example.by_cues,
                 "size": example.size,

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import json
-import zlib
 from collections import Counter
 from dataclasses import asdict, replace
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from benchmarks.fit.categories import category_of
 from benchmarks.fit.corpora import (
     DESCRIBED,
     GENERATED,
@@ -39,7 +35,6 @@ from benchmarks.fit.cross_validation import (
     picked,
     row_of,
     sets_of,
-    surprise_of,
 )
 from benchmarks.fit.edges import edges_row, fit_edges, write_edge_weights
 from benchmarks.fit.trees import (
@@ -78,7 +73,6 @@ FIXED_HEAD, EDGES_HEAD, DESCRIBED_SET = "fixed", "edges", "described"
 _SEEDS = (0, 1, 2, 3)
 SHIPPED = Seeds(trees=_SEEDS, networks=(0, 1, 2, 3, 4, 5), points=(0, 1))
 _LEAST = 10  # joints below which calibration says nothing
-_LEARNING = (0.25, 0.5, 1.0)
 
 
 def run_fit(
@@ -93,7 +87,6 @@ def run_fit(
     per_category: int | None,
     hold_out: Sequence[str],
     skip: Sequence[str],
-    ablation: bool,
     progress: Callable[[str, float], None],
 ) -> dict[str, Any]:
     """Fit the choice of joints, judge it held out, and write ``weights.npz``, ``choice.json`` and ``choice.md``.
@@ -109,7 +102,6 @@ def run_fit(
         per_category: Objects of each category of a folder that are fitted to; the others judge. None for all.
         hold_out: Folders of objects that are also judged by a fit that has nothing of any of them.
         skip: Of `FIXED_HEAD`, `EDGES_HEAD` and `DESCRIBED_SET`: what is neither measured, fitted nor judged.
-        ablation: Also fit without each group of measurements, and to a part of the objects.
         progress: Called with what is done and the share of it.
 
     Returns:
@@ -127,9 +119,7 @@ def run_fit(
     trees = gather_trees(of_trees, cache / "trees", seed=seed, workers=workers, progress=progress)
     drawn = {"seed": seed, "rounds": rounds, "composed": composed, "per_category": per_category}
     examples = with_spares(examples, per_category)
-    return fit_and_judge(
-        examples, trees, out, drawn=drawn, held_out=hold_out, skip=skip, ablation=ablation, progress=progress
-    )
+    return fit_and_judge(examples, trees, out, drawn=drawn, held_out=hold_out, skip=skip, progress=progress)
 
 
 def fit_and_judge(
@@ -140,7 +130,6 @@ def fit_and_judge(
     drawn: Mapping[str, int | None],
     held_out: Sequence[str],
     skip: Sequence[str],
-    ablation: bool,
     progress: Callable[[str, float], None],
 ) -> dict[str, Any]:
     """What `run_fit` does of examples that are measured; `drawn` says how many were generated."""
@@ -168,7 +157,7 @@ def fit_and_judge(
     edges = fit_edges([example for example in trees if example.fits], provenance)
     if EDGES_HEAD not in skip:
         write_edge_weights(edges, out / EDGE_WEIGHTS)
-    likely = {"held out by category": judge_left_out(examples, category_of, progress, fits)}
+    likely = {"held out by category": judge_left_out(examples, progress, fits)}
     likely["held out with its source"] = judge_origins_held_out(examples, held_out, fits)
     before = shipped_scorer()
     for name, each in (("weights before", before), ("these weights, in-sample", scorer)):
@@ -186,8 +175,6 @@ def fit_and_judge(
         "turning": {name: asdict(row) for name, row in judge_turning_left_out(examples).items()},
         "edges": _edges(trees, edges),
     }
-    if ablation:
-        report |= _ablation(examples, progress)
     (out / "choice.json").write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
     (out / "choice.md").write_text(as_markdown(report), encoding="utf-8")
     return report
@@ -256,43 +243,6 @@ def _calibration(examples: Sequence[Example], likely: Mapping[int, FloatArray]) 
     return calibration_of([examples[k] for k in index], [likely[k] for k in index]) if len(index) >= _LEAST else {}
 
 
-def _ablation(examples: Sequence[Example], progress: Callable[[str, float], None]) -> dict[str, Any]:
-    """Held out by category: each group of measurements taken away, and a part of the objects alone."""
-    groups = sorted({group for example in examples for group in example.groups})
-    without = {"nothing": examples} | {group: [_without(group, example) for example in examples] for group in groups}
-    shares = {
-        f"{share:.0%}": [replace(example, fits=example.fits and _draw(example) < share) for example in examples]
-        for share in _LEARNING
-    }
-    return {
-        name: {of: _surprises(some, progress) for of, some in changed.items()}
-        for name, changed in (("ablation", without), ("learning", shares))
-    }
-
-
-def _without(group: str, example: Example) -> Example:
-    """The example with the measurements of a group missing; what the trees start from is level instead."""
-    names = set(example.groups.get(group, ()))
-    missing = {name: np.full_like(example.measured[name], np.nan) for name in names}
-    level = {name: np.zeros_like(example.measured[name]) for name in names & {"rules_score", "rules_odds"}}
-    return replace(example, measured={**example.measured, **missing, **level})
-
-
-def _draw(example: Example) -> float:
-    """A number in [0, 1) that is the object's own."""
-    return zlib.crc32(f"{example.origin}/{example.object}".encode()) / 2.0**32
-
-
-def _surprises(examples: Sequence[Example], progress: Callable[[str, float], None]) -> dict[str, float]:
-    """Of the sets of real objects, held out by category."""
-    likely = judge_left_out(examples, category_of, progress)
-    return {
-        name: surprise_of([examples[k] for k in index], [likely[k] for k in index])
-        for name, index in sets_of(examples).items()
-        if examples[index[0]].origin not in GENERATED
-    }
-
-
 def _percent(share: float | None) -> str:
     return "" if share is None else f"{share:.1%}"
 
@@ -357,17 +307,6 @@ def as_markdown(report: dict[str, Any]) -> str:
             for name, row in turning.items()
         ]
         blocks += ["Which turns go round, of the true line, held out by category:", table(columns, counted)]
-    for key, title in (
-        (
-            "ablation",
-            "Surprise (mean of -log of the probability of what is right), held out by category, without",
-        ),
-        ("learning", "The same, fitted to a part of the objects"),
-    ):
-        if key in report:
-            sets = list(next(iter(report[key].values())))
-            body = [(name, *(f"{row[of]:.3f}" for of in sets)) for name, row in report[key].items()]
-            blocks += [f"{title}:", table((key, *sets), body)]
     return "\n\n".join(blocks) + "\n"
 
 

@@ -44,9 +44,6 @@ from kinematify.cli.progress import progress_reporter
     multiple=True,
     help="Do not refit what detects fixed parts, or the edges of the tree; do not evaluate described objects.",
 )
-@click.option(
-    "--ablation", is_flag=True, help="Also judge fits without each group of measurements, and to fewer objects."
-)
 @json_option
 def command(
     *,
@@ -60,7 +57,6 @@ def command(
     per_category: int | None,
     hold_out: tuple[str, ...],
     skip: tuple[str, ...],
-    ablation: bool,
     json_to: str | None,
 ) -> None:
     """Fit the choice of joints to generated objects and to the objects in FOLDERS.
@@ -85,7 +81,6 @@ def command(
             per_category=per_category,
             hold_out=hold_out,
             skip=skip,
-            ablation=ablation,
             progress=progress,
         )
     if json_to != "-":

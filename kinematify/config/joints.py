@@ -236,7 +236,7 @@ class ConfidenceConfig(StageConfig):
     """How likely a joint is right (`results/choice.md`, `kinematify bench calibration`)."""
 
     # with less, furniture that the cues were written for loses; with more, all else (results/choice.md)
-    cues_lead: float = 1.25
+    cues_lead: float = 1.0
     """Log odds that what the weighted cues would choose keeps over the fitted probabilities."""
     fold_lead: float = 2.0  # a plate folded in the middle is a rocker, which few fitted objects are
     """The same where they choose the fold of a rocker."""

@@ -46,10 +46,10 @@ def test_what_is_right_has_no_cause_and_what_is_wrong_one(tmp_path: Path) -> Non
 
 def test_groups_of_one_name_share_a_fold_and_a_new_one_moves_no_other(tmp_path: Path) -> None:
     examples = gather_examples(generated_sources(0, 3), tmp_path, seed=0, workers=1, progress=silent)
-    folds = folds_of(examples, lambda example: example.category)
+    folds = folds_of(examples)
     by_category = {(example.category, fold) for example, fold in zip(examples, folds, strict=True)}
     assert len(by_category) == len({category for category, _ in by_category}) == 3
-    assert folds_of(examples[1:], lambda example: example.category) == folds[1:]
+    assert folds_of(examples[1:]) == folds[1:]
 
 
 def test_a_recipe_is_left_out_with_the_real_objects_of_its_kind(tmp_path: Path) -> None:
@@ -82,7 +82,6 @@ def test_a_small_fit_writes_weights_and_tables_and_the_same_again(tmp_path: Path
             per_category=None,
             hold_out=(),
             skip=("edges",),
-            ablation=False,
             progress=silent,
         )
         assert set(report["sets"]) == {"random mechanisms"}

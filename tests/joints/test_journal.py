@@ -30,7 +30,7 @@ def journal_of(parent: Manifold, child: Manifold, *, reach: float = 0.003, seed:
     cache = PartCache(assembly, graph, samples=500, seed=0)
     facing = facing_faces(cache, 0, 1, reach, CONFIG.joints.journal)
     size = float(np.ptp(assembly.parts[1].vertices, axis=0).max())
-    return find_journal(facing, size, CONFIG.joints.journal, np.random.default_rng(seed))
+    return find_journal(facing, size, CONFIG.joints.journal, seed)
 
 
 def test_the_pin_of_a_door_is_found_although_it_is_a_hundredth_of_the_contact() -> None:

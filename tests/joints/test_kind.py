@@ -124,7 +124,9 @@ def test_a_rail_along_which_little_moves_guides_only_what_cannot_turn(turn: floa
     turns = replace(turns, free_parent=np.full_like(turns.free_parent, turn))
     slides = replace(slides, cues={**slides.cues, "travel_parent": np.full(len(slides.axes), travel)})
     assert scene.bearing is not None
-    across = replace(scene.bearing.lines[0], axis=np.array([1.0, 0.0, 0.0]))  # a pin along the rail is another matter
+    assert scene.bearing.rail is not None
+    across = np.roll(scene.bearing.rail.axis, 1)  # a pin along the rail is another matter
+    across = replace(scene.bearing.lines[0], axis=across)
     scene = replace(scene, bearing=replace(scene.bearing, lines=(across,)))
     alone = Siblings(count=1, gripping=False, overlapping=False)
     assert decide_kind(scene, alone, turns, slides, CONFIG.joints).cues["rail"] == float(guides)

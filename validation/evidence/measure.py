@@ -46,7 +46,7 @@ class ParentEvidence:
     gap: float
     """Distance of the two, fraction of the model's diagonal."""
     quality: float
-    """How good their contact is for the tree, in [0, 1]; 0 where they do not touch."""
+    """How good their contact is for the tree, in [0, 1]; 0 where they do not touch, or the child touches no other."""
     best: int | None
     """Body with the best contact, without the declared parent and what the child carries; None if there is none."""
     best_quality: float
@@ -161,13 +161,14 @@ def measure_joints(
 def _parent_evidence(bodies: Bodies, joint: TrueJoint) -> ParentEvidence:
     carried = bodies.tree.subtree(joint.child)
     others = [body for body in bodies.graph.neighbours[joint.child] if body not in carried and body != joint.parent]
-    quality = {body: _quality(bodies, joint.child, body) for body in (*others, joint.parent)}
+    compared = (*others, joint.parent) if others else ()  # qualities take a tenth of the stage
+    quality = {body: _quality(bodies, joint.child, body) for body in compared}
     best = max(others, key=lambda body: quality[body], default=None)
     edge = bodies.graph.by_pair.get(_pair(joint.child, joint.parent))
     return ParentEvidence(
         touches=edge is not None and not edge.bridge,
         gap=bodies.gap(_pair(joint.child, joint.parent)) / bodies.diagonal,
-        quality=quality[joint.parent],
+        quality=quality.get(joint.parent, 0.0),
         best=best,
         best_quality=0.0 if best is None else quality[best],
     )

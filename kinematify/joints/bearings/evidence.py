@@ -46,6 +46,8 @@ class BearingSide:
 
 
 Sides = tuple[BearingSide, BearingSide]
+Generators = tuple[np.random.Generator, np.random.Generator]
+"""One for what is drawn of each side."""
 
 
 def contact_sides(

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from kinematify.config import BearingConfig
     from kinematify.contact.graph import ContactEdge, ContactGraph
     from kinematify.geometry.surface import PartSurface
-    from kinematify.joints.bearings.evidence import BearingSide, Sides
+    from kinematify.joints.bearings.evidence import BearingSide, Generators, Sides
     from kinematify.robot.arrays import BoolArray, FloatArray
 
 
@@ -106,20 +106,21 @@ def _fitted(
     config: BearingConfig,
     seed: int,
 ) -> EdgeBearing:
-    rng = np.random.default_rng([seed, edge.a, edge.b])
+    # One generator for each part: what is drawn of it depends neither on its number nor on the other part.
+    draws = np.random.default_rng(seed), np.random.default_rng(seed)
     centroid = contact_centroid(sides)
     directions = _directions(surfaces, edge) if config.directed_pairs else np.empty((0, 3))
-    proposals = propose_lines(sides, centroid, directions, diagonal=diagonal, config=config, rng=rng)
+    proposals = propose_lines(sides, centroid, directions, diagonal=diagonal, config=config, draws=draws)
     lines = _rank(sides, proposals, centroid, directions, diagonal=diagonal, config=config)
     if not lines or lines[0].score < config.turned_score:
-        turned = _turned_lines(surfaces, edge, centroid, config, rng)
+        turned = _turned_lines(surfaces, edge, centroid, config, draws)
         lines = sorted([*lines, *turned], key=lambda line: -line.score)
     return EdgeBearing(
         a=edge.a,
         b=edge.b,
         centroid=read_only(centroid, np.float64),
         lines=tuple(lines),
-        rail=fit_rail(sides, config.rail, rng),
+        rail=fit_rail(sides, config.rail, draws),
     )
 
 
@@ -197,7 +198,7 @@ def _turned_lines(
     edge: ContactEdge,
     centroid: FloatArray,
     config: BearingConfig,
-    rng: np.random.Generator,
+    draws: Generators,
 ) -> list[BearingLine]:
     """Axes of wheels and discs: a part that is round as a whole turns about its own axis.
 
@@ -205,7 +206,7 @@ def _turned_lines(
     at its end is round about the wrong line.
     """
     lines = []
-    for own, shares in ((edge.a, (1.0, 0.0)), (edge.b, (0.0, 1.0))):
+    for own, shares, rng in ((edge.a, (1.0, 0.0), draws[0]), (edge.b, (0.0, 1.0), draws[1])):
         side = whole_side(surfaces[own], config.turned_samples)
         line = _own_axis(side, config, rng)
         if line is None:
@@ -250,7 +251,7 @@ def propose_lines(
     *,
     diagonal: float,
     config: BearingConfig,
-    rng: np.random.Generator,
+    draws: Generators,
 ) -> Lines:
     """Promising distinct lines: the best by area among all, and the best by circles among those through circles.
 
@@ -262,14 +263,15 @@ def propose_lines(
         directions: Along which lines are proposed besides, shape (k, 3).
         diagonal: Of the assembly [m].
         config: Numbers of proposals and of what is kept.
-        rng: Draws the pairs and circles.
+        draws: One generator for each part; they draw its pairs and circles.
 
     Returns:
         Lines through their feet of the contact centroid; none where nothing is curved.
     """
-    by_pairs = [normal_pair_lines(side, config.pairs, rng) for side in sides]
-    by_pairs += [directed_lines(side, directions, config.directed_pairs, rng) for side in sides]
-    by_circles = [_circle_lines(side, config.circles, rng) for side in sides]
+    each = list(zip(sides, draws, strict=True))
+    by_pairs = [normal_pair_lines(side, config.pairs, rng) for side, rng in each]
+    by_pairs += [directed_lines(side, directions, config.directed_pairs, rng) for side, rng in each]
+    by_circles = [_circle_lines(side, config.circles, rng) for side, rng in each]
     lines = join([*by_circles, *by_pairs]).through_feet(centroid)
     if len(lines) == 0:
         return lines

@@ -13,7 +13,7 @@ from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from kinematify.config import BearingConfig, RailConfig
-    from kinematify.joints.bearings.evidence import BearingSide, Sides
+    from kinematify.joints.bearings.evidence import BearingSide, Generators, Sides
     from kinematify.robot.arrays import FloatArray
 
 
@@ -34,18 +34,18 @@ class Rail:
         object.__setattr__(self, "axis", read_only(self.axis, np.float64))
 
 
-def fit_rail(sides: Sides, config: RailConfig, rng: np.random.Generator) -> Rail | None:
+def fit_rail(sides: Sides, config: RailConfig, draws: Generators) -> Rail | None:
     """Find the best rail of a contact.
 
     Args:
         sides: Evidence of both parts near their contact.
         config: Tolerances and number of proposals.
-        rng: Draws the pairs of normals whose cross products are the proposals.
+        draws: One generator for each part; they draw the pairs of normals whose cross products are the proposals.
 
     Returns:
         The best direction; None where no two normals cross or a side is empty.
     """
-    proposals = [_cross_directions(side, config.pairs, rng) for side in sides]
+    proposals = [_cross_directions(side, config.pairs, rng) for side, rng in zip(sides, draws, strict=True)]
     axes = np.concatenate(proposals)
     if len(axes) == 0 or any(len(side.weights) == 0 for side in sides):
         return None

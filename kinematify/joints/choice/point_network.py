@@ -92,7 +92,9 @@ class Network:
 
 def swish(values: FloatArray) -> FloatArray:
     """The activation x / (1 + exp(-x)) (Elfwing et al. 2018)."""
-    return np.asarray(values / (1.0 + np.exp(-values)))
+    result = np.exp(-values)
+    result += 1.0
+    return np.asarray(np.divide(values, result, out=result))
 
 
 POINT_INPUTS, LINE_INPUTS = 20, 10
@@ -102,6 +104,7 @@ _OFF_LINE = 0.05  # of the child's diagonal: from here on its middle says which 
 _LEVEL = 0.2  # of a unit vector
 _UPWARDS = 0.1  # of the child's diagonal: what is beside its parent goes by up
 _FAST = 1.5  # of the child's diagonal
+_AT_ONCE = 8  # hypotheses: what is said of their points fits the cache
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -142,21 +145,26 @@ class PointNetwork:
 
     def _scores(self, k: int, points: NDArray[Any], lines: NDArray[Any], groups: list[IntArray]) -> FloatArray:
         """What one of the networks says of the hypotheses, shape (n,)."""
-        said = swish(points @ self.first[k] + self.first_bias[k])
-        said = swish(said @ self.second[k] + self.second_bias[k])
-        said = said @ self.third[k] + self.third_bias[k]
-        pooled = []
-        for rows in groups:
-            some = said[:, rows]
-            nothing = np.zeros((len(said), said.shape[2]), dtype=said.dtype)
-            pooled += [some.mean(axis=1), some.max(axis=1)] if len(rows) else [nothing, nothing]
-        own = swish(np.concatenate([*pooled, lines], axis=1) @ self.embed[k] + self.embed_bias[k])
+        pooled = [self._pooled(k, points[i : i + _AT_ONCE], groups) for i in range(0, len(points), _AT_ONCE)]
+        own = swish(np.concatenate([np.concatenate(pooled), lines], axis=1) @ self.embed[k] + self.embed_bias[k])
         shared = own @ self.share[k] + self.share_bias[k]
         of_all = np.broadcast_to(
             np.concatenate([shared.mean(axis=0), shared.max(axis=0)]), (len(own), 2 * shared.shape[1])
         )
         compared = swish(np.concatenate([own, of_all], axis=1) @ self.compare[k] + self.compare_bias[k])
         return np.asarray(compared @ self.score[k], dtype=np.float64)
+
+    def _pooled(self, k: int, points: NDArray[Any], groups: list[IntArray]) -> NDArray[Any]:
+        """Mean and greatest of what one of the networks says of the points of each group, shape (n, 6 q)."""
+        said = swish(points.reshape(-1, points.shape[2]) @ self.first[k] + self.first_bias[k])
+        said = swish(said @ self.second[k] + self.second_bias[k])
+        said = (said @ self.third[k] + self.third_bias[k]).reshape(*points.shape[:2], -1)
+        pooled = []
+        for rows in groups:
+            some = said[:, rows]
+            nothing = np.zeros((len(said), said.shape[2]), dtype=said.dtype)
+            pooled += [some.mean(axis=1), some.max(axis=1)] if len(rows) else [nothing, nothing]
+        return np.concatenate(pooled, axis=1)
 
 
 def point_groups(labels: IntArray) -> list[IntArray]:

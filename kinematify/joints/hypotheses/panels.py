@@ -101,7 +101,7 @@ def rank_turns(scene: JointScene, config: JointsConfig, given: Sequence[Line] = 
         **_contact_cues(scene, lines, config),
         **_handle_cues(scene, lines, config),
         **_margin_cues(scene, lines, config),
-        **_gravity_cues(scene, lines, with_parent, outward),
+        **_gravity_cues(scene, lines, with_parent),
     }
     cues |= _shape_cues(scene, lines, near=1.0 - cues["contact_radius"])
     weights = config.panels.weights
@@ -417,9 +417,7 @@ def _tallness(scene: JointScene) -> float:
     return float(frame.extents[vertical] / max(frame.extents[level], 1e-12))
 
 
-def _gravity_cues(
-    scene: JointScene, lines: CandidateLines, with_parent: Sweep, outward: FloatArray
-) -> dict[str, FloatArray]:
+def _gravity_cues(scene: JointScene, lines: CandidateLines, with_parent: Sweep) -> dict[str, FloatArray]:
     """Doors turn about upright lines or drop down, lids rise, and a lid's hinge is where the body stands higher."""
     vertical = np.abs(lines.axes @ UP)
     arms = -_arms(scene.centre, lines)

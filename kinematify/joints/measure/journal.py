@@ -80,18 +80,18 @@ def facing_faces(cache: PartCache, parent: int, child: int, reach: float, config
     return Facing(points=points[keep], normals=normals[keep], areas=areas[keep])
 
 
-def find_journal(facing: Facing, size: float, config: JournalConfig, rng: np.random.Generator) -> Journal | None:
+def find_journal(facing: Facing, size: float, config: JournalConfig, seed: int = 0) -> Journal | None:
     """Find the line about which the child is held all around over the longest span.
 
     Args:
         facing: Faces that look at the parent.
         size: Largest extent of the child [m].
         config: Tolerances.
-        rng: Draws the pairs of neighbouring faces whose normals propose lines.
+        seed: Of the draws of pairs of neighbouring faces, whose normals propose lines.
     """
     if len(facing.areas) < _LEAST:
         return None
-    axes, pivots, radii = _proposals(facing, config, rng)
+    axes, pivots, radii = _proposals(facing, config, np.random.default_rng(seed))
     keep = radii < config.largest * size
     best: Journal | None = None
     for axis, pivot, radius in zip(axes[keep], pivots[keep], radii[keep], strict=True):

@@ -35,6 +35,8 @@ _SLIDES = np.array([0.03, 0.1, 0.25, 0.6])  # of the child's diagonal
 _OPEN = 2  # the step at which what a motion opens is measured
 _ALIKE = 0.01  # of the child's diagonal: a mirror image this far off is 1/e alike
 _TINY = 1e-12
+_LEVEL = 1e-6  # of the child's diagonal: less is rounding
+_FIRST_SECTOR = np.pi + 0.1  # [rad]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -349,6 +351,7 @@ def place(m: MeasuredHypotheses) -> Values:
     result["body_off_sum"] = in_body.sum(axis=1)
     centre = (scene.centre @ frame.axes.T - body.mean(axis=0)) / (0.5 * size)
     outer = -m.arms @ frame.axes.T
+    outer = np.where(np.abs(outer) < _LEVEL * m.unit, 0.0, outer)  # a line through the centre is on neither side
     side = np.argmax(np.abs(outer), axis=1)
     rows = np.arange(len(h))
     result["hinge_outward"] = np.sign(outer[rows, side]) * centre[side]
@@ -378,7 +381,7 @@ def contact_place(m: MeasuredHypotheses) -> Values:
     points = contact.points[m.few_contact]
     radius = lengths_of(np.cross(points[None] - h.pivots[:, None], h.axes[:, None])) / m.unit
     along = (points - contact.centroid) @ h.axes.T
-    values, vectors = np.linalg.eigh(np.cov((points - points.mean(axis=0)).T) + _TINY * np.eye(3))
+    values, vectors = np.linalg.eigh(np.cov((points - points.mean(axis=0)).T) + _TINY * m.unit**2 * np.eye(3))
     reach = np.maximum(radius.max(axis=1), _TINY)
     normals = contact.normals[m.few_contact]
     return {
@@ -505,7 +508,7 @@ def _outline(m: MeasuredHypotheses, points: FloatArray) -> Values:
     first, second = _across_pair(h.axes)
     offset = points[None] - h.pivots[:, None]
     x, y = np.einsum("hnk,hk->hn", offset, first), np.einsum("hnk,hk->hn", offset, second)
-    sector = ((np.arctan2(y, x) + np.pi) / (2.0 * np.pi) * 12).astype(np.int64) % 12
+    sector = _sectors(x, y)
     radius = np.zeros((len(h), 12))
     np.maximum.at(radius, (np.arange(len(h))[:, None], sector), np.hypot(x, y))
     largest = np.maximum(radius.max(axis=1), _TINY)
@@ -514,6 +517,11 @@ def _outline(m: MeasuredHypotheses, points: FloatArray) -> Values:
         "outline_least": np.where(turns, radius.min(axis=1) / largest, np.nan),
         "outline_spread": np.where(turns, radius.std(axis=1) / largest, np.nan),
     }
+
+
+def _sectors(x: FloatArray, y: FloatArray) -> IntArray:
+    """Which of twelve sectors places lie in; none starts where outlines of boxes and prisms have their corners."""
+    return np.asarray(((np.arctan2(y, x) + _FIRST_SECTOR) / (2.0 * np.pi) * 12).astype(np.int64) % 12)
 
 
 def _across_pair(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -665,7 +673,7 @@ def _around(m: MeasuredHypotheses, points: FloatArray) -> FloatArray:
     first, second = _across_pair(h.axes)
     offset = points[None] - h.pivots[:, None]
     x, y = np.einsum("hnk,hk->hn", offset, first), np.einsum("hnk,hk->hn", offset, second)
-    sector = ((np.arctan2(y, x) + np.pi) / (2.0 * np.pi) * 12).astype(np.int64) % 12
+    sector = _sectors(x, y)
     met = np.zeros((len(h), 12))
     met[np.arange(len(h))[:, None], sector] = 1.0
     return np.where(h.kinds == TURN, met.mean(axis=1), np.nan)

@@ -133,7 +133,7 @@ def _has_journal(cache: PartCache, pair: Pair, config: JointsConfig) -> bool:
     reach = cache.graph.by_pair[pair].gap + config.contact_band * cache.diagonal
     facing = facing_faces(cache, large, small, reach, config.journal)
     size = float(np.ptp(cache.assembly.parts[small].bounds, axis=0).max())
-    return find_journal(facing, size, config.journal, np.random.default_rng([*pair])) is not None
+    return find_journal(facing, size, config.journal) is not None
 
 
 def passing_pairs(cache: PartCache, lines: Mapping[Pair, BearingLine], config: JointsConfig) -> frozenset[Pair]:

@@ -261,7 +261,7 @@ def joint_scene(
         rolls=rolls(cache, child, frame),
         fold=find_fold(cache.samples(child), frame, config.rockers) if folds else None,
         front=_front(cache, tree, parent, frames, config) if panel and up > config.flat_cosine else np.zeros(3),
-        pedal_direction=_pedal_direction(cache, parent, child, frame, config),
+        pedal_direction=_pedal_direction(cache, parent, frame, config),
     )
 
 
@@ -272,8 +272,7 @@ def _journal(cache: PartCache, parent: int, child: int, frame: BoxFrame, config:
         return None
     reach = edge.gap + config.contact_band * cache.diagonal
     facing = facing_faces(cache, parent, child, reach, config.journal)
-    rng = np.random.default_rng([parent, child])
-    return find_journal(facing, float(frame.extents.max()), config.journal, rng)
+    return find_journal(facing, float(frame.extents.max()), config.journal)
 
 
 def _with_journal(bearing: EdgeBearing | None, edge: tuple[int, int], journal: Journal) -> EdgeBearing:
@@ -402,7 +401,7 @@ def _front(
     return front_of(cache.assembly.parts[body].bounds, [frames[part] for part in carried], rolling, config.front_cues)
 
 
-def _pedal_direction(cache: PartCache, body: int, part: int, frame: BoxFrame, config: JointsConfig) -> FloatArray:
+def _pedal_direction(cache: PartCache, body: int, frame: BoxFrame, config: JointsConfig) -> FloatArray:
     if not is_level_plate(frame) or not _stands(cache, body, config):
         return np.zeros(3)
     return foot_side(frame, cache.assembly.parts[body].bounds, config.front_cues)

@@ -256,6 +256,7 @@ def point_cloud(cache: PartCache, parent: int, child: int, others: Sequence[int]
         (own, np.concatenate([_thinned(every, _CHILD), _nearest(cache, parent, own, every)]), parent, CHILD),
         (its, np.concatenate([_thinned(beside, _PARENT), _nearest(cache, child, its, beside)]), child, PARENT),
     ]
+    centre = own.points.mean(axis=0)
     points = [samples.points[index] for samples, index, _, _ in chosen]
     normals = [samples.normals[index] for samples, index, _, _ in chosen]
     gaps = [cache.distances(to, samples.points[index]) for samples, index, to, _ in chosen]
@@ -263,7 +264,8 @@ def point_cloud(cache: PartCache, parent: int, child: int, others: Sequence[int]
     for parts, count, label in ((others, _OTHERS, OTHER), (carried, _CARRIED, CARRIED)):
         if not parts:
             continue
-        some = [cache.samples(part) for part in parts]
+        # In the order of their distance: that of the parts is whatever a file has.
+        some = sorted(map(cache.samples, parts), key=lambda item: float(lengths_of(item.points.mean(axis=0) - centre)))
         places, faces = (np.concatenate([getattr(item, name) for item in some]) for name in ("points", "normals"))
         index = _thinned(np.flatnonzero(_within(places, low, high, _AROUND_OTHERS * unit)), count)
         points.append(places[index])
@@ -277,7 +279,7 @@ def point_cloud(cache: PartCache, parent: int, child: int, others: Sequence[int]
         normals=np.concatenate(normals),
         gaps=np.concatenate(gaps) / unit,
         labels=np.concatenate(labels),
-        centre=own.points.mean(axis=0),
+        centre=centre,
         parent_centre=its.points.mean(axis=0),
         unit=unit,
         sizes=np.log(unit / reaches),
