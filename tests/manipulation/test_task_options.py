@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from typing import TYPE_CHECKING
 
 import pytest
@@ -11,8 +12,7 @@ from kinematify.manipulation.robot import builtin_robot
 from tests.manipulation.furniture import write_drawer_cabinet
 
 if TYPE_CHECKING:
-    import shutil
-from pathlib import Path
+    from pathlib import Path
 
 
 @pytest.mark.parametrize(

@@ -79,7 +79,7 @@ def test_an_axis_turned_by_20_deg_is_off_every_direction(
     finding, *facts = findings(judged(turned(build(), child, 20.0, about), tmp_path))
     assert {fact.check for fact in facts} <= {"KV349"}
     assert (finding.check, finding.joint, finding.blame) == ("KV342", f"{child}_joint", Blame.KINEMATICS)
-    assert finding.value == pytest.approx(20.0, abs=0.5)
+    assert finding.value == pytest.approx(20.0, abs=1.0)  # the line of two barrels is measured from drawn points
     assert finding.severity in (Severity.ERROR, Severity.WARNING)
 
 
