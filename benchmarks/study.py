@@ -258,7 +258,7 @@ def study_command(name: str) -> click.Command | None:
     @click.option("--work", type=click.Path(path_type=Path), help="Folder of what has ended, for a run that goes on.")
     @click.option("--jobs", type=click.IntRange(min=1), help="Processes at a time; as many as there are cores.")
     @click.option("--fresh", is_flag=True, help="Measure all again.")
-    @click.option("--tables", is_flag=True, help="Measure nothing; write the report anew from its JSON.")
+    @click.option("--tables", is_flag=True, help="Measure nothing; write the report again from its JSON.")
     @json_option
     def run(**values: Any) -> int:
         return _run(name, study, values)

@@ -18,7 +18,7 @@ def without_lines(page: str) -> str:
 
 def test_the_page_is_up_to_date() -> None:
     page = PAGE.read_text("utf-8")
-    assert without_lines(page) == without_lines(rewritten(page)), "python -m tools.draw_architecture makes it anew"
+    assert without_lines(page) == without_lines(rewritten(page)), "python -m tools.draw_architecture makes it again"
 
 
 def test_the_drawing_has_the_long_way_and_no_short_cut() -> None:

@@ -139,12 +139,12 @@ class PybulletBody:
 
     def contacts(self, row: int) -> list[tuple[int, int, int, float]]:
         """Return (row, link, link, depth [m]) of all contacts of the configuration that was set."""
-        self.find_contacts_anew()
+        self.forget_contacts()
         points = self.client.getContactPoints(self.body, self.body)
         link_of = self.link_of
         return [(row, link_of[point[3]], link_of[point[4]], -point[8]) for point in points]
 
-    def find_contacts_anew(self) -> None:
+    def forget_contacts(self) -> None:
         """Forget the contacts of earlier configurations.
 
         PyBullet keeps contacts from step to step as points that move with the bodies. Where a body was set to another

@@ -110,7 +110,7 @@ class PybulletWorld:
         """Set all joints and stop them."""
         if self._saved is None:
             self._object.place(self._mechanism.values_at_rest)
-            self._object.find_contacts_anew()
+            self._object.forget_contacts()
             self._saved = self.client.saveState()
         self.client.restoreState(self._saved)
         self._object.place(values)

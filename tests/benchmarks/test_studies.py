@@ -23,7 +23,7 @@ REPORTS = ROOT / "results"
 
 @pytest.mark.parametrize("name", [name for name in study_names() if (REPORTS / f"{file_stem(name)}.json").is_file()])
 def test_tables_say_what_their_records_say(name: str) -> None:
-    """Whoever changes a study writes its tables anew with --tables."""
+    """Whoever changes a study remakes its tables with --tables."""
     report = load_study_report(REPORTS, name)
     study = load_study(name)
     picture = [f"![{study.title}]({file_stem(name)}.png)"] if study.plot is not None else []

@@ -14,7 +14,7 @@ COUNT = 5
 
 @pytest.mark.parametrize("control", ["force", "position"])
 def test_batched_and_single_environments_give_the_same_numbers(control: str) -> None:
-    """Over two ends of episodes, with every copy's object drawn anew each time."""
+    """Over two ends of episodes, with every copy's object drawn again each time."""
     keywords = {"model": "bundled:box", "control": control, "randomize": True}
     batched = gymnasium.make_vec(kinematify.envs.OPEN_PART, COUNT, vectorization_mode="vector_entry_point", **keywords)
     single = gymnasium.make_vec(kinematify.envs.OPEN_PART, COUNT, vectorization_mode="sync", **keywords)

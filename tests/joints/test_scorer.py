@@ -89,7 +89,7 @@ def test_the_measurements_are_those_that_were_fitted() -> None:
 
 
 def test_the_weights_are_those_of_the_committed_recipe() -> None:
-    """Another parameter, start or measurement without a new fit goes red; `kinematify fit` makes the weights anew."""
+    """Another parameter, start or measurement without a new fit goes red; `kinematify fit` remakes the weights."""
     shipped = shipped_scorer()
     assert shipped.provenance["recipe"] == recipe_key(shipped.measurements)
 

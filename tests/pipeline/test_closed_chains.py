@@ -30,18 +30,18 @@ def inferred() -> Inference:
     return infer(four_bars().assembly)
 
 
-def test_the_pin_that_was_cut_is_told_with_the_chain_and_the_reason(tmp_path: Path) -> None:
+def test_the_pin_that_was_cut_is_reported_with_the_chain_and_the_reason(tmp_path: Path) -> None:
     (chain,) = inferred().closed_chains
     assert len(chain.joints) == 3, "four pins, of which one was cut"
     assert abs(float(chain.line.axis[2])) > 0.999
     assert chain.opening.distance > 0.02
     assert chain.rival is None or chain.rival <= chain.reward
-    told = describe(inferred(), tmp_path)
-    assert f"Closed chain: {chain.description}" in told
+    messages = describe(inferred(), tmp_path)
+    assert f"Closed chain: {chain.description}" in messages
     assert all(part in chain.description for part in chain.parts)
 
 
-def test_what_does_not_close_is_not_told() -> None:
+def test_what_does_not_close_is_not_reported() -> None:
     assert infer(edge_door().assembly).closed_chains == ()
 
 

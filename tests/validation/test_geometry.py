@@ -60,20 +60,20 @@ def test_a_good_cabinet_has_no_warning(tmp_path: Path) -> None:
 
 
 def test_free_travel_is_measured_beyond_the_declared_range(tmp_path: Path) -> None:
-    told: list[CheckResult | JointSummary] = []
-    run(request_for(cabinet().with_part("drawer", limits=(0.0, 0.1)), tmp_path), Recorder(told.append, SELECTED))
-    drawer = next(item for item in told if isinstance(item, JointSummary) and item.joint == "drawer_joint")
+    reported: list[CheckResult | JointSummary] = []
+    run(request_for(cabinet().with_part("drawer", limits=(0.0, 0.1)), tmp_path), Recorder(reported.append, SELECTED))
+    drawer = next(item for item in reported if isinstance(item, JointSummary) and item.joint == "drawer_joint")
     assert drawer.declared_limits == (0.0, 0.1)
     low, high = drawer.free_travel or (0.0, 0.0)
     assert low == pytest.approx(-0.005, abs=1e-3)  # the back of the drawer has 5 mm to the back of the cabinet
     assert high == pytest.approx(0.2)  # one more range, and nothing was in the way
 
 
-def test_every_pair_that_meets_is_told_with_its_reason(tmp_path: Path) -> None:
-    told: list[object] = []
+def test_every_pair_that_meets_is_reported_with_its_reason(tmp_path: Path) -> None:
+    reported: list[object] = []
     model = cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0))
-    run(request_for(model, tmp_path), Recorder(told.append, SELECTED))
-    (table,) = [item for item in told if isinstance(item, PairTable)]
+    run(request_for(model, tmp_path), Recorder(reported.append, SELECTED))
+    (table,) = [item for item in reported if isinstance(item, PairTable)]
     assert table.bodies == ("body", "drawer", "door")
     (pair,) = [item for item in table.pairs if item.meets]
     assert pair.pair == ("body", "drawer")
@@ -114,26 +114,26 @@ def test_overlap_of_the_collision_geometry_alone_is_blamed_on_it(tmp_path: Path)
     assert "visible surfaces stay clear" in finding.message
 
 
-def test_a_part_buried_in_its_parent_is_told(tmp_path: Path) -> None:
+def test_a_part_buried_in_its_parent_is_reported(tmp_path: Path) -> None:
     finding = only(found(beam(block("block", 0.0, size=0.02, z=0.0, limits=(0.0, 0.02))), tmp_path), "KV302")
     assert (finding.joint, finding.pair) == ("block_joint", ("beam", "block"))
 
 
-def test_a_part_in_the_air_is_told_with_its_gap(tmp_path: Path) -> None:
+def test_a_part_in_the_air_is_reported_with_its_gap(tmp_path: Path) -> None:
     finding = only(found(beam(block("block", 0.0, z=0.2)), tmp_path), "KV303")
     assert finding.joint == "block_joint"
     assert finding.value == pytest.approx(0.1)
 
 
-@pytest.mark.parametrize(("kind", "across", "told_of"), [
+@pytest.mark.parametrize(("kind", "across", "is_reported"), [
     ("continuous", 0.0, False),  # its axle is not drawn
     ("continuous", 0.3, True),  # and would not reach the beam
     ("revolute", 0.0, True),
 ])  # fmt: skip
-def test_a_wheel_beside_what_carries_it_is_fine(tmp_path: Path, kind: str, across: float, told_of: bool) -> None:
+def test_a_wheel_beside_what_carries_it_is_fine(tmp_path: Path, kind: str, across: float, is_reported: bool) -> None:
     wheel = Part(name="wheel", parent="beam", kind=kind, boxes=(Box(size=(0.2, 0.05, 0.2)),),
                  at=(0.3, 0.1, across), axis=(0.0, 1.0, 0.0))  # fmt: skip
-    assert ("KV303" in found(beam(wheel), tmp_path)) is told_of
+    assert ("KV303" in found(beam(wheel), tmp_path)) is is_reported
 
 
 def test_what_is_tolerated_is_listed_with_its_reason(tmp_path: Path) -> None:
@@ -168,7 +168,7 @@ def test_what_is_in_its_parent_at_rest_cannot_be_judged_for_certain(tmp_path: Pa
     }
 
 
-def test_a_part_driven_into_a_stranger_is_told(tmp_path: Path) -> None:
+def test_a_part_driven_into_a_stranger_is_reported(tmp_path: Path) -> None:
     slider = block("slider", -0.3, axis=(1.0, 0.0, 0.0), limits=(0.0, 0.3))
     post = Part(name="post", boxes=(Box(size=(0.1, 0.1, 0.3)),), parent="beam", kind="revolute",
                 at=(0.0, 0.0, 0.2), axis=(0.0, 0.0, 1.0), limits=(-0.1, 0.1))  # fmt: skip
@@ -305,9 +305,9 @@ def doors(
 def test_twins_whose_joints_differ_are_named(
     tmp_path: Path, right: tuple[float, float], hinge: float, tilt: float, says: str | None
 ) -> None:
-    told = found(doors((-1.5, 0.0), right, right_hinge=hinge, right_tilt=tilt), tmp_path).get("KV333", [])
-    assert [finding.pair for finding in told] == ([] if says is None else [("left", "right")])
-    assert all(says in finding.message for finding in told if says)
+    reported = found(doors((-1.5, 0.0), right, right_hinge=hinge, right_tilt=tilt), tmp_path).get("KV333", [])
+    assert [finding.pair for finding in reported] == ([] if says is None else [("left", "right")])
+    assert all(says in finding.message for finding in reported if says)
 
 
 def test_a_model_that_is_never_free_is_a_warning(tmp_path: Path) -> None:
@@ -343,14 +343,14 @@ def test_a_joint_without_limits_is_warned_of_where_it_meets_its_parent(tmp_path:
     assert severities == {Severity.WARNING}
 
 
-@pytest.mark.parametrize(("limits", "told_of"), [((-3.14, 3.14), False), ((-3.1, 3.1), True)])
+@pytest.mark.parametrize(("limits", "is_reported"), [((-3.14, 3.14), False), ((-3.1, 3.1), True)])
 def test_a_leg_that_reaches_the_body_after_half_a_turn_needs_no_limits(
-    tmp_path: Path, limits: tuple[float, float], told_of: bool
+    tmp_path: Path, limits: tuple[float, float], is_reported: bool
 ) -> None:
     """Half a turn to both sides is how files say that software limits a joint."""
     leg = Part(name="leg", parent="beam", kind="revolute", boxes=(Box(size=(0.3, 0.1, 0.05), at=(0.15, 0.0, 0.0)),),
                at=(0.55, 0.0, 0.0), axis=(0.0, 1.0, 0.0), limits=limits)  # fmt: skip
-    assert ("KV312" in found(beam(leg), tmp_path)) is told_of
+    assert ("KV312" in found(beam(leg), tmp_path)) is is_reported
     assert any(note.check == "KV312" for note in notes(beam(leg), tmp_path, "KV312")), "it is said all the same"
 
 
@@ -399,6 +399,8 @@ class Ring:
         return folder / "model.urdf"
 
 
-@pytest.mark.parametrize(("concave", "told_of"), [("", True), (' concave="yes"', False)])
-def test_hulls_of_what_is_declared_concave_are_not_held_against_it(tmp_path: Path, concave: str, told_of: bool) -> None:
-    assert ("KV332" in found(Ring(concave), tmp_path)) is told_of  # type: ignore[arg-type]
+@pytest.mark.parametrize(("concave", "is_reported"), [("", True), (' concave="yes"', False)])
+def test_hulls_of_what_is_declared_concave_are_not_held_against_it(
+    tmp_path: Path, concave: str, is_reported: bool
+) -> None:
+    assert ("KV332" in found(Ring(concave), tmp_path)) is is_reported  # type: ignore[arg-type]
