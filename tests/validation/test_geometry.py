@@ -300,6 +300,7 @@ def doors(
         ((0.0, 1.5), 0.2, 0.3, "in different directions"),
         ((0.0, 1.5), 0.2, 1.0, "in different directions"),
         ((0.0, 1.5), 0.15, 0.0, "in different places"),
+        ((0.0, 1.5), 0.188, 0.0, None),  # nearly mirrored, as lines drawn by hand are
     ],
 )
 def test_twins_whose_joints_differ_are_named(

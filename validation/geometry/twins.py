@@ -49,6 +49,8 @@ OTHER_TYPE = "one turns and the other slides"
 TWICE = "the range of one is about twice as wide"
 OTHER_AXIS = "their axes run in different directions"
 OTHER_PLACE = "their axes are in different places"
+_NEARLY = "their axes nearly agree"
+"""Nothing that is reported: if one symmetry brings the lines so near, no other one shows that they differ."""
 _RANKED = (OTHER_PLACE, OTHER_AXIS, OTHER_WAY, OTHER_TYPE, TWICE)
 """If several symmetries show a difference, the last of these is reported: that of the most alike lines."""
 
@@ -97,7 +99,9 @@ def twins_at_odds(scene: Scene) -> Iterator[Difference]:
             (_difference(scene, first, second, sign), np.count_nonzero(sign < 0.0) == 2)
             for sign in _symmetries(scene, boxes, first, second)
         ]
-        shown = [how for how, turned in compared if how and not turned]  # half a turn explains, but shows no fault
+        shown = [how for how, turned in compared if how in _RANKED and not turned]  # half a turn only explains
+        if any(how == _NEARLY for how, _ in compared):
+            shown = [how for how in shown if how not in (OTHER_AXIS, OTHER_PLACE)]
         if shown and all(how is not None for how, _ in compared):
             yield Difference(joints=(first.joint, second.joint), how=max(shown, key=_RANKED.index))
 
@@ -193,7 +197,7 @@ def _difference(scene: Scene, first: _Part, second: _Part, sign: FloatArray) -> 
 def _other_line(
     scene: Scene, first: _Part, second: _Part, sign: FloatArray, axis: FloatArray, *, turns: bool
 ) -> str | None:
-    """How the mapped line of the first joint differs from that of the second: None if not, "" if nothing is shown."""
+    """How the mapped line of the first joint differs from that of the second: None if not, "" if it is not clear."""
     angle = np.degrees(np.arccos(np.clip(abs(axis @ second.axis), 0.0, 1.0)))
     off = _mapped(first.point, sign, first, second) - second.point
     off = off - (off @ second.axis) * second.axis if angle <= _SAME_DEG else off
@@ -202,7 +206,9 @@ def _other_line(
     if angle <= _SAME_DEG and beside <= same:
         return None
     size = float(np.linalg.norm(first.high - first.low))
-    clear = beside > _BESIDE * size if angle <= _SAME_DEG else angle > _OTHER_DEG and beside <= same
+    if angle <= _OTHER_DEG and beside <= _BESIDE * size:
+        return _NEARLY
+    clear = angle <= _SAME_DEG or (angle > _OTHER_DEG and beside <= same)
     if not clear or not _fits(scene, first, second, sign, _FITS * size):
         return ""
     return OTHER_PLACE if angle <= _SAME_DEG else OTHER_AXIS
