@@ -112,7 +112,7 @@ class Arm:
             q = np.clip(q + step * min(1.0, settings.largest_step / max(largest, 1e-9)), self.lower, self.upper)
         return None
 
-    def solve_from_scratch(self, target: FloatArray, tries: int) -> list[FloatArray]:
+    def solve_all(self, target: FloatArray, tries: int) -> list[FloatArray]:
         """Values that bring the tool to a pose, from the samples that come nearest, those that are the same once."""
         found: list[FloatArray] = []
         for row in self._nearest(target, tries):

@@ -83,7 +83,7 @@ class Puller:
         anchor = 0 if from_start else len(targets) // 2
         best: Pull | None = None
         stop: Stop | None = None
-        for q in self.arm.solve_from_scratch(targets[anchor], self.settings.restarts):
+        for q in self.arm.solve_all(targets[anchor], self.settings.restarts):
             stop = self._blocked(q, anchor, place)
             if stop is not None:
                 continue

@@ -92,9 +92,7 @@ def search_pull(puller: Puller, pull: Pull, *, column: bool, seed: int) -> Pull:
     place = pull.place
     puller.world.place(place.T_world_base, puller.motion.T_world_object, column=column)
     targets = puller.targets(place)
-    ends = [
-        q for q in puller.arm.solve_from_scratch(targets[-1], puller.settings.restarts) if puller.free_at(q, 1.0, place)
-    ]
+    ends = [q for q in puller.arm.solve_all(targets[-1], puller.settings.restarts) if puller.free_at(q, 1.0, place)]
     if not ends:
         return pull
     start = np.append(pull.path[0], 0.0)

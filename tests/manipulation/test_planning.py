@@ -58,7 +58,7 @@ def test_inverse_kinematics_reaches_poses_that_the_arm_can_take(arm: Arm) -> Non
         target = forward_kinematics(arm.declared, dict(zip(arm.robot.arm_joints, q.tolist(), strict=True)))[
             arm.robot.tool
         ]
-        found = arm.solve_from_scratch(target, 6)
+        found = arm.solve_all(target, 6)
         reached += bool(found)
         for solution in found:
             assert np.all(solution >= arm.lower)

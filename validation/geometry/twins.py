@@ -35,24 +35,19 @@ _LOPSIDED = 0.2
 _WIDER = 1.8
 """A range that is this many times that of its twin is another one."""
 
-_OTHER_DEG = 10.0
-"""Axes of twins that differ by more are at odds."""
-_BESIDE = 0.05
-"""Lines of twins that run farther beside each other are at odds, fraction of the part's size."""
-_SOME = 5
-"""Every so many of a surface's points are compared."""
-_FITS = 0.02
-"""How far the surface of a part may be from that of its twin, fraction of the part's size."""
+_OTHER_DEG = 10.0  # axes of twins that differ by more are at odds
+_BESIDE = 0.05  # of the part's size: lines of twins that run farther beside each other are at odds
+_SOME = 5  # every so many of a surface's points are compared
+_FITS = 0.02  # of the part's size: how far its surface may be from that of its twin
 
 OTHER_WAY = "one moves the other way round"
 OTHER_TYPE = "one turns and the other slides"
 TWICE = "the range of one is about twice as wide"
 OTHER_AXIS = "their axes run in different directions"
 OTHER_PLACE = "their axes are in different places"
-_NEARLY = "their axes nearly agree"
-"""Nothing that is reported: if one symmetry brings the lines so near, no other one shows that they differ."""
+_NEARLY = "their axes nearly agree"  # never reported: no other symmetry then shows that the lines differ
 _RANKED = (OTHER_PLACE, OTHER_AXIS, OTHER_WAY, OTHER_TYPE, TWICE)
-"""If several symmetries show a difference, the last of these is reported: that of the most alike lines."""
+"""If several symmetries show a difference, the last of these is reported; the first two are about lines."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,9 +94,8 @@ def twins_at_odds(scene: Scene) -> Iterator[Difference]:
             (_difference(scene, first, second, sign), np.count_nonzero(sign < 0.0) == 2)
             for sign in _symmetries(scene, boxes, first, second)
         ]
-        shown = [how for how, turned in compared if how in _RANKED and not turned]  # half a turn only explains
-        if any(how == _NEARLY for how, _ in compared):
-            shown = [how for how in shown if how not in (OTHER_AXIS, OTHER_PLACE)]
+        listed = _RANKED[2:] if any(how == _NEARLY for how, _ in compared) else _RANKED
+        shown = [how for how, turned in compared if how and how in listed and not turned]  # half a turn only explains
         if shown and all(how is not None for how, _ in compared):
             yield Difference(joints=(first.joint, second.joint), how=max(shown, key=_RANKED.index))
 
@@ -208,8 +202,8 @@ def _other_line(
     size = float(np.linalg.norm(first.high - first.low))
     if angle <= _OTHER_DEG and beside <= _BESIDE * size:
         return _NEARLY
-    clear = angle <= _SAME_DEG or (angle > _OTHER_DEG and beside <= same)
-    if not clear or not _fits(scene, first, second, sign, _FITS * size):
+    unclear = _SAME_DEG < angle <= _OTHER_DEG or (angle > _OTHER_DEG and beside > same)
+    if unclear or not _fits(scene, first, second, sign, _FITS * size):
         return ""
     return OTHER_PLACE if angle <= _SAME_DEG else OTHER_AXIS
 
