@@ -355,7 +355,7 @@ def _write_corpus(count: int, seed: int, out: Path, only: str | None, *, compose
     from kinematify.batch.corpus import write_corpus
 
     if only is not None:
-        raise click.UsageError("--corpus takes all categories; leave out --text and --category.")
+        raise click.UsageError("--corpus takes all categories; remove --text and --category.")
     with progress_reporter() as progress:
         manifest = write_corpus(
             out, count, seed=seed, progress=progress, workers=os.cpu_count() or 1, composed=composed
