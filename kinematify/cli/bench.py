@@ -143,13 +143,13 @@ def _write_results_page(context: click.Context, _parameter: click.Parameter, ask
     "--baseline", type=click.Path(path_type=Path), help="Earlier report (JSON); exit status 1 if one is worse."
 )
 @click.option("--jobs", type=click.IntRange(min=1), help="Worker processes; as many as there are cores if not given.")
-@click.option("--fresh", is_flag=True, help="Run all again instead of taking up what an earlier run has finished.")
+@click.option("--fresh", is_flag=True, help="Run everything again instead of resuming an earlier run.")
 @click.option(
     "--degrade",
     metavar="LIST",
     default="none",
     show_default=True,
-    help="Rough meshes too, beside clean ones; all, or some of voxels-300, voxels-150, vertex-noise, faces-1000, "
+    help="Also measure faulty meshes; all, or some of voxels-300, voxels-150, vertex-noise, faces-1000, "
     "faces-300, hulls, holes, flipped, gaps, interpenetration, open, cut-2, cut-3.",
 )
 @click.option(
@@ -157,7 +157,7 @@ def _write_results_page(context: click.Context, _parameter: click.Parameter, ask
     "shown",
     type=click.IntRange(min=1),
     metavar="N",
-    help="Also write a page with pictures of the N worst joints, truth beside inference.",
+    help="Also write a page with pictures of the N worst joints, ground truth beside inference.",
 )
 @json_option
 def command(
@@ -177,10 +177,10 @@ def command(
     shown: int | None,
     json_to: str | None,
 ) -> int:
-    """Erase the joints of every URDF below DATA, infer them again and measure how far off they are.
+    """Erase the joints of every URDF below DATA, infer them again and measure the errors.
 
     DATA is a folder with URDF files at any depth, one URDF file, or one of the words pip, robots, everyday and
-    everyday2. Without it robots and everyday objects are measured. The sets are looked for in the folder that the
+    everyday2. Without it robots and everyday objects are measured. The sets are searched in the folder that the
     variable KINEMATIFY_BENCH names, else in ../shared/bench beside the repository.
 
     The report is written as Markdown and JSON. A run that was interrupted goes on where it stopped; a change of the
@@ -189,10 +189,10 @@ def command(
     need a checkout of the repository.
 
     --degrade measures the same objects once more with every fault that meshes have in practice: remeshed on a grid of
-    1/300 or 1/150 of the diagonal, noisy, decimated, as hulls, with holes or flipped faces, apart or in each other,
+    1/300 or 1/150 of the diagonal, noisy, decimated, as hulls, with holes or flipped faces, apart or interpenetrating,
     open where parts meet (open), or with a part cut in two or three (cut-2, cut-3), which must come out as fixed.
 
-    `kinematify bench STUDY` answers another question; --list names the studies, and each has options of its own.
+    `kinematify bench STUDY` runs another study; --list names them, and each has its own options.
     """
     from kinematify.evaluation.job import CLEAN
     from kinematify.evaluation.record import as_json, load_report, table, write_report

@@ -45,7 +45,7 @@ def command(
     package_dirs: tuple[Path, ...],
     json_to: str | None,
 ) -> None:
-    """Remove the kinematics of MODEL, a URDF or a model folder: what remains is what a scan of the object would show.
+    """Remove the kinematics of MODEL, a URDF or a model folder: the result is what a scan of the object would show.
 
     Links joined by fixed joints become one part. Order and names of the parts are shuffled. OUT is an input of
     `kinematify infer`; the ground truth is written beside it as OUT.truth.json and is never read by `infer`.

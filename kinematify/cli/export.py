@@ -57,16 +57,15 @@ def command(
 ) -> None:
     """Write the URDF MODEL, or that of a model folder, in another format.
 
-    The answer ends with what the format does not hold as it is, and what became of it.
+    The answer lists what the format cannot express, and what was written instead.
 
     mjcf, usd, sdf: links, joints, limits, masses, colours and collision pieces for MuJoCo, Isaac Sim and Gazebo. Where
-    the meshes that collide are not convex, the pieces are those that `kinematify fix` makes, carved by the motion.
-    Only what is in each other at rest does not collide. mjcf and sdf have their meshes in a folder beside the file, as
-    urdf has.
+    the meshes that collide are not convex, the pieces are those that `kinematify fix` makes, carved by the motion. Only
+    pairs that interpenetrate at rest do not collide. mjcf, sdf and urdf have their meshes in a folder beside the file.
 
     urdf: the same model with these pieces; `kinematify fix` keeps the document's comments and order, too.
 
-    glb: what is seen, in a tree of nodes that stand where the joints are, for viewers and game engines.
+    glb: visual geometry in a tree of nodes with the joints as origins, for viewers and game engines.
 
     srdf: planning groups, end effector and named poses for MoveIt, and the pairs of links that it need not check, each
     with its reason: neighbours, in contact at rest, always or never in contact in sampled configurations.

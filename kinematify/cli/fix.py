@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     "--all",
     "everything",
     is_flag=True,
-    help="Give every link collision pieces, and a mass where it has no usable one, with a finding or without.",
+    help="Give every link collision pieces, and a mass where it has no usable one, even without a finding.",
 )
 @click.option(
     "--kinematics",
@@ -52,13 +52,12 @@ def command(
     package_dirs: tuple[Path, ...],
     json_to: str | None,
 ) -> int:
-    """Write MODEL, a URDF or a model folder, as a URDF with findings of `validate` repaired where that is certain.
+    """Write MODEL, a URDF or a model folder, as a URDF in which certain findings of `validate` are fixed.
 
-    Links that jam or overlap by their collision geometry alone get boxes and convex pieces, carved by the motion;
-    a mass or inertia that no engine can use becomes that of the geometry; of repeated elements the first stays. Mesh
-    paths hold from the folder of the new file, in MuJoCo and PyBullet. Nothing else changes: no friction, no damping,
-    no mass where there was none, no link or joint without a finding; comments and order stay. What is not repaired is
-    listed with the reason.
+    Links that jam or overlap by their collision geometry alone get boxes and convex pieces, carved by the motion; a
+    mass or inertia that no engine can use becomes that of the geometry; of repeated elements the first stays. Mesh
+    paths are relative to the new file. Nothing else changes: no friction, no damping, no mass where there was none, no
+    link or joint without a finding; comments and order stay. The command lists what it did not fix, with the reason.
 
     Where an engine refuses meshes in glTF, the new file names copies as OBJ.
 

@@ -60,7 +60,7 @@ _WIDTH = 100
 @click.option(
     "--compose", "composed", is_flag=True, help="With --corpus: mechanisms on bodies, each with its sentence."
 )
-@click.option("--seed", type=int, help="Draw what is not asked for; without it the defaults are taken.")
+@click.option("--seed", type=int, help="Draw at random what is not asked for; default: the defaults of the category.")
 @click.option("--list", "listing", is_flag=True, help="Show the categories, or the parameters of --category.")
 @click.option(
     "--image",
@@ -68,42 +68,49 @@ _WIDTH = 100
     multiple=True,
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="A photo of the object, for --source; up to five views.",
+    help="A photo of the object, for --source; up to five views may be given.",
 )
 @click.option(
     "--source",
     type=click.Choice(["rodin", "command", "llm"]),
-    help="Let a web service (key in RODIN_API_KEY) or a program of yours make the parts, or a language model (address "
-    "in KINEMATIFY_LLM_URL) write a blueprint.",
+    help="Who makes the object: a web service (rodin; key in RODIN_API_KEY), your own program (command), or a language "
+    "model that writes a blueprint (llm; address in KINEMATIFY_LLM_URL).",
 )
-@click.option("--command", "program", metavar="WORDS", help="The program with {image}, {text}, {seed} and {out}.")
-@click.option("--time-limit", type=click.FloatRange(min=1.0), metavar="SECONDS", help="For the program, or one job.")
+@click.option(
+    "--command",
+    "program",
+    metavar="WORDS",
+    help="Your program, for --source command, with {image}, {text}, {seed}, {out}.",
+)
+@click.option(
+    "--time-limit", type=click.FloatRange(min=1.0), metavar="SECONDS", help="Time limit of the program, or of one job."
+)
 @click.option(
     "--budget",
     type=click.FloatRange(min=0.0),
     metavar="CREDITS",
-    help="Refuse what is expected to cost more; for llm the tokens after which no round begins.",
-)
-@click.option("--rounds", type=click.IntRange(min=1), metavar="N", help="Answers of the language model at most.")
-@click.option(
-    "--record", type=click.Path(path_type=Path), metavar="DIR", help="Keep what the source makes, for --replay."
+    help="Refuse a job that is expected to cost more; for llm, start no round after this number of tokens.",
 )
 @click.option(
-    "--replay", type=click.Path(path_type=Path), metavar="DIR", help="Take what was recorded; nothing is sent."
+    "--rounds", type=click.IntRange(min=1), metavar="N", help="Maximum number of answers of the language model."
 )
-@click.option("--resend", is_flag=True, help="Send steps again that failed, or of which no answer is known.")
+@click.option(
+    "--record", type=click.Path(path_type=Path), metavar="DIR", help="Save what the source makes, for --replay."
+)
+@click.option("--replay", type=click.Path(path_type=Path), metavar="DIR", help="Use what was recorded; send nothing.")
+@click.option("--resend", is_flag=True, help="Repeat steps that failed or have no recorded answer.")
 @click.option("--up", type=click.Choice(["auto", "y", "z"]), default="auto", help="Axis that points up in the parts.")
 @scale_option
-@click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder to make.")
-@click.option("--strict", is_flag=True, help="Write nothing unless all that the sentence asks for is built.")
-@click.option("--infer", "inferred", is_flag=True, help="Find the joints again from the parts alone, and compare.")
+@click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder to write.")
+@click.option("--strict", is_flag=True, help="Write nothing unless everything in the sentence is built.")
+@click.option("--infer", "inferred", is_flag=True, help="Infer the joints from the parts alone, and compare.")
 @collision_option
 @click.option(
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
 )
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
-@click.option("--no-validation", is_flag=True, help="Leave out the verdict on the model; it is most of the time.")
+@click.option("--no-validation", is_flag=True, help="Skip the validation, which takes most of the time.")
 @json_option
 def command(
     *,
@@ -138,22 +145,22 @@ def command(
 ) -> int:
     """Build what a sentence, a category or a blueprint asks for, with its exact joints, and validate it.
 
-    What the sentence asks for and the object has not (a part, a count, a side, a size, a colour) is listed as "Not
-    built", and the command ends with 1; with --strict it writes nothing and ends with 2. An unknown object or a
+    What the sentence asks for and the object does not have (a part, a count, a side, a size, a colour) is listed as
+    "Not built", and the command ends with 1; with --strict it writes nothing and ends with 2. An unknown object or a
     contradiction ends with 2.
 
-    OUT becomes a model folder: model.urdf, meshes/, preview.png, the verdict on the model in validation.html and
-    validation.json, and what is known of it: truth.json (joints) and source.json (parameters). parts/ holds one mesh
-    per part and nothing of the joints. With --infer they are found again from parts/ alone: inferred/ is the model
-    folder of that, and how far it is from the exact one is said.
+    OUT becomes a model folder: model.urdf, meshes/, preview.png, the validation report (validation.html and
+    validation.json), the exact joints (truth.json) and the parameters (source.json). parts/ holds one mesh per part,
+    without joints. With --infer the joints are inferred from parts/ alone: inferred/ is that model, and the command
+    prints how far it is from the exact one.
 
-    Ends with 1, too, if the model has an error, see `kinematify validate`.
+    The command also ends with 1 if the model has an error; see `kinematify validate`.
 
-    Without --source nothing is downloaded: objects are put together from boards, hinges, slides and bearings by rules.
+    Without --source nothing is downloaded: objects are built from a library of descriptions.
 
-    With --source another generator makes the parts from --image or --text, and the joints are inferred; a language
-    model (llm) writes a blueprint, which is built, and what the validation finds goes back to it. The job is
-    kept beside OUT (OUT.job): a call that was stopped goes on there, and pays for nothing twice.
+    With --source, another generator makes the parts from --image or --text, and the joints are inferred. A language
+    model (llm) writes a blueprint; the command builds it and sends the findings of the validation back. The job is
+    saved beside OUT (OUT.job): the same command resumes it, and no step is paid for twice.
     """
     if listing:
         _list(category, json_to)
@@ -162,14 +169,14 @@ def command(
         _write_corpus(corpus, seed or 0, _needed(out), text or category, composed=composed)
         return 0
     if composed:
-        raise click.UsageError("--compose belongs to --corpus. For one object, say it in --text.")
+        raise click.UsageError("--compose belongs to --corpus. For one object, describe it in --text.")
     if source is not None:
         from kinematify.cli.provided import LanguageGeneration, ProvidedGeneration, ProvidedOptions
         from kinematify.config import load_config
 
         if category is not None or settings or blueprint is not None:
             raise click.UsageError(
-                "--category, --set and --blueprint belong to objects built by rules. Leave --source out for those."
+                "--category, --set and --blueprint cannot be combined with --source. Remove one of them."
             )
         asked = ProvidedOptions(
             text=text, images=images, source=source, command=program, time_limit=time_limit, budget=budget,
@@ -187,19 +194,21 @@ def command(
                 json_to,
             )  # fmt: skip
         if inferred:
-            raise click.UsageError("What this --source makes is always inferred. Leave --infer out.")
+            raise click.UsageError("Joints of this --source are always inferred. Remove --infer.")
         return _run(ProvidedGeneration(asked, place, not no_preview, not no_validation, collision), force, json_to)
     _refuse_without_source(images, program, time_limit, budget, rounds, record, replay, resend)
     if (text is not None) + (category is not None) + (blueprint is not None) != 1:
         raise click.UsageError(
-            "Give either --text, --category or --blueprint (or --corpus, or --list to see what there is)."
+            "Give either --text, --category or --blueprint (or --corpus, or --list to show all categories)."
         )
     if blueprint is not None and (settings or seed is not None):
-        raise click.UsageError("A --blueprint says everything: --set and --seed have no effect. Leave them out.")
+        raise click.UsageError("--set and --seed have no effect on a --blueprint. Remove them.")
     if settings and text is not None:
-        raise click.UsageError("--set belongs to --category. Say it in the text, or name the category instead.")
+        raise click.UsageError(
+            "--set belongs to --category. Put the value into the text, or give the category instead."
+        )
     if strict and text is None:
-        raise click.UsageError("--strict is about the words of --text. Leave it out.")
+        raise click.UsageError("--strict belongs to --text. Remove it.")
     from kinematify.cli.generation import Generation
     from kinematify.config import load_config
 
@@ -243,9 +252,8 @@ def _run(run: Generation | ProvidedGeneration, force: bool, json_to: str | None)
 def _refuse_without_source(images: tuple[Path, ...], *others: object) -> None:
     if images:
         raise click.UsageError(
-            "Say who looks at the image: --source rodin (a web service, needs a key) or --source command (a program of "
-            "yours) makes parts of it, --source llm (a language model) a blueprint. Objects built by rules take --text "
-            "or --category."
+            "--image needs --source: rodin (a web service, needs a key) or command (your own program) makes parts, "
+            "llm (a language model) writes a blueprint. Without --source, give --text or --category."
         )
     if any(others):
         raise click.UsageError(
@@ -255,7 +263,7 @@ def _refuse_without_source(images: tuple[Path, ...], *others: object) -> None:
 
 def _needed(out: Path | None) -> Path:
     if out is None:
-        raise click.UsageError("Say where the result goes: -o FOLDER.")
+        raise click.UsageError("Give the folder of the result: -o FOLDER.")
     return out
 
 
@@ -347,7 +355,7 @@ def _write_corpus(count: int, seed: int, out: Path, only: str | None, *, compose
     from kinematify.batch.corpus import write_corpus
 
     if only is not None:
-        raise click.UsageError("--corpus takes all categories; leave out --text and --category.")
+        raise click.UsageError("--corpus takes all categories; remove --text and --category.")
     with progress_reporter() as progress:
         manifest = write_corpus(
             out, count, seed=seed, progress=progress, workers=os.cpu_count() or 1, composed=composed

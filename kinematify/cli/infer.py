@@ -154,17 +154,18 @@ def command(
     no_validation: bool,
     json_to: str | None,
 ) -> int:
-    """Infer the mechanism of ASSEMBLY and write it to OUT as a URDF with everything that belongs to it.
+    """Infer the joints of ASSEMBLY and write OUT, a folder with a URDF and its meshes.
 
     ASSEMBLY is the object in one pose, as rigid parts: a folder with a mesh file per part (OBJ, STL, PLY, GLB, OFF,
     DAE), a GLB, glTF or DAE with a node per part, an OBJ with groups, a 3MF, a STEP, a ZIP of these, one mesh with
-    --labels, or a URDF, whose joints are then not looked at. The pieces of a mesh that is not segmented are grouped
-    into rigid parts; groups.json in OUT has them, to be corrected and given back with --groups.
+    --labels, or a URDF, whose joints are ignored. The pieces of a
+    mesh that is not segmented are grouped into rigid parts; correct groups.json in OUT and give it with --groups to
+    change them.
 
     OUT gets model.urdf, meshes/, inference.json (every alternative with its evidence) and preview.png.
 
-    With --refine it ends with 1 if the model that is kept still has an error about its motion; with --vlm it ends with
-    3 if the model answered nothing. The model folder is written in both cases.
+    With --refine the command ends with 1 if the best model still has an error in its motion; with --vlm it ends with 3
+    if the vision model gave no answer. OUT is written in both cases.
     """
     from contextlib import ExitStack
 

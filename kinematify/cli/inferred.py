@@ -113,7 +113,7 @@ def _describe_doubts(inference: Inference) -> list[str]:
         from kinematify.pipeline.inference import DOUBTFUL
 
         below = f"less than {DOUBTFUL:.0%} sure, the least sure first"
-        lines.append(f"{count}, {below}: {names}. What you know, tell with --hint.")
+        lines.append(f"{count}, {below}: {names}. Give what you know with --hint.")
     return [*lines, ""] if lines else []
 
 

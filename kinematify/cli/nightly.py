@@ -73,7 +73,7 @@ def command(
     jobs: int | None,
     json_to: str | None,
 ) -> int:
-    """Infer every object of the benchmark, validate the models, and say what has changed since earlier nights.
+    """Infer every object of the benchmark, validate the models, and report what changed since earlier nights.
 
     Writes a folder OUT/DATE-COMMIT with JSON, JSON lines, JUnit and a page, and OUT/index.html with the trends of all
     nights. A run that was killed at any point goes on where it stopped. Ends with 1 if quality became worse than in

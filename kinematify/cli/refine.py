@@ -81,11 +81,10 @@ def command(
 ) -> int:
     """Simulate the model in FOLDER, feed its failures back into the search, and keep the best round.
 
-    FOLDER is a folder that `kinematify infer` or `generate` has made. Every joint is moved through its range by exact
-    geometry; what it runs into, leaves, or cannot reach speaks against its axis, its type, its range or its parent.
-    Near-best candidates of the joints that caused failures are simulated too, and the evidence of shape and
-    simulation is added up. No collision is ever switched off, no range is cut to hide a failure, and nothing is fixed
-    without evidence.
+    FOLDER was written by `kinematify infer` or `generate`. Every joint is swept through its range by exact geometry; a
+    collision, a lost contact or an unreachable limit is evidence against its axis, type, range or parent. The next best
+    candidates of the joints that fail are simulated too; the evidence of shape and simulation is added. No collision is
+    ever switched off, no range is cut to hide a failure, and nothing is fixed without evidence.
 
     The best round is written to OUT: fewest errors, then fewest warnings, then most evidence; the model as it was wins
     every tie. inference.json keeps all rounds. OUT also gets the other files of FOLDER, but no report about the earlier

@@ -52,13 +52,13 @@ if TYPE_CHECKING:
     "--suggest-accept",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Write such a list of what counts now, to be judged; with it as --suppress the models stay quiet.",
+    help="Write the present findings as such a list, for review; with --suppress they no longer count.",
 )
 @click.option(
     "--budget",
     type=float,
     metavar="SECONDS",
-    help="Processor time for each stage of a model; what is not finished is said.",
+    help="Processor time for each stage of a model; the report lists what was not finished.",
 )
 @click.option(
     "--config", default="validation", show_default=True, metavar="NAME|FILE", help="Shipped or own thresholds."
@@ -70,31 +70,36 @@ if TYPE_CHECKING:
 @click.option(
     "--task",
     type=click.Choice(["pull", "pour"]),
-    help="Let a robot open every joint, or pour from a cup (KV7xx), with a film.",
+    help="A robot opens every joint, or pours from a cup (KV7xx), with a film.",
 )
 @click.option("--into", type=click.Path(path_type=Path), metavar="FILE", help="Container to pour into, a URDF.")
-@click.option("--robot", type=click.Path(path_type=Path), metavar="FILE", help="Its URDF; a built-in arm if not given.")
+@click.option(
+    "--robot", type=click.Path(path_type=Path), metavar="FILE", help="URDF of the robot.  [default: a built-in arm]"
+)
 @click.option("--tool", metavar="LINK", help="Link of the robot that carries the fingers.")
 @click.option("--gripper", metavar="JOINTS", help="Joints of its fingers, separated by commas; found if not given.")
 @click.option(
-    "--grasp", type=float, nargs=3, metavar="X Y Z", help="Hold the object there: root frame, units of the file."
+    "--grasp", type=float, nargs=3, metavar="X Y Z", help="Where to hold the object: root frame, units of the file."
 )
 @click.option(
     "--base",
     type=float,
     nargs=4,
     metavar="X Y Z YAW",
-    help="Let the robot stand there [m, deg], in the object's root frame; found if not given.",
+    help="Place of the robot [m, deg] in the object's root frame; found if not given.",
 )
 @click.option("--scale", type=float, metavar="FACTOR", help="Metres per unit of the object; found if not given.")
 @click.option(
     "--films",
     type=click.Path(path_type=Path),
     metavar="DIR",
-    help="Where films of the task go: beside the first report if not given; without either none are made.",
+    help="Folder of the films of the task.  [default: beside the first report; no films without a report]",
 )
 @click.option(
-    "--all", "everything", is_flag=True, help="Tell notes, every place and number, joints and what did not run."
+    "--all",
+    "everything",
+    is_flag=True,
+    help="Also show notes, every place and number, all joints, and what did not run.",
 )
 @click.option("--json", "json_to", metavar="FILE", help="Report as JSON; - is stdout, and then nothing else is.")
 @click.option("--junit", type=click.Path(path_type=Path), metavar="FILE", help="Report as JUnit XML.")
@@ -103,7 +108,7 @@ if TYPE_CHECKING:
     "--html",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Report as one HTML file, with the model to turn and move.",
+    help="Report as one HTML file, with a 3-D view of the model.",
 )
 def command(
     *,
@@ -136,10 +141,11 @@ def command(
     """Check URDFs: the file, declared physics, collision along the motion, joints, engines and their agreement.
 
     MODEL is a URDF file, a folder with URDF files at any depth, or a pattern in quotes. Nothing else is needed: no
-    truth, no second pose. `kinematify explain KV301` shows more about a check.
+    ground truth, no second pose. `kinematify explain KV301` shows more about a check.
 
     Ends with 0 if no model has an error (warnings are allowed), with 1 if one has, with 2 if one cannot be used,
-    with 3 if there is no error and something that was asked for was not finished (the report says what finishes it).
+    with 3 if there is no error and something
+    that was asked for was not finished (the report shows how to finish it).
     Ctrl-C ends with 130 and leaves valid reports of what is known by then.
     """
     from kinematify.validation.isolation import load_imports

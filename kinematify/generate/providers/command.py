@@ -147,5 +147,5 @@ def _told(log: Path) -> str:
     text = log.read_bytes()[-20_000:].decode("utf-8", errors="replace")
     clean = "".join(letter if letter.isprintable() or letter == "\n" else "?" for letter in text)
     lines = [line.strip() for line in clean.splitlines() if line.strip()][-_LAST_LINES:]
-    said = f"It said last: {' | '.join(line[:200] for line in lines)}." if lines else "It said nothing."
-    return f"{said} Everything that it said: {log}"
+    said = f"End of its output: {' | '.join(line[:200] for line in lines)}." if lines else "It printed nothing."
+    return f"{said} Its output: {log}"
