@@ -10,7 +10,7 @@ import numpy as np
 from scipy.stats import rankdata
 
 from kinematify.grouping.lattice import CELLS, PAD
-from kinematify.grouping.measure import FREE
+from kinematify.grouping.measure import FREE, freedom_columns, place_columns
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -108,17 +108,10 @@ def measure_candidates(
     for row, candidate in enumerate(candidates):
         member[row, list(candidate)] = True
     turns = _Turns(measured.grid)
-    slides = _slides(member, measured.grid)
-    rows = [
-        {
-            **_links(inside, measured, odds, areas),
-            **_place(inside, measured.grid, areas),
-            **{name: float(column[row]) for name, column in slides.items()},
-            **turns.measured(inside),
-        }
-        for row, inside in enumerate(member)
-    ]
-    return with_ranks(np.array([list(row.values()) for row in rows]), tuple(rows[0]))
+    rows = [{**_links(inside, measured, odds, areas), **turns.measured(inside)} for inside in member]
+    columns = {**_place(member, measured.grid, areas), **_slides(member, measured.grid)}
+    table = np.column_stack([[list(row.values()) for row in rows], *columns.values()])
+    return with_ranks(table, (*rows[0], *columns))
 
 
 def with_ranks(table: FloatArray, names: tuple[str, ...]) -> tuple[FloatArray, tuple[str, ...]]:
@@ -157,50 +150,27 @@ def _links(inside: BoolArray, measured: MeasuredPieces, odds: FloatArray, areas:
     }
 
 
-def _place(inside: BoolArray, grid: Lattice, areas: FloatArray) -> dict[str, float]:
-    """Size, place and what is seen."""
-    low, high = grid.bounds[inside, 0].min(axis=0), grid.bounds[inside, 1].max(axis=0)
-    end = grid.end
-    extents = high - low
-    ordered = np.sort(extents)
-    sides = np.sort([low[0], end[0] - high[0], low[1], end[1] - high[1]])
-    seen = grid.seen[inside].sum(axis=0) / grid.sizes[inside].sum()
-    around = np.sort(seen[2:])
-    rest_low, rest_high = grid.bounds[~inside, 0].min(axis=0), grid.bounds[~inside, 1].max(axis=0)
+def _place(member: BoolArray, grid: Lattice, areas: FloatArray) -> dict[str, FloatArray]:
+    """Size, place and what is seen of each candidate, and how it lies in the rest; columns of shape (c,)."""
+    low, high = _corners(member, grid)
+    rest_low, rest_high = _corners(~member, grid)
+    inside, extents = member.astype(np.float64), high - low
     beyond = np.maximum(rest_low - low, 0.0) + np.maximum(high - rest_high, 0.0)
     common = np.clip(np.minimum(high, rest_high) - np.maximum(low, rest_low), 0.0, None)
-    flat_side = int(np.argmin(extents))
     return {
-        "thin": ordered[0],
-        "middle": ordered[1],
-        "long": ordered[2],
-        "slender": ordered[1] / max(ordered[2], 1e-9),
-        "flat": ordered[0] / max(ordered[1], 1e-9),
-        "thin_up": float(flat_side == 2),
-        "height": extents[2],
-        "area": float(areas[inside].sum() / areas.sum()),
-        "largest": float(inside[int(np.argmax(areas))]),
-        "box_share": float(extents.prod() / max(end.prod(), 1e-12)),
-        "bottom": low[2],
-        "top": end[2] - high[2],
-        "side_1": sides[0],
-        "side_2": sides[1],
-        "side_3": sides[2],
-        "of_height": extents[2] / max(end[2], 1e-9),
-        "of_width": float((extents[:2] / np.maximum(end[:2], 1e-9)).max()),
-        "of_depth": float((extents[:2] / np.maximum(end[:2], 1e-9)).min()),
-        "beyond": float(beyond.max()),
-        "beyond_share": float((beyond / np.maximum(extents, 1e-9)).max()),
-        "in_rest": float((common / np.maximum(extents, 1e-9)).prod()),
-        "seen_up": seen[0],
-        "seen_down": seen[1],
-        "seen_side_1": around[3],
-        "seen_side_2": around[2],
-        "seen": float(seen.sum()),
-        "pieces": float(np.log10(grid.count)),
-        "object_height": end[2],
-        "object_depth": float(end[:2].min()),
+        **place_columns(low, high, inside @ grid.seen / (inside @ grid.sizes)[:, None], grid),
+        "area": inside @ areas / areas.sum(),
+        "largest": inside[:, int(np.argmax(areas))],
+        "beyond": beyond.max(axis=1),
+        "beyond_share": (beyond / np.maximum(extents, 1e-9)).max(axis=1),
+        "in_rest": (common / np.maximum(extents, 1e-9)).prod(axis=1),
     }
+
+
+def _corners(member: BoolArray, grid: Lattice) -> tuple[FloatArray, FloatArray]:
+    """Corners of the boxes around sets of pieces, shape (c, 3) each."""
+    boxes = [grid.bounds[inside] for inside in member]
+    return np.array([box[:, 0].min(axis=0) for box in boxes]), np.array([box[:, 1].max(axis=0) for box in boxes])
 
 
 def _slides(member: BoolArray, grid: Lattice) -> dict[str, FloatArray]:
@@ -212,22 +182,14 @@ def _slides(member: BoolArray, grid: Lattice) -> dict[str, FloatArray]:
     rows = np.arange(len(member))
     best = 2 + np.argmin(met[2, 2:] + 1e-3 * met[0, 2:], axis=0)
     others = np.where(np.arange(6)[:, None] == best, np.nan, met[0])
-    columns = {
+    return {
         "held": ((inside @ grid.at_rest) * (1.0 - inside)).sum(axis=1) / size,
         "out_seen": seen[rows, best],
         "out_others_least": np.nanmin(others, axis=0),
         "out_others_mean": np.nanmean(others, axis=0),
         "out_back": met[1, best ^ 1, rows],
+        **freedom_columns(met),
     }
-    for r, name in enumerate(("short", "middle", "far")):
-        around = np.sort(met[r, 2:], axis=0)
-        columns |= {
-            f"up_{name}": met[r, 0],
-            f"down_{name}": met[r, 1],
-            **{f"side_{k + 1}_{name}": around[k] for k in range(4)},
-            f"free_{name}": (met[r] < FREE).sum(axis=0).astype(np.float64),
-        }
-    return columns
 
 
 class _Turns:

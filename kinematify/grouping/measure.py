@@ -161,37 +161,48 @@ def _of_pieces(parts: Sequence[Part], grid: Lattice) -> dict[str, FloatArray]:
     """Columns of every piece by itself."""
     low, high = grid.bounds[:, 0], grid.bounds[:, 1]
     extents = high - low
-    end = grid.end
-    ordered = np.sort(extents, axis=1)
     areas = np.array([part.area for part in parts])
-    scaled = areas / areas.sum()
     boxes = 2.0 * (extents * np.roll(extents, 1, axis=1)).sum(axis=1)
-    unit = areas / _frame(parts)[2] ** 2
-    sides = np.stack([low[:, 0], end[0] - high[:, 0], low[:, 1], end[1] - high[:, 1]], axis=1)
-    nearest = np.sort(sides, axis=1)
-    thin = np.argmin(extents, axis=1)
-    seen = grid.seen / grid.sizes[:, None]
-    around = np.sort(seen[:, 2:], axis=1)
     rank = np.argsort(np.argsort(-areas)) / len(parts)
-    columns = {
+    return {
+        **place_columns(low, high, grid.seen / grid.sizes[:, None], grid),
+        "area": areas / areas.sum(),
+        "rank": rank,
+        "largest": (rank == 0).astype(float),
+        "fill": areas / _frame(parts)[2] ** 2 / np.maximum(boxes, 1e-9),
+        "faces": np.log10([len(part.faces) for part in parts]),
+        "held": grid.at_rest.sum(axis=1) / grid.sizes,
+        **freedom_columns(grid.met.sum(axis=3) / grid.sizes),
+    }
+
+
+def place_columns(low: FloatArray, high: FloatArray, seen: FloatArray, grid: Lattice) -> dict[str, FloatArray]:
+    """Size, place and what is seen of pieces or sets of pieces; columns of shape (n,).
+
+    Args:
+        low: Lower corners of their boxes, shape (n, 3).
+        high: Upper ones.
+        seen: Share of their cells that is seen from each direction, shape (n, 6).
+        grid: Of the object.
+    """
+    extents, end, one = high - low, grid.end, np.ones(len(low))
+    ordered = np.sort(extents, axis=1)
+    sides = np.sort(np.stack([low[:, 0], end[0] - high[:, 0], low[:, 1], end[1] - high[:, 1]], axis=1), axis=1)
+    around = np.sort(seen[:, 2:], axis=1)
+    return {
         "thin": ordered[:, 0],
         "middle": ordered[:, 1],
         "long": ordered[:, 2],
-        "height": extents[:, 2],
         "slender": ordered[:, 1] / np.maximum(ordered[:, 2], 1e-9),
         "flat": ordered[:, 0] / np.maximum(ordered[:, 1], 1e-9),
-        "thin_up": (thin == 2).astype(float),
-        "area": scaled,
-        "rank": rank,
-        "largest": (rank == 0).astype(float),
+        "thin_up": (np.argmin(extents, axis=1) == 2).astype(float),
+        "height": extents[:, 2],
         "box_share": extents.prod(axis=1) / max(float(end.prod()), 1e-12),
-        "fill": unit / np.maximum(boxes, 1e-9),
-        "faces": np.log10([len(part.faces) for part in parts]),
         "bottom": low[:, 2],
         "top": end[2] - high[:, 2],
-        "side_1": nearest[:, 0],
-        "side_2": nearest[:, 1],
-        "side_3": nearest[:, 2],
+        "side_1": sides[:, 0],
+        "side_2": sides[:, 1],
+        "side_3": sides[:, 2],
         "of_height": extents[:, 2] / max(end[2], 1e-9),
         "of_width": (extents[:, :2] / np.maximum(end[:2], 1e-9)).max(axis=1),
         "of_depth": (extents[:, :2] / np.maximum(end[:2], 1e-9)).min(axis=1),
@@ -200,26 +211,22 @@ def _of_pieces(parts: Sequence[Part], grid: Lattice) -> dict[str, FloatArray]:
         "seen_side_1": around[:, 3],
         "seen_side_2": around[:, 2],
         "seen": seen.sum(axis=1),
-        "pieces": np.full(len(parts), np.log10(len(parts))),
-        "object_height": np.full(len(parts), end[2]),
-        "object_depth": np.full(len(parts), end[:2].min()),
+        "pieces": one * np.log10(grid.count),
+        "object_height": one * end[2],
+        "object_depth": one * end[:2].min(),
     }
-    return {**columns, **_freedom(grid)}
 
 
-def _freedom(grid: Lattice) -> dict[str, FloatArray]:
-    """What every piece meets when it moves along each axis, as shares of its cells beyond what it meets at rest."""
-    met = grid.met.sum(axis=3) / grid.sizes
-    columns: dict[str, FloatArray] = {"held": grid.at_rest.sum(axis=1) / grid.sizes}
-    for r, name in enumerate(("short", "middle", "far")):
-        around = np.sort(met[r, 2:], axis=0)
+def freedom_columns(met: FloatArray) -> dict[str, FloatArray]:
+    """Columns of shape (n,) of what is met within each reach along each direction, as shares of cells, (3, 6, n)."""
+    columns: dict[str, FloatArray] = {}
+    for reach, name in zip(met, ("short", "middle", "far"), strict=True):
+        around = np.sort(reach[2:], axis=0)
         columns |= {
-            f"up_{name}": met[r, 0],
-            f"down_{name}": met[r, 1],
-            f"side_1_{name}": around[0],
-            f"side_2_{name}": around[1],
-            f"side_4_{name}": around[3],
-            f"free_{name}": (met[r] < FREE).sum(axis=0).astype(float),
+            f"up_{name}": reach[0],
+            f"down_{name}": reach[1],
+            **{f"side_{k + 1}_{name}": around[k] for k in range(4)},
+            f"free_{name}": (reach < FREE).sum(axis=0).astype(float),
         }
     return columns
 
@@ -272,17 +279,10 @@ def _of_boxes(grid: Lattice, pairs: IntArray, sizes: FloatArray) -> dict[str, Fl
 def _blocked(grid: Lattice, pairs: IntArray) -> dict[str, FloatArray]:
     """What of the smaller piece meets the larger one along each axis, beyond what meets it at rest."""
     small, large = pairs.T
-    columns: dict[str, FloatArray] = {"rest_common": grid.at_rest[small, large] / grid.sizes[small]}
-    for r, name in enumerate(("short", "middle")):
-        hits = grid.met[r][:, small, large] / grid.sizes[small]
-        around = np.sort(hits[2:], axis=0)
-        columns |= {
-            f"blocked_up_{name}": hits[0],
-            f"blocked_down_{name}": hits[1],
-            **{f"blocked_side_{k + 1}_{name}": around[k] for k in range(4)},
-            f"ways_{name}": (hits < FREE).sum(axis=0).astype(float),
-        }
-    return columns
+    hits = grid.met[:, :, small, large] / grid.sizes[small]
+    columns = {f"blocked_{name}": column for name, column in freedom_columns(hits).items()}
+    ways = {f"ways_{name}": columns.pop(f"blocked_free_{name}") for name in ("short", "middle", "far")}
+    return {"rest_common": grid.at_rest[small, large] / grid.sizes[small], **columns, **ways}
 
 
 def _of_twins(of_piece: dict[str, FloatArray], pairs: IntArray) -> dict[str, FloatArray]:
