@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.pieces.bearings import ALONG_X, at, barrel, fork, room
+from kinematify.generate.procedural.pieces.bearings import ALONG_X, at, barrel, fork, fork_room
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, rod, tray, union
 from kinematify.robot.transforms import rotation_about
 from tests.known import KnownJoint, KnownObject, fixed, known_object, moved, sliding, turning, varied
@@ -290,7 +290,7 @@ def lever_solids(length: float, clearance: float, seed: int | None) -> tuple[dic
     long, radius, wide = vary(length), vary(0.008), vary(0.03)
     forked, tongue = fork(wide, radius, clearance, 3 * radius)
     block = forked + box((-wide, -0.03, -0.05), (1.3 * wide, 0.04, -2.5 * radius))
-    start = room(radius, clearance) + radius
+    start = fork_room(radius, clearance) + radius
     arm = union(tongue, rod(0.6 * radius, (0, 0, start), (0, 0, long)), ball(1.5 * radius, (0, 0, long)))
     return {"block": block, "lever": arm}, turning("block", "lever", (1, 0, 0), (0, 0, 0), (-1.2, 1.2))
 

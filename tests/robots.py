@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.families.walkers import leg_solids
-from kinematify.generate.procedural.pieces.bearings import at, fork, room, stub
+from kinematify.generate.procedural.pieces.bearings import at, fork, fork_room, stub
+from kinematify.generate.procedural.pieces.limbs import leg_solids
 from kinematify.generate.procedural.solids import bore, box, cylinder, off, rod, union
 from kinematify.robot.transforms import rotation_about
 from tests.known import KnownJoint, KnownObject, known_object, moved, sliding, turning, varied
@@ -173,7 +173,7 @@ def finger_hand(
     """A palm and fingers of phalanges on pins, every joint bent by `curl` [rad]."""
     vary = varied(seed)
     wide, radius = 0.018, 0.007
-    pitch, start = 1.4 * wide, room(radius, clearance)
+    pitch, start = 1.4 * wide, fork_room(radius, clearance)
     high = vary(0.08)
     palm = [box((-0.5 * pitch * fingers, -radius, -high), (0.5 * pitch * fingers, radius, -2 * radius))]
     solids, joints = {}, []
@@ -270,7 +270,7 @@ def aligned_arm(
         shoulder ^= box((-9, -9, high + size + clearance), (9, 9, 9))
         solids[roll] = union(rotor, shoulder, forked)
         truth.append(turning(roll, pitch, (0, 1, 0), (0, 0, hinge), (-1.4, 1.4)))
-        start, high = hinge + room(0.7 * size, clearance), hinge + vary(3.0 * size)
+        start, high = hinge + fork_room(0.7 * size, clearance), hinge + vary(3.0 * size)
         pieces = [tongue, cylinder(0.65 * size, (0, 0, start), (0, 0, high + 0.5 * size))]
         parent = pitch
     solids[parent] = union(*pieces, box((-0.5 * size, -size, high), (size, size, high + size)))
@@ -289,7 +289,7 @@ def torso(*, height: float = 0.4, clearance: float = 5e-4, seed: int | None = No
     width, thin = 1.6 * radius, 0.6 * radius
     forked, tongue = (solid.rotate((180, 0, 90)).translate(elbow) for solid in fork(width, thin, clearance, 2.2 * thin))
     upper_body = cylinder(0.7 * radius, off(elbow, 0, 0, long), off(elbow, 0, 0, 1.8 * thin))
-    start = room(thin, clearance)
+    start = fork_room(thin, clearance)
     lower_body = cylinder(thin, off(elbow, 0, 0, -start), off(elbow, 0, 0, -long))
     hand = box(off(elbow, -0.5 * thin, -1.5 * thin, -1.3 * long), off(elbow, 0.8 * thin, 1.5 * thin, -0.95 * long))
     arm = {"upper_arm": union(rotor, upper_body, forked), "forearm": union(tongue, lower_body, hand)}

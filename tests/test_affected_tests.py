@@ -19,7 +19,7 @@ def affected(path: str) -> set[str]:
         ("kinematify/cli/erase.py", "tests/cli/test_cli_erase.py"),  # commands are loaded late, by their names
         ("benchmarks/studies/scaling.py", "tests/benchmarks/test_scaling.py"),
         ("validation/finding.py", "tests/validation/test_feedback.py"),  # behind a symlink
-        ("kinematify/generate/procedural/families/building.py", "tests/generate/procedural/test_families.py"),
+        ("kinematify/generate/procedural/pieces/leaves.py", "tests/generate/procedural/test_families.py"),
         ("tests/known.py", "tests/joints/test_kind.py"),
         ("tests/joints/test_kind.py", "tests/joints/test_kind.py"),
         ("configs/fast.yaml", "tests/assembly/test_load.py"),

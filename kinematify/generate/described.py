@@ -265,7 +265,7 @@ class SteppedDescription(Spoken):
         return carried_out(self.steps, builder, {name: said.drawn(builder) for name, said in self.parameters.items()})
 
     def _build(self, values: Values, workshop: Workshop) -> None:
-        builder_of(self.name, self.title, self.steps, self.parameters)(values, workshop)
+        builder_of(self.name, self.title, lambda: self.steps, self.parameters)(values, workshop)
 
 
 def _carried(name: str, joints: Mapping[str, BlueprintJoint]) -> list[str]:

@@ -13,8 +13,7 @@ import numpy as np
 
 from kinematify.generate.composer.bodies import BODY
 from kinematify.generate.composer.place import HANGING, OUTWARD
-from kinematify.generate.procedural.pieces.bearings import fork
-from kinematify.generate.procedural.pieces.bearings import room as fork_room
+from kinematify.generate.procedural.pieces.bearings import fork, fork_room
 from kinematify.generate.procedural.pieces.jaws import add_jaws, jaw_rail
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, ring, tray, union
 from kinematify.robot.robot import Mimic

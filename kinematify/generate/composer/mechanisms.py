@@ -386,7 +386,7 @@ def _round_lid(place: Placement) -> None:
         *frame.as_handle(knob + cylinder(0.07 * radius, (0, 0, gap), (0, 0, top + 0.1 * radius))),
     )
     edge = BackEdge(y=behind, level=gap, below=5.0 * pin, above=thick + 2.0 * pin, clearance=min(gap, 0.3 * pin))
-    pivot = add_barrels(frame, (BODY, place.name), edge, (0.0,), length=1.8 * tab, radius=pin)
+    pivot = add_barrels(frame, place.name, BODY, edge, (0.0,), length=1.8 * tab, radius=pin)
     frame.turns(place.name, BODY, (-1, 0, 0), pivot, (0.0, 1.5), rest=place.fitting.rest)
 
 

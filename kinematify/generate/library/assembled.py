@@ -34,14 +34,14 @@ MODELING: dict[str, dict[str, Any]] = {
 
 
 def builder_of(
-    name: str, title: str, steps: Sequence[Step], parameters: Iterable[str]
+    name: str, title: str, steps: Callable[[], Sequence[Step]], parameters: Iterable[str]
 ) -> Callable[[Values, Workshop], None]:
     """Return the function that builds a family in steps.
 
     Args:
         name: Of the family.
         title: In messages.
-        steps: In this order.
+        steps: In this order; read when the first one is built.
         parameters: Names that formulas may use; of a family with ``modeling`` they build in that style.
     """
     names = tuple(parameters)
@@ -50,7 +50,7 @@ def builder_of(
         differs = MODELING[values.choice("modeling")] if values.has("modeling") else {"sides": SEGMENTS}
         style = replace(CAREFUL, **{"gap": values.number("clearance"), **differs})
         builder = ObjectBuilder(name, style, values.rng if values.drawn else None)
-        said = carried_out(steps, builder, {key: values.value(key) for key in names})
+        said = carried_out(steps(), builder, {key: values.value(key) for key in names})
         try:
             built = BlueprintDescription.model_validate(said)
         except ValidationError as error:

@@ -1,7 +1,8 @@
 """Numbers that an object writes as formulas: ``0.5 * width``, ``draw(0.2, 0.4)``, ``[x for x in spread(4, 0, 1)]``.
 
 A formula is parsed and every node of it is checked before it is evaluated, so that a file can compute and do nothing
-else: no attribute, no name that starts with an underscore, no call but of the functions that are given to it.
+else: no attribute but sizes of fields and motions of solids, no name that starts with an underscore, no call but of
+these and of the functions that are given to it.
 """
 
 from __future__ import annotations
@@ -19,11 +20,18 @@ _LONGEST = 2000  # characters
 _LARGEST = 1_000_000  # whole number that is written out
 _ALLOWED = (
     ast.Expression, ast.Constant, ast.Name, ast.Load, ast.Store, ast.Tuple, ast.List, ast.Dict, ast.Starred, ast.Call,
-    ast.keyword, ast.BinOp, ast.Add, ast.Sub, ast.Mult, ast.Div, ast.FloorDiv, ast.Mod, ast.UnaryOp, ast.USub, ast.Not,
-    ast.BoolOp, ast.And, ast.Or, ast.Compare, ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.In, ast.NotIn,
+    ast.keyword, ast.BinOp, ast.Add, ast.Sub, ast.Mult, ast.Div, ast.FloorDiv, ast.Mod, ast.MatMult, ast.UnaryOp,
+    ast.USub, ast.Not, ast.BoolOp, ast.And, ast.Or, ast.Compare, ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE,
+    ast.In, ast.NotIn,
     ast.Is, ast.IsNot, ast.IfExp, ast.Subscript, ast.Slice, ast.ListComp, ast.comprehension,
-    ast.JoinedStr, ast.FormattedValue,
+    ast.JoinedStr, ast.FormattedValue, ast.Attribute,
 )  # fmt: skip
+_FIELDS = {
+    "left", "right", "bottom", "top", "width", "height", "depth", "wall", "middle", "box", "front", "kind", "place",
+    "outward", "clearance", "placed", "boss", "hole", "upper", "lower", "knee", "end", "length", "high", "ring", "get",
+    "translate", "rotate", "transform", "mirror", "trim_by_plane",
+}  # fmt: skip
+"""Attributes that formulas may name."""
 
 
 @lru_cache(maxsize=20_000)
@@ -44,11 +52,13 @@ def compiled(text: str) -> CodeType:
             raise ValueError(f"the formula {text!r} may not hold {type(node).__name__}")
         if isinstance(node, ast.Name) and node.id.startswith("_"):
             raise ValueError(f"the formula {text!r} may not hold the name {node.id!r}")
+        if isinstance(node, ast.Attribute) and node.attr not in _FIELDS:
+            raise ValueError(f"the formula {text!r} may not hold the attribute {node.attr!r}")
         if isinstance(node, ast.Constant) and isinstance(node.value, int) and abs(node.value) > _LARGEST:
             raise ValueError(f"the formula {text!r} holds a number above {_LARGEST}")
         if isinstance(node, ast.FormattedValue) and node.format_spec is not None:
             raise ValueError(f"the formula {text!r} may not lay out numbers")
-        if isinstance(node, ast.Call) and not isinstance(node.func, ast.Name):
+        if isinstance(node, ast.Call) and not isinstance(node.func, ast.Name | ast.Attribute):
             raise ValueError(f"the formula {text!r} may call functions by their name alone")
     return compile(tree, "<formula>", "eval")
 
@@ -66,7 +76,7 @@ def evaluated(given: Any, names: dict[str, Any]) -> Any:
     if isinstance(given, str):
         try:
             return eval(compiled(given), names)
-        except (ArithmeticError, NameError, TypeError, IndexError, KeyError) as error:
+        except (ArithmeticError, AttributeError, NameError, TypeError, IndexError, KeyError) as error:
             raise ValueError(f"the formula {given!r} cannot be evaluated: {error}") from error
     if isinstance(given, list | tuple):
         return [evaluated(item, names) for item in given]

@@ -2,7 +2,11 @@
 
 A step is a mapping with one verb: `part`, `cut` and `bore` draw shapes; `hinge`, `spin`, `slide`, `fix`, `follow` and
 `close` join parts; every function of `mechanisms` and `panels` is a verb, too; `let`, `for` and `when` compute, repeat
-and choose. Values are formulas; names of parts and materials are texts with formulas in braces.
+and choose; `define` makes a function of steps that `give` a value, and `call` uses one. `as` names what a verb returns.
+Values are formulas; names of parts and materials are texts with formulas in braces.
+
+Steps can also carve: then formulas hold solids instead of shapes, and the verbs are `body`, `add`, `cut`, `turns`,
+`slides`, `within` a frame, and the pieces in `kinematify.generate.procedural.pieces`.
 
 ```yaml
 steps:
@@ -17,6 +21,7 @@ steps:
 from __future__ import annotations
 
 import math
+from inspect import Parameter, Signature
 from itertools import pairwise
 from types import FunctionType
 from typing import TYPE_CHECKING, Any
@@ -24,19 +29,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.generate.library import mechanisms, panels, shapes
-from kinematify.generate.library.builder import spread
+from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.expressions import compiled, evaluated, filled_in
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from kinematify.generate.library.builder import ObjectBuilder
     from kinematify.robot.arrays import FloatArray
 
 Step = dict[str, Any]
 _MOST_ROUNDS = 500
 """Of one loop."""
-_TEXTS = ("parent", "material", "color", "leader", "child", "names")
+_TEXTS = ("parent", "material", "color", "leader", "child", "names", "palm")
 _CORE = ("part", "cut", "bore", "hinge", "spin", "slide", "fix", "follow", "close")
 
 
@@ -52,20 +56,24 @@ MECHANISMS = {name: call for name, call in (_public(mechanisms) | _public(panels
 """Verbs that draw a part together with its joint, keyed by name."""
 
 
+_DRAWING: Mapping[str, Callable[..., Any]] = {**MECHANISMS, **{name: getattr(ObjectBuilder, name) for name in _CORE}}
+"""Verbs of steps that draw shapes."""
+
+
 def vector(x: float, y: float, z: float) -> FloatArray:
     """A vector, shape (3,), that formulas can add and scale."""
     return np.array([x, y, z], dtype=np.float64)
 
 
-_FUNCTIONS: Mapping[str, Any] = {
-    **_public(shapes),
+ARITHMETIC: Mapping[str, Any] = {
     **{name: getattr(math, name) for name in ("sqrt", "tan", "atan2", "asin", "acos", "radians")},
     **{name: getattr(np, name) for name in ("sin", "cos", "hypot", "sign", "cross", "linspace", "cumsum", "pi")},
     **{call.__name__: call for call in (abs, min, max, int, round, len, enumerate, sorted, zip, list, sum, bool)},
     "X": shapes.X, "Y": shapes.Y, "Z": shapes.Z, "vector": vector, "array": np.array, "norm": np.linalg.norm,
     "arange": np.arange, "range": range, "spread": spread, "pairwise": pairwise,
 }  # fmt: skip
-"""What formulas may name, besides parameters and what `let` computes."""
+"""What formulas may name, besides parameters, what `let` computes, and shapes or solids."""
+_SHAPES = _public(shapes)
 
 
 def checked_steps(steps: Sequence[Step]) -> Sequence[Step]:
@@ -76,7 +84,7 @@ def checked_steps(steps: Sequence[Step]) -> Sequence[Step]:
     """
     for step in steps:
         verb = next(iter(step), "")
-        if verb not in (*_CORE, *MECHANISMS, "let", "for", "when"):
+        if verb not in (*_CORE, *MECHANISMS, "let", "for", "when", "define", "call"):
             raise ValueError(f"there is no step {verb!r}; there are {', '.join((*_CORE, *MECHANISMS))}")
         for key in ("do", "else"):
             checked_steps(step.get(key, ()))
@@ -94,7 +102,7 @@ def _check(value: Any) -> None:
 
 
 def run_steps(steps: Sequence[Step], builder: ObjectBuilder, values: Mapping[str, Any]) -> None:
-    """Carry out steps.
+    """Carry out steps that draw shapes.
 
     Args:
         steps: In this order.
@@ -107,39 +115,70 @@ def run_steps(steps: Sequence[Step], builder: ObjectBuilder, values: Mapping[str
     style = {f"style_{name}": value for name, value in vars(builder.style).items()}
     draws = {name: getattr(builder, name) for name in ("draw", "count", "maybe", "pick", "gap")}
     own = {"seam": lambda size, thick: panels.seam(builder, size, thick)}
-    _run(steps, builder, {"__builtins__": {}, **_FUNCTIONS, **style, **draws, **own, **values})
+    given = {**_SHAPES, **style, **draws, **own, **values}
+    Performance(builder, _DRAWING).run(steps, {"__builtins__": {}, **ARITHMETIC, **given})
 
 
-def _run(steps: Sequence[Step], builder: ObjectBuilder, names: dict[str, Any]) -> None:
-    for step in steps:
-        if "let" in step:
-            for name, formula in step["let"].items():
-                _assign(name, evaluated(formula, names), names)
-        elif "for" in step:
-            for number, item in enumerate(evaluated(step["in"], names)):
-                if number >= _MOST_ROUNDS:
-                    raise ValueError(f"the loop over {step['in']!r} has more than {_MOST_ROUNDS} rounds")
-                _assign(step["for"], item, names)
-                _run(step["do"], builder, names)
-        elif "when" in step:
-            _run(step["do"] if evaluated(step["when"], names) else step.get("else", ()), builder, names)
-        else:
-            _draw(step, builder, names)
+class Performance:
+    """Steps at work on what takes them."""
 
+    def __init__(self, target: Any, verbs: Mapping[str, Callable[..., Any]]) -> None:
+        """`verbs` are called with the target, a name, shapes or solids, and what else a step gives."""
+        self._target, self._verbs = target, verbs
 
-def _draw(step: Step, builder: ObjectBuilder, names: dict[str, Any]) -> None:
-    (verb, target), *rest = step.items()
-    given = {key: _text(value, names) if key in _TEXTS else evaluated(value, names) for key, value in rest}
-    name = filled_in(target, names)
-    try:
-        if verb in MECHANISMS:
-            MECHANISMS[verb](builder, name, **given)
-        elif verb in ("part", "cut", "bore"):
-            getattr(builder, verb)(name, *_flat(given.pop("shapes", ())), **given)
-        else:
-            getattr(builder, verb)(name, **given)
-    except TypeError as error:
-        raise ValueError(f"the step {verb} {name} cannot be carried out: {error}") from error
+    def run(self, steps: Sequence[Step], names: dict[str, Any]) -> None:
+        """Carry out steps; `names` are what formulas may name, and take what is computed.
+
+        Raises:
+            ValueError: A step cannot be carried out; the message quotes it.
+        """
+        for step in steps:
+            if "let" in step:
+                for name, formula in step["let"].items():
+                    _assign(name, formula, names)
+            elif "for" in step:
+                self._repeat(step, names)
+            elif "when" in step:
+                self.run(step["do"] if evaluated(step["when"], names) else step.get("else", ()), names)
+            elif "define" in step:
+                names.update(_function(step["define"], names, self._followed(step)))
+            elif "within" in step:
+                frame = self._target.from_frame(evaluated(step["within"], names))
+                Performance(frame, self._verbs).run(step["do"], names)
+            elif "call" in step:
+                evaluated(step["call"], names)
+            else:
+                self._draw(step, names)
+
+    def _repeat(self, step: Step, names: dict[str, Any]) -> None:
+        for number, item in enumerate(evaluated(step["in"], names)):
+            if number >= _MOST_ROUNDS:
+                raise ValueError(f"the loop over {step['in']!r} has more than {_MOST_ROUNDS} rounds")
+            _unpack(step["for"], item, names)
+            self.run(step["do"], names)
+
+    def _followed(self, step: Step) -> Callable[[dict[str, Any]], Any]:
+        """What `define` does: names that its steps give stay inside."""
+
+        def followed(inner: dict[str, Any]) -> Any:
+            self.run(step["do"], inner)
+            return evaluated(step.get("give", 0), inner)
+
+        return followed
+
+    def _draw(self, step: Step, names: dict[str, Any]) -> None:
+        (verb, target), *rest = step.items()
+        given = {
+            key: _text(value, names) if key in _TEXTS else evaluated(value, names) for key, value in rest if key != "as"
+        }
+        name = filled_in(target, names)
+        drawn = _flat(given.pop("shapes", None) or given.pop("solids", ()))
+        try:
+            found = self._verbs[verb](self._target, name, *drawn, **given)
+        except (TypeError, KeyError) as error:
+            raise ValueError(f"the step {verb} {name} cannot be carried out: {error}") from error
+        if "as" in step:
+            names[step["as"]] = found
 
 
 def _text(value: Any, names: dict[str, Any]) -> Any:
@@ -147,18 +186,53 @@ def _text(value: Any, names: dict[str, Any]) -> Any:
 
 
 def _flat(found: Any) -> list[Any]:
-    """Shapes out of lists of shapes."""
-    return [shape for item in found for shape in ([item] if isinstance(item, dict) else _flat(item))]
+    """Shapes or solids out of lists of them."""
+    return [item for part in found for item in (_flat(part) if isinstance(part, list | tuple) else [part])]
 
 
-def _assign(targets: str, value: Any, names: dict[str, Any]) -> None:
+def _assign(target: str, formula: Any, names: dict[str, Any]) -> None:
+    """Give names the value of a formula; ``area(x)`` becomes a function."""
+    if target.endswith(")") and target[0] != "(":
+        names.update(_function(target, names, lambda inner: evaluated(formula, inner)))
+    else:
+        _unpack(target, evaluated(formula, names), names)
+
+
+def _function(
+    signature: str, names: dict[str, Any], body: Callable[[dict[str, Any]], Any]
+) -> dict[str, Callable[..., Any]]:
+    """Return a function by its name; `signature` is as Python has it, ``area(x, *others, scale=1.0)``.
+
+    Args:
+        signature: Name, and parameters in brackets.
+        names: That its body may use; those of the day when it is called.
+        body: Is given them with the arguments.
+    """
+    name, _, inside = signature.partition("(")
+    parameters = []
+    for item in _split(inside[:-1]):
+        key, _, default = item.partition("=")
+        kind = Parameter.VAR_POSITIONAL if key.startswith("*") else Parameter.POSITIONAL_OR_KEYWORD
+        value = evaluated(default, names) if default else Parameter.empty
+        parameters += [Parameter(key.strip("* "), kind, default=value)] if key else []
+    taken = Signature(parameters)
+
+    def called(*args: Any, **given: Any) -> Any:
+        bound = taken.bind(*args, **given)
+        bound.apply_defaults()
+        return body({**names, **bound.arguments})
+
+    return {name: called}
+
+
+def _unpack(targets: str, value: Any, names: dict[str, Any]) -> None:
     """Give names their values; `k, (x, y)` takes a pair whose second is one."""
     parts = _split(targets)
     if len(parts) == 1 and not targets.strip().startswith("("):
         names[parts[0]] = value
         return
     for part, item in zip(parts, value, strict=True):
-        _assign(part.strip("()") if part.startswith("(") else part, item, names)
+        _unpack(part.strip("()") if part.startswith("(") else part, item, names)
 
 
 def _split(targets: str) -> list[str]:

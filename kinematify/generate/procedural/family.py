@@ -5,19 +5,18 @@ from __future__ import annotations
 import difflib
 import math
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
-from kinematify.generate.procedural.parameter import angle, choice, length, phrases, read_parameter, read_table, share
+from kinematify.generate.procedural.parameter import angle, choice, length, share
 from kinematify.generate.procedural.workshop import STYLES, Workshop
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Mapping
 
     from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.parameter import Parameter, Value
@@ -112,29 +111,6 @@ COMMON = (
     ),
 )
 """Parameters of every family."""
-
-
-def described_families(
-    builders: Mapping[str, Callable[[Values, Workshop], None]],
-    in_steps: Callable[[str, str, Sequence[Any], Iterable[str]], Callable[[Values, Workshop], None]],
-) -> dict[str, Family]:
-    """Return the families that `families.yaml` describes, in its order, built by their steps or a function."""
-    described: Mapping[str, Any] = read_table(Path(__file__).with_name("families.yaml"))
-    return {
-        name: Family(
-            name=name,
-            title=said["title"],
-            words=phrases(said["words"]),
-            parameters=tuple(read_parameter(asked, facts) for asked, facts in said["parameters"].items()),
-            build=in_steps(name, said["title"], said["steps"], said["parameters"])
-            if "steps" in said
-            else builders[name],
-            material=said.get("material", "wood"),
-            kinds={kind: usual for kinds, usual in said.get("kinds", {}).items() for kind in phrases(kinds)},
-            part_words={part: phrases(words) for part, words in said.get("part_words", {}).items()},
-        )
-        for name, said in described.items()
-    }
 
 
 _NOT_DRAWN = ("material", "color")

@@ -51,6 +51,11 @@ def cylinder(radius: float, start: Point, end: Point, *, segments: int = SEGMENT
     return Manifold.cylinder(length, radius, radius, segments).transform(frame)
 
 
+def frustum(length: float, radius: float, top_radius: float) -> Manifold:
+    """Return the cone on the z axis from the origin upwards, cut off at `length`."""
+    return Manifold.cylinder(length, radius, top_radius, SEGMENTS)
+
+
 def bore(radius: float, clearance: float, start: Point, end: Point, *, segments: int = SEGMENTS) -> Manifold:
     """Return what to take away so that a shaft of `radius` turns freely with `clearance` at the tightest place."""
     return cylinder((radius + clearance) / np.cos(np.pi / segments), start, end, segments=segments)

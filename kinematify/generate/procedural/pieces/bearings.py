@@ -57,11 +57,11 @@ def barrel(
 def fork(width: float, radius: float, clearance: float, reach: float) -> tuple[Manifold, Manifold]:
     """Return a fork that reaches down and a tongue that reaches up, hinged about the x axis at the origin.
 
-    The tongue owns the pin. A body on the fork must stay below ``-room(radius, clearance)`` and one on the
+    The tongue owns the pin. A body on the fork must stay below ``-fork_room(radius, clearance)`` and one on the
     tongue above it; both may be as wide as `width` and ``2 * radius`` thick. The hinge then turns by 90 degrees
     both ways.
     """
-    inner, outer, clear = 0.25 * width, 0.5 * width, room(radius, clearance)
+    inner, outer, clear = 0.25 * width, 0.5 * width, fork_room(radius, clearance)
     whole = cylinder(radius, (-outer, 0, 0), (outer, 0, 0)) + box((-outer, -radius, -reach), (outer, radius, 0))
     slot = box((-inner, -2 * radius, -clear), (inner, 2 * radius, 2 * radius))
     forked = whole - slot - bore(0.5 * radius, clearance, (-width, 0, 0), (width, 0, 0))
@@ -87,7 +87,7 @@ def bent_fork(
     return forked.translate(pivot), tongue.translate(pivot)
 
 
-def room(radius: float, clearance: float) -> float:
+def fork_room(radius: float, clearance: float) -> float:
     """Return the distance from the axis of a fork at which bodies may begin [m]."""
     return 1.05 * radius + clearance
 
@@ -127,7 +127,8 @@ class BackEdge:
 
 def add_barrels(
     workshop: Workshop,
-    bodies: tuple[str, str],
+    upper: str,
+    parent: str,
     edge: BackEdge,
     places: Sequence[float],
     *,
@@ -135,7 +136,7 @@ def add_barrels(
     radius: float,
     knuckles: int = 3,
 ) -> tuple[float, float, float]:
-    """Add barrel hinges to a lower and an upper body, which are there; returns a point on the pins.
+    """Add barrel hinges between an upper body and its parent, which are there; returns a point on the pins.
 
     The upper body then turns about -x until its back face meets the knuckles, beyond 90 degrees.
     """
@@ -147,7 +148,7 @@ def add_barrels(
     halves = barrel(length, radius, edge.clearance, (on_lower, on_upper), knuckles=knuckles)
     for x in places:
         place = at((x, pivot[1], pivot[2]), ALONG_X[:, :3])
-        for name, half in zip(bodies, halves, strict=True):
+        for name, half in zip((parent, upper), halves, strict=True):
             workshop.add(name, half.transform(place))
     return pivot
 

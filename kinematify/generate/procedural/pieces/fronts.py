@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _SUNK = 1e-3  # how deep a handle reaches into its front, so that both are one solid
 
 
-def handle(kind: str, at: Point, *, along: str, length: float) -> list[Manifold]:
+def handle_solids(kind: str, at: Point, *, along: str, length: float) -> list[Manifold]:
     """Return the solids of a handle.
 
     Args:
@@ -133,7 +133,7 @@ def add_drawer(workshop: Workshop, name: str, parent: str, opening: Bay, fitting
     workshop.add(parent, *_kickers(opening, rim + clearance, edge + wall))
     front = -clearance - opening.wall
     middle = (0.5 * (opening.left + opening.right), front, 0.5 * (opening.bottom + opening.top))
-    solids = workshop.as_handle(*handle(fitting.grip, middle, along="x", length=min(0.16, 0.5 * opening.width)))
+    solids = workshop.as_handle(*handle_solids(fitting.grip, middle, along="x", length=min(0.16, 0.5 * opening.width)))
     workshop.body(name, panel(opening, clearance), inner, *solids)
     travel = 0.8 * (opening.depth - opening.wall)
     workshop.slides(name, parent, (0, -1, 0), middle, (0.0, travel), rest=fitting.rest)
@@ -186,7 +186,7 @@ def add_door(
     free = at_hinge + sign * (opening.width - 0.05)
     level = 0.5 * (opening.bottom + opening.top)
     length = min(0.2, 0.4 * opening.height)
-    grip = handle(fitting.grip, (free, front, level), along="z", length=length)
+    grip = handle_solids(fitting.grip, (free, front, level), along="z", length=length)
     solids = [panel(opening, clearance), *workshop.as_handle(*grip)]
     pivot = (
         at_hinge if outermost else at_hinge + sign * 0.5 * (clearance + _REVEAL),
@@ -224,7 +224,7 @@ def add_flap(workshop: Workshop, name: str, parent: str, opening: Bay, fitting: 
     front, back = -clearance - opening.wall, -clearance
     middle = 0.5 * (opening.left + opening.right)
     grip = (middle, front, opening.top - min(0.05, 0.15 * opening.height))
-    bar = handle(fitting.grip, grip, along="x", length=0.7 * opening.width)
+    bar = handle_solids(fitting.grip, grip, along="x", length=0.7 * opening.width)
     solids = [panel(opening, clearance), *workshop.as_handle(*bar)]
     pivot = (middle, back, opening.bottom)
     if hinge == "barrel":

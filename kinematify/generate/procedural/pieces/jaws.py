@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.pieces.bearings import fork, room
+from kinematify.generate.procedural.pieces.bearings import fork, fork_room
 from kinematify.generate.procedural.solids import box, cylinder, union
 
 if TYPE_CHECKING:
@@ -66,13 +66,13 @@ def finger_palm(fingers: int) -> list[Manifold]:
 
 
 def add_fingers(
-    workshop: Workshop, name: str, palm: str, fingers: int, finger: float, *, clearance: float, rest: float = 0.0
+    workshop: Workshop, name: str, palm: str, count: int, finger: float, *, clearance: float, rest: float = 0.0
 ) -> None:
-    """Add fingers to a `finger_palm`; zero is straight, positive opens; arguments as for `add_jaws`."""
+    """Add fingers to a `finger_palm`; zero is straight, positive opens; others as for `add_jaws`."""
     clearance = min(clearance, 8e-4)
-    wide, ring, start = 0.02, _ring(fingers), room(_FINGER, clearance)
-    for k in range(fingers):
-        angle = 360.0 * k / fingers
+    wide, ring, start = 0.02, _ring(count), fork_room(_FINGER, clearance)
+    for k in range(count):
+        angle = 360.0 * k / count
         forked, tongue = (
             solid.translate((0, -ring, _KNUCKLE)).rotate((0, 0, angle))
             for solid in fork(wide, _FINGER, clearance, 2.2 * _FINGER)

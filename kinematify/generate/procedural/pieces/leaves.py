@@ -117,11 +117,10 @@ def hinged_slab(field: Field, hinge: Hinge) -> Manifold:
 def hang(
     workshop: Workshop,
     name: str,
+    *solids: Manifold,
     parent: str,
     field: Field,
     hinge: Hinge,
-    *,
-    solids: Sequence[Manifold],
     opens: float,
     rest: float,
     count: int = 2,
@@ -212,7 +211,7 @@ class Grooves:
 
 def add_sliding(
     workshop: Workshop,
-    stem: str,
+    name: str,
     parent: str,
     tracks: Grooves,
     *,
@@ -224,7 +223,7 @@ def add_sliding(
 
     Args:
         workshop: Where they are added.
-        stem: Of their names.
+        name: Of all, without their numbers.
         parent: The frame, without the opening; it is cut here.
         tracks: As many as leaves, two at least.
         count: Of leaves.
@@ -244,12 +243,12 @@ def add_sliding(
             whole = tracks.fixed(k, left, opening.right + 1e-3)
             workshop.add(parent, finish(whole, face, tracks.front(k)))
             continue
-        workshop.body(f"{stem}_{k + 1}", finish(tracks.slab(k, left, right), face, tracks.front(k)))
+        workshop.body(f"{name}_{k + 1}", finish(tracks.slab(k, left, right), face, tracks.front(k)))
         to_right = opening.right - clearance - right
         to_left = left - opening.left - clearance
         sign, room = (1, to_right) if to_right >= to_left else (-1, to_left)
         place = (face.middle[0], tracks.front(k), face.middle[1])
-        workshop.slides(f"{stem}_{k + 1}", parent, (sign, 0, 0), place, (0.0, 0.95 * room), rest=rest)
+        workshop.slides(f"{name}_{k + 1}", parent, (sign, 0, 0), place, (0.0, 0.95 * room), rest=rest)
 
 
 def carved(

@@ -1,0 +1,71 @@
+"""From steps that carve to an object: verbs are the workshop's own and the pieces that many objects share."""
+
+from __future__ import annotations
+
+import math
+from types import FunctionType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinematify.errors import InputError
+from kinematify.generate.library.steps import ARITHMETIC, Performance, Step
+from kinematify.generate.procedural import layout, solids
+from kinematify.generate.procedural.pieces import bearings, controls, fronts, jaws, leaves, limbs, tracks
+from kinematify.generate.procedural.workshop import Workshop
+from kinematify.robot.transforms import rotation_about
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from types import ModuleType
+
+    from kinematify.generate.procedural.family import Values
+
+_PIECES = (bearings, controls, fronts, jaws, leaves, limbs, tracks)
+
+
+def _public(module: ModuleType) -> dict[str, Any]:
+    return {
+        name: item
+        for name, item in vars(module).items()
+        if isinstance(item, FunctionType | type) and item.__module__ == module.__name__ and not name.startswith("_")
+    }
+
+
+_FOUND: Mapping[str, Any] = {name: item for module in _PIECES for name, item in _public(module).items()}
+_VERBS: Mapping[str, Callable[..., Any]] = {
+    **{name: getattr(Workshop, name) for name in ("body", "add", "cut", "turns", "slides")},
+    **{name.removeprefix("add_"): call for name, call in _FOUND.items() if name.startswith("add_")},
+    "hang": leaves.hang,
+}
+"""What a step does to a workshop."""
+_NAMES: Mapping[str, Any] = {
+    **ARITHMETIC, **_FOUND, **_public(layout), **_public(solids),
+    **{name: getattr(math, name) for name in ("sin", "cos", "tan", "hypot", "degrees", "copysign")},
+    **{name: getattr(np, name) for name in ("diag", "zeros", "column_stack", "abs")},
+    "FRONT": controls.FRONT, "TOP": controls.TOP, "STEM": bearings.STEM, "float": float,
+    "rotation_about": rotation_about,
+}  # fmt: skip
+"""What formulas of solids may name."""
+
+
+def carver_of(
+    title: str, steps: Callable[[], Sequence[Step]], parameters: Iterable[str]
+) -> Callable[[Values, Workshop], None]:
+    """Return the function that builds an object from steps that carve.
+
+    Args:
+        title: In messages.
+        steps: Read when the first one is built.
+        parameters: Names that formulas may use, besides those of every family.
+    """
+    names = (*parameters, "open", "clearance")
+
+    def build(values: Values, workshop: Workshop) -> None:
+        given = {name: values.value(name) for name in names}
+        try:
+            Performance(workshop, _VERBS).run(steps(), {"__builtins__": {}, **_NAMES, **given})
+        except ValueError as error:
+            raise InputError(f"The {title} cannot be built: {error}.") from error
+
+    return build
