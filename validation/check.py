@@ -61,7 +61,7 @@ _NOT_OURS = ("KV1", "KV2", "KV6", "KV8")
 class FeedbackRow(StrEnum):
     """What `kinematify refine` makes of a finding, a row of the table in `validation/run/feedback.py`."""
 
-    ALLOWED = "an allowance with its reason: the overlap is as given, no axis is the cause"
+    AS_GIVEN = "none: the overlap is as given, no axis is the cause"
     INTO_PARENT = "against this line, this type and this parent; if one side is free, it is the opening one"
     END = "the range ends there"
     OTHER_PARENT = "against the parent of what runs into another body, for that body"

@@ -21,8 +21,6 @@ class JointSummary:
     """Range around rest in which nothing collides [rad or m]; None if it was not measured."""
     best_alternative: Mapping[str, Any] | None = None
     """``kind``, ``axis``, ``pivot`` (world frame at zero), ``score`` of a joint that explains the geometry better."""
-    next_best: tuple[Mapping[str, Any], ...] = ()
-    """Of a joint that failed, the next best candidates of the inference, where its record is beside the model."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -22,6 +22,7 @@ from kinematify.robot.mesh_file import RawMesh, merged, read_meshes
 from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES, MESH_SUFFIXES
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
+from kinematify.robot.vectors import referenced
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -316,7 +317,7 @@ def _up_by_standard(files: Sequence[Path], reading: _Reading) -> bool:
 
 def _up_warnings(assembly: Assembly) -> tuple[str, ...]:
     """Tell of an object that was turned from y up to z up, and that looks as if z had been up before."""
-    points = np.concatenate([part.vertices[np.unique(part.faces)] for part in assembly.parts])
+    points = np.concatenate([referenced(part.vertices, part.faces) for part in assembly.parts])
     low, high = points.min(axis=0), points.max(axis=0)
     size = float(np.linalg.norm(high - low))
     # The file's z is -y now, and its y is z.

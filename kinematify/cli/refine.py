@@ -16,10 +16,14 @@ from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from kinematify.pipeline.inference import Inference
     from kinematify.refinement import Refinement
 
 TIERS = ("geometry", "engines", "task")
+_ROUND_HEADINGS = ("round", "simulated by", "chosen again", "failed", "cause", "score", "time [s]")
+"""Of `round_rows`; the round that was kept has a star."""
 
 
 @click.command(
@@ -143,10 +147,44 @@ def describe_refinement(inference: Inference) -> str:
     record = inference.refinement
     if record is None:
         return ""
-    from kinematify.validation.run.inferred import ROUND_HEADINGS, round_rows, round_words
+    table = format_table(_ROUND_HEADINGS, round_rows(record)) if record["rounds"] else ""
+    return "\n".join(line for line in (table, *_round_words(record)) if line)
 
-    table = format_table(ROUND_HEADINGS, round_rows(record)) if record["rounds"] else ""
-    return "\n".join(line for line in (table, *round_words(record)) if line)
+
+def round_rows(refinement: Mapping[str, Any]) -> list[tuple[str, ...]]:
+    """The rounds of a refinement as rows of a table."""
+    return [_round_row(item, kept=item["number"] == refinement["kept"]) for item in refinement["rounds"]]
+
+
+def _round_row(item: Mapping[str, Any], *, kept: bool) -> tuple[str, ...]:
+    changes = [f"{it['part']}: {it['what']} {it['before']} -> {it['after']}" for it in item["changes"]]
+    return (
+        f"{item['number']}{' *' if kept else ''}",
+        item["tier"],
+        "; ".join(changes) or ("as inferred" if item["number"] == 0 else "-"),
+        "; ".join(item["failed"]) or "nothing",
+        "; ".join(item["blamed"]) or "-",
+        f"{item['score']:.2f}",
+        f"{item['seconds']:.1f}",
+    )
+
+
+def _round_words(refinement: Mapping[str, Any]) -> list[str]:
+    """Which round was kept, why the loop ended, and what was refused, a sentence each."""
+    from kinematify.validation.run.outcome import counted_words
+
+    rounds, kept = refinement["rounds"], refinement["kept"]
+    if not rounds:
+        return ["Nothing was simulated."]
+    chosen = next(item for item in rounds if item["number"] == kept)
+    left = f"{counted_words(chosen['errors'], 'error')} and {counted_words(chosen['warnings'], 'warning')} about motion"
+    what = "the model as it was inferred" if kept == 0 else f"round {kept}"
+    refused = [phrase for item in rounds for phrase in item["refused"]]
+    cost = f"{refinement['seconds']:.1f} s, {refinement['candidates']} candidates"
+    return [
+        f"Kept: {what}, with {left}. The loop ended because {refinement['ended']} ({cost}).",
+        *(f"Refused, because it would have hidden a failure: {phrase}." for phrase in dict.fromkeys(refused)),
+    ]
 
 
 def as_answer(refinement: Refinement, folder: Path) -> dict[str, Any]:

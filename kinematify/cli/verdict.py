@@ -6,7 +6,6 @@ import re
 import shutil
 import textwrap
 from collections import Counter
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -18,7 +17,6 @@ from kinematify.validation.formats.content import (
     blocks,
     family_table,
     joint_table,
-    next_best_table,
     places,
     printable,
     reasons,
@@ -66,7 +64,6 @@ def _full(report: ValidationReport) -> list[str]:
         _reasons(report, Status.SKIPPED, Status.BLOCKED),
         *map(_long_text, blocks(report.told, together=MANY)),
         _table(joint_table(report)),
-        _next_best(report),
     ]
 
 
@@ -79,7 +76,7 @@ def _short(report: ValidationReport) -> list[str]:
     told = [item for item in report.told if item.finding.suppressed is None]
     errors, warnings = ([t for t in told if t.finding.severity is s] for s in (Severity.ERROR, Severity.WARNING))
     head = [_first_lines(report), _reasons(report, Status.BLOCKED)]
-    foot = [_next_best(report), "\n".join(text for text in (_notes(told), _more(report)) if text)]
+    foot = ["\n".join(text for text in (_notes(told), _more(report)) if text)]
     paragraphs = [*map(_short_text, blocks(errors, alike=False))]
     full = [*head, *paragraphs, *map(_short_text, blocks(warnings, alike=False)), *foot]
     if _height(full) <= _SCREEN:
@@ -215,12 +212,6 @@ def _code(text: str) -> list[str]:
 def _table(table: Table, empty: str = "") -> str:
     rows = [tuple(printable(cell) or empty for cell in row) for row in table.rows]
     return format_table(table.headings, rows) if rows else ""
-
-
-def _next_best(report: ValidationReport) -> str:
-    table = _table(next_best_table(report))
-    more = f"kinematify refine {Path(report.model).parent} -o OUT simulates them and chooses again."
-    return f"{table}\n{more}" if table else ""
 
 
 def _brief(outcome: Outcome) -> str:

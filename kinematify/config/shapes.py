@@ -65,10 +65,12 @@ class GroupingConfig(StageConfig):
 
     share: float = 0.5  # the best F1 of moving parts with the category held out (results/grouping.md)
     """A set of pieces moves if it is likelier than this share of the likeliest one."""
-    threshold: float = 0.1  # no set of a rigid mesh is likely
+    threshold: float = 0.2  # of 4 held-out objects without a likelier set, none had a right joint (results/grouping.md)
     """Probability below which no set moves."""
     fixed: float = 0.5  # of 18 such sets of earlier runs, 3 moved (results/grouping.md)
     """A set that is likelier than this fixed to its parent, judged by its joint, is merged with it again."""
+    sure: float = 0.5  # of 5 held-out objects below it, none had a right joint (results/grouping.md)
+    """A mesh without a joint of this confidence is reported as one that may be rigid."""
     crumb: float = 0.012  # screws and letters; the smallest button of the benchmark is twice as large
     """Pieces with a smaller diagonal, as a fraction of the assembly's, ride on the nearest one."""
 

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from kinematify.robot.arrays import read_only
+from kinematify.robot.vectors import referenced
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, Part
@@ -86,7 +87,7 @@ def part_stats(part: Part) -> PartStats:
 
 def _hull_measures(part: Part) -> tuple[float, float, float]:
     """Hull volume [m^3] and shares of the footprint that are a level bottom and top; zeros for a flat part."""
-    points = part.vertices[np.unique(part.faces)]
+    points = referenced(part.vertices, part.faces)
     try:
         hull = ConvexHull(points)
     except QhullError:

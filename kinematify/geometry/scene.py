@@ -13,6 +13,7 @@ import numpy as np
 from kinematify.geometry.solid import Solid
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import rigid_groups
+from kinematify.robot.vectors import referenced
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -255,7 +256,7 @@ def read_scene(
                 links=tuple(links),
                 group=index,
                 solid=_solid(shapes, unit, settings, solids),
-                shapes=tuple(vertices[np.unique(faces)] for vertices, faces in shapes if len(faces)),
+                shapes=tuple(referenced(vertices, faces) for vertices, faces in shapes if len(faces)),
             )
             for index, links, shapes in solid
         ),

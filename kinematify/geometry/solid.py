@@ -19,7 +19,7 @@ from scipy.sparse.csgraph import connected_components
 from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
 from kinematify.geometry.rays import RayScene
 from kinematify.geometry.sampling import curve_order, place_samples
-from kinematify.robot.vectors import all_three, crossed, highest, lengths_of, lowest
+from kinematify.robot.vectors import all_three, crossed, highest, lengths_of, lowest, referenced
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
@@ -44,7 +44,7 @@ class Solid:
         """
         self._mesh = vertices, faces
         self._unit, self._hole, self._count = unit, hole, points
-        used = vertices[np.unique(faces)]
+        used = referenced(vertices, faces)
         self.low, self.high = lowest(used), highest(used)
 
     @property

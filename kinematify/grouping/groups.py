@@ -13,6 +13,7 @@ from kinematify.assembly.part import Assembly, Part
 from kinematify.errors import AssemblyError, InputError
 from kinematify.grouping.candidates import Candidate, measure_candidates, propose
 from kinematify.grouping.measure import measure_pieces
+from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.joints.choice.scorer import MOVING_WEIGHTS, PIECES_WEIGHTS, shipped_scorer
 from kinematify.robot.appearance import joined
 from kinematify.robot.exact_faces import joined_faces
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config import GroupingConfig
-    from kinematify.joints.candidate import JointEstimate
     from kinematify.joints.choice.scorer import Scorer
     from kinematify.robot.arrays import FloatArray, IntArray
 
@@ -229,6 +229,24 @@ def fixed_merged(grouping: Grouping, joints: Sequence[JointEstimate], config: Gr
         ),
         rejected=(*sorted(gone, key=lambda group: -(group.moves or 0.0)), *grouping.rejected),
     )
+
+
+def unsure(grouping: Grouping, joints: Sequence[JointEstimate], config: GroupingConfig) -> tuple[str, ...]:
+    """A warning where no joint of a mesh that was grouped here is sure: held out, no such object had a right joint.
+
+    Args:
+        grouping: The groups; where a user stated them, there is no warning.
+        joints: Inferred between them.
+        config: How sure the surest one must be.
+    """
+    surest = max((joint.confidence for joint in joints if joint.kind is not JointType.FIXED), default=0.0)
+    if surest >= config.sure or all(group.moves is None for group in grouping.groups):
+        return ()
+    said = (
+        f"No joint of the grouped mesh is sure (the surest: {surest:.0%}). The object may be rigid, or its parts may "
+        f"be no sets of its connected pieces: correct {GROUPS_FILE}, or give --labels."
+    )
+    return (said,)
 
 
 def crumb_owners(parts: Sequence[Part], size: float) -> IntArray:

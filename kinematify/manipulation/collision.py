@@ -19,6 +19,7 @@ from kinematify.geometry.scene import judged_shapes
 from kinematify.manipulation.grasp import moved_bodies
 from kinematify.manipulation.robot import hand_links
 from kinematify.robot.robot import rigid_groups
+from kinematify.robot.vectors import referenced
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -209,7 +210,7 @@ def _convex(shape: Shape) -> tuple[coal.CollisionGeometry, FloatArray] | None:
         return kind(shape.size[0], shape.size[1]), shape.T_link_shape
     if not len(shape.mesh.faces):
         return None
-    corners = shape.mesh.vertices[np.unique(shape.mesh.faces)]
+    corners = referenced(shape.mesh.vertices, shape.mesh.faces)
     piece = convex_piece(corners, thickness=_THICKNESS, directions=_DIRECTIONS)
     tree = _triangles(piece.vertices, piece.faces)
     tree.buildConvexRepresentation(False)

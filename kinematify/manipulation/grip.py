@@ -15,6 +15,7 @@ from trimesh.intersections import slice_faces_plane
 from kinematify.geometry.convex import convex_hull, thickened
 from kinematify.geometry.scene import transformed
 from kinematify.robot.robot import forward_kinematics, rigid_groups
+from kinematify.robot.vectors import referenced
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -72,4 +73,4 @@ def _clipped(triangles: FloatArray, low: FloatArray, high: FloatArray) -> FloatA
     vertices, faces = triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3)
     for normal, bound in zip((*np.eye(3), *-np.eye(3)), (*low, *-high), strict=True):
         vertices, faces, _ = slice_faces_plane(vertices, faces, normal, bound * normal)  # type: ignore[no-untyped-call]
-    return np.asarray(vertices[np.unique(faces)])
+    return np.asarray(referenced(vertices, faces))

@@ -16,6 +16,7 @@ from kinematify.errors import InputError
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Joint, Link, forward_kinematics, joint_values, rest_configuration, rigid_groups
+from kinematify.robot.vectors import referenced
 from kinematify.robot.write import write_robot
 
 if TYPE_CHECKING:
@@ -337,7 +338,7 @@ class _Hand:
         for link in links:
             declared, T = self.robot.link_by_name[link], poses[link]
             for shape in declared.collisions or declared.visuals:
-                used = shape.mesh.vertices[np.unique(shape.mesh.faces)]
+                used = referenced(shape.mesh.vertices, shape.mesh.faces)
                 found.append(used @ T[:3, :3].T + T[:3, 3])
         return np.concatenate(found)
 

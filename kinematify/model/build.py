@@ -14,6 +14,7 @@ from kinematify.model.kinematic_model import KinematicModel, ModelLink
 from kinematify.model.masses import inertial_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Joint
+from kinematify.robot.vectors import referenced
 
 _SNAP = 1e-3  # [rad] fits of bearings are off by 0.02 deg in the median
 
@@ -98,7 +99,7 @@ def _inertial(part: Part, origin: FloatArray, thickness: float, config: ModelCon
 
 def _collision_parts(part: Part, thickness: float) -> tuple[Part, ...]:
     """A thin solid for a flat part, which no engine can collide; nothing for all others."""
-    used = part.vertices[np.unique(part.faces)]
+    used = referenced(part.vertices, part.faces)
     thick = thickened(used, thickness)
     if len(thick) == len(used):
         return ()

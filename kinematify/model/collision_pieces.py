@@ -15,7 +15,7 @@ from kinematify.geometry.cut import Concave, CutSurface
 from kinematify.geometry.cut_cache import cached_cuts
 from kinematify.robot.mesh_file import RawMesh
 from kinematify.robot.robot import forward_kinematics
-from kinematify.robot.vectors import lengths_of
+from kinematify.robot.vectors import lengths_of, referenced
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -137,7 +137,7 @@ def _components(link: Link, mesh: LinkMesh, size: float, settings: PrepareSettin
     )
     if not parts:
         return []
-    diagonal = float(np.linalg.norm(np.ptp(mesh.vertices[np.unique(mesh.faces)], axis=0)))
+    diagonal = float(np.linalg.norm(np.ptp(referenced(mesh.vertices, mesh.faces), axis=0)))
     surfaces = [CutSurface(part.vertices, part.faces) for part in parts[: settings.most_components]]
     if len(parts) > settings.most_components:
         surfaces.append(_joined(parts[settings.most_components :]))

@@ -12,6 +12,7 @@ from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.geometry.convex import convex_hull, thickened
 from kinematify.robot.robot import Inertial, rigid_groups
+from kinematify.robot.vectors import referenced
 from kinematify.robot.weld import is_closed
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def inertial_of(part: Part, origin: FloatArray, *, thickness: float, config: Mod
     Returns:
         Mass properties with source ``volume``, ``hull`` or ``shell``.
     """
-    used = part.vertices[np.unique(part.faces)]
+    used = referenced(part.vertices, part.faces)
     thick = thickened(used, thickness)
     hull = _integrate(*convex_hull(thick))
     solid = _closed_volume(part) if len(thick) == len(used) else None

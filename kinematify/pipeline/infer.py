@@ -18,7 +18,7 @@ from kinematify.contact.build import build_contact_graph
 from kinematify.contact.seams import find_cuts, joined, rigid_pieces
 from kinematify.errors import InputError
 from kinematify.geometry.surface import part_surfaces
-from kinematify.grouping.groups import Grouping, fixed_merged, group_pieces
+from kinematify.grouping.groups import Grouping, fixed_merged, group_pieces, unsure
 from kinematify.joints.bearings.fit import fit_bearings
 from kinematify.pipeline.heading import heading_of, turned, with_heading
 from kinematify.pipeline.inference import Inference
@@ -102,7 +102,8 @@ def infer(
         if merged is not assembly and (base is None or base in merged.assembly.names):
             return infer(merged, config=config, base=base, progress=progress)
         seconds = MappingProxyType({**clock.seconds, **found.timings})
-        return replace(found, grouping=assembly, timings=seconds, warnings=(*assembly.told, *found.warnings))
+        warnings = (*assembly.told, *unsure(assembly, found.joints, config.grouping), *found.warnings)
+        return replace(found, grouping=assembly, timings=seconds, warnings=warnings)
     if base is not None and base not in assembly.names:
         raise InputError(f"There is no part {base} to be the base link. The parts are {', '.join(assembly.names)}.")
     angle = heading_of(assembly) if graph is None and config.joints.method == "geometry" else 0.0

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from kinematify.robot.arrays import BoolArray, FloatArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 
 def crossed(first: FloatArray, second: FloatArray) -> FloatArray:
@@ -45,3 +45,10 @@ def highest(points: FloatArray) -> FloatArray:
 def all_three(flags: BoolArray) -> BoolArray:
     """True where x, y and z are, as ``flags.all(axis=-1)``, (..., 3) -> (...)."""
     return np.asarray(flags[..., 0] & flags[..., 1] & flags[..., 2])
+
+
+def referenced(vertices: FloatArray, faces: IntArray) -> FloatArray:
+    """Return the vertices (V, 3) that a face (F, 3) uses, each once, in their order, shape (k, 3)."""
+    used = np.zeros(len(vertices), dtype=bool)
+    used[faces.reshape(-1)] = True  # much faster than `np.unique`
+    return vertices[used]

@@ -14,7 +14,7 @@ from kinematify.assembly.load import load_assembly
 from kinematify.assembly.pieces import connected_sheets
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
-from kinematify.grouping.groups import Group, Grouping, fixed_merged, group_pieces, joined_pieces, read_groups
+from kinematify.grouping.groups import Group, Grouping, fixed_merged, group_pieces, joined_pieces, read_groups, unsure
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.robot.mesh_file import RawMesh
 from tests.one_mesh import box, write_bin_with_lid
@@ -75,6 +75,11 @@ def test_a_group_whose_joint_says_fixed_is_merged_into_its_parent_unless_a_user_
     everything = [replace(joint, evidence={"probability_fixed": 0.9}) for joint in joints[:5]]
     alone = Grouping(assembly=joined_pieces(pieces, [np.array([6, 0]), np.arange(1, 6)]), groups=(groups[6], groups[1]))
     assert fixed_merged(alone, everything[:1], config) is alone, "something moves"
+    doubtful = [replace(joint, confidence=0.41) for joint in joints]
+    assert "the surest: 41%" in unsure(merged, doubtful, config)[0]
+    assert unsure(merged, [*doubtful, joints[0]], config) == ()
+    stated = replace(merged, groups=tuple(replace(group, moves=None) for group in merged.groups))
+    assert unsure(stated, doubtful, config) == (), "a user stated them"
 
 
 def test_a_groups_file_with_an_unknown_or_repeated_piece_is_refused(bin_with_lid: Path, tmp_path: Path) -> None:

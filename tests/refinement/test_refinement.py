@@ -16,6 +16,7 @@ from benchmarks.degrade import without_pieces
 from kinematify.assembly.load import load_assembly
 from kinematify.assembly.part import Assembly, Part
 from kinematify.cli.app import run
+from kinematify.cli.refine import round_rows
 from kinematify.config import load_config
 from kinematify.config.validation import ValidationSettings, load_settings
 from kinematify.contact.tree import KinematicTree
@@ -34,7 +35,6 @@ from kinematify.robot.joint_type import JointType
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.failure_rates import LINE, TYPE, shipped_rates
 from kinematify.validation.finding import Severity
-from kinematify.validation.run.inferred import round_rows
 from tests.objects import BUILDERS
 from tests.places import ROOT
 
@@ -409,18 +409,6 @@ def test_infer_refines_when_asked(tmp_path: Path, capsys: pytest.CaptureFixture[
     words = ["infer", str(ROOT / "examples" / "cabinet"), "-o", str(tmp_path / "out"), "--refine", "1", "--no-preview"]
     assert run(words) == 0
     assert "Kept: the model as it was inferred, with no errors" in capsys.readouterr().out
-
-
-def test_validate_names_the_next_best_joints_of_what_fails(tmp_path: Path) -> None:
-    bad = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
-    write_inference(bad, tmp_path / "out", preview=False)
-    urdf = tmp_path / "out" / "model.urdf"
-    (joint,) = kinematify.validate(urdf, selected=["KV310"], engines=()).joints
-    right = joint_above(inferred("drawer"), "drawer")
-    assert abs(float(np.dot(joint.next_best[0]["axis"], right.axis))) > 0.999
-    urdf.write_text(urdf.read_text() + "\n")
-    (joint,) = kinematify.validate(urdf, selected=["KV310"], engines=()).joints
-    assert joint.next_best == ()
 
 
 def test_a_folder_of_an_older_version_is_refused(tmp_path: Path) -> None:

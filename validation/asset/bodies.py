@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from hashlib import blake2b
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,14 +12,15 @@ from scipy.spatial import ConvexHull
 
 from kinematify.geometry.convex import enclosed_volume, outermost, thickened
 from kinematify.robot.robot import Inertial, forward_kinematics, rigid_groups
+from kinematify.robot.vectors import referenced
 from kinematify.validation.asset.loads import worst_loads
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from kinematify.config.validation import PhysicsSettings
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.robot import Link, Robot, Shape
+    from kinematify.robot.robot import Link, LinkMesh, Robot, Shape
 
 _DIRECTIONS = 200
 """The hull of the outermost points in so many directions leaves 1 % of a ball's volume out."""
@@ -60,15 +62,38 @@ class Room:
         return float((self.hull.equations[:, :3] @ point + self.hull.equations[:, 3]).max())
 
 
-def room_of(shapes: Sequence[Shape]) -> Room | None:
-    """Measure shapes; None where there is nothing to measure."""
-    meshes = [shape.mesh for shape in shapes if len(shape.mesh.faces)]
-    if not meshes:
-        return None
-    points = np.concatenate([outermost(mesh.vertices[np.unique(mesh.faces)], _DIRECTIONS) for mesh in meshes])
-    volumes = [enclosed_volume(mesh.vertices, mesh.faces) for mesh in meshes]
-    known = [volume for volume in volumes if volume is not None]
-    return Room(points=points, solid=sum(known) if len(known) == len(volumes) else None)
+class Rooms:
+    """Rooms of shapes; each mesh is measured once, since visual and collision geometry are often the same file."""
+
+    def __init__(self) -> None:
+        """Begin without any."""
+        self._of_mesh: dict[bytes, Room] = {}
+
+    def of(self, shapes: Sequence[Shape]) -> Room | None:
+        """Measure shapes; None where there is nothing to measure."""
+        rooms = [self._measured(shape.mesh) for shape in shapes if len(shape.mesh.faces)]
+        if len(rooms) < 2:
+            return rooms[0] if rooms else None
+        return Room(points=np.concatenate([room.points for room in rooms]), solid=_sum(room.solid for room in rooms))
+
+    def _measured(self, mesh: LinkMesh) -> Room:
+        made_of = blake2b(mesh.vertices.tobytes())
+        made_of.update(mesh.faces.tobytes())
+        key = made_of.digest()
+        if key not in self._of_mesh:
+            points = outermost(referenced(mesh.vertices, mesh.faces), _DIRECTIONS)
+            self._of_mesh[key] = Room(points=points, solid=enclosed_volume(mesh.vertices, mesh.faces))
+        return self._of_mesh[key]
+
+
+def _sum(volumes: Iterable[float | None]) -> float | None:
+    """Sum of volumes; None where one of them is unknown."""
+    total = 0.0
+    for volume in volumes:
+        if volume is None:
+            return None
+        total += volume
+    return total
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -136,8 +161,7 @@ class Body:
             room.points @ self.T_body_link[name][:3, :3].T + self.T_body_link[name][:3, 3]
             for name, room in rooms.items()
         ]
-        solids = [room.solid for room in rooms.values() if room.solid is not None]
-        return Room(points=np.concatenate(points), solid=sum(solids) if len(solids) == len(rooms) else None)
+        return Room(points=np.concatenate(points), solid=_sum(room.solid for room in rooms.values()))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -152,6 +176,8 @@ class Physics:
     """Room of the visual geometry of each link that has some, in the link's frame."""
     collision: dict[str, Room]
     """The same for the collision geometry."""
+    rooms: Rooms
+    """What all of them were measured by."""
 
     @cached_property
     def body_of(self) -> dict[str, Body]:
@@ -176,15 +202,15 @@ class Physics:
 
     def inflation(self, shape: Shape) -> float:
         """Volume of the hull of a closed mesh over its own; 0 for other shapes."""
-        volume = enclosed_volume(shape.mesh.vertices, shape.mesh.faces) if shape.kind == "mesh" else None
-        room = room_of([shape]) if volume is not None else None
-        return 0.0 if room is None or volume is None else float(room.hull.volume) / volume
+        room = self.rooms.of([shape]) if shape.kind == "mesh" else None
+        return 0.0 if room is None or room.solid is None else float(room.hull.volume) / room.solid
 
 
 def measure(model: Robot, settings: PhysicsSettings) -> Physics:
     """Measure every link once."""
-    visual = {link.name: room for link in model.links if (room := room_of(link.visuals)) is not None}
-    collision = {link.name: room for link in model.links if (room := room_of(link.collisions)) is not None}
+    rooms = Rooms()
+    visual = {link.name: room for link in model.links if (room := rooms.of(link.visuals)) is not None}
+    collision = {link.name: room for link in model.links if (room := rooms.of(link.collisions)) is not None}
     poses = forward_kinematics(model, {})
     bodies = []
     for group in rigid_groups(model):
@@ -198,7 +224,9 @@ def measure(model: Robot, settings: PhysicsSettings) -> Physics:
                 rooms={name: room for name in group.links if (room := _both(name, visual, collision)) is not None},
             )
         )
-    return Physics(model=model, settings=settings, bodies=tuple(bodies), visual=visual, collision=collision)
+    return Physics(
+        model=model, settings=settings, bodies=tuple(bodies), visual=visual, collision=collision, rooms=rooms
+    )
 
 
 def _both(name: str, visual: dict[str, Room], collision: dict[str, Room]) -> Room | None:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     fails="Bodies without a joint between them overlap at rest",
     severity=Severity.ERROR,
     blame=Blame.ASSET,
-    feedback=FeedbackRow.ALLOWED,
+    feedback=FeedbackRow.AS_GIVEN,
 )
 def strangers_overlap(result: OpenCheck, look: GeometryContext) -> None:
     """Of every pair of bodies that no joint joins (links held together by fixed joints are one body), the deepest
@@ -46,7 +46,7 @@ def strangers_overlap(result: OpenCheck, look: GeometryContext) -> None:
     fails="Parent and child are in each other at rest",
     severity=Severity.WARNING,
     blame=Blame.ASSET,
-    feedback=FeedbackRow.ALLOWED,
+    feedback=FeedbackRow.AS_GIVEN,
 )
 def neighbours_overlap(result: OpenCheck, look: GeometryContext) -> None:
     """The deepest point of a part in the one that carries it is less than geometry.rest_joined of the smaller part's

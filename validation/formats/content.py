@@ -9,13 +9,12 @@ import math
 import re
 from collections import Counter
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from kinematify.errors import ExitStatus
 from kinematify.validation.check import FAMILIES
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Finding, Severity, Status
-from kinematify.validation.run.inferred import ROUND_HEADINGS, round_rows
 from kinematify.validation.run.outcome import counted_words, severity_counts, status_counts
 
 if TYPE_CHECKING:
@@ -109,21 +108,6 @@ def joint_table(report: ValidationReport) -> Table:
     return Table(headings=("joint", "type", "declared limits", "free travel", "better alternative"), rows=rows)
 
 
-def next_best_table(report: ValidationReport) -> Table:
-    """What the inference would have chosen next for every joint that failed, best first; empty without its record."""
-    rows = [
-        (joint.joint, _candidate(candidate), str(candidate.get("source", "")))
-        for joint in report.joints
-        for candidate in joint.next_best
-    ]
-    return Table(headings=("joint", "next best by the inference", "from"), rows=rows)
-
-
-def round_table(refinement: Mapping[str, Any]) -> Table:
-    """How the model was refined."""
-    return Table(headings=ROUND_HEADINGS, rows=round_rows(refinement))
-
-
 def family_table(report: ValidationReport) -> Table:
     """Checks by family and engine, with a count for each status."""
     groups: dict[tuple[str, str], list[CheckResult]] = {}
@@ -166,10 +150,8 @@ def pair_note_table(report: ValidationReport) -> Table:
 def alternative(joint: JointSummary) -> str:
     """The joint that would explain the geometry better, in a few words; a dash if there is none."""
     better = joint.best_alternative
-    return _candidate(better) if better else "-"
-
-
-def _candidate(better: Mapping[str, Any]) -> str:
+    if not better:
+        return "-"
     places = [
         f"{key} ({', '.join(number(float(item)) for item in better[key])})"
         for key in ("axis", "pivot")

@@ -17,16 +17,13 @@ from kinematify.validation.formats.content import (
     family_table,
     is_pair_note,
     joint_table,
-    next_best_table,
     number,
     pair_note_table,
-    round_table,
     summary_words,
     title,
 )
 from kinematify.validation.formats.html_frame import badge, page, table, text
 from kinematify.validation.formats.html_motion import curves, show_button, viewer
-from kinematify.validation.run.inferred import round_words
 from kinematify.validation.run.outcome import Unusable, severity_counts
 
 if TYPE_CHECKING:
@@ -126,15 +123,7 @@ def _section(index: int, outcome: Outcome, picture: bytes, scene: str) -> str:
         viewer(index, scene),
         _picture(picture),
         _table("Families", family_table(outcome), f"families-{index}", _COUNTS),
-        *(
-            _table(heading, content, f"{name}-{index}")
-            for heading, name, content in (
-                ("Joints", "joints", joint_table(outcome)),
-                ("Next best joints", "next", next_best_table(outcome)),
-            )
-            if content.rows
-        ),
-        _rounds(index, outcome),
+        _table("Joints", joint_table(outcome), f"joints-{index}") if outcome.joints else "",
         curves(outcome),
         _pair_matrix(index, outcome.pairs),
         _pairs(index, outcome),
@@ -150,14 +139,6 @@ def _table(heading: str, content: Table, name: str, classes: Sequence[str] = ())
 
 def _plain_table(content: Table, name: str, classes: Sequence[str] = ()) -> str:
     return table(content.headings, [tuple(map(text, row)) for row in content.rows], name=name, classes=classes)
-
-
-def _rounds(index: int, report: ValidationReport) -> str:
-    """How the model was refined."""
-    if report.refinement is None:
-        return ""
-    words = "".join(f"<p>{text(line)}</p>" for line in round_words(report.refinement))
-    return _table("Rounds of refinement", round_table(report.refinement), f"rounds-{index}") + words
 
 
 def _picture(png: bytes) -> str:

@@ -25,7 +25,6 @@ from kinematify.validation.isolation import load_imports, run_stages
 from kinematify.validation.lines import with_lines
 from kinematify.validation.run.as_loaded import across_engines, confirm_on_raw_model, with_refusals
 from kinematify.validation.run.causes import with_causes
-from kinematify.validation.run.inferred import inferred_beside, with_next_best
 from kinematify.validation.run.opinions import evidence_before_blame
 from kinematify.validation.run.plan import (
     agreement_stage,
@@ -266,12 +265,10 @@ class _Run:
         facts = environment(
             settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted, engines=self.engines
         )
-        inferred = inferred_beside(self.path)
         return ValidationReport(
             model=str(self.path),
             checks=checks,
-            joints=with_next_best(self._in_order(robot), checks, inferred),
-            refinement=None if inferred is None else inferred.refinement,
+            joints=tuple(self._in_order(robot)),
             curves=tuple(sorted(self._curves, key=lambda curve: curve.engine)),  # they come in as stages end
             pairs=self._pairs,
             environment=facts,

@@ -44,27 +44,12 @@ class EdgeSignal:
 
 
 @dataclass(frozen=True, kw_only=True)
-class LineSignal:
-    """Against the line, axis and place, that the joint of a part has."""
+class JointSignal:
+    """Against the line, axis and place, that the joint of a part has, or against its type."""
 
     child: str
     weight: float
-    check: str
-    reason: str
-    at: float | None
-    """Value of the joint at which it failed [rad or m], if one is known."""
-    error: bool
-    """The check found an error, not only a warning."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class TypeSignal:
-    """Against the type that the joint of a part has: sliding where it turns, turning where it slides."""
-
-    child: str
-    kind: str
-    """The type that is doubted."""
-    weight: float
+    """Log odds against it, positive."""
     check: str
     reason: str
     at: float | None
@@ -90,17 +75,6 @@ class RangeSignal:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Allowance:
-    """An overlap at rest that later motion is not blamed for."""
-
-    pair: tuple[str, str]
-    depth: float
-    """[m]."""
-    check: str
-    reason: str
-
-
-@dataclass(frozen=True, kw_only=True)
 class UnfixableFinding:
     """A failure that no choice of the search can fix, and who can."""
 
@@ -115,10 +89,9 @@ class Feedback:
     """What the failures of one model say about the decisions behind it."""
 
     edges: tuple[EdgeSignal, ...] = ()
-    lines: tuple[LineSignal, ...] = ()
-    types: tuple[TypeSignal, ...] = ()
+    lines: tuple[JointSignal, ...] = ()
+    types: tuple[JointSignal, ...] = ()
     ranges: tuple[RangeSignal, ...] = ()
-    allowances: tuple[Allowance, ...] = ()
     left: tuple[UnfixableFinding, ...] = ()
 
     def __bool__(self) -> bool:
@@ -134,12 +107,11 @@ class Feedback:
 
     def has_error(self, child: str) -> bool:
         """Whether an error, not only warnings, speaks against the joint of a part."""
-        signals: tuple[LineSignal | TypeSignal, ...] = (*self.lines, *self.types)
-        return any(item.error for item in signals if item.child == child)
+        return any(item.error for item in (*self.lines, *self.types) if item.child == child)
 
     def failed_at(self, child: str) -> frozenset[float]:
         """Values of the joint of a part at which it failed for its line or its type [rad or m]."""
-        signals: tuple[LineSignal | TypeSignal, ...] = (*self.lines, *self.types)
+        signals = (*self.lines, *self.types)
         return frozenset(item.at for item in signals if item.child == child and item.at is not None)
 
     def as_json(self) -> dict[str, Any]:
@@ -152,7 +124,7 @@ def only_collision_meets(finding: Finding) -> bool:
     return finding.blame is Blame.PHYSICS and finding.check.startswith("KV3")
 
 
-def _worst_of_each(signals: Iterable[LineSignal | TypeSignal], child: str) -> float:
+def _worst_of_each(signals: Iterable[JointSignal], child: str) -> float:
     worst: dict[str, float] = {}
     for signal in signals:
         if signal.child == child:
@@ -198,7 +170,6 @@ def feedback_from(
         lines=tuple(case.lines),
         types=tuple(case.types),
         ranges=tuple(case.ranges),
-        allowances=tuple(case.allowances),
         left=tuple(case.left),
     )
 
@@ -214,10 +185,9 @@ class _Case:
     placements: Mapping[str, float]
     rates: FailureRates
     edges: list[EdgeSignal] = field(default_factory=list)
-    lines: list[LineSignal] = field(default_factory=list)
-    types: list[TypeSignal] = field(default_factory=list)
+    lines: list[JointSignal] = field(default_factory=list)
+    types: list[JointSignal] = field(default_factory=list)
     ranges: list[RangeSignal] = field(default_factory=list)
-    allowances: list[Allowance] = field(default_factory=list)
     left: list[UnfixableFinding] = field(default_factory=list)
 
     def has(self, *checks: str, joint: str | None = None) -> bool:
@@ -229,31 +199,22 @@ class _Case:
 
     def against_line(self, finding: Finding, joint: Joint, reason: str) -> None:
         """Add a signal against the line of a joint, if the failure is more frequent where it is wrong."""
-        weight = self.rates.weight(finding.check, finding.severity, LINE)
-        if weight > 0.0:
-            self.lines.append(
-                LineSignal(
-                    child=joint.child,
-                    weight=weight,
-                    check=finding.check,
-                    reason=reason,
-                    at=_value_of(finding, joint),
-                    error=finding.severity is Severity.ERROR,
-                )
-            )
+        self._against(self.lines, LINE, finding, joint, reason)
 
     def against_type(self, finding: Finding, joint: Joint, reason: str) -> None:
-        """Add a signal against the type of a joint, if the failure is more frequent where it is wrong."""
-        weight = self.rates.weight(finding.check, finding.severity, TYPE)
+        """The same of its type: sliding where it turns, turning where it slides."""
+        self._against(self.types, TYPE, finding, joint, reason)
+
+    def _against(self, signals: list[JointSignal], what: str, finding: Finding, joint: Joint, reason: str) -> None:
+        weight = self.rates.weight(finding.check, finding.severity, what)
         if weight > 0.0:
-            self.types.append(
-                TypeSignal(
+            signals.append(
+                JointSignal(
                     child=joint.child,
-                    kind=joint.kind.value,
                     weight=weight,
                     check=finding.check,
                     reason=reason,
-                    at=_value_of(finding, joint),
+                    at=(finding.q or {}).get(joint.name),
                     error=finding.severity is Severity.ERROR,
                 )
             )
@@ -313,10 +274,10 @@ class _Case:
 def _route(case: _Case, finding: Finding) -> None:
     """Hand a finding to the row of the table that it belongs to."""
     row = CHECKS[finding.check].feedback
-    if row is FeedbackRow.ALLOWED:
-        _at_rest(case, finding)
-    elif finding.severity is Severity.NOTE:
+    if finding.severity is Severity.NOTE:
         return
+    if row is FeedbackRow.AS_GIVEN:
+        case.leave(finding, "they overlap as given; the cause is the cut of the parts, not an axis")
     elif row is FeedbackRow.COLLISION or only_collision_meets(finding):
         case.leave(finding, "only collision geometry is in the way; decompose it", Blame.PHYSICS)
     elif row is FeedbackRow.EXPORTER:
@@ -328,19 +289,6 @@ def _route(case: _Case, finding: Finding) -> None:
 
 
 # ---- the rows of the table -----------------------------------------------------------------------------------------
-
-
-def _at_rest(case: _Case, finding: Finding) -> None:
-    if finding.pair is None or finding.severity is Severity.NOTE:
-        return
-    case.allowances.append(
-        Allowance(
-            pair=finding.pair,
-            depth=finding.value or 0.0,
-            check=finding.check,
-            reason="they overlap as given; the cause is the cut of the parts, not an axis",
-        )
-    )
 
 
 def _into_parent(case: _Case, finding: Finding, joint: Joint) -> None:
@@ -415,10 +363,6 @@ def _out_of_guide(case: _Case, finding: Finding, joint: Joint) -> None:
         case.end(finding, joint, (None if other is None else -other, end), reason, lost=True)
     else:
         case.end(finding, joint, (-end, other), reason, lost=True)
-
-
-def _value_of(finding: Finding, joint: Joint) -> float | None:
-    return (finding.q or {}).get(joint.name)
 
 
 def _upwards(finding: Finding) -> bool:

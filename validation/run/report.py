@@ -34,8 +34,6 @@ class ValidationReport:
     """As the engines drove the joints, those that ran."""
     pairs: PairTable | None = None
     """None if the exact geometry was not looked at."""
-    refinement: Mapping[str, Any] | None = None
-    """Rounds of `kinematify refine`, where their record is beside the model."""
     environment: Mapping[str, Any] = field(default_factory=dict)
     """Versions, seed, settings, seconds, and ``interrupted`` if it is partial."""
 
@@ -91,7 +89,6 @@ class ValidationReport:
             "checks": [_check_json(check) for check in self.checks],
             "findings": self._findings_json(),
             "joints": [_joint_json(joint) for joint in self.joints],
-            "refinement": _plain(self.refinement),
             "environment": _plain(self.environment),
         }
 
@@ -143,7 +140,6 @@ def _joint_json(joint: JointSummary) -> dict[str, Any]:
         "declared_limits": _plain(joint.declared_limits),
         "free_travel": _plain(joint.free_travel),
         "best_alternative": _plain(joint.best_alternative),
-        "next_best": _plain(joint.next_best),
     }
 
 

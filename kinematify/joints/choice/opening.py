@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, shipped_scorer
+from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, columns_of, shipped_scorer
 from kinematify.joints.measure.frames import UP
 from kinematify.joints.measure.measurements import GROUPS, SLIDE, TURN, Hypotheses, MeasuredHypotheses, measure
 from kinematify.robot.vectors import lengths_of
@@ -207,10 +207,7 @@ def opening_odds(scorer: Scorer, sides: Mapping[str, FloatArray]) -> float:
 
 def side_columns(sides: Mapping[str, FloatArray], names: Sequence[str]) -> NDArray[Any]:
     """What the trees read of either side: by how much it is ahead of the other one, and the mean, shape (2, 2 n)."""
-    missing = np.full(2, np.nan)
-    # In single precision, as they were fitted, so that what lies at a threshold goes the same way.
-    values: NDArray[Any] = np.stack([sides.get(name, missing) for name in names], axis=1).astype(np.float32)
-    values[~np.isfinite(values)] = np.nan
+    values = columns_of(sides, names, 2)
     ahead = np.round(values - values[::-1], 6)  # rounding is no lead
     mean = np.broadcast_to(values.mean(axis=0), values.shape)
     return np.concatenate([ahead, mean], axis=1)
@@ -239,10 +236,8 @@ def is_continuous(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: 
 
 def turning_columns(measured: Mapping[str, FloatArray], row: int, names: Sequence[str]) -> NDArray[Any]:
     """What the trees read of one hypothesis, shape (n,)."""
-    # In single precision, as they were fitted, so that what lies at a threshold goes the same way.
-    values: NDArray[Any] = np.array([measured[name][row] if name in measured else np.nan for name in names], np.float32)
-    values[~np.isfinite(values)] = np.nan
-    return values
+    known = {name: measured[name][row : row + 1] for name in names if name in measured}
+    return np.asarray(columns_of(known, names, 1)[0])
 
 
 def rigid_odds(kinds: IntArray, measured: Mapping[str, FloatArray]) -> float:
@@ -260,10 +255,7 @@ def rigid_odds(kinds: IntArray, measured: Mapping[str, FloatArray]) -> float:
 def rigid_columns(kinds: IntArray, measured: Mapping[str, FloatArray], names: Sequence[str]) -> NDArray[Any]:
     """What the trees read of one edge: of a turn, of a slide, and the number of hypotheses, shape (2 n + 1,)."""
     support = np.nan_to_num(measured["rules_score"], nan=-np.inf)
-    missing = np.full(len(kinds), np.nan)
-    # In single precision, as they were fitted, so that what lies at a threshold goes the same way.
-    values: NDArray[Any] = np.stack([measured.get(name, missing) for name in names], axis=1).astype(np.float32)
-    values[~np.isfinite(values)] = np.nan
+    values = columns_of(measured, names, len(kinds))
     found: list[NDArray[Any]] = []
     for kind in (TURN, SLIDE):
         rows = np.flatnonzero(kinds == kind)

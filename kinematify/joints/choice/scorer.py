@@ -23,7 +23,7 @@ from kinematify.joints.choice.point_network import Network, PointNetwork, Scale
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from importlib.resources.abc import Traversable
 
     from numpy.typing import NDArray
@@ -148,10 +148,7 @@ def base_columns(kinds: IntArray, measured: Mapping[str, FloatArray]) -> FloatAr
 
 def stacked(kinds: IntArray, measured: Mapping[str, FloatArray], names: tuple[str, ...]) -> NDArray[Any]:
     """Columns that the trees read: kinds, measurements, each of them beside its rivals, and the summaries, (h, f)."""
-    missing = np.full(len(kinds), np.nan)
-    # In single precision, as they were fitted, so that what lies at a threshold goes the same way.
-    values: NDArray[Any] = np.stack([measured.get(name, missing) for name in names], axis=1).astype(np.float32)
-    values[~np.isfinite(values)] = np.nan
+    values = columns_of(measured, names, len(kinds))
     beside = np.full_like(values, np.nan)
     summaries = []
     chosen = [names.index(name) for name in SUMMARIES]
@@ -164,6 +161,14 @@ def stacked(kinds: IntArray, measured: Mapping[str, FloatArray], names: tuple[st
     every = np.broadcast_to(np.concatenate(summaries), (len(kinds), 4 * len(SUMMARIES)))
     kind_columns = np.stack([kinds == kind for kind in (FIXED, TURN, SLIDE)], axis=1).astype(np.float32)
     return np.concatenate([kind_columns, values, beside, every], axis=1)
+
+
+def columns_of(measured: Mapping[str, FloatArray], names: Sequence[str], count: int) -> NDArray[Any]:
+    """Named measurements (count,) as columns (count, n), in single precision as they were fitted; NaN if missing."""
+    missing = np.full(count, np.nan)
+    values: NDArray[Any] = np.stack([measured.get(name, missing) for name in names], axis=1).astype(np.float32)
+    values[~np.isfinite(values)] = np.nan
+    return values
 
 
 def _extreme(values: NDArray[Any], pick: np.ufunc) -> NDArray[Any]:
