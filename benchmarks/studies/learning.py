@@ -28,8 +28,6 @@ from kinematify.pipeline import infer, write_inference
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from matplotlib.figure import Figure
-
     from benchmarks.study import Measured, Record, Work
     from kinematify.evaluation.record import Report
 
@@ -184,27 +182,4 @@ def _row(record: Record) -> tuple[str, ...]:
     )  # fmt: skip
 
 
-def plot(found: Report[Record]) -> Figure:
-    """Success and return over steps, a colour per object."""
-    from matplotlib.figure import Figure  # noqa: PLC0415  an optional package
-
-    figure = Figure(figsize=(10, 3.6), layout="constrained")
-    panels = figure.subplots(1, 2)
-    colors = {name: f"C{k}" for k, name in enumerate(dict.fromkeys(record["object"] for record in found.records))}
-    named = min(record["seed"] for record in found.records)
-    for record in found.records:
-        steps = [0, *(point["steps"] for point in record["curve"])]
-        for panel, key in zip(panels, ("success", "return"), strict=True):
-            values = [record["untrained"][key], *(point[key] for point in record["curve"])]
-            label = record["object"] if record["seed"] == named else None
-            panel.plot(steps, values, color=colors[record["object"]], marker="o", markersize=3, label=label)
-    panels[0].set(xlabel="steps of the environment", ylabel="success, 20 episodes", ylim=(-0.03, 1.03))
-    panels[1].set(xlabel="steps of the environment", ylabel="return of an episode", ylim=(0, 100))
-    panels[1].legend(frameon=False)
-    for panel in panels:
-        panel.grid(alpha=0.3)
-        panel.spines[["top", "right"]].set_visible(False)
-    return figure
-
-
-STUDY = Study(title="Learning to open a part", options=LearningOptions, measure=measure, report=report, plot=plot)
+STUDY = Study(title="Learning to open a part", options=LearningOptions, measure=measure, report=report)
