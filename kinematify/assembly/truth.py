@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.errors import InputError
 from kinematify.robot.arrays import read_only
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Mimic
@@ -101,21 +100,6 @@ class GroundTruth:
         values = {"schema": SCHEMA, **{key: _plain(value) for key, value in vars(self).items()}}
         return json.dumps(values, indent=1, allow_nan=False)
 
-    @classmethod
-    def from_json(cls, text: str) -> GroundTruth:
-        """Return the truth that `to_json` wrote.
-
-        Raises:
-            InputError: The text is no ground truth, or of another schema.
-        """
-        try:
-            return _truth(json.loads(text))
-        except (AttributeError, KeyError, TypeError, ValueError) as error:
-            raise InputError(
-                f"The text is not a ground truth of schema {SCHEMA} ({error!r}). Write it again with `kinematify "
-                "erase`."
-            ) from error
-
 
 def _plain(value: Any) -> Any:
     """Lists, dictionaries, texts and numbers only; infinity as None."""
@@ -128,25 +112,3 @@ def _plain(value: Any) -> Any:
     if isinstance(value, tuple | list):
         return [_plain(item) for item in value]
     return None if isinstance(value, float) and math.isinf(value) else value
-
-
-def _truth(values: dict[str, Any]) -> GroundTruth:
-    if values.pop("schema") != SCHEMA:
-        raise ValueError("another schema")
-    made: dict[str, Any] = {
-        "joints": tuple(_joint(item) for item in values["joints"]),
-        "part_links": tuple(tuple(item) for item in values["part_links"]),
-        "part_names": tuple(values["part_names"]),
-        "dropped": tuple(values["dropped"]),
-    }
-    return GroundTruth(**{**values, **made})
-
-
-def _joint(values: dict[str, Any]) -> TrueJoint:
-    bounds = {
-        "lower": -math.inf if values["lower"] is None else values["lower"],
-        "upper": math.inf if values["upper"] is None else values["upper"],
-    }
-    mimic = None if values["mimic"] is None else Mimic(**values["mimic"])
-    arrays = {key: np.array(values[key], dtype=np.float64) for key in ("axis", "pivot")}
-    return TrueJoint(**{**values, **bounds, **arrays, "kind": JointType(values["kind"]), "mimic": mimic})

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection
 
     from kinematify.pipeline import Inference
-    from kinematify.vision.ask import Voting
-    from kinematify.vision.client import ChatOracle
 
     Progress = Callable[[str], None]
 
@@ -68,24 +66,18 @@ def with_answers(
     if oracle is None:
         return inference, "", 0
     progress("asking a vision model about the joints")
-    inference, voting = _voted(inference, oracle, asking, known, progress)
-    return inference, voting.described(), 0 if voting.reached else int(ExitStatus.FAULT)
-
-
-def _voted(
-    inference: Inference, oracle: ChatOracle, asking: Asking, known: Collection[str], progress: Progress
-) -> tuple[Inference, Voting]:
+    from kinematify.config import load_config
     from kinematify.vision.ask import Voting, voter_record, with_types_first, with_votes
+    from kinematify.vision.screening import screening_questions
     from kinematify.vision.votes import to_ask
 
     if asking.types_first or inference.config.vision.first:
-        return with_types_first(inference, oracle)
-    if not to_ask(inference, everything=asking.everything, known=known)[0]:
-        return inference, Voting(voter=oracle.name, answers={})
-    from kinematify.config import load_config
-    from kinematify.vision.screening import screening_questions
-
-    progress("asking a vision model about known objects, once for each model")
-    record = voter_record(oracle, lambda: screening_questions(load_config()))
-    progress("asking a vision model about the joints")
-    return with_votes(inference, oracle, record, everything=asking.everything, known=known)
+        inference, voting = with_types_first(inference, oracle)
+    elif not to_ask(inference, everything=asking.everything, known=known)[0]:
+        voting = Voting(voter=oracle.name, answers={})
+    else:
+        progress("asking a vision model about known objects, once for each model")
+        record = voter_record(oracle, lambda: screening_questions(load_config()))
+        progress("asking a vision model about the joints")
+        inference, voting = with_votes(inference, oracle, record, everything=asking.everything, known=known)
+    return inference, voting.described(), 0 if voting.reached else int(ExitStatus.FAULT)

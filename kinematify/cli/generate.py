@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from kinematify.cli.generation import Generation, Requested
     from kinematify.cli.provided import ProvidedGeneration
-    from kinematify.generate.composer.bodies import BodyKind
-    from kinematify.generate.composer.mechanisms import MechanismKind
 
 _WIDTH = 100
 """Characters of a line of --list."""
@@ -76,14 +74,9 @@ _WIDTH = 100
     help="Who makes the object: a web service (rodin; key in RODIN_API_KEY), your own program (command), or a language "
     "model that writes a blueprint (llm; address in KINEMATIFY_LLM_URL).",
 )
+@click.option("--command", "program", metavar="WORDS", help="Your program, with {image}, {text}, {seed} and {out}.")
 @click.option(
-    "--command",
-    "program",
-    metavar="WORDS",
-    help="Your program, for --source command, with {image}, {text}, {seed}, {out}.",
-)
-@click.option(
-    "--time-limit", type=click.FloatRange(min=1.0), metavar="SECONDS", help="Time limit of the program, or of one job."
+    "--time-limit", type=click.FloatRange(min=1.0), metavar="SECONDS", help="Limit of the program, or of one job."
 )
 @click.option(
     "--budget",
@@ -91,9 +84,7 @@ _WIDTH = 100
     metavar="CREDITS",
     help="Refuse a job that is expected to cost more; for llm, start no round after this number of tokens.",
 )
-@click.option(
-    "--rounds", type=click.IntRange(min=1), metavar="N", help="Maximum number of answers of the language model."
-)
+@click.option("--rounds", type=click.IntRange(min=1), metavar="N", help="Most answers of the language model.")
 @click.option(
     "--record", type=click.Path(path_type=Path), metavar="DIR", help="Save what the source makes, for --replay."
 )
@@ -204,9 +195,7 @@ def command(
     if blueprint is not None and (settings or seed is not None):
         raise click.UsageError("--set and --seed have no effect on a --blueprint. Remove them.")
     if settings and text is not None:
-        raise click.UsageError(
-            "--set belongs to --category. Put the value into the text, or give the category instead."
-        )
+        raise click.UsageError("--set belongs to --category. Put the value into the text, or give --category.")
     if strict and text is None:
         raise click.UsageError("--strict belongs to --text. Remove it.")
     from kinematify.cli.generation import Generation
@@ -287,12 +276,12 @@ def _categories() -> str:
         for family in known_families().values()
     ]
     table = format_table(("category", "what it is", "parameters"), rows, width=_WIDTH)
-    composed = (("bodies", _named(BODIES)), ("mechanisms", _named(MECHANISMS)))
+    bodies, mechanisms = (", ".join(kind.words[0] for kind in kinds) for kinds in (BODIES, MECHANISMS))
+    composed = (f"bodies: {bodies}", f"mechanisms: {mechanisms}")
     return (
         f"{table}\n\nWhat no category builds is composed, as in --text 'a cart with four casters and two drawers':\n"
-        + "".join(textwrap.fill(f"{kind}: {names}", _WIDTH, subsequent_indent="  ") + "\n" for kind, names in composed)
-        + "\n"
-        "Parameters with units and ranges: kinematify generate --list --category NAME"
+        + "".join(textwrap.fill(line, _WIDTH, subsequent_indent="  ") + "\n" for line in composed)
+        + "\nParameters with units and ranges: kinematify generate --list --category NAME"
     )
 
 
@@ -335,10 +324,6 @@ def _listing(category: str | None) -> dict[str, Any]:
         "bodies": [kind.words[0] for kind in BODIES],
         "mechanisms": [kind.words[0] for kind in MECHANISMS],
     }
-
-
-def _named(kinds: Sequence[BodyKind] | Sequence[MechanismKind]) -> str:
-    return ", ".join(kind.words[0] for kind in kinds)
 
 
 def _parameters(category: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -24,26 +24,13 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.evaluation.metrics import ObjectScore
     from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint_file import WrittenBlueprint
+    from kinematify.generate.request import Request
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline import Inference
     from kinematify.validation.run.report import ValidationReport
 
-
-class Requested(Protocol):
-    """What a call asks for: a sentence, a category or a file that was read."""
-
-    @property
-    def family(self) -> str:
-        """Its category."""
-        ...
-
-    def build(self, *, seed: int | None = None) -> Blueprint:
-        """Build the object.
-
-        Raises:
-            InputError: It cannot be built.
-        """
-        ...
+    Requested = Sentence | Request | WrittenBlueprint
 
 
 _INFERRED, _WRITTEN = 0.4, 0.6  # shares of the time at which these are done, for five joints that are inferred

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -37,22 +37,18 @@ collision_option = click.option(
 )
 
 
-class _Scale(click.ParamType["float | None"]):
-    """``auto``, which is None, or metres per unit."""
-
-    name = "auto|metres"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float | None:
-        """Return metres per unit; None: what the file states."""
-        try:
-            return None if value == "auto" else float(value)
-        except ValueError:
-            self.fail(f"{value!r} is no number. Give auto, or metres per unit: 0.001 for millimetres.", param, ctx)
+def _metres(_context: click.Context, _parameter: click.Parameter, given: str) -> float | None:
+    """Metres per unit; None for ``auto``: what the file states."""
+    try:
+        return None if given == "auto" else float(given)
+    except ValueError as error:
+        hint = "Give auto, or metres per unit: 0.001 for millimetres."
+        raise click.BadParameter(f"{given!r} is no number. {hint}") from error
 
 
 scale_option = click.option(
     "--scale",
-    type=_Scale(),
+    callback=_metres,
     default="auto",
     show_default=True,
     metavar="auto|NUMBER",

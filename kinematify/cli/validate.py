@@ -74,7 +74,7 @@ if TYPE_CHECKING:
 )
 @click.option("--into", type=click.Path(path_type=Path), metavar="FILE", help="Container to pour into, a URDF.")
 @click.option(
-    "--robot", type=click.Path(path_type=Path), metavar="FILE", help="URDF of the robot.  [default: a built-in arm]"
+    "--robot", type=click.Path(path_type=Path), metavar="FILE", help="URDF of the robot, if not the built-in arm."
 )
 @click.option("--tool", metavar="LINK", help="Link of the robot that carries the fingers.")
 @click.option("--gripper", metavar="JOINTS", help="Joints of its fingers, separated by commas; found if not given.")
@@ -96,10 +96,7 @@ if TYPE_CHECKING:
     help="Folder of the films of the task.  [default: beside the first report; no films without a report]",
 )
 @click.option(
-    "--all",
-    "everything",
-    is_flag=True,
-    help="Also show notes, every place and number, all joints, and what did not run.",
+    "--all", "everything", is_flag=True, help="Also show notes, all places and numbers, joints, and skipped checks."
 )
 @click.option("--json", "json_to", metavar="FILE", help="Report as JSON; - is stdout, and then nothing else is.")
 @click.option("--junit", type=click.Path(path_type=Path), metavar="FILE", help="Report as JUnit XML.")

@@ -9,7 +9,7 @@ import fcl
 import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.manipulation.grasp_search import GraspSearch, Tally
+from kinematify.manipulation.grasp_search import GraspSearch
 from kinematify.robot.robot import forward_kinematics
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.task import GraspSettings
     from kinematify.geometry.scene import Scene
-    from kinematify.manipulation.grasp_search import Candidates
+    from kinematify.manipulation.grasp_search import Candidates, Tally
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import Travel
 
@@ -51,11 +51,10 @@ class Grasp:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class GraspReport:
-    """What a search found and what became of the rest."""
+    """What a search found."""
 
     grasps: tuple[Grasp, ...]
     """The best first."""
-    tally: Tally
     reason: str | None
     """Why there are none."""
 
@@ -97,14 +96,14 @@ def search_grasps(
                 f"({', '.join(scene.bodies[body].name for body in moved) or 'nothing with geometry'}); a point on it "
                 f"is at most {settings.near_point} m off. Give it in metres in the frame of the root link."
             )
-    last = GraspReport(grasps=(), tally=_no_tally(), reason=f"Nothing that {joint} moves has geometry.")
+    last = GraspReport(grasps=(), reason=f"Nothing that {joint} moves has geometry.")
     for body in [*bodies, *carried]:
         search = GraspSearch(scene, poses, body, settings)
         places = search.places(seed) if point is None else _around(point, settings, seed)
         candidates, tally = search.candidates(places, opening)
         ranked = _Ranked(scene, joint, values, search, candidates)
         grasps = _distinct(ranked, _Room(scene, poses, settings), scene.bodies[body].name, settings)
-        last = GraspReport(grasps=tuple(grasps), tally=tally, reason=None if grasps else _reason(tally, opening))
+        last = GraspReport(grasps=tuple(grasps), reason=None if grasps else _reason(tally, opening))
         if grasps:
             break
     return last
@@ -327,10 +326,6 @@ def distance_to(scene: Scene, poses: FloatArray, body: int, point: FloatArray) -
     dot = fcl.CollisionObject(fcl.Sphere(1e-3), fcl.Transform(point / scene.unit))
     distance = fcl.distance(tree, dot, fcl.DistanceRequest(), fcl.DistanceResult())
     return scene.unit * max(0.0, float(distance))
-
-
-def _no_tally() -> Tally:
-    return Tally(seen=0, held=0, free=0)
 
 
 def _reason(tally: Tally, opening: float) -> str:

@@ -596,7 +596,7 @@ def pinned(
     d: ObjectBuilder,
     name: str,
     parent: str,
-    shapes: Sequence[Sequence[Shape]],
+    arms: Sequence[Sequence[Shape]],
     r: float,
     low: float,
     high: float,
@@ -604,7 +604,7 @@ def pinned(
     lower: float,
 ) -> None:
     """Two arms that cross at the origin, and a pin about z in both: of one of them, of its own, or not drawn."""
-    for arm_name, some in zip((parent, name), shapes, strict=True):
+    for arm_name, some in zip((parent, name), arms, strict=True):
         d.part(arm_name, *some, material="steel")
     pin = cylinder(r, (0, 0, low), (0, 0, high))
     kind = d.pick("merged", "apart", "none")

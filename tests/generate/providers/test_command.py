@@ -170,11 +170,11 @@ def test_prompts_that_make_no_sense_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--image", "x.png"], "Say who looks at the image"),
+        (["--image", "x.png"], "--image needs --source"),
         (["--text", "a box", "--budget", "3"], "belong to --source"),
         (["--source", "command", "--text", "a box"], "needs --command"),
         (["--source", "rodin", "--text", "a box", "--command", "x {out}"], "--source command"),
-        (["--source", "rodin", "--category", "cabinet"], "built by rules"),
+        (["--source", "rodin", "--category", "cabinet"], "cannot be combined with --source"),
         (["--source", "rodin", "--text", "a box", "--record", "a", "--replay", "b"], "exclude each other"),
     ],
 )
