@@ -5,8 +5,8 @@ and on two folders of models from elsewhere. Every error and warning was judged 
 (`configs/published.yaml`): *right* if the makers would agree, *wrong* if the model is fine there, *debatable* between.
 What nobody has judged counts as *unjudged*. A check that was not finished is no finding.
 
-With `--fix`, `kinematify fix` writes each model of the two folders. A link or joint that differs in the result, apart from
-folder and format of its meshes, and that no error, warning or note of `validate` names is changed *unasked*.
+With `--fix`, `kinematify fix` writes each model of the two folders. A link or joint that differs in the result, apart
+from folder and format of its meshes, and that no error, warning or note of `validate` names is changed *unasked*.
 """
 
 from __future__ import annotations
