@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from kinematify.assembly.erase import ErasedModel
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.processes.pool import TaskFailure
 
 INFER = "kinematify.pipeline:infer"
