@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from kinematify.pipeline.inference import Inference
     from kinematify.processes.pool import TaskFailure
 
-INFER = "kinematify.pipeline:infer"
+INFER = "kinematify.pipeline.infer:infer"
 """Function under test, as ``module:name``."""
 
 CLEAN = "clean"
