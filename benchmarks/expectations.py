@@ -44,6 +44,7 @@ SETS = {
     "heldout_8": "sixty more, committed before the grammar of that day was opened",
     "heldout_9": "sixty more with one part unlike its sibling, committed before the grammar of that session was opened",
     "heldout_10": "thirty more, committed after that and before they were tried",
+    "heldout_11": "forty more, committed before the grammar or the library was opened in that session",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }
