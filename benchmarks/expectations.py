@@ -315,11 +315,9 @@ def _moving(parts: list[Part], made: Blueprint, wanted: int) -> list[str]:
 
 def _joint(parts: list[Part], made: Blueprint, wanted: str) -> list[str]:
     joints = [made.joint_above[part.name] for part in parts if part.name in made.joint_above]
-    return (
-        []
-        if joints and all(_of_kind(joint, wanted) for joint in joints)
-        else [joints[0].kind.value if joints else "none"]
-    )
+    if joints and all(_of_kind(joint, wanted) for joint in joints):
+        return []
+    return [joints[0].kind.value if joints else "none"]
 
 
 def _range(parts: list[Part], made: Blueprint, wanted: float) -> list[str]:
