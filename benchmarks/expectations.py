@@ -44,6 +44,7 @@ SETS = {
     "heldout_8": "sixty more, committed before the grammar of that day was opened",
     "heldout_9": "sixty more with one part unlike its sibling, committed before the grammar of that session was opened",
     "heldout_10": "thirty more, committed after that and before they were tried",
+    "heldout_11": "forty more, committed before the grammar or the library was opened in that session",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }
@@ -314,11 +315,9 @@ def _moving(parts: list[Part], made: Blueprint, wanted: int) -> list[str]:
 
 def _joint(parts: list[Part], made: Blueprint, wanted: str) -> list[str]:
     joints = [made.joint_above[part.name] for part in parts if part.name in made.joint_above]
-    return (
-        []
-        if joints and all(_of_kind(joint, wanted) for joint in joints)
-        else [joints[0].kind.value if joints else "none"]
-    )
+    if joints and all(_of_kind(joint, wanted) for joint in joints):
+        return []
+    return [joints[0].kind.value if joints else "none"]
 
 
 def _range(parts: list[Part], made: Blueprint, wanted: float) -> list[str]:
