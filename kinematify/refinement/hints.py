@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -179,8 +179,8 @@ def _parsed(text: str, parts: Sequence[str]) -> Hint:
         _check_part(text, value, parts)
         if value == name:
             raise InputError(f"The hint {text!r} names {name} twice: a part is neither its own parent nor its twin.")
-        return replace(Hint(part=name), **{key: value})
-    value = value.lower()
+    else:
+        value = value.lower()
     if key == "pivot" and _vector(value) is None:
         raise InputError(f"The hint {text!r} asks for the pivot {value!r}. Give three numbers [m]. {_FORMS}")
     if key == "range":
@@ -195,7 +195,8 @@ def _parsed(text: str, parts: Sequence[str]) -> Hint:
         numbers = _vector(value) if key else None
         if value not in choices and (numbers is None or not numbers.any()):
             raise InputError(f"The hint {text!r} asks for {value!r}. Choose one of {', '.join(choices)}. {_FORMS}")
-    return replace(Hint(part=name), **{_field(key): value if key else TYPES[value]})
+    stated: dict[str, Any] = {_field(key): value if key else TYPES[value]}
+    return replace(Hint(part=name), **stated)
 
 
 def _check_part(text: str, name: str, parts: Sequence[str]) -> None:
@@ -321,8 +322,7 @@ def _certain(joint: JointEstimate) -> JointEstimate:
 
 def _best(joint: JointEstimate, hint: Hint, reach: float) -> JointCandidate:
     """The best candidate that agrees with a hint, its pivot to within reach [m]; else the joint that it asks for."""
-    own = _of_estimate(joint)
-    every = (*([own] if own else []), *joint.alternatives)
+    every = (*filter(None, (_of_estimate(joint),)), *joint.alternatives)
     turns, pivot = hint.turns, None if hint.pivot is None else _vector(hint.pivot)
     for candidate in every:
         if (turns is None or candidate.kind.turns == turns) and hint.agrees(candidate.axis):
