@@ -20,7 +20,7 @@ from kinematify.evaluation.metrics import CLOSE_ANGLE, axis_angle
 from kinematify.evaluation.record import document, replace_text
 from kinematify.evaluation.run import jobs_of
 from kinematify.model.scene import GLYPH_COLORS, camera_for, sliding_arrow, turning_arrow
-from kinematify.pipeline import infer
+from kinematify.pipeline.infer import infer
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import joint_motion
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from kinematify.evaluation.record import Report
     from kinematify.evaluation.run import BenchmarkRequest
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import FloatArray
 
 _CHILD, _PARENT, _REST = np.array([0.95, 0.62, 0.16]), np.array([0.56, 0.68, 0.88]), np.array([0.84, 0.84, 0.85])

@@ -21,7 +21,7 @@ from kinematify.evaluation.job import score_erased, shown_parts
 from kinematify.evaluation.metrics import Prediction
 from kinematify.evaluation.run import changed
 from kinematify.geometry.surface import part_surfaces
-from kinematify.pipeline import infer
+from kinematify.pipeline.infer import infer
 from kinematify.pipeline.stages import find_trees
 from kinematify.robot.joint_type import JointType
 

@@ -17,7 +17,8 @@ from kinematify.contact.tree import KinematicTree
 from kinematify.evaluation.job import predicted, score_erased, shown_parts
 from kinematify.evaluation.metrics import opening_sign
 from kinematify.joints.candidate import JointCandidate, JointEstimate
-from kinematify.pipeline import Inference, infer
+from kinematify.pipeline.infer import infer
+from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.stages import choose_joints
 from kinematify.refinement.candidates import CandidateJoints
 from kinematify.robot.joint_type import JointType

@@ -73,7 +73,7 @@ _HOMES = {
     "Assembly": "kinematify.assembly.part",
     "ContactGraph": "kinematify.contact.graph",
     "Finding": "kinematify.validation.finding",
-    "Inference": "kinematify.pipeline",
+    "Inference": "kinematify.pipeline.inference",
     "JointCandidate": "kinematify.joints.candidate",
     "KinematicModel": "kinematify.model.kinematic_model",
     "KinematicTree": "kinematify.contact.tree",
@@ -83,13 +83,13 @@ _HOMES = {
     "Refinement": "kinematify.refinement",
     "ValidationReport": "kinematify.validation.run.report",
     "export": "kinematify.formats.export",
-    "infer": "kinematify.pipeline",
+    "infer": "kinematify.pipeline.infer",
     "load": "kinematify.view.loaded",
     "load_assembly": "kinematify.assembly.load",
     "load_config": "kinematify.config",
     "refine": "kinematify.refinement",
     "validate": "kinematify.validation.run",
-    "write_inference": "kinematify.pipeline",
+    "write_inference": "kinematify.pipeline.record",
 }
 
 

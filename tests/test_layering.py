@@ -136,7 +136,7 @@ def test_the_check_can_fail(name: str, source: str) -> None:
 @pytest.mark.parametrize(
     ("name", "source"),
     [
-        ("kinematify.cli.infer", "from kinematify.pipeline import infer\nfrom kinematify import __version__"),
+        ("kinematify.cli.infer", "from kinematify.pipeline.infer import infer\nfrom kinematify import __version__"),
         ("kinematify.contact.build", "from kinematify.contact.graph import ContactGraph\nimport numpy as np"),
     ],
 )

@@ -39,7 +39,6 @@ WORD = re.compile(rf"\b({'|'.join(INSTEAD)})\b", re.IGNORECASE)
 ALLOWED = (
     ("*", "blame=Blame"),  # an argument of `check`
     ("*", "`blame`"),  # a key of the JSON report
-    ("docs/validate.md", "`report.told`"),
     ("*", "hands of a clock"),
     ("docs/gallery.md", "`hands`"),  # of a clock
     ("kinematify/generate/sentence.py", "placed|stands|sits"),  # words that a user may write

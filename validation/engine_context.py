@@ -48,7 +48,7 @@ class RunEnd:
     """Those of the engine that ended it; empty if it went on to the end."""
     joint: str | None = None
     """The one that was driven."""
-    told: float = 0.0
+    drive_speed: float = 0.0
     """The largest speed that it was commanded to give a link [m/s]."""
 
 
@@ -213,7 +213,7 @@ class EngineContext:
                     speed=end.fastest,
                     warnings=end.warnings,
                     joint=travel.joint,
-                    told=float(np.abs(end.drive.speed).max()) * (self.physics.size if travel.turns else 1.0),
+                    drive_speed=float(np.abs(end.drive.speed).max()) * (self.physics.size if travel.turns else 1.0),
                 )
             )
         return session

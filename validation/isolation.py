@@ -70,7 +70,7 @@ class StageEnd:
     """How a stage ended."""
 
     stage: Stage
-    told: tuple[CheckResult | Summary, ...]
+    results: tuple[CheckResult | Summary, ...]
     failure: str | None
     """Why it did not end by itself, as words that follow "because"; None if it did."""
     late: bool = False
@@ -137,7 +137,7 @@ def run_stages(
     load_imports(stages, ahead)
     waiting, ended = list(stages), dict[str, StageEnd]()
     before: dict[str, float] = {}  # processor time of those that a stage comes after [s]
-    told: dict[str, list[CheckResult | Summary]] = {stage.name: [] for stage in stages}
+    results: dict[str, list[CheckResult | Summary]] = {stage.name: [] for stage in stages}
 
     def tasks() -> Iterator[WorkItem[float] | None]:
         while waiting:
@@ -153,15 +153,15 @@ def run_stages(
 
     by_name = {stage.name: stage for stage in stages}
     executor = _StageProcesses(workers, ahead)
-    with closing(run_tasks(tasks(), executor, heard=lambda name, message: told[name].append(message))) as running:
+    with closing(run_tasks(tasks(), executor, heard=lambda name, message: results[name].append(message))) as running:
         for name, answer in running:
             failure, late, seconds = None, False, 0.0
             if isinstance(answer, TaskFailure):
                 failure, late = _cause(answer, _log(by_name[name], request))
             else:
                 seconds = before[name] + answer
-            stage, said = by_name[name], tuple(told[name])
-            ended[name] = StageEnd(stage=stage, told=said, failure=failure, late=late, seconds=seconds)
+            stage, said = by_name[name], tuple(results[name])
+            ended[name] = StageEnd(stage=stage, results=said, failure=failure, late=late, seconds=seconds)
             yield ended[name]
             for stage in list(waiting):
                 if not all(name in ended for name in stage.after):
@@ -170,7 +170,7 @@ def run_stages(
                 if broken is not None:
                     waiting.remove(stage)
                     why = f"did not run, because the stage {broken.stage.name} {broken.failure}"
-                    ended[stage.name] = StageEnd(stage=stage, told=(), failure=why, late=broken.late)
+                    ended[stage.name] = StageEnd(stage=stage, results=(), failure=why, late=broken.late)
                     yield ended[stage.name]
 
 

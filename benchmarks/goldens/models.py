@@ -20,8 +20,9 @@ from kinematify.evaluation.datasets import CONDITIONS, BenchObject, bench_folder
 from kinematify.evaluation.job import erased_item, shown_parts
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.pipeline import infer, write_inference
 from kinematify.pipeline.generate import write_blueprint
+from kinematify.pipeline.infer import infer
+from kinematify.pipeline.record import write_inference
 from kinematify.simulation.engines import DEFAULT_ENGINES
 from kinematify.validation.run import validate
 

@@ -40,8 +40,8 @@ from kinematify.generate.procedural.family import build
 from kinematify.generate.sentence import from_text
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
-from kinematify.pipeline import infer
 from kinematify.pipeline.generate import true_model
+from kinematify.pipeline.infer import infer
 from kinematify.refinement.fix import fix_urdf
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.checks import checks_of
@@ -58,7 +58,7 @@ if TYPE_CHECKING:
     from kinematify.evaluation.record import Report
     from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.validation.finding import CheckResult, Finding
 
 _SHOWN = 0.1

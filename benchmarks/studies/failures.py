@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 
     from benchmarks.study import Measured, Record, Work
     from kinematify.evaluation.record import Report
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.validation.finding import Finding
 
 SAMPLE = (

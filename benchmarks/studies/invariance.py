@@ -19,7 +19,7 @@ from kinematify.config import load_config
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, bench_folder, find_objects
 from kinematify.evaluation.job import erased_item, shown_parts
 from kinematify.evaluation.record import table
-from kinematify.pipeline import infer
+from kinematify.pipeline.infer import infer
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from benchmarks.study import Measured, Record, Work
     from kinematify.evaluation.record import Report
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import FloatArray, IntArray
 
 ANGLE, LINE, LIMIT = 1.0, 0.01, 0.05

@@ -23,7 +23,8 @@ from kinematify.envs.expert import HandExpert
 from kinematify.errors import EnvironmentFault
 from kinematify.evaluation.record import table
 from kinematify.generate.request import from_category
-from kinematify.pipeline import infer, write_inference
+from kinematify.pipeline.infer import infer
+from kinematify.pipeline.record import write_inference
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -27,8 +27,9 @@ from kinematify.config import load_config
 from kinematify.evaluation.record import table
 from kinematify.formats.export import export
 from kinematify.model.output import MODEL_FILE
-from kinematify.pipeline import infer, write_inference
 from kinematify.pipeline.generate import true_model
+from kinematify.pipeline.infer import infer
+from kinematify.pipeline.record import write_inference
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.linkage import linkages
 from kinematify.robot.mechanism import LeaderMechanism

@@ -34,7 +34,7 @@ from kinematify.evaluation.datasets import bench_folder, find_objects
 from kinematify.evaluation.metrics import CLOSE_ANGLE, CLOSE_ORIGIN, axis_angle, axis_line_distance
 from kinematify.evaluation.record import grouped, table
 from kinematify.grouping.groups import group_pieces
-from kinematify.pipeline import infer
+from kinematify.pipeline.infer import infer
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from kinematify.evaluation.datasets import BenchObject
     from kinematify.evaluation.record import Report
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import FloatArray, IntArray
 
 _ENOUGH = 0.5

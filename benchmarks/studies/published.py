@@ -4,6 +4,9 @@ The command as a user runs it, start-up included, on robots of the PyPI packages
 and on two folders of models from elsewhere. Every error and warning was judged by hand once, with a reason
 (`configs/published.yaml`): *right* if the makers would agree, *wrong* if the model is fine there, *debatable* between.
 What nobody has judged counts as *unjudged*. A check that was not finished is no finding.
+
+With `--fix`, `kinematify fix` writes each model of the two folders. A link or joint that differs in the result, apart
+from folder and format of its meshes, and that no error, warning or note of `validate` names is changed *unasked*.
 """
 
 from __future__ import annotations
@@ -24,6 +27,7 @@ from operator import itemgetter
 from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Any, Literal
+from xml.etree import ElementTree
 
 from pydantic import Field
 
@@ -102,6 +106,7 @@ class PublishedOptions(Options):
         "benchmark's.",
     )
     models: tuple[str, ...] = Field((), description="Only these, patterns separated by commas.")
+    fix: bool = Field(False, description="Run `kinematify fix` on models of other makers, too.")
     busy: int = Field(8, ge=0, description="Processes that keep the machine busy for the second look; 0: no such look.")
 
 
@@ -164,15 +169,19 @@ def measure(options: PublishedOptions, work: Work) -> Measured:
         except EnvironmentFault as fault:
             left_out[source] = str(fault)
     quiet = work.each(verdict_on, found, workers=1)
+    makers = OTHER_MAKERS.values() if options.fix else ()
+    fixes = work.each(fix_of, {name: model for name, model in found.items() if model.source in makers})
+    for name, record in fixes.items():
+        quiet[name]["fix"] = record
     chosen = {name: found[name] for name in _BESIDE_BUSY if name in found and options.busy}
     with _busy(options.busy if chosen else 0):
         busy = work.each(verdict_beside_others, chosen, workers=1)
-    differ = [name for name, record in busy.items() if _told(record) != _told(quiet[name])]
+    differ = [name for name, record in busy.items() if _places(record) != _places(quiet[name])]
     beside = {"busy": {"processes": options.busy, "models": [*busy], "differ": differ}} if busy else {}
     return list(quiet.values()), {"left out": left_out, **beside}
 
 
-def _told(record: Record) -> list[tuple[object, ...]]:
+def _places(record: Record) -> list[tuple[object, ...]]:
     """What is said of what, without numbers."""
     return [
         tuple(finding[key] for key in ("check", "severity", "joint", "link", "pair")) for finding in record["findings"]
@@ -234,14 +243,55 @@ def _bullet_models() -> Iterator[PublishedModel]:
         yield PublishedModel(name=name, source="pybullet_data", urdf=folder / f"{name}.urdf")
 
 
+def _run(command: str, model: PublishedModel, answer: Path, *more: str) -> subprocess.CompletedProcess[str]:
+    """Run a command on a model, which writes its answer as JSON."""
+    places = [word for place in model.package_dirs for word in ("--package-dir", str(place))]
+    words = [sys.executable, "-m", "kinematify", command, str(model.urdf), "--json", str(answer), *places, *more]
+    return subprocess.run(words, capture_output=True, text=True, check=False)
+
+
+def fix_of(model: PublishedModel) -> Record:
+    """Run `fix` on one model: what it changed, of that without a finding, and what engines make of the result."""
+    with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
+        answer, result, report = (Path(folder, name) for name in ("answer.json", "model.urdf", "report.json"))
+        _run("validate", model, report)
+        run = _run("fix", model, answer, "--out", str(result))
+        if not answer.exists():
+            return {"status": run.returncode, "message": run.stderr.strip()[-200:]}
+        done = json.loads(answer.read_text("utf-8"))
+        found = json.loads(report.read_text("utf-8"))["findings"]
+        named = {name for item in found for name in (item["joint"], item["link"], *(item["pair"] or ()))}
+        before, after = _elements(model.urdf), _elements(result)
+    changed = {name for name in before | after if before.get(name) != after.get(name)}
+    return {
+        "status": run.returncode,
+        **{key: done[key] for key in ("lost", "fewer")},
+        **{key: [done[side][key] for side in ("before", "after")] for key in ("errors", "warnings")},
+        "changed": len(changed),
+        "unasked": sorted(" ".join(name) for name in changed if name[1] not in named),
+    }
+
+
+def _elements(urdf: Path) -> dict[tuple[str, str], str]:
+    """Links and joints by tag and name, without folder and format of their meshes."""
+    robot = ElementTree.parse(urdf).getroot()
+    for mesh in robot.iter("mesh"):
+        mesh.set("filename", Path(mesh.get("filename", "").replace("\\", "/")).stem)
+    elements = [element for element in robot if element.tag in ("link", "joint")]
+    return {
+        (element.tag, element.get("name", "")): ElementTree.canonicalize(
+            ElementTree.tostring(element, "unicode"), strip_text=True
+        ).strip()
+        for element in elements
+    }
+
+
 def verdict_on(model: PublishedModel) -> Record:
     """Run the command on one model: its errors and warnings, the lines that it prints, and how long it takes."""
     with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
         answer = Path(folder, "report.json")
-        command = [sys.executable, "-m", "kinematify", "validate", str(model.urdf), "--json", str(answer)]
-        command += [word for place in model.package_dirs for word in ("--package-dir", str(place))]
         start = time.perf_counter()
-        run = subprocess.run(command, capture_output=True, text=True, check=False)
+        run = _run("validate", model, answer)
         seconds = time.perf_counter() - start
         text = answer.read_text("utf-8")
     for place in (
@@ -250,17 +300,17 @@ def verdict_on(model: PublishedModel) -> Record:
         *([model.top] if model.top else []),
     ):  # where a package is installed is nobody's business
         text = text.replace(f"{place}{os.sep}", "")
-    told: Record = json.loads(text)
-    counted = [item for item in told.get("findings", ()) if item["severity"] != Severity.NOTE]
+    answered: Record = json.loads(text)
+    counted = [item for item in answered.get("findings", ()) if item["severity"] != Severity.NOTE]
     return {
         "model": model.name,
         "source": model.source,
         "seconds": round(seconds, 1),
         "status": run.returncode,
         "lines": len(run.stdout.splitlines()),
-        "unusable": told.get("message") if run.returncode == ExitStatus.UNUSABLE else None,
+        "unusable": answered.get("message") if run.returncode == ExitStatus.UNUSABLE else None,
         "unfinished": sorted(
-            {item["check"] for item in told.get("checks", ()) if "not finished" in str(item["reason"])}
+            {item["check"] for item in answered.get("checks", ()) if "not finished" in str(item["reason"])}
         ),
         "findings": [
             {key: item[key] for key in ("check", "severity", "blame", "joint", "link", "pair", "message")}
@@ -297,6 +347,9 @@ def report(found: Report[Record]) -> list[str]:
             f"## {source}",
             table(("model", "time [s]", "lines", "errors", "warnings"), (_row(record, judged) for record in group)),
         ]
+    if fixes := [record for record in records if "fix" in record]:
+        heads = ("model", "status", "errors", "warnings", "changed", "unasked", "engines lost", "fewer joints move")
+        blocks += ["## `kinematify fix`", table(heads, map(_fix_row, fixes))]
     blocks += ["## Judged", "\n".join(_reasons(records, judged)) or "Nothing."]
     unjudged = [
         f"- {record['model']}: {finding['check']} ({_place(finding)}): {finding['message']}"
@@ -368,6 +421,16 @@ def _row(record: Record, judged: ExpertVerdicts) -> tuple[str, ...]:
             )
         )
     return record["model"], str(record["seconds"]), str(record["lines"]), *cells
+
+
+def _fix_row(record: Record) -> tuple[str, ...]:
+    done = record["fix"]
+    if "message" in done:
+        return record["model"], str(done["status"]), f"not written: {done['message']}", *[""] * 5
+    numbers = ("{} -> {}".format(*done[key]) for key in ("errors", "warnings"))
+    fewer = ", ".join("{} {} -> {}".format(engine, *counts) for engine, counts in done["fewer"].items())
+    lists = ", ".join(done["unasked"]) or "0", ", ".join(done["lost"]) or "0", fewer or "0"
+    return record["model"], str(done["status"]), *numbers, str(done["changed"]), *lists
 
 
 def _reasons(records: Sequence[Record], judged: ExpertVerdicts) -> Iterator[str]:

@@ -27,7 +27,8 @@ from benchmarks.study import Options, Study, explained
 from kinematify.errors import EnvironmentFault
 from kinematify.evaluation.record import grouped, table
 from kinematify.generate.sentence import from_text
-from kinematify.pipeline import infer, write_inference
+from kinematify.pipeline.infer import infer
+from kinematify.pipeline.record import write_inference
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

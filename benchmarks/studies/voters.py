@@ -32,7 +32,7 @@ from kinematify.evaluation.job import erased_item, shown_parts
 from kinematify.evaluation.metrics import CLOSE_ANGLE, axis_angle, axis_line_distance
 from kinematify.evaluation.record import grouped, table
 from kinematify.joints.candidate import JointCandidate
-from kinematify.pipeline import infer
+from kinematify.pipeline.infer import infer
 from kinematify.robot.joint_type import JointType
 from kinematify.vision.options import look_alike, offered
 from kinematify.vision.votes import VoterRecord, groups, place_of_choice, posterior, prior, same_on_twin, to_ask
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Part
     from kinematify.config import VisionConfig
     from kinematify.evaluation.record import Report
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import BoolArray
 
 ANSWERS = Path(__file__).resolve().parents[1] / "voters"

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 OBJECTS = "objects"
 """Folder of the output with a folder for each object."""
-PRELOAD = ("kinematify.batch.convert", "kinematify.pipeline")
+PRELOAD = ("kinematify.batch.convert", "kinematify.pipeline.infer")
 """What workers need, imported once for all of them."""
 REUSE = 50
 """Objects that a worker takes before a new one is started: what leaks ends with it."""

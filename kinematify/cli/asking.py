@@ -12,7 +12,7 @@ from kinematify.errors import ExitStatus
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
 
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
 
     Progress = Callable[[str], None]
 

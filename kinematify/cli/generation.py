@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.blueprint_file import WrittenBlueprint
     from kinematify.generate.request import Request
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.validation.run.report import ValidationReport
 
     Requested = Sentence | Request | WrittenBlueprint
@@ -78,7 +78,7 @@ class Generation:
             start_server([asset_stage(), *later_stages(DEFAULT_ENGINES), *as_loaded_stages(DEFAULT_ENGINES)])
         config = with_collision(self.config, self.collision)
         if self.inferred:
-            from kinematify.pipeline import infer
+            from kinematify.pipeline.infer import infer
 
             self.inference = infer(
                 self.blueprint.assembly, config=config, progress=lambda stage, done: progress(stage, _INFERRED * done)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
     from kinematify.grouping.groups import Grouping
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.processes.pool import WorkerProcess
     from kinematify.refinement.hints import Hint
     from kinematify.robot.robot import Joint
@@ -176,7 +176,7 @@ def command(
         from kinematify.assembly.load import load_assembly
         from kinematify.config import load_config
         from kinematify.model.output import check_output
-        from kinematify.pipeline import infer
+        from kinematify.pipeline.infer import infer
 
     check_output(out, overwrite=force)
     settings = load_config(config) if seed is None else load_config(config, seed=seed)

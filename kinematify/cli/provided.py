@@ -28,8 +28,8 @@ from kinematify.generate.providers.rodin import RodinSource
 from kinematify.generate.providers.source import RecordingSource, ReplayedSource, check_prompt
 from kinematify.generate.sentence import Made, from_text, kinds_of_object
 from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
-from kinematify.pipeline import infer
 from kinematify.pipeline.generate import write_blueprint
+from kinematify.pipeline.infer import infer
 from kinematify.pipeline.record import write_inference_files
 from kinematify.validation.run import validate
 
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from kinematify.generate.providers.job import PaidJob
     from kinematify.generate.providers.language_model import Written
     from kinematify.generate.providers.source import Generated, PartSource, Prompt
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.validation.run.report import ValidationReport
 
 _MADE, _INFERRED, _WRITTEN = 0.6, 0.8, 0.85  # shares of the time at which these are done

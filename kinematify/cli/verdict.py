@@ -62,7 +62,7 @@ def _full(report: ValidationReport) -> list[str]:
         _first_lines(report),
         _table(family_table(report)),
         _reasons(report, Status.SKIPPED, Status.BLOCKED),
-        *map(_long_text, blocks(report.told, together=MANY)),
+        *map(_long_text, blocks(report.groups, together=MANY)),
         _table(joint_table(report)),
     ]
 
@@ -73,10 +73,10 @@ def _short(report: ValidationReport) -> list[str]:
     Where they fill more than a screen, warnings are a line each without remedies, and those of one check in several
     engines share it; so do errors where the report is too long still. What is beyond the longest report is counted.
     """
-    told = [item for item in report.told if item.finding.suppressed is None]
-    errors, warnings = ([t for t in told if t.finding.severity is s] for s in (Severity.ERROR, Severity.WARNING))
+    groups = [item for item in report.groups if item.finding.suppressed is None]
+    errors, warnings = ([t for t in groups if t.finding.severity is s] for s in (Severity.ERROR, Severity.WARNING))
     head = [_first_lines(report), _reasons(report, Status.BLOCKED)]
-    foot = ["\n".join(text for text in (_notes(told), _more(report)) if text)]
+    foot = ["\n".join(text for text in (_notes(groups), _more(report)) if text)]
     paragraphs = [*map(_short_text, blocks(errors, alike=False))]
     full = [*head, *paragraphs, *map(_short_text, blocks(warnings, alike=False)), *foot]
     if _height(full) <= _SCREEN:
@@ -98,17 +98,17 @@ def _height(blocks: Sequence[str]) -> int:
     return sum(block.count("\n") + 2 for block in blocks if block)
 
 
-def _notes(told: Sequence[FindingGroup]) -> str:
+def _notes(groups: Sequence[FindingGroup]) -> str:
     """How many notes there are, by check."""
-    counts = Counter(item.finding.check for item in told if item.finding.severity is Severity.NOTE)
+    counts = Counter(item.finding.check for item in groups if item.finding.severity is Severity.NOTE)
     listed = ", ".join(f"{check}{f' ({count})' if count > 1 else ''}" for check, count in sorted(counts.items()))
     return _wrapped(f"{counted_words(counts.total(), 'note')}: {listed}.") if counts else ""
 
 
 def _more(report: ValidationReport) -> str:
     """What the whole report has besides."""
-    told = [item.finding for item in report.told if item.finding.suppressed is None]
-    worst = next((found.check for severity in Severity for found in told if found.severity is severity), "KV301")
+    findings = [item.finding for item in report.groups if item.finding.suppressed is None]
+    worst = next((found.check for severity in Severity for found in findings if found.severity is severity), "KV301")
     return f"--all: notes, places, consequences, code, joints, checks. kinematify explain {worst}: what it checks."
 
 
@@ -122,10 +122,10 @@ def describe_all(outcomes: Sequence[Outcome]) -> str:
 
 def describe_briefly(report: ValidationReport) -> str:
     """The verdict of one model, every error in full, and the warnings by what they are about, a line each."""
-    told = [item for item in report.told if item.finding.suppressed is None]
-    errors = blocks((item for item in told if item.finding.severity is Severity.ERROR), alike=False)
+    groups = [item for item in report.groups if item.finding.suppressed is None]
+    errors = blocks((item for item in groups if item.finding.severity is Severity.ERROR), alike=False)
     warnings: dict[tuple[str, str | None], list[FindingGroup]] = {}
-    for item in told:
+    for item in groups:
         if item.finding.severity is Severity.WARNING:
             warnings.setdefault((item.finding.check, item.finding.engine), []).append(item)
     lines = [_first_lines(report), *map(_line, errors)]
@@ -217,8 +217,8 @@ def _table(table: Table, empty: str = "") -> str:
 def _brief(outcome: Outcome) -> str:
     if isinstance(outcome, Unusable):
         return describe(outcome)
-    told = [item for item in outcome.told if item.finding.suppressed is None]
-    shown = blocks(item for item in told if item.finding.severity is not Severity.NOTE)
+    groups = [item for item in outcome.groups if item.finding.suppressed is None]
+    shown = blocks(item for item in groups if item.finding.severity is not Severity.NOTE)
     return "\n".join([_first_lines(outcome), *map(_line, shown)])
 
 

@@ -143,14 +143,14 @@ def bench_folder() -> Path:
     Raises:
         InputError: Neither exists.
     """
-    named = os.environ.get(BENCH_VARIABLE)
-    checkout = Path(__file__).resolve().parents[2]
+    named, checkout = os.environ.get(BENCH_VARIABLE), Path(__file__).resolve().parents[2]
     folder = Path(named) if named else checkout.parent / "shared" / "bench"
     if folder.is_dir():
         return folder
+    place = f" at {folder}" if named or (checkout / "benchmarks").is_dir() else ""  # else it is installed from a wheel
     raise InputError(
-        f"There is no benchmark folder at {folder}. Give a folder of URDF files, set {BENCH_VARIABLE} to one, or use "
-        f"the word `{PIP_DATA}` for the robots of a PyPI package."
+        f"There is no benchmark folder{place}. Give a folder of URDF files, set {BENCH_VARIABLE} to one, or use the "
+        f"word `{PIP_DATA}` for the robots of a PyPI package."
     )
 
 

@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from kinematify.assembly.erase import ErasedModel
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.processes.pool import TaskFailure
 
-INFER = "kinematify.pipeline:infer"
+INFER = "kinematify.pipeline.infer:infer"
 """Function under test, as ``module:name``."""
 
 CLEAN = "clean"

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from kinematify.contact.tree import KinematicTree
     from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import FloatArray
 
 FULL_TURN = 2.0 * math.pi

@@ -107,7 +107,7 @@ def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -
             ledger="jobs",
             timeout=request.timeout,
             said=lambda key, result: _line(by_key[key.removesuffix(_SCORED)], result),
-            preload=("kinematify.pipeline", "kinematify.evaluation.job", *torch_too),
+            preload=("kinematify.pipeline.infer", "kinematify.evaluation.job", *torch_too),
         )
 
     answers = answered(pool, {key: partial(run_job, job) for key, job in by_key.items()})

@@ -7,7 +7,6 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.stats import rankdata
 
 from kinematify.grouping.lattice import CELLS, PAD
 from kinematify.grouping.measure import FREE, freedom_columns, place_columns
@@ -119,8 +118,9 @@ def with_ranks(table: FloatArray, names: tuple[str, ...]) -> tuple[FloatArray, t
 
     What is large or free for one object is not for another; ranks compare the candidates of one object.
     """
-    ranks = rankdata(table, axis=0) / len(table)
-    return np.column_stack([table, ranks]), (*names, *(f"{name}_rank" for name in names))
+    from scipy.stats import rankdata  # noqa: PLC0415  # takes longer to import than all of `generate` besides
+
+    return np.column_stack([table, rankdata(table, axis=0) / len(table)]), (*names, *(f"{name}_rank" for name in names))
 
 
 def _links(inside: BoolArray, measured: MeasuredPieces, odds: FloatArray, areas: FloatArray) -> dict[str, float]:

@@ -55,7 +55,7 @@ class Grouping:
     """The likeliest sets of pieces that were not taken for moving parts, the likeliest first."""
 
     @property
-    def told(self) -> tuple[str, ...]:
+    def messages(self) -> tuple[str, ...]:
         """What was made of the pieces, one sentence each."""
         count = sum(len(group.pieces) for group in self.groups)
         doubtful = [_said(group) for group in self.groups if group.moves is not None and group.moves < _DOUBTFUL]

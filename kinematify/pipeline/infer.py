@@ -102,7 +102,7 @@ def infer(
         if merged is not assembly and (base is None or base in merged.assembly.names):
             return infer(merged, config=config, base=base, progress=progress)
         seconds = MappingProxyType({**clock.seconds, **found.timings})
-        warnings = (*assembly.told, *unsure(assembly, found.joints, config.grouping), *found.warnings)
+        warnings = (*assembly.messages, *unsure(assembly, found.joints, config.grouping), *found.warnings)
         return replace(found, grouping=assembly, timings=seconds, warnings=warnings)
     if base is not None and base not in assembly.names:
         raise InputError(f"There is no part {base} to be the base link. The parts are {', '.join(assembly.names)}.")

@@ -97,7 +97,7 @@ class Look:
         }
 
     def _count(self, severity: Severity) -> int:
-        found = [group.finding for group in self.report.told]
+        found = [group.finding for group in self.report.groups]
         return sum(item.severity is severity and item.suppressed is None for item in found)
 
     def as_json(self) -> dict[str, Any]:
@@ -352,7 +352,7 @@ def _left(after: Look, repairs: _Repairs, *, kinematics: bool) -> list[str]:
     """Findings of the result, those of one check together, each with the reason why it stays."""
     stays = [
         group.finding
-        for group in after.report.told
+        for group in after.report.groups
         if group.finding.severity is not Severity.NOTE and group.finding.suppressed is None
     ]
     said = []

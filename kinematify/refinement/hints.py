@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from kinematify.contact.tree import KinematicTree
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import FloatArray
 
 TYPES = {str(kind): kind for kind in JointType}

@@ -225,13 +225,13 @@ class _World:
             rule = CollisionFilterDeclaration()
             manager.Apply(rule.AllowBetween(*sets) if on else rule.ExcludeBetween(*sets))
 
-    def steps(self, count: int, step: float, told: FloatArray | None = None) -> Iterator[int]:
+    def steps(self, count: int, step: float, targets: FloatArray | None = None) -> Iterator[int]:
         """Simulate, yielding after every step; ends early where Drake gives up, with its reason in `failure`.
 
         Args:
             count: Steps.
             step: Time step [s].
-            told: What each servo is told, shape (count, leaders); None without servos.
+            targets: Of each servo, shape (count, leaders); None without servos.
         """
         simulator = Simulator(self.diagram, self.context)
         plant, context = self.plant, self.plant_context
@@ -240,8 +240,8 @@ class _World:
         try:
             simulator.Initialize()
             for number in range(count):
-                if told is not None:
-                    desired.FixValue(context, np.concatenate([told[number], np.zeros(told.shape[1])]))
+                if targets is not None:
+                    desired.FixValue(context, np.concatenate([targets[number], np.zeros(targets.shape[1])]))
                 simulator.AdvanceTo((number + 1) * step)
                 if not np.isfinite(plant.GetPositionsAndVelocities(context)).all():
                     self.failure.append("a value is not finite")
@@ -425,14 +425,14 @@ class DrakeSimulation:
     @property
     def _held(self) -> FloatArray:
         """Commands that hold the joints at rest, their weight made up for, shape (leaders,)."""
-        told: FloatArray = self.model.mechanism.rest + self.servos.holding[0] / self.servos.stiffness
-        return told
+        targets: FloatArray = self.model.mechanism.rest + self.servos.holding[0] / self.servos.stiffness
+        return targets
 
     def hold(self, efforts: FloatArray, seconds: float) -> FreeRun:
         """Hold the model by servos."""
         count = count_steps(seconds, self.step)
         world = self.model.world(servos=self.servos, force=efforts)
-        return self._free(world, count, told=np.repeat(self._held[None], count, axis=0))
+        return self._free(world, count, targets=np.repeat(self._held[None], count, axis=0))
 
     def release(self, seconds: float, *, fine: bool = False) -> FreeRun:
         """Let the model go."""
@@ -441,10 +441,10 @@ class DrakeSimulation:
             self.model.world(ideal=True, finer=finer), finer * count_steps(seconds, self.step), every=finer
         )
 
-    def _free(self, world: _World, count: int, *, told: FloatArray | None = None, every: int = 1) -> FreeRun:
+    def _free(self, world: _World, count: int, *, targets: FloatArray | None = None, every: int = 1) -> FreeRun:
         world.act(self.model.ignored_pairs, on=False)
         world.place(self.model.mechanism.values_at_rest)
-        return free_run(world, world.steps(count, self.step / every, told), count, every=every)
+        return free_run(world, world.steps(count, self.step / every, targets), count, every=every)
 
     @cached_property
     def _drive_world(self) -> _World:
@@ -465,9 +465,9 @@ class DrakeSimulation:
         world.act(pairs, on=True)
         world.place(self.model.mechanism.values_at_rest)
         world.failure.clear()
-        told = commands(drive, mechanism, self.servos, samples)
+        targets = commands(drive, mechanism, self.servos, samples)
         exerted = world.plant.get_net_actuation_output_port(world.instance)
-        steps = world.steps(len(told), self.step, told)
+        steps = world.steps(len(targets), self.step, targets)
         run = drive_run(world, steps, drive, lambda: float(exerted.Eval(world.plant_context)[drive.leader]))
         world.act(pairs, on=False)
         return run

@@ -245,19 +245,19 @@ class MujocoSimulation:
         return [
             DriveRun(
                 q=run.q,
-                force=self._force(drive, run, told[:, drive.leader]),
+                force=self._force(drive, run, targets[:, drive.leader]),
                 pressed=frozenset(),
                 fastest=fastest,
                 warnings=run.warnings,
             )
-            for drive, run, told, fastest in zip(drives, runs, control, self._fastest(runs), strict=True)
+            for drive, run, targets, fastest in zip(drives, runs, control, self._fastest(runs), strict=True)
         ]
 
-    def _force(self, drive: Drive, run: _Run, told: FloatArray) -> FloatArray:
+    def _force(self, drive: Drive, run: _Run, targets: FloatArray) -> FloatArray:
         """Of the servo that drives, after every step, shape (steps,)."""
         leader = drive.leader
         column = self._mechanism.joints.index(self._mechanism.travels[leader].joint)
-        force = self.servos.stiffness[leader] * (told - run.q[:, column])
+        force = self.servos.stiffness[leader] * (targets - run.q[:, column])
         force -= self.servos.damping[leader] * run.v[:, column]
         return np.asarray(np.clip(force, -self.servos.force[leader], self.servos.force[leader]))
 
@@ -331,10 +331,10 @@ def _run(
         state, sensors = pool.rollout(list(models), data, states, control, chunk_size=1)
     first = 1 + loaded.model.nq
     runs = []
-    for model, way, energy, told in zip(models, state, sensors[:, :, -2:], control, strict=True):
+    for model, way, energy, targets in zip(models, state, sensors[:, :, -2:], control, strict=True):
         stopped = np.flatnonzero(np.diff(way[:, 0]) <= 0.0)  # the clock stands still
         whole = int(stopped[0]) + 1 if len(stopped) else len(way)
-        warnings = _warnings(model, np.vstack([start, way]), told, whole) if len(stopped) else ()
+        warnings = _warnings(model, np.vstack([start, way]), targets, whole) if len(stopped) else ()
         q, v = way[:, 1 + loaded.qpos], way[:, first + loaded.dof]
         runs.append(_Run(q=q, v=v, energy=energy, whole=whole, state=way, warnings=warnings))
     return runs

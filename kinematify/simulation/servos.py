@@ -1,4 +1,4 @@
-"""Servos of the joints, and what they are told on the way from rest to either end of a range."""
+"""Servos of the joints, and their targets on the way from rest to either end of a range."""
 
 from __future__ import annotations
 
@@ -117,17 +117,17 @@ def _drive(leader: int, travel: Travel, end: float, settings: EngineSettings, st
 
 
 def commands(drive: Drive, mechanism: LeaderMechanism, servos: Servos, samples: int) -> FloatArray:
-    """Return what each servo is told per step, shape (steps, leaders); weight and resistance are made up for."""
+    """Return the target of each servo per step, shape (steps, leaders); weight and resistance are made up for."""
     travel = mechanism.travels[drive.leader]
     places = np.linspace(travel.lower, travel.upper, samples)
     holding = servos.holding[sweep_rows(drive.leader, samples)]
-    told = np.tile(mechanism.rest, (len(drive.reference), 1))
+    targets = np.tile(mechanism.rest, (len(drive.reference), 1))
     damping, friction = servos.resistance[:, drive.leader]
     ahead = drive.speed * (servos.damping[drive.leader] + damping) + friction * np.sign(drive.speed)
-    told[:, drive.leader] = drive.reference + ahead / servos.stiffness[drive.leader]
-    for leader in range(told.shape[1]):
-        told[:, leader] += np.interp(drive.reference, places, holding[:, leader]) / servos.stiffness[leader]
-    return told
+    targets[:, drive.leader] = drive.reference + ahead / servos.stiffness[drive.leader]
+    for leader in range(targets.shape[1]):
+        targets[:, leader] += np.interp(drive.reference, places, holding[:, leader]) / servos.stiffness[leader]
+    return targets
 
 
 def acting_pairs(

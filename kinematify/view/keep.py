@@ -11,7 +11,7 @@ import numpy as np
 from kinematify.errors import InputError
 from kinematify.grouping.groups import GROUPS_FILE
 from kinematify.model.output import check_output
-from kinematify.pipeline import infer
+from kinematify.pipeline.infer import infer
 from kinematify.refinement.folder import as_left, open_model_folder, read_record, write_refined
 from kinematify.refinement.hints import AXES, Hint, parse_hints, with_hints
 from kinematify.robot.joint_type import JointType
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.grouping.groups import Grouping
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import FloatArray
     from kinematify.view.alternatives import JointAlternative
 

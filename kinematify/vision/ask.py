@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
 
     from kinematify.joints.candidate import JointCandidate
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.vision.client import ChatOracle
     from kinematify.vision.question import Answer, JointOracle
     from kinematify.vision.screening import KnownQuestion

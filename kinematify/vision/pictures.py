@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from kinematify.config import PreviewConfig, VisionConfig
     from kinematify.joints.candidate import JointCandidate, JointEstimate
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.refinement.candidates import CandidateJoints
     from kinematify.render.camera import Camera
     from kinematify.robot.arrays import FloatArray

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
     from kinematify.joints.candidate import JointCandidate
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.vision.question import JointQuestion
 
 OBJECTS = (

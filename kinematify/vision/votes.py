@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from kinematify.config import VisionConfig
     from kinematify.contact.tree import KinematicTree
     from kinematify.joints.candidate import JointCandidate, JointEstimate
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import BoolArray, FloatArray
 
     Options = Sequence[JointCandidate]

@@ -16,7 +16,7 @@ from benchmarks.tables import is_right
 from kinematify.config import Config, load_config
 from kinematify.evaluation.metrics import JointScore
 from kinematify.evaluation.record import Report, new_header
-from kinematify.pipeline import infer
+from kinematify.pipeline.infer import infer
 
 
 def judged(confidences: list[float], right: list[bool]) -> list[ScoredJoint]:

@@ -25,7 +25,8 @@ from benchmarks.study import load_study_report
 from kinematify.assembly.erase import erase
 from kinematify.cli.app import run
 from kinematify.config import load_config
-from kinematify.pipeline import infer, write_inference
+from kinematify.pipeline.infer import infer
+from kinematify.pipeline.record import write_inference
 from kinematify.robot.read import read_robot
 from tests.objects import BUILDERS
 

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from quick_inference import star
 
-from kinematify.pipeline import infer
+from kinematify.pipeline.infer import infer
 
 if TYPE_CHECKING:
     from types import SimpleNamespace
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
 
 
 def sound(assembly: Assembly, *, config: Config) -> Inference:

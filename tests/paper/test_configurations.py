@@ -21,7 +21,8 @@ from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.paper.cavl import _bounded
 from kinematify.paper.sdf import field_gaps
-from kinematify.pipeline import infer, write_inference
+from kinematify.pipeline.infer import infer
+from kinematify.pipeline.record import write_inference
 from kinematify.pipeline.stages import rank_trees
 from kinematify.robot.joint_type import JointType
 from kinematify.topology.evidence import EdgeEvidence

@@ -12,8 +12,10 @@ import pytest
 
 from benchmarks.linkages import linkage
 from kinematify.cli.inferred import describe
-from kinematify.pipeline import Inference, infer, write_inference
+from kinematify.pipeline.infer import infer
+from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.linkages import SharedAxis, close_chains
+from kinematify.pipeline.record import write_inference
 from kinematify.robot.linkage import loop_gaps
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import joint_ends

@@ -10,8 +10,8 @@ import trimesh
 
 from benchmarks.studies.invariance import Change, changes, differences_of, differing
 from kinematify.assembly.load import load_assembly
-from kinematify.pipeline import infer
 from kinematify.pipeline.heading import heading_of, turned
+from kinematify.pipeline.infer import infer
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:

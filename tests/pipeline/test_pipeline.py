@@ -13,8 +13,9 @@ import pytest
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.errors import InputError
-from kinematify.pipeline import Inference, infer, write_inference
-from kinematify.pipeline.record import inference_record
+from kinematify.pipeline.infer import infer
+from kinematify.pipeline.inference import Inference
+from kinematify.pipeline.record import inference_record, write_inference
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import rotation_about

@@ -10,7 +10,8 @@ import pytest
 from kinematify.config import Config, load_config
 from kinematify.paper.cavl import FailedMotions
 from kinematify.paper.joints import NOISE, PaperJoints, noise_of
-from kinematify.pipeline import Inference, infer
+from kinematify.pipeline.infer import infer
+from kinematify.pipeline.inference import Inference
 from kinematify.refinement import refine
 from tests.objects import BUILDERS
 

@@ -23,8 +23,9 @@ from kinematify.contact.tree import KinematicTree
 from kinematify.errors import InputError
 from kinematify.evaluation.metrics import Prediction
 from kinematify.joints.candidate import JointCandidate, JointEstimate
-from kinematify.pipeline import Inference, infer, write_inference
-from kinematify.pipeline.record import file_hashes
+from kinematify.pipeline.infer import infer
+from kinematify.pipeline.inference import Inference
+from kinematify.pipeline.record import file_hashes, write_inference
 from kinematify.refinement import loop, refine
 from kinematify.refinement.choose import Chooser, Trial
 from kinematify.refinement.folder import open_model_folder, read_record

@@ -61,7 +61,7 @@ def test_what_engines_say_of_a_pair_follows_from_what_the_file_has(tmp_path: Pat
         found("KV802", pair=("shoulder", "wrist")),
         folder=tmp_path,
     )
-    (cause, other) = report.told
+    (cause, other) = report.groups
     assert (cause.finding.check, [item.check for item in cause.consequences]) == ("KV301", ["KV804", "KV802"])
     assert cause.finding.severity is Severity.ERROR, "a cause is as bad as the worst that follows from it"
     assert (other.finding.pair, other.consequences) == (("shoulder", "wrist"), ())
@@ -74,26 +74,26 @@ def test_a_joint_that_the_geometry_blocks_explains_the_drives() -> None:
         found("KV405", joint="turn", pair=("base", "shoulder")),
         found("KV405", joint="roll", pair=("shoulder", "wrist")),
     )
-    assert [(item.finding.check, len(item.consequences)) for item in report.told] == [("KV312", 1), ("KV405", 0)]
+    assert [(item.finding.check, len(item.consequences)) for item in report.groups] == [("KV312", 1), ("KV405", 0)]
 
 
 def test_a_note_explains_nothing_that_counts() -> None:
     report = told(found("KV311", Severity.NOTE, joint="turn"), found("KV405", joint="turn"))
-    assert [len(item.consequences) for item in report.told] == [0, 0]
+    assert [len(item.consequences) for item in report.groups] == [0, 0]
 
 
 def test_causes_of_causes_are_the_ones_that_are_told() -> None:
     pair = ("base", "wrist")
     report = told(found("KV332", pair=pair), found("KV802", pair=pair), found("KV804", joint="roll", pair=pair))
-    (item,) = report.told
+    (item,) = report.groups
     assert [finding.check for finding in item.consequences] == ["KV802", "KV804"]
 
 
 def test_a_push_that_nothing_blocks_follows_from_what_shakes_the_engine() -> None:
     shaken = found("KV803", joint="roll", pair=("base", "wrist"))
-    (item,) = told(shaken, found("KV804", joint="turn")).told
+    (item,) = told(shaken, found("KV804", joint="turn")).groups
     assert [finding.joint for finding in item.consequences] == ["turn"]
-    assert len(told(shaken, found("KV804", joint="turn", pair=("base", "shoulder"))).told) == 2
+    assert len(told(shaken, found("KV804", joint="turn", pair=("base", "shoulder"))).groups) == 2
 
 
 def test_accepting_a_cause_accepts_what_follows_from_it() -> None:

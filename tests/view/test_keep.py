@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from kinematify.errors import InputError
-from kinematify.pipeline import infer, write_inference
+from kinematify.pipeline.infer import infer
+from kinematify.pipeline.record import write_inference
 from kinematify.refinement.folder import read_record
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot

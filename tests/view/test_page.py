@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from kinematify.pipeline import infer, write_inference
+from kinematify.pipeline.infer import infer
+from kinematify.pipeline.record import write_inference
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics

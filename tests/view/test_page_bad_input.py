@@ -15,7 +15,8 @@ import trimesh
 from PIL import Image
 
 from kinematify.assembly.load import load_assembly
-from kinematify.pipeline import infer, write_inference
+from kinematify.pipeline.infer import infer
+from kinematify.pipeline.record import write_inference
 from tests.browser import opened
 from tests.objects import BUILDERS
 from tests.view.pages import PATIENCE, mistakes, press, served

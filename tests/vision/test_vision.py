@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from kinematify.pipeline import Inference
+    from kinematify.pipeline.inference import Inference
 
 SMALL = {"view_pixels": 120, "least_pixels": 60}
 BASE = load_config()

@@ -95,7 +95,7 @@ def find_unstable(result: OpenCheck, ends: Sequence[RunEnd], *, size: float, exp
     fall = float(np.sqrt(2.0 * GRAVITY * size))
     result.measured |= {"fastest": max((end.speed for end in ends), default=0.0), "limit": explosion * fall}
     for end in ends:
-        limit = explosion * max(fall, end.told)
+        limit = explosion * max(fall, end.drive_speed)
         if end.warnings:
             result.find(
                 f"{ENGINES[result.engine or ''].title} diverged while {end.when}: {', '.join(end.warnings)}.",

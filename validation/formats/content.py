@@ -135,14 +135,14 @@ def check_table(report: ValidationReport) -> Table:
     return Table(headings=("check", "status", "seconds", "remark"), rows=rows)
 
 
-def is_pair_note(told: FindingGroup) -> bool:
+def is_pair_note(item: FindingGroup) -> bool:
     """Whether a finding is a note on a pair, such as why it may touch: often hundreds, so no block each."""
-    return told.finding.severity is Severity.NOTE and told.finding.pair is not None and not told.consequences
+    return item.finding.severity is Severity.NOTE and item.finding.pair is not None and not item.consequences
 
 
 def pair_note_table(report: ValidationReport) -> Table:
     """Notes on pairs."""
-    notes = [told.finding for told in report.told if is_pair_note(told)]
+    notes = [item.finding for item in report.groups if is_pair_note(item)]
     rows = [(where(note), title(note), measure(note), note.message) for note in notes]
     return Table(headings=("pair", "check", "measured", "reason"), rows=rows)
 
@@ -162,10 +162,10 @@ def alternative(joint: JointSummary) -> str:
     return ", ".join([*kind, *places, *score])
 
 
-def title(told: CheckResult | Finding) -> str:
+def title(item: CheckResult | Finding) -> str:
     """Id, title and engine of a check: what is wrong of a finding or a check that failed, else what should be."""
-    failed = isinstance(told, Finding) or told.status is Status.FAIL
-    return _titled(told.check, CHECKS[told.check].fails, told.engine) if failed else lasting_title(told)
+    failed = isinstance(item, Finding) or item.status is Status.FAIL
+    return _titled(item.check, CHECKS[item.check].fails, item.engine) if failed else lasting_title(item)
 
 
 def follow_words(consequences: Iterable[Finding]) -> str:
@@ -177,9 +177,9 @@ def follow_words(consequences: Iterable[Finding]) -> str:
     )
 
 
-def lasting_title(told: CheckResult | Finding) -> str:
+def lasting_title(item: CheckResult | Finding) -> str:
     """Id, title and engine of a check, the same whatever became of it: names by which machines follow it over time."""
-    return _titled(told.check, CHECKS[told.check].title, told.engine)
+    return _titled(item.check, CHECKS[item.check].title, item.engine)
 
 
 def _titled(check: str, title: str, *engines: str | None) -> str:
@@ -251,12 +251,12 @@ class FindingBlock:
 def block_of(group: Sequence[FindingGroup]) -> FindingBlock:
     """Return what is said of findings that were put into one group."""
     first = group[0].finding
-    consequences = tuple(item for told in group for item in told.consequences)
+    consequences = tuple(item for one in group for item in one.consequences)
     follows = follow_words(consequences)
     return FindingBlock(
-        findings=tuple(told.finding for told in group),
+        findings=tuple(item.finding for item in group),
         severity=first.severity,
-        title=_titled(first.check, CHECKS[first.check].fails, *(told.finding.engine for told in group)),
+        title=_titled(first.check, CHECKS[first.check].fails, *(item.finding.engine for item in group)),
         cause=f"(cause: {first.blame.value})",
         facts="; ".join(fact for fact in _facts(first) if fact),
         message=first.message,
@@ -270,25 +270,25 @@ def block_of(group: Sequence[FindingGroup]) -> FindingBlock:
 
 
 def blocks(
-    told: Iterable[FindingGroup], *, together: int = 2, alike: bool = True, by_engine: bool = True
+    groups: Iterable[FindingGroup], *, together: int = 2, alike: bool = True, by_engine: bool = True
 ) -> list[FindingBlock]:
     """Return a block for all findings that differ in names and numbers only, in the order of the first of each.
 
     Args:
-        told: The findings.
+        groups: The findings.
         together: From so many on they share a block; fewer have one each.
         alike: False: all of one check, engine and severity that have a place share a block, whatever their words.
         by_engine: False: those that have a place share it in all engines.
     """
     grouped: dict[tuple[object, ...], list[FindingGroup]] = {}
-    for item in told:
+    for item in groups:
         finding = item.finding
         engine = None if where(finding) and not by_engine else finding.engine
         key = (finding.check, engine, finding.severity, finding.blame, finding.suppressed)
         words = _pattern(finding) if alike or not where(finding) else ""
         grouped.setdefault((*key, words), []).append(item)
     apart = ([group] if len(group) >= together else [[item] for item in group] for group in grouped.values())
-    return [block_of(group) for groups in apart for group in groups]
+    return [block_of(group) for parted in apart for group in parted]
 
 
 def places(block: FindingBlock) -> Table:

@@ -164,12 +164,12 @@ _PNG_SIZES = slice(16, 24)
 
 
 def _findings(index: int, report: ValidationReport, *, with_viewer: bool) -> str:
-    told = [item for item in report.told if not is_pair_note(item)]
+    groups = [item for item in report.groups if not is_pair_note(item)]
     cards = (
         _finding(
             block_of([item]), f"finding-{index}-{k + 1}", _shown(index, report, item.finding) if with_viewer else ""
         )
-        for k, item in enumerate(told)
+        for k, item in enumerate(groups)
     )
     return "".join(cards) or "<p>None.</p>"
 
@@ -308,8 +308,8 @@ def _checks(index: int, report: ValidationReport) -> str:
 
 def _explained(outcomes: Sequence[Outcome]) -> str:
     """What each check looks at of which a finding is shown."""
-    told = {f.check for outcome in outcomes if not isinstance(outcome, Unusable) for f in outcome.findings}
-    checks = [CHECKS[name] for name in sorted(told)]
+    failed = {f.check for outcome in outcomes if not isinstance(outcome, Unusable) for f in outcome.findings}
+    checks = [CHECKS[name] for name in sorted(failed)]
     if not checks:
         return ""
     parts = (

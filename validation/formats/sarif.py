@@ -45,7 +45,7 @@ def as_sarif(outcomes: Sequence[Outcome]) -> str:
         "tool": {"driver": _driver()},
         "columnKind": "utf16CodeUnits",
         "invocations": [_invocation(outcomes)],
-        "results": [_result(report, told, index) for report in reports for told in report.told],
+        "results": [_result(report, group, index) for report in reports for group in report.groups],
     }
     document = {"$schema": SARIF_SCHEMA, "version": "2.1.0", "runs": [run]}
     return json.dumps(document, indent=2, allow_nan=False) + "\n"
@@ -83,8 +83,8 @@ def _words(text: str) -> list[str]:
     return "".join(letter if letter.isalnum() and letter.isascii() else " " for letter in text).split()
 
 
-def _result(report: ValidationReport, told: FindingGroup, index: dict[str, int]) -> dict[str, Any]:
-    finding, follows = told.finding, follow_words(told.consequences)
+def _result(report: ValidationReport, group: FindingGroup, index: dict[str, int]) -> dict[str, Any]:
+    finding, follows = group.finding, follow_words(group.consequences)
     about = [part for part in (where(finding), configuration(finding.q), measure(finding)) if part]
     more = [*([f"({'; '.join(about)})"] if about else []), finding.remedy]
     text = printable(" ".join([finding.message, *more, *([f"Follows from it: {follows}."] if follows else [])]))
@@ -95,7 +95,7 @@ def _result(report: ValidationReport, told: FindingGroup, index: dict[str, int])
         "message": {"text": text},
         "locations": [_location(report.model, finding)],
         "partialFingerprints": {"kinematify/v1": _fingerprint(finding)},
-        "properties": _properties(told),
+        "properties": _properties(group),
     }
     if finding.suppressed is not None:
         result["suppressions"] = [{"kind": "external", "justification": printable(finding.suppressed)}]
@@ -134,8 +134,8 @@ def _fingerprint(finding: Finding) -> str:
     return hashlib.sha256(repr(names).encode("utf-8", "backslashreplace")).hexdigest()[:32]
 
 
-def _properties(told: FindingGroup) -> dict[str, Any]:
-    finding = told.finding
+def _properties(group: FindingGroup) -> dict[str, Any]:
+    finding = group.finding
     values: dict[str, Any] = {
         "title": title(finding),
         "blame": finding.blame.value,
@@ -145,7 +145,7 @@ def _properties(told: FindingGroup) -> dict[str, Any]:
         "unit": finding.unit,
         "q": dict(finding.q) if finding.q is not None else None,
         "remedy": printable(finding.remedy),
-        "consequences": [printable(f"{title(item)}: {item.message}") for item in told.consequences] or None,
+        "consequences": [printable(f"{title(item)}: {item.message}") for item in group.consequences] or None,
     }
     return {key: value for key, value in values.items() if value is not None and _is_json(value)}
 

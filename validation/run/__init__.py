@@ -255,10 +255,10 @@ class _Run:
         if self.interrupted:
             self._explain_rest(Status.SKIPPED, "the run was interrupted")
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
-        told = [self._result(key) for key in keys(list(self.checks.values()))]
+        results = [self._result(key) for key in keys(list(self.checks.values()))]
         robot = _bodies(self.path)
         results = evidence_before_blame(
-            confirm_on_raw_model(across_engines(with_refusals(with_lines(told, robot)), self.engines))
+            confirm_on_raw_model(across_engines(with_refusals(with_lines(results, robot)), self.engines))
         )
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)
         checks = with_causes(checks, robot)
@@ -279,19 +279,19 @@ class _Run:
         place = {joint.name: number for number, joint in enumerate(() if robot is None else robot.joints)}
         return sorted(self._joints.values(), key=lambda item: place.get(item.joint, len(place)))
 
-    def _take(self, told: CheckResult | Summary) -> None:
-        if isinstance(told, JointSummary):
-            self._joints[told.joint] = _merged(self._joints.get(told.joint), told)
-        elif isinstance(told, JointCurve):
-            self._curves.append(told)
-        elif isinstance(told, PairTable):
-            self._pairs = told
+    def _take(self, result: CheckResult | Summary) -> None:
+        if isinstance(result, JointSummary):
+            self._joints[result.joint] = _merged(self._joints.get(result.joint), result)
+        elif isinstance(result, JointCurve):
+            self._curves.append(result)
+        elif isinstance(result, PairTable):
+            self._pairs = result
         else:
-            self._results[told.check, told.engine] = told
+            self._results[result.check, result.engine] = result
 
     def _take_end(self, end: StageEnd) -> None:
-        for told in end.told:
-            self._take(told)
+        for result in end.results:
+            self._take(result)
         if end.failure is None:
             return
         self._failures[end.stage.name] = end.failure

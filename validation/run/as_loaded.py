@@ -62,7 +62,7 @@ def with_refusals(checks: Sequence[CheckResult]) -> list[CheckResult]:
             if check.check == _OPENS and finding.link is not None:
                 refusals.setdefault(finding.link, []).append(ENGINES[check.engine or ""].title)
 
-    def told(finding: Finding) -> Finding:
+    def worded(finding: Finding) -> Finding:
         engines = refusals.get(finding.link or "", [])
         if finding.check not in _TENSORS or not engines:
             return finding
@@ -72,7 +72,7 @@ def with_refusals(checks: Sequence[CheckResult]) -> list[CheckResult]:
             message=f"{finding.message} {' and '.join(engines)} refuses the file for it.",
         )
 
-    found = [check.with_findings(map(told, check.findings)) for check in checks]
+    found = [check.with_findings(map(worded, check.findings)) for check in checks]
     return [
         replace(check, status=Status.FAIL)
         if check.check in _TENSORS and any(item.severity is not Severity.NOTE for item in check.findings)
@@ -126,7 +126,7 @@ def confirm_on_raw_model(checks: Sequence[CheckResult]) -> list[CheckResult]:
     joints = {finding.joint for finding in shown if finding.severity is not Severity.NOTE}
     pairs = {frozenset(finding.pair) for finding in shown if finding.pair is not None}
 
-    def told(finding: Finding) -> Finding:
+    def worded(finding: Finding) -> Finding:
         counts = finding.blame is not Blame.PHYSICS or finding.joint in joints - {None}
         if counts or finding.severity is Severity.NOTE or (finding.pair and frozenset(finding.pair) in pairs):
             return finding
@@ -137,7 +137,7 @@ def confirm_on_raw_model(checks: Sequence[CheckResult]) -> list[CheckResult]:
         )
 
     return [
-        check.with_findings(map(told, check.findings)) if CHECKS[check.check].prepared else check for check in checks
+        check.with_findings(map(worded, check.findings)) if CHECKS[check.check].prepared else check for check in checks
     ]
 
 

@@ -50,7 +50,7 @@ class ValidationReport:
         return tuple(finding for finding in self.findings if finding.suppressed is None)
 
     @property
-    def told(self) -> tuple[FindingGroup, ...]:
+    def groups(self) -> tuple[FindingGroup, ...]:
         """Findings that follow from no other, the worst first, each with what follows from it."""
         return group_by_cause(self.findings)
 

@@ -202,7 +202,7 @@ class _Work:
             said=lambda key, run: (
                 f"{tasks[key].item.name}, {tasks[key].source} model: {run.status}, {run.seconds:.1f} s"
             ),
-            preload=("kinematify.evaluation.nightly.validity", "kinematify.pipeline"),
+            preload=("kinematify.evaluation.nightly.validity", "kinematify.pipeline.infer"),
         )
         return [
             tasks[key].run(answer.status, answer.seconds, answer.message) if isinstance(answer, TaskFailure) else answer

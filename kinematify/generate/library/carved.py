@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.generate.library.steps import ARITHMETIC, Performance, Step
+from kinematify.generate.library.steps import ARITHMETIC, Step, StepRunner
 from kinematify.generate.procedural import layout, solids
 from kinematify.generate.procedural.pieces import bearings, controls, fronts, jaws, leaves, limbs, tracks
 from kinematify.generate.procedural.workshop import Workshop
@@ -64,7 +64,7 @@ def carver_of(
     def build(values: Values, workshop: Workshop) -> None:
         given = {name: values.value(name) for name in names}
         try:
-            Performance(workshop, _VERBS).run(steps(), {"__builtins__": {}, **_NAMES, **given})
+            StepRunner(workshop, _VERBS).run(steps(), {"__builtins__": {}, **_NAMES, **given})
         except ValueError as error:
             raise InputError(f"The {title} cannot be built: {error}.") from error
 

@@ -59,7 +59,7 @@ def compiled(text: str) -> CodeType:
         if isinstance(node, ast.FormattedValue) and node.format_spec is not None:
             raise ValueError(f"the formula {text!r} may not lay out numbers")
         if isinstance(node, ast.Call) and not isinstance(node.func, ast.Name | ast.Attribute):
-            raise ValueError(f"the formula {text!r} may call functions by their name alone")
+            raise ValueError(f"the formula {text!r} may call only functions by name and methods")
     return compile(tree, "<formula>", "eval")
 
 

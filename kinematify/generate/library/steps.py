@@ -116,11 +116,11 @@ def run_steps(steps: Sequence[Step], builder: ObjectBuilder, values: Mapping[str
     draws = {name: getattr(builder, name) for name in ("draw", "count", "maybe", "pick", "gap")}
     own = {"seam": lambda size, thick: panels.seam(builder, size, thick)}
     given = {**_SHAPES, **style, **draws, **own, **values}
-    Performance(builder, _DRAWING).run(steps, {"__builtins__": {}, **ARITHMETIC, **given})
+    StepRunner(builder, _DRAWING).run(steps, {"__builtins__": {}, **ARITHMETIC, **given})
 
 
-class Performance:
-    """Steps at work on what takes them."""
+class StepRunner:
+    """Carries out the steps of a description on one target."""
 
     def __init__(self, target: Any, verbs: Mapping[str, Callable[..., Any]]) -> None:
         """`verbs` are called with the target, a name, shapes or solids, and what else a step gives."""
@@ -144,7 +144,7 @@ class Performance:
                 names.update(_function(step["define"], names, self._followed(step)))
             elif "within" in step:
                 frame = self._target.from_frame(evaluated(step["within"], names))
-                Performance(frame, self._verbs).run(step["do"], names)
+                StepRunner(frame, self._verbs).run(step["do"], names)
             elif "call" in step:
                 evaluated(step["call"], names)
             else:
