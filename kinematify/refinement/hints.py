@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -87,6 +87,11 @@ class Hint:
         unit: FloatArray = given / np.linalg.norm(given)
         return unit
 
+    @property
+    def turns(self) -> bool | None:
+        """Whether it turns: by its type, else by its pivot, else by the unit of its range; None if it states none."""
+        return self.kind.turns if self.kind else bool(self.pivot) or _is_angle(self.limits)
+
     def agrees(self, axis: FloatArray) -> bool:
         """Whether a unit direction is the one that is named, or one is near enough to it."""
         named = self.direction
@@ -125,13 +130,16 @@ def parse_hints(texts: Sequence[str], parts: Sequence[str], *, base: str | None 
 
 def _check(hint: Hint) -> None:
     """Refuse a hint that contradicts itself."""
-    if hint.kind is JointType.FIXED and hint.axis is not None:
-        raise _contradiction(f"{hint.part} cannot be fixed and have an axis along {hint.axis}")
-    if hint.kind in (JointType.FIXED, JointType.CONTINUOUS) and hint.limits is not None:
-        raise _contradiction(f"{hint.part} cannot be {hint.kind} and have limits")
-    for kinds, units in (((JointType.PRISMATIC,), ("deg", "rad")), ((JointType.REVOLUTE,), ("mm", "cm"))):
-        if hint.kind in kinds and hint.limits is not None and hint.limits.endswith(units):
-            raise _contradiction(f"{hint.part} cannot be {hint.kind} and have the range {hint.limits}")
+    angle = _is_angle(hint.limits)
+    for kinds, said in (
+        ((JointType.FIXED,), hint.axis and f"an axis along {hint.axis}"),
+        ((JointType.FIXED, JointType.PRISMATIC), hint.pivot and f"a pivot at {hint.pivot}"),
+        ((JointType.FIXED, JointType.CONTINUOUS), hint.limits and "limits"),
+        ((JointType.PRISMATIC if angle else JointType.REVOLUTE,), angle is not None and f"the range {hint.limits}"),
+        ((None,), angle is False and hint.pivot and f"both a pivot and the range {hint.limits}"),
+    ):
+        if said and hint.kind in kinds:
+            raise _contradiction(f"{hint.part} cannot {'' if hint.kind is None else f'be {hint.kind} and '}have {said}")
     if hint.twin is not None and hint.about_joint:
         raise _contradiction(f"{hint.part} takes its joint from {hint.twin} and cannot have one of its own")
 
@@ -171,8 +179,8 @@ def _parsed(text: str, parts: Sequence[str]) -> Hint:
         _check_part(text, value, parts)
         if value == name:
             raise InputError(f"The hint {text!r} names {name} twice: a part is neither its own parent nor its twin.")
-        return Hint(part=name, parent=value) if key == "parent" else Hint(part=name, twin=value)
-    value = value.lower()
+    else:
+        value = value.lower()
     if key == "pivot" and _vector(value) is None:
         raise InputError(f"The hint {text!r} asks for the pivot {value!r}. Give three numbers [m]. {_FORMS}")
     if key == "range":
@@ -187,14 +195,8 @@ def _parsed(text: str, parts: Sequence[str]) -> Hint:
         numbers = _vector(value) if key else None
         if value not in choices and (numbers is None or not numbers.any()):
             raise InputError(f"The hint {text!r} asks for {value!r}. Choose one of {', '.join(choices)}. {_FORMS}")
-    if not key:
-        return Hint(part=name, kind=TYPES[value])
-    return Hint(
-        part=name,
-        axis=value if key == "axis" else None,
-        pivot=value if key == "pivot" else None,
-        limits=value if key == "range" else None,
-    )
+    stated: dict[str, Any] = {_field(key): value if key else TYPES[value]}
+    return replace(Hint(part=name), **stated)
 
 
 def _check_part(text: str, name: str, parts: Sequence[str]) -> None:
@@ -217,6 +219,11 @@ def _ends(text: str) -> FloatArray | None:
     unit = next((unit for unit in _UNITS if text.endswith(unit)), "")
     found = _vector(text.removesuffix(unit).replace("..", ","), 2)
     return None if found is None else found * _UNITS.get(unit, 1.0)
+
+
+def _is_angle(limits: str | None) -> bool | None:
+    """Whether a range is in degrees or radians, not in a unit of length; None if it has no unit."""
+    return next((unit in ("deg", "rad") for unit in _UNITS if (limits or "").endswith(unit)), None)
 
 
 def _vector(text: str, count: int = 3) -> FloatArray | None:
@@ -273,8 +280,8 @@ def _models_first(hints: Sequence[Hint]) -> list[Hint]:
 
 def _as_twin(inference: Inference, model: JointEstimate, joint: JointEstimate) -> JointEstimate:
     """A joint as that of the part of which the user said that it is its twin."""
-    names = inference.assembly.names
-    carried = _twins(inference).carried(model, joint)
+    names, config = inference.assembly.names, inference.config
+    carried = TwinJoints(inference.assembly, inference.graph, config.bearing, seed=config.seed).carried(model, joint)
     if carried is None:
         raise InputError(
             f"The hint {names[joint.child]}:twin={names[model.child]} cannot be followed: no motion or reflection "
@@ -282,11 +289,6 @@ def _as_twin(inference: Inference, model: JointEstimate, joint: JointEstimate) -
             f"contact with {names[joint.parent]}. Give the joint of {names[joint.child]} by its type, axis and range."
         )
     return _certain(carried)
-
-
-def _twins(inference: Inference) -> TwinJoints:
-    config = inference.config
-    return TwinJoints(inference.assembly, inference.graph, config.bearing, seed=config.seed)
 
 
 def _hinted(inference: Inference, maker: CandidateJoints, joint: JointEstimate, hint: Hint) -> JointEstimate:
@@ -320,10 +322,8 @@ def _certain(joint: JointEstimate) -> JointEstimate:
 
 def _best(joint: JointEstimate, hint: Hint, reach: float) -> JointCandidate:
     """The best candidate that agrees with a hint, its pivot to within reach [m]; else the joint that it asks for."""
-    own = _of_estimate(joint)
-    every = (*([own] if own else []), *joint.alternatives)
-    turns = None if hint.kind is None else hint.kind.turns
-    pivot = None if hint.pivot is None else _vector(hint.pivot)
+    every = (*filter(None, (_of_estimate(joint),)), *joint.alternatives)
+    turns, pivot = hint.turns, None if hint.pivot is None else _vector(hint.pivot)
     for candidate in every:
         if (turns is None or candidate.kind.turns == turns) and hint.agrees(candidate.axis):
             off = np.zeros(3) if pivot is None else np.cross(pivot - candidate.pivot, candidate.axis)

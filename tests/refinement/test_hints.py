@@ -57,6 +57,10 @@ def test_hints_are_read_and_those_on_one_part_are_taken_together() -> None:
         (["lid:axis=x", "lid=fixed"], "cannot be fixed and have an axis"),
         (["lid:axis=x", "lid:fixed"], "cannot be fixed and have an axis"),
         (["door_1=prismatic", "door_1:range=0..90deg"], "prismatic and have the range 0..90deg"),
+        (["lid:fixed", "lid:pivot=0,0,1"], "be fixed and have a pivot at 0,0,1"),
+        (["lid=prismatic", "lid:pivot=0,0,1"], "be prismatic and have a pivot"),
+        (["lid=revolute", "lid:range=0..0.3m"], "be revolute and have the range 0..0.3m"),
+        (["lid:pivot=0,0,1", "lid:range=0..300mm"], "both a pivot and the range 0..300mm"),
         (["door_1:parent=bdy"], "Did you mean body"),
         (["lid:parent=lid"], "neither its own parent"),
         (["lid:parent=door_1", "door_1:parent=lid"], "hang on each other"),
@@ -116,6 +120,20 @@ def test_a_range_may_be_given_in_degrees_and_millimetres() -> None:
     slide = [f"{name}=prismatic", f"{name}:axis=x", f"{name}:range=-20..300mm"]
     joint = joint_of(with_hints(inference, parse_hints(slide, (name,))), name)
     assert sorted([abs(joint.lower), abs(joint.upper)]) == pytest.approx([0.02, 0.3])
+
+
+def test_the_unit_of_a_range_and_a_pivot_say_whether_a_part_turns() -> None:
+    drawer, door = inferred("drawer"), inferred("edge_door")
+    for inference, hint, turns in (
+        (drawer, "range=0..90deg", True),
+        (drawer, "range=0..0.2m", False),
+        (drawer, "pivot=0.1,0,0.2", True),
+        (door, "range=0..50mm", False),
+        (door, "range=0..1rad", True),
+    ):
+        name = moving(inference)
+        joint = joint_of(with_hints(inference, parse_hints([f"{name}:{hint}"], inference.assembly.names)), name)
+        assert joint.kind.turns is turns, hint
 
 
 def test_a_part_hangs_where_a_hint_says_and_all_else_stays() -> None:
