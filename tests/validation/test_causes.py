@@ -1,4 +1,4 @@
-"""One cause, one finding: which findings are told under which other one, and what that makes of the report."""
+"""One cause, one finding: which findings are reported under which other one, and what that makes of the report."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def found(check: str, severity: Severity = Severity.WARNING, **about: object) ->
     return CheckResult(check=check, engine=engine, status=Status.FAIL, findings=(finding,))
 
 
-def told(*results: CheckResult, folder: Path | None = None) -> ValidationReport:
+def report_of(*results: CheckResult, folder: Path | None = None) -> ValidationReport:
     """A report with causes."""
     robot = None
     if folder is not None:
@@ -54,7 +54,7 @@ def test_no_check_is_the_cause_of_itself() -> None:
 
 
 def test_what_engines_say_of_a_pair_follows_from_what_the_file_has(tmp_path: Path) -> None:
-    report = told(
+    report = report_of(
         found("KV301", pair=("base", "wrist")),
         found("KV802", pair=("cover", "wrist")),  # the same two bodies by other links
         found("KV804", Severity.ERROR, joint="roll", pair=("base", "wrist")),
@@ -69,7 +69,7 @@ def test_what_engines_say_of_a_pair_follows_from_what_the_file_has(tmp_path: Pat
 
 
 def test_a_joint_that_the_geometry_blocks_explains_the_drives() -> None:
-    report = told(
+    report = report_of(
         found("KV312", Severity.ERROR, joint="turn"),
         found("KV405", joint="turn", pair=("base", "shoulder")),
         found("KV405", joint="roll", pair=("shoulder", "wrist")),
@@ -78,22 +78,22 @@ def test_a_joint_that_the_geometry_blocks_explains_the_drives() -> None:
 
 
 def test_a_note_explains_nothing_that_counts() -> None:
-    report = told(found("KV311", Severity.NOTE, joint="turn"), found("KV405", joint="turn"))
+    report = report_of(found("KV311", Severity.NOTE, joint="turn"), found("KV405", joint="turn"))
     assert [len(item.consequences) for item in report.groups] == [0, 0]
 
 
-def test_causes_of_causes_are_the_ones_that_are_told() -> None:
+def test_causes_of_causes_are_the_ones_that_are_reported() -> None:
     pair = ("base", "wrist")
-    report = told(found("KV332", pair=pair), found("KV802", pair=pair), found("KV804", joint="roll", pair=pair))
+    report = report_of(found("KV332", pair=pair), found("KV802", pair=pair), found("KV804", joint="roll", pair=pair))
     (item,) = report.groups
     assert [finding.check for finding in item.consequences] == ["KV802", "KV804"]
 
 
 def test_a_push_that_nothing_blocks_follows_from_what_shakes_the_engine() -> None:
     shaken = found("KV803", joint="roll", pair=("base", "wrist"))
-    (item,) = told(shaken, found("KV804", joint="turn")).groups
+    (item,) = report_of(shaken, found("KV804", joint="turn")).groups
     assert [finding.joint for finding in item.consequences] == ["turn"]
-    assert len(told(shaken, found("KV804", joint="turn", pair=("base", "shoulder"))).groups) == 2
+    assert len(report_of(shaken, found("KV804", joint="turn", pair=("base", "shoulder"))).groups) == 2
 
 
 def test_accepting_a_cause_accepts_what_follows_from_it() -> None:
@@ -109,7 +109,7 @@ def test_accepting_a_cause_accepts_what_follows_from_it() -> None:
 
 def test_all_formats_tell_a_cause_once() -> None:
     pair = ("base", "wrist")
-    report = told(found("KV301", pair=pair), found("KV804", Severity.ERROR, joint="roll", pair=pair))
+    report = report_of(found("KV301", pair=pair), found("KV804", Severity.ERROR, joint="roll", pair=pair))
     answer = json.loads(json.dumps(report.as_json()))
     assert [item["follows_from"] for item in answer["findings"]] == [None, 0]
     (result,) = json.loads(as_sarif([report]))["runs"][0]["results"]

@@ -290,8 +290,8 @@ def test_flying_link_is_a_warning() -> None:
     check = OpenCheck(id="KV407", engine="mujoco")
     slow = RunEnd(when="it was released", speed=5.0, warnings=())
     fast = RunEnd(when="arm was driven", speed=50.0, warnings=(), joint="arm")
-    told_so = RunEnd(when="wheel was driven", speed=50.0, warnings=(), joint="wheel", drive_speed=40.0)
-    find_unstable(check, [slow, fast, told_so], size=1.0, explosion=3.0)
+    driven = RunEnd(when="wheel was driven", speed=50.0, warnings=(), joint="wheel", drive_speed=40.0)
+    find_unstable(check, [slow, fast, driven], size=1.0, explosion=3.0)
     assert [(f.severity, f.joint) for f in check.findings] == [(Severity.WARNING, "arm")]
 
 

@@ -308,8 +308,8 @@ def _checks(index: int, report: ValidationReport) -> str:
 
 def _explained(outcomes: Sequence[Outcome]) -> str:
     """What each check looks at of which a finding is shown."""
-    failed = {f.check for outcome in outcomes if not isinstance(outcome, Unusable) for f in outcome.findings}
-    checks = [CHECKS[name] for name in sorted(failed)]
+    found = {f.check for outcome in outcomes if not isinstance(outcome, Unusable) for f in outcome.findings}
+    checks = [CHECKS[name] for name in sorted(found)]
     if not checks:
         return ""
     parts = (
