@@ -162,7 +162,7 @@ def _lightened(robot: Robot, joint: Joint, config: DynamicsConfig) -> Robot:
         needed, max_safe_force = load.largest + _rubbing(load, config), config.hand_share * _hand(joint, config)
     else:
         needed = _Motor.of(load, config).effort
-        max_safe_force = config.motor_torque if joint.kind.turns else config.motor_force
+        max_safe_force = _motor(joint, config)
     if needed <= max_safe_force:
         return robot
     scale = max_safe_force / needed
@@ -188,9 +188,7 @@ def _with_dynamics(robot: Robot, joint: Joint, config: DynamicsConfig, *, measur
     damping = min(load.inertia / config.settling_time, left * config.opening_time / max(load.travel, 1e-9))
     if joint.effort is None or joint.velocity is None or measured:
         return _stated(joint, damping, friction)
-    followers = ((robot.joint_by_name[name], ratio) for name, ratio in _followers(robot, joint).items())
-    chain = sum(ratio * _Motor.of(joint_load(robot, other), config).effort for other, ratio in followers)
-    needed = max(config.effort_margin * (_Motor.of(load, config).effort + chain), config.least_effort)
+    needed = max(config.effort_margin * _effort(robot, joint, config), config.least_effort)
     fastest = max(load.travel, 1e-3) / config.shortest_time
     fitted = replace(
         joint, effort=float(f"{min(joint.effort, needed):.3g}"), velocity=float(f"{min(joint.velocity, fastest):.3g}")
@@ -198,10 +196,15 @@ def _with_dynamics(robot: Robot, joint: Joint, config: DynamicsConfig, *, measur
     return _stated(fitted, damping, friction)
 
 
-def _followers(robot: Robot, joint: Joint) -> dict[str, float]:
-    """Joints that move with one, by `<mimic>` or in a closed chain, and how far at most for each unit of its way."""
-    found: dict[str, float] = {}
-    latest = {joint.name: 1.0}
+def _effort(robot: Robot, joint: Joint, config: DynamicsConfig) -> float:
+    """Effort at a joint that moves it and all that follow it [N m or N]."""
+    moved = ((robot.joint_by_name[name], ratio) for name, ratio in _moved(robot, joint).items())
+    return sum(ratio * _Motor.of(joint_load(robot, other), config).effort for other, ratio in moved)
+
+
+def _moved(robot: Robot, joint: Joint) -> dict[str, float]:
+    """A joint and all that move with it, by `<mimic>` or in a closed chain, and how far at most per unit of its way."""
+    found = latest = {joint.name: 1.0}
     while latest:  # followers of followers
         after = {}
         for other in robot.joints:
@@ -239,10 +242,10 @@ class _Motor:
 
 def _with_motor(robot: Robot, joint: Joint, config: DynamicsConfig, *, measured: bool) -> Joint:
     needed = _Motor.of(joint_load(robot, joint), config)
-    if joint.effort is None or needed.effort <= joint.effort:
+    if joint.effort is not None and not measured and joint.effort < (most := _effort(robot, joint, config)):
+        joint = replace(joint, effort=float(f"{min(most, _motor(joint, config)):.3g}"))
+    if joint.effort is None or not measured or needed.effort <= joint.effort:
         return _stated(joint, needed.damping, needed.friction)
-    if not measured:
-        return _stated(replace(joint, effort=float(f"{needed.effort:.3g}")), needed.damping, needed.friction)
     left = max(config.hand_share * joint.effort - needed.lifting, 0.0)
     share = left / (config.hand_share * needed.effort - needed.lifting)
     return _stated(joint, share * needed.damping, share * needed.friction)
@@ -258,6 +261,10 @@ def _rubbing(load: JointLoad, config: DynamicsConfig) -> float:
 
 def _hand(joint: Joint, config: DynamicsConfig) -> float:
     return config.hand_torque if joint.kind.turns else config.hand_force
+
+
+def _motor(joint: Joint, config: DynamicsConfig) -> float:
+    return config.motor_torque if joint.kind.turns else config.motor_force
 
 
 def carried_links(robot: Robot, link: str) -> list[str]:

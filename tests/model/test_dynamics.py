@@ -119,6 +119,16 @@ def test_machines_get_the_effort_that_they_need() -> None:
     assert first.effort > joint_load(made, first).largest
 
 
+def test_the_motor_that_leads_others_has_the_effort_to_move_them() -> None:
+    alone = arm(20.0, 1.0)
+    leader, *_, last = alone.joints
+    led = replace(last, mimic=Mimic(joint=leader.name, multiplier=2.0, offset=0.0))
+    before, after = (
+        with_dynamics(robot, CONFIG) for robot in (alone, replace(alone, joints=(*alone.joints[:-1], led)))
+    )
+    assert after.joints[0].effort == pytest.approx(before.joints[0].effort + 2.0 * before.joints[-1].effort, rel=0.01)
+
+
 def test_no_motor_needs_more_than_limits_of_engines_bear() -> None:
     made = with_dynamics(arm(5000.0, 100.0), CONFIG)
     assert max(joint.effort or 0.0 for joint in made.joints) == pytest.approx(CONFIG.motor_torque, rel=0.01)
