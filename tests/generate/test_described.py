@@ -110,13 +110,13 @@ def test_a_sentence_may_say_how_it_looks_and_what_it_has():
         assert said_of(sentence), sentence
 
 
-def test_sizes_of_parts_without_a_number_are_told():
+def test_sizes_of_parts_without_a_number_are_reported():
     made = from_text("a wheelchair with two big wheels and two small casters").made()
     assert made.specification.harmless == ("big wheels", "small casters")
     assert made.blueprint.family == "wheelchair"
 
 
-def test_what_changes_nothing_is_told():
+def test_what_changes_nothing_is_reported():
     request = from_text("a sleek retro-style pocket knife for my grandfather")
     assert request.family == "pocket_knife"
     assert request.made().specification.harmless == ("sleek", "retro-style", "for my grandfather")
