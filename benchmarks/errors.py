@@ -295,7 +295,7 @@ def _section(item: WrongJoint, seen: _Seen, number: int, pictures: Path) -> str:
         f"## {number}. {item.run.object}, {item.joint.joint}: {_fault(item.run, item.joint)}",
         f"![{item.run.object}, {item.joint.joint}: truth and inference]({pictures.name}/{number:02d}.webp)",
         f"Shown: {item.run.condition}{given}; wrong in {item.runs} of {item.of} runs. {_facts(item)}\n"
-        + _told(guess, parent, truth, assembly),
+        + _described(guess, parent, truth, assembly),
     ]
     return "\n\n".join(lines)
 
@@ -314,7 +314,7 @@ def _facts(item: WrongJoint) -> str:
     return f"Axis {item.joint.angle_deg:.1f} deg off{line}."
 
 
-def _told(guess: JointEstimate | None, parent: int, truth: TrueJoint, assembly: Assembly) -> str:
+def _described(guess: JointEstimate | None, parent: int, truth: TrueJoint, assembly: Assembly) -> str:
     """What the inference said, and whether it had the right answer among its candidates."""
     if guess is None:
         return "The part was taken for the base."

@@ -66,8 +66,8 @@ def configured(erased: ErasedModel, item: BenchObject, *, sdf: str, seed: int) -
                 continue  # it has no DW-CAVL to leave out
             graph, answer = edges.answer(changed(load_config(name), {**changes, "sdf.kind": sdf}))
             for oracle, right in ORACLES.items():
-                told = _told(answer, graph, erased, right, [seed, *item.name.encode()])
-                scores = [score_erased(erased, given, gripper_joints=item.gripper_joints) for given in told]
+                answered = _answered(answer, graph, erased, right, [seed, *item.name.encode()])
+                scores = [score_erased(erased, given, gripper_joints=item.gripper_joints) for given in answered]
                 records.append({"rules": name, "without": without, "types_by": oracle, **_mean(scores)})
     return records
 
@@ -120,7 +120,7 @@ class _Edges:
         return self._known.joints[objective, edge]
 
 
-def _told(
+def _answered(
     answer: Prediction, graph: ContactGraph, erased: ErasedModel, right: float | None, seeds: list[int]
 ) -> list[Prediction]:
     """An answer with the types that an oracle tells, once for each draw."""
@@ -145,7 +145,7 @@ def with_types(
     Args:
         answer: With candidates of either type.
         turns: The two parts of each true joint -> whether it turns.
-        clusters: Congruent parts vote: the type that most of their joints were told holds for all, a tie for none.
+        clusters: Congruent parts vote: the type that most answers gave their joints holds for all, a tie for none.
         right: Share of the oracle's answers that are right.
         random: Draws which.
     """
@@ -155,10 +155,10 @@ def with_types(
         if true is not None:
             said[joint.child] = true != errs
     for cluster in clusters:
-        told = [part for part in cluster if part in said]
-        votes = Counter(said[part] for part in told)
+        answered = [part for part in cluster if part in said]
+        votes = Counter(said[part] for part in answered)
         if votes[True] != votes[False]:
-            said |= dict.fromkeys(told, votes[True] > votes[False])
+            said |= dict.fromkeys(answered, votes[True] > votes[False])
     return replace(answer, joints=tuple(_best_of(joint, said.get(joint.child)) for joint in answer.joints))
 
 

@@ -47,7 +47,7 @@ _Argument = TypeVar("_Argument")
 class Options(BaseModel):
     """What a study can be asked for: each field is an option of its command, with its description as help.
 
-    A field called `seed` is drawn from, and told in the report.
+    A field called `seed` is drawn from, and named in the report.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)

@@ -170,7 +170,7 @@ class DrawerPullEnv(OpeningEnv):
         self.world.step(self.settings.time.substeps)
 
     def _command(self, action: FloatArray) -> None:
-        """Move what the servos are told: never far from where the joints are, so that nothing winds up."""
+        """Move the targets of the servos: never far from where the joints are, so that nothing winds up."""
         values, arm = self.settings.robot, self.robot.arm
         step = values.joint_step * action[:-1] if self.control == JOINT else self._joint_step(action[:6])
         now = self.world.driven()[0][: self._dof]

@@ -1,4 +1,4 @@
-"""The registry of checks: each is one function, and all that is told about it stands at that function.
+"""The registry of checks: each is one function, and all that describes it is at that function.
 
     @check(
         "KV222",

@@ -85,7 +85,7 @@ class Finding:
     suppressed: str | None = None
     """Reason given by the user for not counting it; it is still reported."""
     cause: Finding | None = field(default=None, compare=False, repr=False)
-    """Finding that it follows from and is told under; it has no cause itself."""
+    """Finding that it follows from and is reported under; it has no cause itself."""
 
     def __post_init__(self) -> None:
         if self.q is not None:

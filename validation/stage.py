@@ -1,7 +1,7 @@
 """How a group of checks runs: in a process of its own, telling each result as soon as it is known.
 
-A stage is a function `stage(request, recorder)`. What it has told before it crashes or is stopped is kept;
-the checks that it has not told become ``blocked``, or ``skipped`` as not finished where time ran out.
+A stage is a function `stage(request, recorder)`. What it has recorded before it crashes or is stopped is kept;
+the checks that it has not recorded become ``blocked``, or ``skipped`` as not finished where time ran out.
 """
 
 from __future__ import annotations

@@ -240,7 +240,7 @@ class TurningRow:
 
 
 def judge_turning_left_out(examples: Sequence[Example]) -> dict[str, TurningRow]:
-    """What goes round, by trees whose fit had nothing of the category; by set. Links in series are told otherwise."""
+    """What goes round, by trees whose fit had nothing of the category; by set. Links in series are apart."""
     turning = [example for example in examples if turns_known(example)]
     taken = np.zeros(len(turning), dtype=bool)
     folds = np.array(folds_of(turning))

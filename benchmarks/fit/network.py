@@ -22,13 +22,13 @@ PARAMETERS = {
     "shared": 24,
     "input_dropout": 0.1,
     "dropout": 0.3,
-    "verdict_dropout": 0.5,  # share of the edges of which it is not told what the weighted cues say
+    "verdict_dropout": 0.5,  # share of the edges of which it does not see the weighted cues
     "epochs": 14,
     "batch": 64,  # edges
     "learning_rate": 2e-3,
     "weight_decay": 0.02,
 }
-_RARE = 0.01  # share of rows from which on it is told that a column is missing
+_RARE = 0.01  # share of rows from which on an input shows where a column is missing
 
 
 def fit_network(
@@ -74,7 +74,7 @@ def fit_network(
 
 
 def scale_of(columns: NDArray[Any]) -> Scale:
-    """How columns (rows, f) are spread, and of which it is told that they are missing; those missing alike once."""
+    """How columns (rows, f) are spread, and which have an input that shows where they are missing; alike ones once."""
     count = int(PARAMETERS["knots"])
     knots = np.zeros((columns.shape[1], count), dtype=np.float32)
     counts = np.zeros(columns.shape[1], dtype=np.int64)
@@ -103,7 +103,7 @@ def _fitted(
     torch.manual_seed(seed)
     rng = np.random.default_rng(seed)
     every, aims = torch.from_numpy(inputs), torch.from_numpy(target.astype(np.float32))
-    told = torch.from_numpy((~hidden).astype(np.float32))
+    visible = torch.from_numpy((~hidden).astype(np.float32))
     model = _model(inputs.shape[1])
     edges, batch = len(starts) - 1, int(PARAMETERS["batch"])
     steps = int(PARAMETERS["epochs"]) * -(-edges // batch)
@@ -115,8 +115,8 @@ def _fitted(
         for chosen in (order[k : k + batch] for k in range(0, edges, batch)):
             rows = np.concatenate([np.arange(starts[k], starts[k + 1]) for k in chosen])
             edge = torch.from_numpy(np.repeat(np.arange(len(chosen)), np.diff(starts)[chosen]))
-            untold = torch.from_numpy(rng.random(len(chosen)) < PARAMETERS["verdict_dropout"])[edge]
-            seen = torch.where(untold[:, None], every[rows] * told, every[rows])
+            blind = torch.from_numpy(rng.random(len(chosen)) < PARAMETERS["verdict_dropout"])[edge]
+            seen = torch.where(blind[:, None], every[rows] * visible, every[rows])
             logs = log_probabilities_of(model(seen, edge, len(chosen)), edge, len(chosen))
             weighed = torch.from_numpy(weights[chosen].astype(np.float32))[edge] * aims[rows] * logs
             loss = -weighed.sum() / len(chosen)

@@ -8,7 +8,7 @@ from benchmarks.expectations import SETS, load_sentences
 from benchmarks.goldens.values import array_hash, blueprint_values, made, plain
 from kinematify.errors import InputError
 from kinematify.generate.composer.compose import compose, draw_composition
-from kinematify.generate.composer.sentence import told
+from kinematify.generate.composer.sentence import sentence_of
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
@@ -66,7 +66,7 @@ def composition_values(seeds: range) -> dict[str, Values]:
     built, sentences = {}, {}
     for seed in seeds:
         composition = draw_composition(seed)
-        sentences[f"sentence {seed}"] = told(composition)
+        sentences[f"sentence {seed}"] = sentence_of(composition)
         built[str(seed)] = compose(composition, seed=seed)
     found = _values(built)
     return made(exact=found["exact"], portable={**found["portable"], **sentences})

@@ -81,7 +81,7 @@ class AsLoadedOptions(Options):
     inferred: int = Field(0, ge=0, description="Objects per family of the generator that are inferred.")
     described: int = Field(0, ge=0, description="Seeds of each object that a file describes.")
     composed: int = Field(0, ge=0, description="Objects composed of mechanisms on bodies.")
-    told: int = Field(0, ge=0, description="Seeds of each of the sixty sentences for composed objects.")
+    sentences: int = Field(0, ge=0, description="Seeds of each of the sixty sentences for composed objects.")
     engines: Annotated[tuple[str, ...], among(ENGINES)] = Field(
         ("mujoco", "pybullet"), description="Engines, separated by commas."
     )
@@ -100,7 +100,7 @@ class TriedFile:
     family: str = ""
     """Empty for a composed object."""
     sentence: str = ""
-    """What a composed object is told by; empty for one that is drawn."""
+    """The sentence of a composed object; empty for one that is drawn."""
     seed: int = 0
 
 
@@ -123,9 +123,9 @@ def measure(options: AsLoadedOptions, work: Work) -> Measured:
         for family in sorted(known_families().keys() - FAMILIES.keys()):
             cases[f"{family} {seed}"] = case(made="exact", family=family, seed=seed)
     cases |= {f"composed {seed}": case(made="exact", seed=seed) for seed in range(options.composed)}
-    for seed in range(options.told):
-        for number, told in enumerate(load_sentences("composed"), start=1):
-            cases[f"told {number} {seed}"] = case(made="exact", sentence=told["text"], seed=seed)
+    for seed in range(options.sentences):
+        for number, said in enumerate(load_sentences("composed"), start=1):
+            cases[f"sentence {number} {seed}"] = case(made="exact", sentence=said["text"], seed=seed)
     return list(work.each(tried_as_loaded, cases, timeout=1800.0, reuse=20).values()), {
         "versions": package_versions(ENGINES[engine].package for engine in options.engines)
     }
@@ -137,7 +137,7 @@ def tried_as_loaded(case: TriedFile) -> Record:
     config = config.model_copy(update={"collision": config.collision.model_copy(update={"mode": case.collision})})
     if case.item is None:
         kind = case.family or case.sentence or "composed"
-        made_by = "composed as told" if case.sentence else "composed"
+        made_by = "composed from a sentence" if case.sentence else "composed"
         if case.family:
             made_by = "generated" if case.family in FAMILIES else "described by files"
         facts = {"set": f"{made_by}, {case.made}", "object": f"{kind} {case.seed}"}
@@ -211,13 +211,13 @@ def _judged(urdf: Path, engines: Sequence[str], package_dirs: Sequence[Path] = (
 
 def _world(checks: Sequence[CheckResult], engine: str, *, run_code: bool) -> Record:
     """The judgement of one engine."""
-    told = [check for check in checks if check.check.startswith("KV8") and check.engine == engine]
-    measured = {name: value for check in told for name, value in check.measured.items()}
-    counted = [item for check in told for item in check.findings if item.severity is not Severity.NOTE]
+    judged = [check for check in checks if check.check.startswith("KV8") and check.engine == engine]
+    measured = {name: value for check in judged for name, value in check.measured.items()}
+    counted = [item for check in judged for item in check.findings if item.severity is not Severity.NOTE]
     return {
         "joints": measured.get("joints", 0.0),
         "right": measured.get("right", measured.get("read", 0.0)),
-        "unfinished": [f"{check.check}: {check.reason}" for check in told if check.status is Status.BLOCKED],
+        "unfinished": [f"{check.check}: {check.reason}" for check in judged if check.status is Status.BLOCKED],
         "findings": [[item.check, item.joint, item.message] for item in counted],
         **({"shown": [shown(item) for item in counted]} if run_code else {}),
     }

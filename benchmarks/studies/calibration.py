@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 BINS = 10
 LEAST = 0.2
-"""Share of the joints, those of least confidence, whose share of the errors is told."""
+"""Share of the joints, those of least confidence, whose share of the errors is reported."""
 
 
 class CalibrationOptions(Options):

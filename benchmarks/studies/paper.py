@@ -296,11 +296,11 @@ def report(found: Report[Record]) -> list[str]:
 
 
 def _wholes(rows: Sequence[Record]) -> list[str]:
-    """Full configurations by who tells the types, then the ablations beside the paper's own figures."""
+    """Full configurations by who gives the types, then the ablations beside the paper's own figures."""
     heads = ("set", "rules", "types by", "objects", "axis angle [deg]", "matched [deg]", "pivot [m]", "TED", "types")
     full = [row for row in rows if not row["without"]]
     own = [row for row in rows if row["types_by"] == OWN]
-    told = [
+    wholes = [
         (name, rules, oracle, *_whole_figures(records))
         for name, found in grouped(full, by=itemgetter("set")).items()
         for (rules, oracle), records in grouped(found, by=itemgetter("rules", "types_by")).items()
@@ -320,7 +320,7 @@ def _wholes(rows: Sequence[Record]) -> list[str]:
         for label, figures in ABLATION.items()
     ]
     return [
-        table(heads, told),
+        table(heads, wholes),
         printed,
         "### Without MCTS, without DW-CAVL",
         table((*heads[:2], "left out", *heads[3:]), ablated),

@@ -60,7 +60,7 @@ class Command:
     """Largest ratio to the earlier checkout."""
 
     @property
-    def told(self) -> str:
+    def line(self) -> str:
         """As people read it."""
         words = (self.given if word == "IN" else word for word in self.words if word not in ("-o", "OUT"))
         return " ".join((*words, *self.newer))
@@ -114,8 +114,8 @@ def measure(options: ProfileOptions, work: Work) -> Measured:
 
 
 def _commit(checkout: str) -> str:
-    told = subprocess.run(["git", "-C", checkout, "rev-parse", "HEAD"], check=False, capture_output=True, text=True)
-    return told.stdout[:7] or "no commit"
+    answer = subprocess.run(["git", "-C", checkout, "rev-parse", "HEAD"], check=False, capture_output=True, text=True)
+    return answer.stdout[:7] or "no commit"
 
 
 def timed(asked: Asked) -> Record:
@@ -137,7 +137,7 @@ def timed(asked: Asked) -> Record:
         record = json.loads((out / "inference.json").read_text("utf-8")) if more else {"seconds": {}}
     shares = {stage: seconds / clock for stage, seconds in record["seconds"].items()}
     return {
-        "command": command.told,
+        "command": command.line,
         "asked": command.asked,
         "before": _median(before[1:]),
         "now": _median(now[1:]),

@@ -13,8 +13,8 @@ rows *nothing* are the true mechanisms as they are.
 --inferred OBJECTS asks what simulation can do about the joints that inference gets wrong, with the true tree given. The
 rows *as inferred* refine what inference chooses there, with nothing planted; the rows *nothing* are of these objects
 too. Then right near-best hypotheses are simulated beside every joint that was chosen wrong. *In the pool*: there is
-one. *Told*: the simulation has more against the joint that was chosen than against a right one. No loop that chooses by
-simulation repairs more.
+one. *Preferred*: simulation has more against the joint that was chosen than against a right one. No loop that chooses
+by simulation repairs more.
 """
 
 from __future__ import annotations
@@ -163,7 +163,7 @@ def mistakes(mechanism: TrueMechanism, tier: str) -> list[Record]:
             "hypotheses": len(near),
             "in_pool": bool(right),
             "against": tried[0],
-            "told": bool(right) and min(tried[1:]) < tried[0],
+            "preferred": bool(right) and min(tried[1:]) < tried[0],
         })  # fmt: skip
     return records
 
@@ -201,14 +201,14 @@ def report(found: Report[Record]) -> list[str]:
     blocks = [explained(__doc__)]
     inferred = [record for record in found.records if record["fault"] == INFERRED]
     if inferred:
-        heads = ("simulated by", "wrong joints", "in the pool", "found", "told")
-        told = [_mistake_row(tier, own) for tier, own in grouped(inferred, by=itemgetter("tier")).items()]
+        heads = ("simulated by", "wrong joints", "in the pool", "found", "preferred")
+        rows = [_mistake_row(tier, own) for tier, own in grouped(inferred, by=itemgetter("tier")).items()]
         lines = [
             f"- {row['object']}, {row['part']}, {row['tier']}: {row['hypotheses']} near-best hypotheses, "
             f"{'one' if row['in_pool'] else 'none'} right; {row['against']:.1f} against the chosen one"
             for row in inferred
         ]
-        blocks += ["## What simulation can tell of joints inferred wrong", table(heads, told), "\n".join(lines)]
+        blocks += ["## What simulation shows of joints inferred wrong", table(heads, rows), "\n".join(lines)]
     planted = [record for record in found.records if record["fault"] != INFERRED]
     for tier, records in grouped(planted, by=itemgetter("tier")).items():
         titles = ("planted", "faults", "found", "repaired", "harm", "time")
@@ -227,7 +227,7 @@ def _mistake_row(tier: str, records: Sequence[Record]) -> tuple[str, ...]:
         str(len(records)),
         _part_of(sum(row["in_pool"] for row in records), len(records)),
         _part_of(sum(found), len(records)),
-        _part_of(sum(row["told"] for row in records), len(records)),
+        _part_of(sum(row["preferred"] for row in records), len(records)),
     )
 
 

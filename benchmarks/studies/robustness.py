@@ -63,9 +63,9 @@ def measure(options: RobustnessOptions, work: Work) -> Measured:
 def counted(records: list[Record]) -> Measured:
     """Keep of a record what tells; thousands end as they should."""
     seconds = [record["seconds"] for record in records]
-    told = [record for record in records if record["outcome"] in BAD or record.get("unexplained")]
+    listed = [record for record in records if record["outcome"] in BAD or record.get("unexplained")]
     by_kind = {kind: [record for record in records if record["kind"] == kind] for kind in KINDS}
-    return told or records[:1], {
+    return listed or records[:1], {
         "cases": len(records),
         "outcomes": dict(Counter(record["outcome"] for record in records)),
         "by_kind": {kind: dict(Counter(record["outcome"] for record in group)) for kind, group in by_kind.items()},

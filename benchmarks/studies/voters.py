@@ -313,8 +313,8 @@ def _recorded_rows(
     rows: Sequence[Record], form: str, label: str, config: VisionConfig, screening: Sequence[int], *, everything: bool
 ) -> list[tuple[str, ...]]:
     """Figures of one form of question: with the record of the other half, of known objects, and of all answers."""
-    told = [row for row in rows if row["answers"][form] is not None and (everything or row["source"] is not None)]
-    if not told:
+    used = [row for row in rows if row["answers"][form] is not None and (everything or row["source"] is not None)]
+    if not used:
         return []
     label = f"{label}, all answers" if everything else label
     halves = {half: _record_of([row for row in rows if half_of(row["object"]) == half], form) for half in (0, 1)}
@@ -329,7 +329,7 @@ def _recorded_rows(
     for title, record_of in records.items():
         chosen = {
             _key(row): _after(row, row["answers"][form]["named"], record_of[half_of(row["object"])].reliability(config))
-            for row in told
+            for row in used
         }
         shown = " / ".join(dict.fromkeys(f"{item.right} of {item.asked}" for item in record_of))
         found.append(_counted(f"{label}, {title}", shown, rows, chosen))
@@ -342,11 +342,11 @@ def _key(row: Record) -> tuple[str, int]:
 
 def _record_of(rows: Sequence[Record], form: str) -> VoterRecord:
     """Right answers among those that were given about the joint itself, and that could be right."""
-    told = [
+    used = [
         row for row in rows if row["answers"][form] is not None and row["answers"][form]["own"] and any(row["right"])
     ]
-    right = sum(any(a and b for a, b in zip(row["answers"][form]["named"], row["right"], strict=False)) for row in told)
-    return VoterRecord(right=right, asked=len(told))
+    right = sum(any(a and b for a, b in zip(row["answers"][form]["named"], row["right"], strict=False)) for row in used)
+    return VoterRecord(right=right, asked=len(used))
 
 
 def _after(row: Record, named: Sequence[bool] | BoolArray, reliability: float) -> int:

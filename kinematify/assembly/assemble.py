@@ -175,18 +175,18 @@ def _looks(vertices: FloatArray, faces: IntArray, appearance: Appearance | None)
 def _told_looks(meshes: Sequence[RawMesh], names: Sequence[str]) -> list[str]:
     """What of the materials is lost."""
     notes = dict.fromkeys(note for mesh in meshes if mesh.appearance for note in mesh.appearance.notes)
-    told = [f"Not all colours are those of the input: {'; '.join([*notes][:8])}."] if notes else []
+    warnings = [f"Not all colours are those of the input: {'; '.join([*notes][:8])}."] if notes else []
     many = [
         name
         for mesh, name in zip(meshes, names, strict=True)
         if mesh.appearance and len(np.unique(mesh.appearance.material_of_face)) > MAX_MATERIALS
     ]
     if many:
-        told.append(
+        warnings.append(
             f"Parts of more than {MAX_MATERIALS} materials keep {MAX_MATERIALS} colours that are near, without "
             f"textures: {', '.join(many[:8])}."
         )
-    return told
+    return warnings
 
 
 def _without_degenerate(parts: Sequence[Part], source: str, config: AssemblyConfig) -> _Triage:

@@ -18,7 +18,7 @@ from kinematify import __version__
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, OutputError
 from kinematify.generate.composer.compose import compose, draw_composition
-from kinematify.generate.composer.sentence import told
+from kinematify.generate.composer.sentence import sentence_of
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.pipeline.generate import write_blueprint
@@ -108,7 +108,7 @@ def _built(entry: dict[str, Any]) -> Blueprint:
         return build(FAMILIES[entry["category"]], {"open": entry["open"]}, seed=seed, name=entry["name"])
     composition = replace(draw_composition(seed), rest=entry["open"])
     blueprint = compose(composition, name=entry["name"], seed=seed)
-    return replace(blueprint, parameters={**blueprint.parameters, "text": told(composition)})
+    return replace(blueprint, parameters={**blueprint.parameters, "text": sentence_of(composition)})
 
 
 def _write_objects(out: Path, entries: Sequence[dict[str, Any]], workers: int) -> Iterator[str]:

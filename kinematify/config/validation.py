@@ -301,7 +301,7 @@ class EvidenceSettings(StageConfig):
     contact_band: float = 0.01  # clearances of drawers and doors
     """Places this much farther apart than the nearest are in contact at rest, fraction of the child's diagonal."""
     contact_places: int = 8  # one or two samples say nothing of a contact
-    """Samples of a contact from which on it can be told whether half of it opens."""
+    """Samples of a contact from which on it is decided whether half of it opens."""
     opens: float = 0.025  # untouched joints that KV342 to KV344 doubt reach 0.019, three planted tilts of four 0.03
     """Half of the contact may open by this much more than about the line that fits best, fraction of the child's
     diagonal."""

@@ -310,7 +310,7 @@ class JointPlanning:
                 break
         if best is None:
             return self._nothing()
-        return self._told(*best)
+        return self._plan_of(*best)
 
     def _pulls(self, puller: Puller, places: list[Placement], *, column: bool) -> Iterator[Pull]:
         """Pulls as they are found: followed from the middle, then searched for, then followed as far as it goes."""
@@ -362,7 +362,7 @@ class JointPlanning:
         words = f"none of {self._tried.count} places and grasps{late}" + (f"; mostly {usual.words}" if usual else "")
         return self._ended(Failure.NO_REACH, words, stop=usual)
 
-    def _told(self, pull: Pull, way: FloatArray) -> PullPlan:
+    def _plan_of(self, pull: Pull, way: FloatArray) -> PullPlan:
         if pull.fraction >= self._plan.opened:
             return self._ended(None, "", stop=pull.stop, pull=pull, way=way, fraction=pull.fraction)
         words = pull.stop.words if pull.stop else ""

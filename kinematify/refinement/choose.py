@@ -326,5 +326,5 @@ def _follow(
         why=f"{votes} congruent parts on {plan.assembly.names[joint.parent]} move alike, and their evidence together "
         f"is for {'turning' if turns else 'sliding'}",
     )
-    told = replace(trial.joint, evidence={**trial.joint.evidence, TWINS: others})
-    return plan.with_joint(told), change
+    chosen = replace(trial.joint, evidence={**trial.joint.evidence, TWINS: others})
+    return plan.with_joint(chosen), change

@@ -238,7 +238,7 @@ class _Loop:
         self.request.progress(f"round {number}: simulating", number / (self.rounds + 1))
         start = time.perf_counter()
         verdict = self.simulator.judge(plan.model)
-        told = Round(
+        played = Round(
             number=number,
             tier=GEOMETRY,
             changes=tuple(changes),
@@ -246,7 +246,7 @@ class _Loop:
             seconds=time.perf_counter() - start,
             refused=tuple(refused),
         )
-        return self._judged(plan, contacts, verdict, told)
+        return self._judged(plan, contacts, verdict, played)
 
     def _deepened(self, number: int) -> _Done:
         """A round in the next dearer tier."""
@@ -255,11 +255,11 @@ class _Loop:
         self.request.progress(f"round {number}: simulating by {tier}", number / (self.rounds + 1))
         start = time.perf_counter()
         verdict = self.dear.deepened(self.simulator.judge(done.plan.model), done.plan, tier)
-        told = replace(done.round, tier=tier, seconds=done.round.seconds + time.perf_counter() - start)
-        self.done[number] = self._judged(done.plan, done.contacts, verdict, told)
+        played = replace(done.round, tier=tier, seconds=done.round.seconds + time.perf_counter() - start)
+        self.done[number] = self._judged(done.plan, done.contacts, verdict, played)
         return self.done[number]
 
-    def _judged(self, plan: Plan, contacts: SearchedContacts, verdict: MotionVerdict, told: Round) -> _Done:
+    def _judged(self, plan: Plan, contacts: SearchedContacts, verdict: MotionVerdict, played: Round) -> _Done:
         """A round with what its verdict means."""
         feedback = feedback_from(
             verdict.findings,
@@ -271,7 +271,7 @@ class _Loop:
         self.memory.add(plan.assembly, feedback.edges)
         errors, warnings = _severities(verdict)
         judged = replace(
-            told,
+            played,
             errors=errors,
             warnings=warnings,
             failed=tuple(_failed(verdict)),
@@ -345,11 +345,11 @@ class _Loop:
         trees = search_again(assembly, contacts, self.memory, self.given.trees, config, base=self.base)
         plan, changes = replanned(done.plan, done.contacts, contacts, trees[0])
         why = f"{len(audit.missing)} contacts were missing and {len(audit.spurious)} are none"
-        told = PlanChange(
+        applied = PlanChange(
             part=assembly.names[trees[0].root], what="contacts", before=f"{len(self.given.graph.edges)}",
             after=f"{len(graph.edges)}", why=why,
         )  # fmt: skip
-        return plan, contacts, [told, *changes]
+        return plan, contacts, [applied, *changes]
 
     def _repaired(self, done: _Done) -> tuple[Plan, list[PlanChange]]:
         """Another tree on the same base, if the search finds one by what failed, and geometry fails less on it."""

@@ -178,8 +178,8 @@ class Simulator:
         found = _findings([check for check in checks_of("KV30") if check.id != "KV304"], look)  # a table, no failure
         summaries: list[JointSummary] = []
         for leader, travel in enumerate(look.scene.travels):
-            told, summary = self._joint(look, model, leader, travel.joint)
-            found += told
+            own, summary = self._joint(look, model, leader, travel.joint)
+            found += own
             summaries.append(summary)
         return MotionVerdict(findings=tuple(found), joints=tuple(summaries))
 
@@ -266,9 +266,9 @@ class DearTiers:
         """
         for dear in TIERS[1 : TIERS.index(tier) + 1]:
             report = self._report(plan, dear)
-            told = tuple(finding for finding in report.counted if finding.check in _RUN[dear])
+            seen = tuple(finding for finding in report.counted if finding.check in _RUN[dear])
             verdict = replace(
-                verdict, findings=(*verdict.findings, *told), placements={**verdict.placements, **_placements(report)}
+                verdict, findings=(*verdict.findings, *seen), placements={**verdict.placements, **_placements(report)}
             )
         return verdict
 

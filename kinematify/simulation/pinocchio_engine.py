@@ -213,7 +213,7 @@ class PinocchioFile(RawEngineModel):
             self.limits[name] = ends if joint.nq == 1 else (-np.inf, np.inf)
 
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
-        """See `RawEngineModel`; depths are told of convex shapes, by distances: `computeCollisions` misses boxes."""
+        """See `RawEngineModel`; depths are of convex shapes, by distances: `computeCollisions` misses boxes."""
         model, geometry, q = self._model, self._geometry, self._configuration(values)
         seen = geometry.createData()
         pin.updateGeometryPlacements(model, model.createData(), geometry, seen, q)
@@ -248,7 +248,7 @@ class PinocchioFile(RawEngineModel):
 
 
 def _solid(shape: Any) -> Any:
-    """A shape whose depth can be told, None for meshes that are not convex."""
+    """A shape whose depth can be measured, None for meshes that are not convex."""
     if not isinstance(shape, coal.BVHModelBase):
         return shape
     shape.buildConvexRepresentation(False)

@@ -238,8 +238,8 @@ class PybulletSimulation:
         body.act(pairs, on=True)
         run = _Run(self.model, body)
         run.hold(_UNLIMITED)
-        told = zip(drive.reference.tolist(), drive.speed.tolist(), strict=True)
-        orders = ((column, target, speed, float(self.force[drive.leader])) for target, speed in told)
+        targets = zip(drive.reference.tolist(), drive.speed.tolist(), strict=True)
+        orders = ((column, target, speed, float(self.force[drive.leader])) for target, speed in targets)
         result = drive_run(run, run.steps(len(drive.reference), orders), drive, lambda: run.torques[column])
         body.act(pairs, on=False)
         return result
@@ -286,12 +286,12 @@ class _Run:
 
         Args:
             count: Steps.
-            orders: For every step what a motor is told (`command`), the followers then follow; None: nothing is told.
+            orders: For every step the order to a motor (`command`), the followers then follow; None: no order.
         """
-        told = iter(orders or ())
+        order = iter(orders or ())
         for step in range(count):
             if orders is not None:
-                self.command(*next(told))
+                self.command(*next(order))
             self._world.client.stepSimulation()
             self._q, self._v, self.torques = self._world.state()
             if not np.isfinite([self._q, self._v]).all():

@@ -113,7 +113,7 @@ def cabinet(z: float, front: float) -> trimesh.Scene:
     ("z", "front", "words"),
     [(0.0, -0.25, "lowest point is at z = 0"), (-0.4, -0.25, "broad foot"), (0.7, 0.2, "broad foot")],
 )
-def test_a_gltf_file_that_looks_z_up_is_told_with_the_remedy(
+def test_a_gltf_file_that_looks_z_up_is_reported_with_the_remedy(
     z: float, front: float, words: str, tmp_path: Path
 ) -> None:
     made = cabinet(z, front)
@@ -243,7 +243,7 @@ def test_3mf_objects_are_parts_in_the_unit_that_the_file_states_unless_a_scale_i
 
 
 @pytest.mark.parametrize(
-    ("factor", "scale", "told", "remedy"),
+    ("factor", "scale", "reported", "remedy"),
     [
         (1000.0, 1.0, "2 km long", "2 m long: give --scale 0.001"),
         (25.0, 1.0, "50 m long", "50 mm long: give --scale 0.001"),
@@ -252,8 +252,8 @@ def test_3mf_objects_are_parts_in_the_unit_that_the_file_states_unless_a_scale_i
         (1.0, 1.0, "", ""),
     ],
 )
-def test_an_unusual_size_is_told_with_the_guess_and_the_remedy(
-    tmp_path: Path, factor: float, scale: float, told: str, remedy: str
+def test_an_unusual_size_is_reported_with_the_guess_and_the_remedy(
+    tmp_path: Path, factor: float, scale: float, reported: str, remedy: str
 ) -> None:
     given = trimesh.util.concatenate([box(0), box(3)])  # 4 m long
     given.apply_scale(0.5 * factor)
@@ -262,7 +262,7 @@ def test_an_unusual_size_is_told_with_the_guess_and_the_remedy(
     if not remedy:
         assert not warnings
     else:
-        assert any(told in warning and remedy in warning for warning in warnings)
+        assert any(reported in warning and remedy in warning for warning in warnings)
 
 
 def test_one_mesh_without_labels_falls_into_its_pieces(tmp_path: Path) -> None:

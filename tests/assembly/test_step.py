@@ -76,7 +76,7 @@ def test_a_turned_and_scaled_file_takes_its_exact_faces_along(cupboard: Assembly
         assert np.allclose(after.exact.axes, before.exact.axes[:, [0, 2, 1]] * (1, -1, 1))
 
 
-def test_a_truncated_file_is_told_with_its_line(tmp_path: Path) -> None:
+def test_a_truncated_file_is_reported_with_its_line(tmp_path: Path) -> None:
     pytest.importorskip("cascadio", reason="the extra `cad` is not installed")
     broken = tmp_path / "broken.stp"
     broken.write_text(CUPBOARD.read_text(encoding="utf-8")[:100_000], encoding="utf-8")

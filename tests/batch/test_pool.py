@@ -61,7 +61,7 @@ def gone(pid: int) -> bool:
     return False
 
 
-def test_what_went_wrong_is_told_and_kept(tmp_path: Path) -> None:
+def test_what_went_wrong_is_reported_and_kept(tmp_path: Path) -> None:
     found = results({"crash": crash, "fail": fail}, tmp_path)
     crashed, failed = found["crash"], found["fail"]
     assert isinstance(crashed, TaskFailure)

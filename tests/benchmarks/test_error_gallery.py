@@ -24,15 +24,15 @@ def test_wrong_joints_are_shown_worst_first(tmp_path: Path) -> None:
     report = run_benchmark(wanted)
     wrong = wrong_joints(report.records)
     assert [(item.joint.joint, item.runs, item.of) for item in wrong] == [("secret_slide", 2, 2)]
-    told: list[str] = []
+    reported: list[str] = []
     page = write_error_gallery(
-        report, wanted, tmp_path / "out", name="errors", count=5, progress=lambda what, _: told.append(what)
+        report, wanted, tmp_path / "out", name="errors", count=5, progress=lambda what, _: reported.append(what)
     )
     text = page.read_text()
     assert "1 of 2 joints are wrong in at least one run" in text
     assert "## 1. three_parts, secret_slide: revolute instead of prismatic" in text
     assert "wrong in 2 of 2 runs" in text
-    assert told == ["picture of three_parts, secret_slide"]
+    assert reported == ["picture of three_parts, secret_slide"]
     with Image.open(tmp_path / "out" / "errors" / "01.webp") as picture:
         assert picture.size[0] == 600
 

@@ -99,10 +99,10 @@ def test_simulation_tells_a_blocked_mistake_from_a_right_hypothesis_if_one_is_pr
     assert mistakes(replace(door, chosen=door.inference.joints), "geometry") == []
     (blocked,) = mistakes(replace(door, chosen=planted[PIVOT]), "geometry")
     assert blocked["in_pool"]
-    assert blocked["told"]
+    assert blocked["preferred"]
     assert blocked["against"] > 0.0
     (joint,) = door.inference.joints
     alone = replace(planted[PIVOT][0], alternatives=tuple(item for item in joint.alternatives if not item.kind.turns))
     (hopeless,) = mistakes(replace(door, chosen=(alone,)), "geometry")
     assert not hopeless["in_pool"]
-    assert not hopeless["told"], "what is not proposed cannot be found"
+    assert not hopeless["preferred"], "what is not proposed cannot be found"

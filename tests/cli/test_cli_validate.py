@@ -98,8 +98,8 @@ def test_a_sound_chest_has_no_error(real: tuple[Path, subprocess.CompletedProces
 def test_every_check_is_in_every_report(real: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
     folder, _ = real
     expected = USUAL_KEYS
-    told = json.loads((folder / "report.json").read_text())["checks"]
-    assert tuple((check["check"], check["engine"]) for check in told) == expected
+    reported = json.loads((folder / "report.json").read_text())["checks"]
+    assert tuple((check["check"], check["engine"]) for check in reported) == expected
     cases = list(etree.parse(folder / "report.junit").getroot().iter("testcase"))
     assert len(cases) == len(expected)
     assert json.loads((folder / "report.sarif").read_text())["runs"][0]["invocations"][0]["executionSuccessful"]
@@ -134,7 +134,7 @@ def test_only_errors_change_the_exit_status(
     assert (status, capsys.readouterr().out.split()[0]) == expected
 
 
-def test_everything_is_told_when_it_is_asked_for(
+def test_everything_is_reported_when_it_is_asked_for(
     answered: dict[str, Any], chest: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     answered["chest.urdf"] = full_report()
@@ -191,7 +191,7 @@ def test_no_report_is_longer_than_it_may_be(
     assert all(f"The {name} jams." in text for name in names)
 
 
-def test_warnings_beyond_a_screen_are_told_without_their_remedies(
+def test_warnings_beyond_a_screen_are_reported_without_their_remedies(
     answered: dict[str, Any], chest: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     doors = [finding(message=f"The door {chr(97 + k)} jams.", joint=None, severity=Severity.WARNING) for k in range(12)]
@@ -202,7 +202,7 @@ def test_warnings_beyond_a_screen_are_told_without_their_remedies(
     assert text.count("warning KV396 Doors & drawers of KV396 jam") == 12
 
 
-def test_what_follows_from_a_finding_is_told_under_it(
+def test_what_follows_from_a_finding_is_reported_under_it(
     answered: dict[str, Any], chest: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     cause, code = finding(), "import mujoco\nmodel = mujoco.MjModel.from_xml_path('door.urdf')\nprint(model)"
@@ -222,7 +222,7 @@ def test_what_follows_from_a_finding_is_told_under_it(
     assert "import mujoco" in text
 
 
-def test_many_findings_of_a_kind_are_told_once(
+def test_many_findings_of_a_kind_are_reported_once(
     answered: dict[str, Any], chest: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     many = [
@@ -323,9 +323,9 @@ def test_a_model_stays_quiet_with_the_rules_that_were_suggested_for_it(
     capsys.readouterr()
     again = ["--suppress", accepted, "--suggest-accept", accepted, "--json", "-"]
     assert run([*words, *again]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["verdict"] == "pass"
-    assert all(item["suppressed"] for item in told["findings"] if item["severity"] != "note")
+    reported = json.loads(capsys.readouterr().out)
+    assert reported["verdict"] == "pass"
+    assert all(item["suppressed"] for item in reported["findings"] if item["severity"] != "note")
     assert load_suppressions(Path(accepted)) == rules, "rules that hold are kept, and there is nothing to add"
     chest.write_text(chest.read_text().replace('<mass value="2"/>', '<mass value="-2"/>', 1))
     assert run([*words, "--suppress", accepted]) == 1, "what is new counts"

@@ -25,7 +25,7 @@ def test_every_cell_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys
         if cell["cell_type"] == "code":
             assert not cell["outputs"], "outputs would become old: clear them before committing"
             exec("".join(cell["source"]), names)
-    told = capsys.readouterr().out
-    assert "drawer_left_joint    prismatic  body -> drawer_left" in told
-    assert "open and at rest: True" in told
-    assert "(84, 84, 3) uint8" in told
+    reported = capsys.readouterr().out
+    assert "drawer_left_joint    prismatic  body -> drawer_left" in reported
+    assert "open and at rest: True" in reported
+    assert "(84, 84, 3) uint8" in reported

@@ -1,4 +1,4 @@
-"""Parts that were cut apart are told from parts that merely meet, and come out fixed to each other."""
+"""Parts that were cut apart are distinguished from parts that merely meet, and come out fixed to each other."""
 
 from __future__ import annotations
 

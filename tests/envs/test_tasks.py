@@ -113,7 +113,7 @@ def test_pixels_show_the_part_where_it_is_the_same_in_both_engines() -> None:
     assert (np.abs(seen["mujoco", 0.0] - seen["mujoco", 1.0]).max(axis=2) > 30).mean() > 0.02
 
 
-def test_wrong_words_are_told() -> None:
+def test_wrong_words_are_reported() -> None:
     with pytest.raises(InputError, match="observation"):
         gymnasium.make(OPEN_PART, observation="depth")
     with pytest.raises(InputError, match="pixel_size is \\(0, 84\\)"):

@@ -50,8 +50,8 @@ def written(report: Report[JobResult], folder: Path, name: str, baseline: Report
 
 
 def test_runs_every_object_under_every_condition_and_scores_it(data: Path, tmp_path: Path) -> None:
-    told: list[float] = []
-    report = run_benchmark(request(data, tmp_path / "work", "star"), lambda _, fraction: told.append(fraction))
+    reported: list[float] = []
+    report = run_benchmark(request(data, tmp_path / "work", "star"), lambda _, fraction: reported.append(fraction))
     assert [(result.object, result.condition) for result in report.records[:6]] == [
         ("three_parts", "rest"),
         ("three_parts", "random-0"),
@@ -62,8 +62,8 @@ def test_runs_every_object_under_every_condition_and_scores_it(data: Path, tmp_p
     ]
     assert all(result.status == "ok" for result in report.records)
     assert all(result.peak_mb is not None and result.peak_mb > 1.0 for result in report.records)
-    assert told == sorted(told)
-    assert told[-1] == 1.0
+    assert reported == sorted(reported)
+    assert reported[-1] == 1.0
     for result in report.records:
         assert result.score is not None
         assert result.score.ted.value == 0

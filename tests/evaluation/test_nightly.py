@@ -96,7 +96,7 @@ def test_the_latest_run_of_the_same_scenario_is_compared_with() -> None:
     assert [change.kind for change in found] == [Class.NEW]
 
 
-def test_a_run_that_is_missing_is_told() -> None:
+def test_a_run_that_is_missing_is_reported() -> None:
     found = compare([], {ACCURACY.place: [ACCURACY]}, SETTINGS, same_machine=True)
     assert [(change.kind, change.gate) for change in found] == [(Class.GONE, False)]
 
@@ -142,8 +142,8 @@ def test_an_unchanged_night_reports_nothing_and_a_slow_object_fails_nothing(boxe
     assert set(kinds(second)) <= {"still failing"}
     assert not second.night.failed
     slow = night(boxes, tmp_path, "planted_inferences:slow_on_three_parts")
-    told = [(change.kind.value, change.object) for change in slow.night.changes if change.kind != "still failing"]
-    assert told == [("slower", "drawered")]
+    reported = [(change.kind.value, change.object) for change in slow.night.changes if change.kind != "still failing"]
+    assert reported == [("slower", "drawered")]
     assert not slow.night.failed
     assert len({first.place, second.place, slow.place}) == 3
     assert all((place / "index.html").is_file() for place in (first.place, slow.place, tmp_path))

@@ -129,7 +129,7 @@ def _colors(path: Path) -> list[list[tuple[float, ...]]]:
 _TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
 
 
-def test_materials_of_an_obj_are_read_and_what_is_missing_is_told(tmp_path: Path) -> None:
+def test_materials_of_an_obj_are_read_and_what_is_missing_is_reported(tmp_path: Path) -> None:
     (tmp_path / "a.obj").write_text(
         f"mtllib a.mtl\n{_TETRAHEDRON}vt 0 0\nvt 1 0\nvt 0 1\no box\nusemtl paint\nf 1 2 3\nusemtl wood\n"
         "f 1/1 2/2 4/3\nf 1/1 3/2 4/3\nusemtl paint\nf 2 3 4\n",

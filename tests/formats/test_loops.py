@@ -1,4 +1,4 @@
-"""Closed chains of joints in every format: told in a URDF, closed where the format can close them."""
+"""Closed chains of joints in every format: reported in a URDF, closed where the format can close them."""
 
 from __future__ import annotations
 

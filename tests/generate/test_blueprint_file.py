@@ -1,4 +1,4 @@
-"""Blueprints as text: what they say is built exactly, and what they get wrong is told by place."""
+"""Blueprints as text: what they say is built exactly, and what they get wrong is reported by place."""
 
 from __future__ import annotations
 

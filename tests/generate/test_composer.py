@@ -14,7 +14,7 @@ from kinematify.errors import InputError
 from kinematify.generate.composer.bodies import BODIES
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.composer.mechanisms import MECHANISMS
-from kinematify.generate.composer.sentence import told
+from kinematify.generate.composer.sentence import sentence_of
 from kinematify.generate.procedural.materials import COLORS
 from kinematify.generate.sentence import from_text
 from kinematify.robot.joint_type import JointType
@@ -220,8 +220,10 @@ def test_drawn_compositions_have_whole_parts_that_stand_free(seed):
 @pytest.mark.parametrize("seed", range(40))
 def test_what_is_drawn_can_be_said(seed):
     composition = draw_composition(seed)
-    found = composed(told(composition))
-    assert found == composition or (found is None and said_of(told(composition)) == ""), "or the library has it whole"
+    found = composed(sentence_of(composition))
+    assert found == composition or (found is None and said_of(sentence_of(composition)) == ""), (
+        "or the library has it whole"
+    )
 
 
 def test_parts_are_called_as_they_were_said():
@@ -320,7 +322,7 @@ def test_what_is_not_understood_is_named(sentence, words):
         ("a control box with 400 buttons", "400 buttons"),
     ],
 )
-def test_what_cannot_be_built_is_told(sentence, words):
+def test_what_cannot_be_built_is_reported(sentence, words):
     assert words in said_of(sentence)
 
 

@@ -56,6 +56,25 @@ def test_parts_move_freely_to_both_ends(name, given):
             assert not overlaps(blueprint.moved({joint.child: value})), (joint.child, value)
 
 
+def test_a_follower_has_the_range_that_its_leader_asks_for():
+    """A leader that goes beyond what its follower may do is stopped by it, or stops it, in an engine."""
+    narrow, followers = [], 0
+    for name, family in known_families().items():
+        if name in IN_STEPS and "follow" not in library()[name].written_steps:
+            continue
+        joints = {joint.child: joint for joint in build(family, {}).joints}
+        for follower in joints.values():
+            if follower.mimic is None:
+                continue
+            followers += 1
+            leader, rule = joints[follower.mimic.joint], follower.mimic
+            asked = [rule.multiplier * end + rule.offset for end in (leader.lower, leader.upper)]
+            if min(asked) < follower.lower - 1e-6 or max(asked) > follower.upper + 1e-6:
+                narrow.append(f"{name}: {follower.child} follows {leader.child}")
+    assert followers > 10
+    assert not narrow
+
+
 def test_every_step_is_known_and_every_formula_is_one():
     for name in IN_STEPS:
         checked_steps(library()[name].steps)
@@ -91,13 +110,13 @@ def test_a_sentence_may_say_how_it_looks_and_what_it_has():
         assert said_of(sentence), sentence
 
 
-def test_sizes_of_parts_without_a_number_are_told():
+def test_sizes_of_parts_without_a_number_are_reported():
     made = from_text("a wheelchair with two big wheels and two small casters").made()
     assert made.specification.harmless == ("big wheels", "small casters")
     assert made.blueprint.family == "wheelchair"
 
 
-def test_what_changes_nothing_is_told():
+def test_what_changes_nothing_is_reported():
     request = from_text("a sleek retro-style pocket knife for my grandfather")
     assert request.family == "pocket_knife"
     assert request.made().specification.harmless == ("sleek", "retro-style", "for my grandfather")

@@ -1,4 +1,4 @@
-"""Noisy meshes are told from designs, their normals are averaged, and bearings are still found on them."""
+"""Noisy meshes are distinguished from designs, their normals are averaged, and bearings are still found on them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Crosses, ball joints and fingers are told; arms, doors and drawers are not taken for them."""
+"""Crosses, ball joints and fingers are recognised; arms, doors and drawers are not taken for them."""
 
 from __future__ import annotations
 
@@ -95,11 +95,11 @@ def test_twins_that_slide_towards_each_other_are_fingers() -> None:
 
 
 @pytest.mark.parametrize(
-    ("body", "inner", "told"),
+    ("body", "inner", "expected"),
     [((0.03, 0.0), 0.0, True), ((0.03, 0.0), 0.02, False), ((0.07, 0.0), 0.0, False), ((0.03, 0.1), 0.0, False)],
     ids=["cap", "ring: the neck goes through", "stopper: the neck goes around", "knob: the body lies aside"],
 )
-def test_a_part_that_closes_a_neck_may_come_off(body: tuple[float, float], inner: float, told: bool) -> None:
+def test_a_part_that_closes_a_neck_may_come_off(body: tuple[float, float], inner: float, expected: bool) -> None:
     radius, aside = body
     neck = trimesh.creation.cylinder(radius, 0.2).apply_translation((0, 0, -0.1))
     if aside:
@@ -113,13 +113,13 @@ def test_a_part_that_closes_a_neck_may_come_off(body: tuple[float, float], inner
     )
     turning = replace(joint(0, 1, Z, (0, 0, 0)), evidence={"bearing_gate": 1.0})
     found = compounds(Assembly(parts=parts, source="code"), [turning], (), CONFIG)
-    assert found == ((Compound(kind=CompoundKind.CAP, children=(1,)),) if told else ())
-    if told:
+    assert found == ((Compound(kind=CompoundKind.CAP, children=(1,)),) if expected else ())
+    if expected:
         assert described(found[0], ("bottle", "cap")).startswith("cap closes the end of what it turns on")
 
 
 def test_the_inference_tells_of_fingers_of_a_gripper_and_of_nothing_in_a_cabinet() -> None:
     objects = {"gripper": {"fingers": 2}, "cabinet": {}}
-    told = {name: infer(build(FAMILIES[name], given, seed=1).assembly).warnings for name, given in objects.items()}
-    assert any("mirror each other as fingers do" in sentence for sentence in told["gripper"])
-    assert not any("mirror each other" in s or "together a" in s for s in told["cabinet"])
+    warnings = {name: infer(build(FAMILIES[name], given, seed=1).assembly).warnings for name, given in objects.items()}
+    assert any("mirror each other as fingers do" in sentence for sentence in warnings["gripper"])
+    assert not any("mirror each other" in s or "together a" in s for s in warnings["cabinet"])

@@ -47,7 +47,7 @@ def test_probabilities_sum_to_one_and_follow_the_hypotheses_in_any_order() -> No
     np.testing.assert_allclose(network.log_probabilities(columns[:HYPOTHESES][order]), logs[order])
 
 
-def test_what_is_missing_stands_in_the_middle_and_is_told() -> None:
+def test_what_is_missing_is_in_the_middle_and_has_its_own_input() -> None:
     columns = np.array([[0.0, np.nan], [1.0, 5.0], [2.0, 6.0], [4.0, 8.0]], dtype=np.float32)
     scale = scale_of(columns)
     inputs = scale.inputs(columns)

@@ -85,7 +85,7 @@ def test_pieces_that_are_broken_off_are_fixed_in_the_truth_and_nothing_is_lost()
         seed=0,
         yaw_deg=0.0,
     )
-    parts, told = with_pieces_broken_off([whole], truth, np.random.default_rng(0))
-    assert [joint.kind for joint in told.joints] == [JointType.FIXED]
-    assert told.parents == (-1, 0)
+    parts, broken = with_pieces_broken_off([whole], truth, np.random.default_rng(0))
+    assert [joint.kind for joint in broken.joints] == [JointType.FIXED]
+    assert broken.parents == (-1, 0)
     assert [piece.area for piece in parts] == pytest.approx([door.area, grip.area])

@@ -102,7 +102,7 @@ def test_the_choice_is_the_first_alternative() -> None:
 
 
 @pytest.mark.parametrize("fault", ["missing", "damaged", "format"])
-def test_weights_that_cannot_be_used_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fault: str) -> None:
+def test_weights_that_cannot_be_used_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fault: str) -> None:
     path = tmp_path / scorer_module.WEIGHTS
     if fault == "damaged":
         path.write_bytes(b"PK no archive")

@@ -112,7 +112,7 @@ def test_a_pair_that_is_never_checked_never_meets(arm: tuple[Path, Path]) -> Non
     assert met == 0
 
 
-def test_every_reason_is_told(tmp_path: Path) -> None:
+def test_every_reason_is_reported(tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text(STUCK)
     found, enabled = disabled_pairs(read_robot(tmp_path / "r.urdf"), SETTINGS)
     reasons = {frozenset(pair.links): pair.reason for pair in found}

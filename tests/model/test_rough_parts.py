@@ -112,7 +112,7 @@ def fine() -> trimesh.Trimesh:
     return mesh
 
 
-def test_a_surface_of_too_many_triangles_is_thinned_out_and_told(tmp_path: Path) -> None:
+def test_a_surface_of_too_many_triangles_is_thinned_out_and_reported(tmp_path: Path) -> None:
     path, fitted = carved(tmp_path, fine())
     assert [item.link for item in fitted.links if item.thinned > 0.0] == ["slider"]
     assert reached(path)[1] < -0.95 * LIMIT
@@ -133,7 +133,7 @@ def test_rough_parts_collide_and_slide_in_plain_mujoco(build: Callable[[], trime
     assert value < -0.95 * LIMIT
 
 
-def test_what_has_to_pass_through_another_is_told_and_left(tmp_path: Path) -> None:
+def test_what_has_to_pass_through_another_is_reported_and_left(tmp_path: Path) -> None:
     front = board((0.36, 0.02, 0.26), (0.0, -0.3, 0.15))
     path, fitted = carved(tmp_path, drawer(), front)
     (blocked,) = fitted.blocked

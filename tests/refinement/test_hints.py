@@ -176,11 +176,13 @@ def test_a_pivot_chooses_the_hinge_that_goes_through_it() -> None:
     other_edge = np.where(upright, joint.pivot, bounds.sum(axis=0) - joint.pivot)
     numbers = ",".join(f"{value:.6g}" for value in other_edge)
     axis = ",".join(f"{value:.3g}" for value in joint.axis)
-    told = parse_hints([f"{name}=revolute", f"{name}:axis={axis}", f"{name}:pivot={numbers}"], inference.assembly.names)
-    hinted = with_hints(inference, told)
+    hints = parse_hints(
+        [f"{name}=revolute", f"{name}:axis={axis}", f"{name}:pivot={numbers}"], inference.assembly.names
+    )
+    hinted = with_hints(inference, hints)
     found = joint_of(hinted, name)
     assert np.linalg.norm(np.cross(found.pivot - other_edge, found.axis)) < 0.02 * inference.assembly.diagonal
-    assert hinted.hints == told[0].texts
+    assert hinted.hints == hints[0].texts
     again = with_hints(hinted, parse_hints([f"{name}=fixed"], inference.assembly.names))
     assert again.hints == (f"{name}=fixed",), "the last word counts"
 

@@ -106,7 +106,7 @@ def test_a_joint_that_nothing_speaks_against_but_the_shape_is_measured_and_repla
 
 
 def test_a_warning_by_itself_moves_no_joint_that_nothing_scores_above() -> None:
-    """The drawer is stopped after a hair to both sides, which is an error; told as a warning, it stays as it is."""
+    """The drawer is stopped after a hair to both sides, which is an error; reported as a warning, it stays as it is."""
     level = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0), lead=0.0)
     for settings, moved in ((SETTINGS, True), (with_wrong_depth(10.0), False)):
         refinement = refine(level, seconds=60.0, settings=settings)
@@ -114,10 +114,10 @@ def test_a_warning_by_itself_moves_no_joint_that_nothing_scores_above() -> None:
         assert bool(refinement.history.changed) is moved
 
 
-def test_a_hint_is_kept_against_failures_and_both_are_told() -> None:
+def test_a_hint_is_kept_against_failures_and_both_are_reported() -> None:
     start = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
-    told = with_hints(start, parse_hints(["drawer:axis=x"], start.assembly.names))
-    blocked = with_joint(told, "drawer", lower=-0.2, upper=0.2)
+    hinted = with_hints(start, parse_hints(["drawer:axis=x"], start.assembly.names))
+    blocked = with_joint(hinted, "drawer", lower=-0.2, upper=0.2)
     refinement = refine(blocked, seconds=60.0)
     assert abs(float(joint_above(refinement.inference, "drawer").axis[0])) == pytest.approx(1.0)
     assert any("a hint asked for" in refused for item in refinement.history.rounds for refused in item.refused)
@@ -510,7 +510,7 @@ def test_what_fails_by_geometry_is_mended_before_an_engine_runs() -> None:
     assert history.kept == 1
 
 
-def test_time_that_ends_before_an_engine_runs_is_told() -> None:
+def test_time_that_ends_before_an_engine_runs_is_reported() -> None:
     history = refine(inferred("drawer"), tier="engines", seconds=1e-6).history
     assert history.ended == "the time was used up before engines could be simulated"
     assert [item.tier for item in history.rounds] == ["geometry"]

@@ -69,7 +69,7 @@ def disagreements(path: Path) -> list[str]:
 @pytest.mark.skipif(not MODELS, reason="no benchmark models: set KINEMATIFY_BENCH to their folder")
 def test_an_independent_reader_agrees_on_every_model() -> None:
     found = {path.parent.name: disagreements(path) for path in MODELS}
-    assert {name: told for name, told in found.items() if told} == {}
+    assert {name: reported for name, reported in found.items() if reported} == {}
 
 
 def test_an_independent_reader_agrees_on_the_arm(arm: Path) -> None:

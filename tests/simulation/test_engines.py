@@ -52,13 +52,13 @@ def test_poses_inertia_and_weight_are_those_of_mechanics(tmp_path: Path, name: s
     np.testing.assert_allclose(seen.gravity[:, 1], -weight * np.sin(turn), atol=1e-3)
 
 
-def test_engine_that_is_not_installed_is_told_with_the_way_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_engine_that_is_not_installed_is_reported_with_the_way_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
     absent = EngineEntry(name="absent", title="Absent", package="no-such-engine", extra="absent", family="KV9")
     monkeypatch.setitem(ENGINES, "absent", absent)
     with pytest.raises(EnvironmentFault, match=r'Absent.*no-such-engine.*pip install "kinematify\[absent\]"'):
         require_engine("absent")
 
 
-def test_families_of_ids_are_told_apart() -> None:
+def test_families_of_ids_are_reported_apart() -> None:
     families = [entry.family for entry in ENGINES.values() if entry.prepared]
     assert len(set(families)) == len(families)

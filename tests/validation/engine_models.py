@@ -135,7 +135,7 @@ def cabinet() -> Model:
 
 @dataclass(frozen=True, kw_only=True)
 class FindingGroup:
-    """What a stage told of one model."""
+    """What a stage reported of one model."""
 
     results: dict[str, CheckResult]
     work: Path
@@ -164,11 +164,11 @@ def prepared_request(
 
 def tell(run: Callable[[StageRequest, Recorder], None], request: StageRequest) -> FindingGroup:
     """Run a stage in this process."""
-    told: list[CheckResult | Summary] = []
-    run(request, Recorder(told.append, request.selected))
-    results = [item for item in told if isinstance(item, CheckResult)]
+    reported: list[CheckResult | Summary] = []
+    run(request, Recorder(reported.append, request.selected))
+    results = [item for item in reported if isinstance(item, CheckResult)]
     assert len({item.check for item in results}) == len(results)
-    curves = tuple(item for item in told if isinstance(item, JointCurve))
+    curves = tuple(item for item in reported if isinstance(item, JointCurve))
     return FindingGroup(results={item.check: item for item in results}, work=request.work, curves=curves)
 
 

@@ -54,7 +54,7 @@ def _estimate(index: dict[str, int], joint: KnownJoint) -> JointEstimate:
     )
 
 
-def told(urdf: Path, folder: Path, *, seconds: float = 100.0) -> FindingGroup:
+def reported(urdf: Path, folder: Path, *, seconds: float = 100.0) -> FindingGroup:
     """Run the evidence stage on a URDF."""
     results: FindingGroup = []
     request = StageRequest(
@@ -71,7 +71,7 @@ def told(urdf: Path, folder: Path, *, seconds: float = 100.0) -> FindingGroup:
 
 def judged(known: KnownObject, folder: Path) -> FindingGroup:
     """Write a known object and run the evidence stage on it."""
-    return told(write(known, folder), folder)
+    return reported(write(known, folder), folder)
 
 
 def findings(results: FindingGroup) -> list[Finding]:

@@ -1,4 +1,4 @@
-"""Agreement of engines: quiet where they agree, else told at the joint, link or pair where it begins."""
+"""Agreement of engines: quiet where they agree, else reported at the joint, link or pair where it begins."""
 
 from __future__ import annotations
 
@@ -78,10 +78,10 @@ def request_copy(ran: StageRequest, tmp_path: Path) -> StageRequest:
 def compared(
     request: StageRequest, chosen: Sequence[str] = ENGINES, failures: Mapping[str, str] | None = None
 ) -> dict[str, CheckResult]:
-    told: list[CheckResult] = []
+    reported: list[CheckResult] = []
     request = replace(request, engines=tuple(chosen), failures=failures or {})
-    agreement_stage.run(request, Recorder(told.append, request.selected))  # type: ignore[arg-type]
-    return {result.check: result for result in told}
+    agreement_stage.run(request, Recorder(reported.append, request.selected))  # type: ignore[arg-type]
+    return {result.check: result for result in reported}
 
 
 def poses_of(request: StageRequest, engine: str) -> EnginePoses:
@@ -114,7 +114,7 @@ def test_engines_agree_on_an_arm(ran: StageRequest) -> None:
     assert results["KV603"].measured["mujoco_relative"] < 1e-6
 
 
-def test_moved_subtree_is_told_once_at_the_joint_above_it(request_copy: StageRequest) -> None:
+def test_moved_subtree_is_reported_once_at_the_joint_above_it(request_copy: StageRequest) -> None:
     poses = poses_of(request_copy, "mujoco")
     moved = poses.T_world_link.copy()
     moved[:, below(poses, ["lower", "tool", "tip"]), 2, 3] += 0.01
@@ -150,7 +150,7 @@ def test_all_engines_against_kinematify_are_one_finding(request_copy: StageReque
     assert "All engines" in finding.message
 
 
-def test_lost_link_is_told(request_copy: StageRequest) -> None:
+def test_lost_link_is_reported(request_copy: StageRequest) -> None:
     poses = poses_of(request_copy, "pinocchio")
     lost = poses.T_world_link.copy()
     lost[:, poses.links.index("tip")] = np.nan
@@ -160,7 +160,7 @@ def test_lost_link_is_told(request_copy: StageRequest) -> None:
 
 
 @pytest.mark.parametrize(("check", "field"), [("KV602", "mass_matrix"), ("KV603", "gravity")])
-def test_other_dynamics_are_told_at_the_joint_farthest_from_the_root(
+def test_other_dynamics_are_reported_at_the_joint_farthest_from_the_root(
     request_copy: StageRequest, check: str, field: str
 ) -> None:
     # A heavier link below the joint `lower` shows in all joints above it, but not in those beside and below it.
@@ -188,7 +188,7 @@ def test_other_mass_names_link_and_engine(request_copy: StageRequest) -> None:
     assert finding.limit == pytest.approx(2.0)
 
 
-def test_other_total_mass_is_told(request_copy: StageRequest) -> None:
+def test_other_total_mass_is_reported(request_copy: StageRequest) -> None:
     change(request_copy, "pybullet", total_mass=1.0)
     finding = only(compared(request_copy), "KV605")
     assert (finding.link, finding.engine, finding.value) == (None, "pybullet", 1.0)

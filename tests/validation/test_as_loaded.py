@@ -42,7 +42,7 @@ def request_of(model: Model, folder: Path) -> StageRequest:
     )
 
 
-def told(model: Model, folder: Path, engine: str) -> FindingGroup:
+def reported(model: Model, folder: Path, engine: str) -> FindingGroup:
     return tell(partial(as_loaded.run, engine=engine), request_of(model, folder))
 
 
@@ -76,14 +76,14 @@ def printed(code: str | None, line: int = -1) -> list[float]:
 
 @each_engine
 def test_a_good_cabinet_passes(tmp_path: Path, engine: str) -> None:
-    result = told(cabinet(), tmp_path, engine)
+    result = reported(cabinet(), tmp_path, engine)
     assert {check: r.findings for check, r in result.results.items() if r.status is not Status.PASS} == {}
     assert counts(result) == {"joints": 2.0, "right": 2.0}
 
 
 @pytest.mark.skipif(find_spec("newton") is None, reason="Newton is not installed: pip install 'kinematify[newton]'")
 def test_newton_loads_moves_and_rests_what_others_do(tmp_path: Path) -> None:
-    result = told(jamming(), tmp_path, "newton")
+    result = reported(jamming(), tmp_path, "newton")
     assert counts(result) == {"joints": 2.0, "right": 1.0}
     (finding,) = (item for item in result.results["KV804"].findings if item.severity is Severity.ERROR)
     assert (finding.joint, set(finding.pair or ())) == ("door_joint", {"drawer", "door"})
@@ -93,11 +93,13 @@ def test_newton_loads_moves_and_rests_what_others_do(tmp_path: Path) -> None:
 
 
 def test_pinocchio_reads_joints_limits_and_overlaps(tmp_path: Path) -> None:
-    good = told(cabinet(), tmp_path, "pinocchio").results
+    good = reported(cabinet(), tmp_path, "pinocchio").results
     assert {check: r.status for check, r in good.items()} == {"KV801": Status.PASS, "KV802": Status.PASS}
     assert good["KV801"].measured == {"joints": 2.0, "read": 2.0}
     before_the_door = Box(size=(0.02, 0.1, 0.1), at=(0.21, 0.25, 0.0))
-    (finding,) = told(collision(cabinet(), "drawer", before_the_door), tmp_path, "pinocchio").results["KV802"].findings
+    (finding,) = (
+        reported(collision(cabinet(), "drawer", before_the_door), tmp_path, "pinocchio").results["KV802"].findings
+    )
     assert finding.pair == ("door", "drawer")
     assert finding.value == pytest.approx(0.015, abs=1e-6)
     assert printed(finding.reproduction) == pytest.approx([0.015], abs=1e-6)
@@ -112,7 +114,7 @@ def test_pinocchio_reads_joints_limits_and_overlaps(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("engine", ["mujoco"])  # PyBullet lets no link collide with its parent
 def test_a_drawer_that_jams_is_seen_by_the_code_of_the_report(tmp_path: Path, engine: str) -> None:
-    result = told(collision(cabinet(), "body", WALL), tmp_path, engine)
+    result = reported(collision(cabinet(), "body", WALL), tmp_path, engine)
     (finding,) = (item for item in result.results["KV804"].findings if item.joint == "drawer_joint")
     assert (finding.severity, finding.blame, finding.pair) == (Severity.ERROR, Blame.PHYSICS, ("body", "drawer"))
     assert finding.value == pytest.approx(0.145, abs=0.01)
@@ -134,7 +136,7 @@ def test_the_code_of_a_run_at_rest_repeats_it(tmp_path: Path, engine: str) -> No
 
 @each_engine
 def test_siblings_that_jam_are_named_in_both_engines(tmp_path: Path, engine: str) -> None:
-    result = told(jamming(), tmp_path, engine)
+    result = reported(jamming(), tmp_path, engine)
     (finding,) = (item for item in result.results["KV804"].findings if item.joint == "door_joint")
     assert set(finding.pair or ()) == {"drawer", "door"}
     (reached,) = printed(finding.reproduction)
@@ -144,7 +146,7 @@ def test_siblings_that_jam_are_named_in_both_engines(tmp_path: Path, engine: str
 
 
 def test_what_only_the_flag_for_contacts_shows_is_a_warning_and_plain_pybullet_moves_all(tmp_path: Path) -> None:
-    result = told(jamming(), tmp_path, "pybullet")
+    result = reported(jamming(), tmp_path, "pybullet")
     (finding,) = result.results["KV804"].findings
     assert finding.severity is Severity.WARNING
     assert "PyBullet with URDF_USE_SELF_COLLISION" in finding.message
@@ -158,8 +160,8 @@ def test_what_only_the_flag_for_contacts_shows_is_a_warning_and_plain_pybullet_m
 
 def test_a_pair_that_stops_a_joint_is_in_contact_at_the_value_that_is_named(tmp_path: Path) -> None:
     context = AsLoadedContext(request=request_of(jamming(), tmp_path), engine="pybullet")
-    told_ = tell(partial(as_loaded.run, engine="pybullet"), context.request)
-    (finding,) = told_.results["KV804"].findings
+    group = tell(partial(as_loaded.run, engine="pybullet"), context.request)
+    (finding,) = group.results["KV804"].findings
     assert finding.q is not None
     overlaps = context.loaded.overlaps({**context.values, **finding.q})
     assert finding.pair in [item.links for item in overlaps]
@@ -173,7 +175,7 @@ def test_links_across_a_fixed_joint_do_not_jam_in_pybullet(tmp_path: Path) -> No
         name="thigh", parent="flange", kind="revolute", boxes=(Box(size=(0.1, 0.1, 0.2), at=(0.0, 0.0, 0.1)),),
         axis=(0.0, 0.0, 1.0), limits=(-1.0, 1.0),
     )  # fmt: skip
-    result = told(Model(parts=(body, flange, thigh)), tmp_path, "pybullet")
+    result = reported(Model(parts=(body, flange, thigh)), tmp_path, "pybullet")
     assert [check for check in ("KV802", "KV803", "KV804") if result.results[check].findings] == []
     assert result.results["KV804"].measured == {"joints": 1.0, "right": 1.0, "with_contacts": 1.0}
 
@@ -197,7 +199,7 @@ FOLLOWS = '<mimic joint="door_joint" multiplier="0.2"/>'
 
 @each_engine
 def test_what_follows_a_joint_is_pushed_with_it(tmp_path: Path, engine: str) -> None:
-    result = told(cabinet().with_part("drawer", extra=FOLLOWS), tmp_path, engine)
+    result = reported(cabinet().with_part("drawer", extra=FOLLOWS), tmp_path, engine)
     assert {check: r.findings for check, r in result.results.items() if r.status is not Status.PASS} == {}
     assert counts(result) == {"joints": 1.0, "right": 1.0}
 
@@ -207,7 +209,7 @@ def test_a_joint_jams_where_its_follower_does(tmp_path: Path, engine: str) -> No
     post = Part(name="post", parent="body", boxes=(Box(size=(0.02, 0.2, 0.4), at=(0.85, -0.155, 0.0)),))
     model = Model(parts=(*cabinet().with_part("drawer", extra=FOLLOWS).parts, post))
     unseen = Box(size=(0.02, 0.2, 0.4), at=(0.35, -0.155, 0.0))
-    result = told(collision(model, "post", unseen), tmp_path, engine)
+    result = reported(collision(model, "post", unseen), tmp_path, engine)
     if engine == "pybullet":
         assert result.results["KV804"].findings == (), "a fixed joint makes the post a neighbour of the drawer"
         return
@@ -220,13 +222,13 @@ def test_a_joint_jams_where_its_follower_does(tmp_path: Path, engine: str) -> No
 
 @each_engine
 def test_a_button_of_a_millimetre_is_pushed_too(tmp_path: Path, engine: str) -> None:
-    result = told(cabinet().with_part("drawer", limits=(0.0, 0.001)), tmp_path, engine)
+    result = reported(cabinet().with_part("drawer", limits=(0.0, 0.001)), tmp_path, engine)
     assert counts(result) == {"joints": 2.0, "right": 2.0}
 
 
 def test_a_drawer_that_is_thrown_out_is_seen_by_the_code_of_the_report(tmp_path: Path) -> None:
     behind = Box(size=(0.1, 0.2, 0.2), at=(-0.16, -0.155, 0.0))
-    result = told(collision(cabinet(), "body", behind), tmp_path, "mujoco")
+    result = reported(collision(cabinet(), "body", behind), tmp_path, "mujoco")
     (finding,) = result.results["KV803"].findings
     assert (finding.joint, finding.pair) == ("drawer_joint", ("body", "drawer"))
     least, largest = printed(finding.reproduction)
@@ -238,25 +240,25 @@ def test_a_drawer_that_is_thrown_out_is_seen_by_the_code_of_the_report(tmp_path:
 
 def test_limits_that_mujoco_takes_for_none_do_not_hold(tmp_path: Path) -> None:
     stuck = cabinet().with_part("door", limits=(0.0, 0.0))
-    results = told(stuck, tmp_path, "mujoco").results
+    results = reported(stuck, tmp_path, "mujoco").results
     (misread,) = results["KV801"].findings
     assert misread.joint == "door_joint"
     assert printed(misread.reproduction, line=1) == [-np.inf, np.inf]
     (finding,) = results["KV805"].findings[:1]
     assert (finding.severity, finding.joint, finding.limit) == (Severity.WARNING, "door_joint", 0.0)
     assert abs(printed(finding.reproduction)[0]) > 0.05
-    assert told(stuck, tmp_path, "pybullet").results["KV805"].status is Status.PASS
+    assert reported(stuck, tmp_path, "pybullet").results["KV805"].status is Status.PASS
 
 
 @each_engine
 def test_what_turns_without_end_has_no_limits_to_hold(tmp_path: Path, engine: str) -> None:
-    result = told(cabinet().with_part("door", kind="continuous"), tmp_path, engine)
+    result = reported(cabinet().with_part("door", kind="continuous"), tmp_path, engine)
     assert result.results["KV805"].status is Status.PASS
 
 
 @pytest.mark.parametrize("engine", ENGINES)  # Drake reads negative damping as none
 def test_negative_damping_gains_energy_as_the_code_of_the_report_shows(tmp_path: Path, engine: str) -> None:
-    result = told(cabinet().with_part("drawer", extra='<dynamics damping="-5"/>'), tmp_path, engine)
+    result = reported(cabinet().with_part("drawer", extra='<dynamics damping="-5"/>'), tmp_path, engine)
     (finding,) = result.results["KV806"].findings
     assert finding.severity is Severity.ERROR
     assert printed(finding.reproduction) == pytest.approx([finding.value], rel=0.1)
@@ -271,10 +273,10 @@ def test_heavy_tips_on_light_fingers_blow_up_in_pybullet(tmp_path: Path) -> None
     chain = [replace(finger, name=f"finger{k}", parent=f"finger{k - 1}", at=(0.0, 0.0, 0.05)) for k in (1, 2, 3)]
     palm = Part(name="palm", boxes=(Box(size=(0.1, 0.1, 0.02)),))
     fine = Model(parts=(palm, replace(finger, name="finger0"), *chain))
-    assert told(fine, tmp_path, "pybullet").results["KV806"].status is Status.PASS
+    assert reported(fine, tmp_path, "pybullet").results["KV806"].status is Status.PASS
     tip = Part(name="tip", boxes=(), parent="finger3", at=(0.0, 0.0, 0.1), mass=1.0, inertia=(1.0, 1.0, 1.0))
     heavy = Model(parts=(*fine.parts, tip))
-    (finding,) = told(heavy, tmp_path, "pybullet").results["KV806"].findings
+    (finding,) = reported(heavy, tmp_path, "pybullet").results["KV806"].findings
     assert "gains" in finding.message
 
 
@@ -283,15 +285,15 @@ def test_heavy_tips_on_light_fingers_blow_up_in_pybullet(tmp_path: Path) -> None
 def test_a_model_that_floats_is_opened(tmp_path: Path, engine: str, kind: str) -> None:
     body, *others = cabinet().parts
     floating = Model(parts=(Part(name="world", boxes=()), replace(body, parent="world", kind=kind), *others))
-    results = told(floating, tmp_path, engine).results
+    results = reported(floating, tmp_path, engine).results
     assert not results["KV801"].findings
     assert {status.value for status in (r.status for r in results.values())} <= {"pass", "skipped"}
     if engine == "mujoco":
         assert "float" in (results["KV802"].reason or "")
 
 
-def test_what_an_engine_does_not_open_is_told_with_its_own_words(tmp_path: Path) -> None:
-    result = told(cabinet().with_part("drawer", mass=1e-20), tmp_path, "mujoco")
+def test_what_an_engine_does_not_open_is_reported_with_its_own_words(tmp_path: Path) -> None:
+    result = reported(cabinet().with_part("drawer", mass=1e-20), tmp_path, "mujoco")
     (finding,) = result.results["KV801"].findings
     assert "mass" in finding.message
     assert finding.reproduction is not None
@@ -309,15 +311,15 @@ def test_a_joint_moves_as_far_as_exact_geometry_leaves_free(tmp_path: Path) -> N
     assert result.results["KV804"].status is Status.PASS
 
 
-@pytest.mark.parametrize(("nearer", "told_of"), [(0.0, False), (0.003, False), (0.02, True)])
+@pytest.mark.parametrize(("nearer", "reported_of"), [(0.0, False), (0.003, False), (0.02, True)])
 def test_what_is_visible_ends_the_way_too_and_engines_may_touch_a_little_before(
-    tmp_path: Path, nearer: float, told_of: bool
+    tmp_path: Path, nearer: float, reported_of: bool
 ) -> None:
     (body, *others) = cabinet().parts
     seen, in_the_way = (replace(WALL, at=(0.245 - less, 0.0, 0.0)) for less in (0.0, nearer))
     walled = replace(body, boxes=(*body.boxes, seen), collision=(*body.boxes, in_the_way))
-    found = told(Model(parts=(walled, *others)), tmp_path, "mujoco").results["KV804"].findings
-    assert ("drawer_joint" in {item.joint for item in found}) == told_of
+    found = reported(Model(parts=(walled, *others)), tmp_path, "mujoco").results["KV804"].findings
+    assert ("drawer_joint" in {item.joint for item in found}) == reported_of
 
 
 def test_what_is_fixed_together_may_stand_in_each_other(tmp_path: Path) -> None:
@@ -325,7 +327,7 @@ def test_what_is_fixed_together_may_stand_in_each_other(tmp_path: Path) -> None:
     flange = Part(name="flange", parent="drawer", boxes=())
     tool = Part(name="tool", parent="flange", boxes=(Box(size=(0.1, 0.1, 0.1)),))
     model = Model(parts=(*cabinet().parts, flange, tool))
-    assert told(model, tmp_path, "pybullet").results["KV802"].status is Status.PASS
+    assert reported(model, tmp_path, "pybullet").results["KV802"].status is Status.PASS
 
 
 def test_pybullet_is_pushed_by_no_more_than_it_answers_rightly(tmp_path: Path) -> None:
@@ -336,13 +338,13 @@ def test_pybullet_is_pushed_by_no_more_than_it_answers_rightly(tmp_path: Path) -
     )  # fmt: skip
     tip = replace(finger, name="tip", parent="finger", at=(0.0, 0.0, 0.05), mass=2.0, center=(0.0, 0.0, 0.1))
     palm = Part(name="palm", boxes=(Box(size=(0.1, 0.1, 0.02), at=(0.0, 0.0, -0.1)),))
-    result = told(Model(parts=(palm, finger, tip)), tmp_path, "pybullet").results["KV804"]
+    result = reported(Model(parts=(palm, finger, tip)), tmp_path, "pybullet").results["KV804"]
     assert (result.measured["right"], result.findings) == (2.0, ())
 
 
 def test_friction_does_not_press_a_limit_open(tmp_path: Path) -> None:
     stiff = cabinet().with_part("door", extra='<dynamics friction="300"/>')
-    assert told(stiff, tmp_path, "mujoco").results["KV805"].status is Status.PASS
+    assert reported(stiff, tmp_path, "mujoco").results["KV805"].status is Status.PASS
 
 
 def jam(engine: str) -> CheckResult:
@@ -403,9 +405,9 @@ def stop(**about: object) -> CheckResult:
 
 def test_contacts_that_only_the_prepared_copy_shows_are_notes() -> None:
     fine = replace(jam("mujoco"), status=Status.PASS, findings=())
-    (told,) = confirm_on_raw_model([stop(), fine])[0].findings
-    assert (told.severity, confirm_on_raw_model([stop(), fine])[0].status) == (Severity.NOTE, Status.PASS)
-    assert told.message.endswith("no engine that loads the file itself.")
+    (note,) = confirm_on_raw_model([stop(), fine])[0].findings
+    assert (note.severity, confirm_on_raw_model([stop(), fine])[0].status) == (Severity.NOTE, Status.PASS)
+    assert note.message.endswith("no engine that loads the file itself.")
     pressed = replace(jam("pybullet").findings[0], check="KV805", joint="hinge")
     other = CheckResult(check="KV805", engine="pybullet", status=Status.FAIL, findings=(pressed,))
     assert confirm_on_raw_model([stop(), fine, other])[0].status is Status.PASS
@@ -470,5 +472,5 @@ def test_light_parts_that_pybullet_answers_wrongly_move_by_their_motor(tmp_path:
         rotor, name="arm", parent="rotor", at=(0.0, 0.0, 0.1), axis=(0.0, 1.0, 0.0), inertia=(1e-7, 1e-7, 1e-7)
     )
     base = Part(name="base", boxes=(Box(size=(0.1, 0.1, 0.1)),))
-    measured = told(Model(parts=(base, rotor, arm)), tmp_path, "pybullet").results["KV804"].measured
+    measured = reported(Model(parts=(base, rotor, arm)), tmp_path, "pybullet").results["KV804"].measured
     assert measured["right"] == measured["joints"] == 2.0

@@ -55,7 +55,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_what_is_odd_is_told_in_one_sentence_at_its_line(case: str, tmp_path: Path) -> None:
+def test_what_is_odd_is_reported_in_one_sentence_at_its_line(case: str, tmp_path: Path) -> None:
     text, check, words = CASES[case]
     (tmp_path / "points.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n")
     path = tmp_path / "model.urdf"

@@ -61,7 +61,7 @@ def test_every_check_has_all_its_texts() -> None:
         assert all((entry.title, entry.fails, entry.verifies, entry.matters, entry.remedy)), name
 
 
-def test_every_check_but_those_of_the_text_is_told_by_one_stage() -> None:
+def test_every_check_but_those_of_the_text_is_reported_by_one_stage() -> None:
     stages = [
         asset_stage(),
         *later_stages(ENGINES),
@@ -69,9 +69,9 @@ def test_every_check_but_those_of_the_text_is_told_by_one_stage() -> None:
         agreement_stage(),
         task_stage(),
     ]
-    told = [key for stage in stages for key in stage.checks]
+    reported = [key for stage in stages for key in stage.checks]
     text = keys(checks_of("KV10", "KV11", "KV12", "KV13", "KV14"))
-    assert sorted(map(str, (*told, *text))) == sorted(map(str, keys(CHECKS.values())))
+    assert sorted(map(str, (*reported, *text))) == sorted(map(str, keys(CHECKS.values())))
 
 
 @pytest.mark.usefixtures("registry")
@@ -107,15 +107,15 @@ def test_a_check_of_engines_is_registered_for_each_with_what_is_peculiar_to_it()
 
 
 def test_what_a_check_needs_is_the_reason_why_it_is_skipped() -> None:
-    told = []  # type: ignore[var-annotated]
-    recorder = Recorder(told.append, frozenset(("KV331",)))
+    reported = []  # type: ignore[var-annotated]
+    recorder = Recorder(reported.append, frozenset(("KV331",)))
 
     class Late:
         random = None
 
     recorder.run(CHECKS["KV331"], Late())
     recorder.run(CHECKS["KV332"], Late())  # it was not asked for, and would fail
-    (result,) = told
+    (result,) = reported
     assert (result.status, result.reason) == (Status.SKIPPED, "not finished: time ran out before it")
 
 
@@ -133,15 +133,15 @@ def test_what_workers_have_imported_beforehand_is_there() -> None:
 
 
 @pytest.mark.parametrize(
-    ("message", "told"),
+    ("message", "reported"),
     [
         ("Driven from 0 to 12 rad, joint 12 stops at 12 mm.", "Driven from 0 to 12 rad, joint '12' stops at 12 mm."),
         ("12 is declared to go to 12.5 rad.", "'12' is declared to go to 12.5 rad."),
         ("Moving 12 alone, base and 3 meet in 12 of 120.", "Moving '12' alone, base and '3' meet in 12 of 120."),
     ],
 )
-def test_names_that_are_numbers_stand_in_quotes(message: str, told: str) -> None:
+def test_names_that_are_numbers_stand_in_quotes(message: str, reported: str) -> None:
     result = OpenCheck(id="KV312", engine=None)
     result.find(message, "Mend it.", joint="12", pair=("base", "3"))
-    assert result.findings[0].message == told
+    assert result.findings[0].message == reported
     assert result.findings[0].joint == "12"

@@ -21,7 +21,7 @@ IDS = {check.id for check in checks_of("KV9")}
 run = partial(engine_stage.run, engine="drake")
 
 
-def told(model: Model, folder: Path) -> FindingGroup:
+def reported(model: Model, folder: Path) -> FindingGroup:
     return tell(run, prepared_request(model, folder))
 
 
@@ -41,7 +41,7 @@ def pendulum(**changes: object) -> Model:
 
 
 def test_good_cabinet_passes_every_check(tmp_path: Path) -> None:
-    result = told(cabinet(), tmp_path)
+    result = reported(cabinet(), tmp_path)
     assert set(result.results) == IDS
     skipped = {check: r.reason for check, r in result.results.items() if r.status is not Status.PASS}
     assert skipped == {"KV913": "no loop joint closes a chain"}
@@ -64,7 +64,7 @@ def test_leaves_poses_inertias_and_torques_that_agree_with_the_kinematics(tmp_pa
 
 
 def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> None:
-    result = told(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
+    result = reported(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
     (finding,) = result.results["KV905"].findings
     assert (finding.severity, finding.blame) == (Severity.ERROR, Blame.KINEMATICS)
     assert (finding.joint, finding.pair) == ("drawer_joint", ("body", "drawer"))
@@ -73,13 +73,13 @@ def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> N
 
 def test_pair_that_touches_at_rest_stops_a_joint_although_it_does_not_act(tmp_path: Path) -> None:
     model = cabinet().with_part("drawer", boxes=(Box(size=(0.402, 0.27, 0.38)),), axis=(-1.0, 0.0, 0.0))
-    result = told(model, tmp_path)
+    result = reported(model, tmp_path)
     assert result.results["KV903"].measured["switched_off_pairs"] == 1.0
     assert {(f.joint, f.pair) for f in result.results["KV905"].findings} == {("drawer_joint", ("body", "drawer"))}
 
 
 def test_weak_joint_does_not_hold_and_falls_to_its_limit(tmp_path: Path) -> None:
-    result = told(pendulum(effort=0.5), tmp_path)
+    result = reported(pendulum(effort=0.5), tmp_path)
     (finding,) = result.results["KV904"].findings
     assert (finding.joint, finding.limit) == ("rod_joint", 0.5)
     assert finding.value == pytest.approx(2.0 * 9.81 * 0.2, rel=1e-3)
@@ -91,14 +91,14 @@ def test_follower_goes_along(tmp_path: Path) -> None:
     mimic = '<mimic joint="drawer_joint" multiplier="-1" offset="0"/>'
     other = replace(cabinet().parts[1], name="other", at=(1.0, 0.155, 0.0), limits=(-0.3, 0.0), extra=mimic)
     parts = tuple(part for part in cabinet().parts if part.name != "door")
-    result = told(Model(parts=(*parts, other)), tmp_path)
+    result = reported(Model(parts=(*parts, other)), tmp_path)
     assert result.results["KV905"].measured == {"drives": 2.0, "arrived": 2.0}
 
 
 def test_link_called_world_is_a_link(tmp_path: Path) -> None:
     body, *others = cabinet().parts
     renamed = Model(parts=(Part(name="world", boxes=()), replace(body, parent="world", at=(0.0, 0.0, 1.0)), *others))
-    results = told(renamed, tmp_path).results
+    results = reported(renamed, tmp_path).results
     assert {check for check, r in results.items() if r.status is not Status.PASS} == {"KV913"}
 
 

@@ -1,4 +1,4 @@
-"""Each fault of a joint is told from the geometry alone, and a good joint is left in peace."""
+"""Each fault of a joint is reported from the geometry alone, and a good joint is left in peace."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ from tests.validation.planted import (
     flipped,
     joint_of,
     judged,
+    reported,
     shifted,
     swapped,
-    told,
     turned,
     with_joint,
     write,
@@ -58,9 +58,9 @@ def found(known: KnownObject, folder: Path) -> set[str]:
 def test_good_joints_have_no_finding(build: Build, tmp_path: Path) -> None:
     results = judged(build(), tmp_path)
     assert [finding.message for finding in findings(results)] == []
-    told = [result for result in results if isinstance(result, CheckResult)]
-    assert {result.check for result in told} == {check.id for check in checks_of("KV34", "KV350")}
-    assert all(result.status is Status.PASS for result in told)
+    reported = [result for result in results if isinstance(result, CheckResult)]
+    assert {result.check for result in reported} == {check.id for check in checks_of("KV34", "KV350")}
+    assert all(result.status is Status.PASS for result in reported)
 
 
 @pytest.mark.parametrize(
@@ -120,7 +120,7 @@ def test_an_axis_turned_by_90_deg_has_a_better_alternative(
         (lever, "lever", (0, 0, 1)),
     ],
 )
-def test_a_pivot_moved_by_a_fifth_of_the_part_is_told(
+def test_a_pivot_moved_by_a_fifth_of_the_part_is_reported(
     build: Build, child: str, way: tuple[float, float, float], tmp_path: Path
 ) -> None:
     checks = found(shifted(build(), child, way), tmp_path)
@@ -167,12 +167,12 @@ def test_a_pivot_moved_along_the_axis_is_the_same_joint(tmp_path: Path) -> None:
         (sliding_lid, "lid", (0.0, 1.5)),
     ],
 )
-def test_a_swapped_type_is_told(build: Build, child: str, limits: tuple[float, float], tmp_path: Path) -> None:
+def test_a_swapped_type_is_reported(build: Build, child: str, limits: tuple[float, float], tmp_path: Path) -> None:
     assert found(swapped(build(), child, limits), tmp_path) & {"KV343", "KV344", "KV345"}
 
 
 @pytest.mark.parametrize(("build", "child"), [(drawer, "drawer"), (edge_door, "door"), (sliding_lid, "lid")])
-def test_what_opens_inwards_is_told(build: Build, child: str, tmp_path: Path) -> None:
+def test_what_opens_inwards_is_reported(build: Build, child: str, tmp_path: Path) -> None:
     (finding,) = findings(judged(flipped(build(), child), tmp_path))
     assert (finding.check, finding.joint) == ("KV346", f"{child}_joint")
 
@@ -191,29 +191,31 @@ def doorbell() -> KnownObject:
     )
 
 
-def test_a_button_that_comes_out_is_told(tmp_path: Path) -> None:
+def test_a_button_that_comes_out_is_reported(tmp_path: Path) -> None:
     assert found(doorbell(), tmp_path / "good") == set()
     assert found(flipped(doorbell(), "cap"), tmp_path / "bad") == {"KV346"}
 
 
-def test_a_drawer_that_leaves_its_carcass_is_told(tmp_path: Path) -> None:
+def test_a_drawer_that_leaves_its_carcass_is_reported(tmp_path: Path) -> None:
     good = drawer()
     assert found(with_joint(good, "drawer", upper=2.0 * joint_of(good, "drawer").upper), tmp_path) == {"KV347"}
 
 
 @pytest.mark.parametrize(("build", "child"), [(edge_door, "door"), (doorbell, "cap")])
-def test_a_range_that_is_unusual_for_the_part_is_told(build: Build, child: str, tmp_path: Path) -> None:
+def test_a_range_that_is_unusual_for_the_part_is_reported(build: Build, child: str, tmp_path: Path) -> None:
     good = build()
     assert found(with_joint(good, child, upper=2.0 * joint_of(good, child).upper), tmp_path) == {"KV348"}
 
 
-@pytest.mark.parametrize(("limits", "told_of"), [((0.0, 6.28), True), ((-6.28, 6.28), False), ((0.0, 6.0), False)])
-def test_a_limited_whole_turn_to_one_side_is_told(limits: tuple[float, float], told_of: bool, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("limits", "reported_of"), [((0.0, 6.28), True), ((-6.28, 6.28), False), ((0.0, 6.0), False)])
+def test_a_limited_whole_turn_to_one_side_is_reported(
+    limits: tuple[float, float], reported_of: bool, tmp_path: Path
+) -> None:
     wide = with_joint(knob(), "knob", kind=JointType.REVOLUTE, lower=limits[0], upper=limits[1])
-    assert (found(wide, tmp_path) == {"KV348"}) is told_of
+    assert (found(wide, tmp_path) == {"KV348"}) is reported_of
 
 
-def test_a_closed_door_that_turns_into_an_open_body_is_told(tmp_path: Path) -> None:
+def test_a_closed_door_that_turns_into_an_open_body_is_reported(tmp_path: Path) -> None:
     """A body of posts and boards that a small door passes without touching anything."""
     posts = [box((x, y, 0), (x + 0.03, y + 0.03, 1)) for x in (0.0, 0.57) for y in (0.0, 0.5)]
     body = union(*posts, box((0, 0, -0.03), (0.6, 0.53, 0)), box((0, 0, 1), (0.6, 0.53, 1.03)))
@@ -261,10 +263,10 @@ def test_a_linkage_that_mimic_joints_keep_closed_is_fine(tmp_path: Path) -> None
         (joint,) = tree.xpath(f"//joint[@name='{name}']")
         etree.SubElement(joint, "mimic", joint="crank_joint", multiplier=factor)
     tree.write(urdf)
-    assert "KV350" not in {item.check for item in findings(told(urdf, tmp_path))}
+    assert "KV350" not in {item.check for item in findings(reported(urdf, tmp_path))}
 
 
-def test_a_wrong_parent_is_told_and_nothing_else(tmp_path: Path) -> None:
+def test_a_wrong_parent_is_reported_and_nothing_else(tmp_path: Path) -> None:
     (finding,) = findings(judged(with_joint(nested_drawer(), "tray", parent="carcass"), tmp_path))
     assert (finding.check, finding.joint) == ("KV341", "tray_joint")
     assert "drawer" in finding.message
@@ -293,12 +295,12 @@ def test_one_body_has_nothing_to_judge(tmp_path: Path) -> None:
         '<robot name="one"><link name="a"><visual><geometry><box size="1 1 1"/></geometry></visual></link>'
         '<link name="b"/><joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint></robot>'
     )
-    results = [result for result in told(urdf, tmp_path) if isinstance(result, CheckResult)]
+    results = [result for result in reported(urdf, tmp_path) if isinstance(result, CheckResult)]
     assert {result.status for result in results} == {Status.SKIPPED}
 
 
 def test_late_stages_say_what_they_left_out(tmp_path: Path) -> None:
-    results = told(write(nested_drawer(), tmp_path), tmp_path, seconds=0.0)
+    results = reported(write(nested_drawer(), tmp_path), tmp_path, seconds=0.0)
     checks = [result for result in results if isinstance(result, CheckResult)]
     assert all(check.status is Status.SKIPPED and "of the joints" in (check.reason or "") for check in checks)
 

@@ -58,10 +58,10 @@ def declared(model: Model) -> dict[str, Joint]:
 
 def fed_back(model: Model, folder: Path, *more: Finding, tried: int = 0) -> Feedback:
     """What the checks by geometry say of a model, and some findings of engines, as feedback."""
-    told: list[CheckResult | JointSummary] = []
-    run(request_for(model, folder), Recorder(told.append, SELECTED))
-    findings = [finding for item in told if isinstance(item, CheckResult) for finding in item.findings]
-    summaries = [item for item in told if isinstance(item, JointSummary)]
+    reported: list[CheckResult | JointSummary] = []
+    run(request_for(model, folder), Recorder(reported.append, SELECTED))
+    findings = [finding for item in reported if isinstance(item, CheckResult) for finding in item.findings]
+    summaries = [item for item in reported if isinstance(item, JointSummary)]
     places = {"drawer_joint": float(tried)}
     return feedback_from([*findings, *more], summaries, declared(model), CONFIG, placements=places, rates=RATES)
 

@@ -164,8 +164,8 @@ def test_sarif_fingerprints_survive_other_numbers() -> None:
 def test_sarif_says_what_did_not_run(sarif: dict[str, Any]) -> None:
     invocation = sarif["runs"][0]["invocations"][0]
     known = {item["id"] for item in sarif["runs"][0]["tool"]["driver"]["notifications"]}
-    told = invocation["toolExecutionNotifications"]
-    assert {item["descriptor"]["id"] for item in told} == known == {"skipped", "blocked", "unusable-input"}
+    reported = invocation["toolExecutionNotifications"]
+    assert {item["descriptor"]["id"] for item in reported} == known == {"skipped", "blocked", "unusable-input"}
     assert invocation["executionSuccessful"] is False
     assert json.loads(as_sarif([full_report()]))["runs"][0]["invocations"][0]["executionSuccessful"] is True
 

@@ -87,6 +87,6 @@ def test_swollen_collision_shapes_of_neighbours_that_engines_let_pass_are_a_note
     thigh = Part(name="thigh", parent="beam", at=(0.0, 0.0, -0.2), limits=(-0.1, 0.1), boxes=(above,), **turning)
     shank = Part(name="shank", parent="thigh", at=(0.0, 0.0, -0.3), limits=(-1.2, 1.2), boxes=(below,), **turning)
     results = tell(run, request_for(beam(thigh, shank), tmp_path)).results
-    told = [item for check in ("KV310", "KV312") for item in results[check].findings if item.joint == "shank_joint"]
-    assert told
-    assert {item.severity for item in told} == {Severity.NOTE}
+    reported = [item for check in ("KV310", "KV312") for item in results[check].findings if item.joint == "shank_joint"]
+    assert reported
+    assert {item.severity for item in reported} == {Severity.NOTE}

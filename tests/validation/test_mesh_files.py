@@ -59,7 +59,7 @@ def check_model(path: Path) -> tuple[Robot | None, dict[str, CheckResult]]:
         deadline=time.process_time() + 60.0,
     )
     model = check_mesh_files(request, Recorder(results.append, request.selected))
-    assert sorted(result.check for result in results) == MESH_CHECKS, "every check is told once"
+    assert sorted(result.check for result in results) == MESH_CHECKS, "every check is reported once"
     return model, {result.check: result for result in results}
 
 
@@ -108,7 +108,7 @@ def test_a_damaged_mesh_blocks_and_is_named_with_its_link(damage, cupboard: Path
     assert "door.stl" in found.message
 
 
-def test_every_damaged_mesh_is_told_at_once(cupboard: Path) -> None:
+def test_every_damaged_mesh_is_reported_at_once(cupboard: Path) -> None:
     truncated(cupboard.parent)
     (cupboard.parent / "body.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
     model, results = check_model(cupboard)
@@ -185,15 +185,15 @@ def test_one_mesh_in_another_unit_names_its_link(factor: float, cupboard: Path) 
     assert [(f.link, f.blame, f.severity) for f in slips] == [("door", Blame.ASSET, Severity.ERROR)]
 
 
-@pytest.mark.parametrize(("button", "told"), [(0.03, []), (0.006, ["door"])])
-def test_a_button_of_a_lorry_is_in_the_same_unit(button: float, told: list[str], cupboard: Path) -> None:
+@pytest.mark.parametrize(("button", "reported"), [(0.03, []), (0.006, ["door"])])
+def test_a_button_of_a_lorry_is_in_the_same_unit(button: float, reported: list[str], cupboard: Path) -> None:
     trimesh.creation.box((6.0, 2.0, 2.0)).export(cupboard.parent / "body.obj")
     trimesh.creation.box((button, button, button)).export(cupboard.parent / "door.stl")
     bed = '<link name="bed"><visual><geometry><mesh filename="body.obj"/></geometry></visual></link>'
     joint = '<joint name="bolted" type="fixed"><parent link="body"/><child link="bed"/></joint>'
     change(cupboard, "</robot>", f"{bed}{joint}</robot>")
     _, results = check_model(cupboard)
-    assert [f.link for f in bad(results) if f.check == "KV157" and f.joint is None] == told
+    assert [f.link for f in bad(results) if f.check == "KV157" and f.joint is None] == reported
 
 
 def test_an_origin_in_millimetres_names_its_joint(cupboard: Path) -> None:

@@ -40,7 +40,7 @@ run = partial(engine_stage.run, engine="mujoco")
 PANDA = BENCH / "robots/panda/model.urdf"
 
 
-def told(model: Model, folder: Path, **settings: float) -> FindingGroup:
+def reported(model: Model, folder: Path, **settings: float) -> FindingGroup:
     return tell(run, prepared_request(model, folder, engine_settings(**settings)))
 
 
@@ -65,7 +65,7 @@ def pendulum(**changes: object) -> Model:
 
 
 def test_good_cabinet_passes_every_check(tmp_path: Path) -> None:
-    result = told(cabinet(), tmp_path)
+    result = reported(cabinet(), tmp_path)
     assert set(result.results) == IDS
     skipped = {check: r.reason for check, r in result.results.items() if r.status is not Status.PASS}
     assert skipped == {"KV413": "no loop joint closes a chain"}
@@ -91,7 +91,7 @@ def test_leaves_poses_that_agree_with_the_kinematics(tmp_path: Path) -> None:
 
 
 def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> None:
-    result = told(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
+    result = reported(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
     finding = only(result, "KV405")
     assert (finding.severity, finding.blame) == (Severity.ERROR, Blame.KINEMATICS)
     assert (finding.joint, finding.pair) == ("drawer_joint", ("body", "drawer"))
@@ -114,7 +114,7 @@ def test_stop_names_the_link_that_is_met_on_this_way(tmp_path: Path) -> None:
     sled = Part(name="sled", parent="base", kind="prismatic", boxes=cube, at=(0.0, 0.0, 0.1), limits=(0.0, 0.3))
     box = Part(name="box", parent="sled", kind="prismatic", boxes=cube, at=(0.0, 0.0, 0.1), limits=(0.0, 0.3),
                axis=(0.0, 1.0, 0.0))  # fmt: skip
-    findings = told(Model(parts=(base, *walls, sled, box)), tmp_path).results["KV405"].findings
+    findings = reported(Model(parts=(base, *walls, sled, box)), tmp_path).results["KV405"].findings
     assert {f.joint: f.pair for f in findings} == {"sled_joint": ("front", "box"), "box_joint": ("side", "box")}
 
 
@@ -128,7 +128,7 @@ def test_stop_at_a_part_that_can_move_itself_is_a_note(tmp_path: Path) -> None:
         axis=(0.0, 0.0, 1.0),
         limits=(0.0, 0.5),
     )
-    result = told(Model(parts=(*cabinet().parts, post)), tmp_path)
+    result = reported(Model(parts=(*cabinet().parts, post)), tmp_path)
     (finding,) = result.results["KV405"].findings
     assert (finding.severity, finding.blame) == (Severity.NOTE, Blame.KINEMATICS)
     assert (finding.joint, finding.pair) == ("drawer_joint", ("drawer", "post"))
@@ -138,14 +138,14 @@ def test_stop_at_a_neighbour_whose_contacts_engines_leave_out_is_a_note(tmp_path
     arm = Part(name="arm", parent="body", kind="prismatic", boxes=cabinet().parts[0].boxes, at=(2.0, 0.0, 0.0))
     parts = tuple(replace(part, parent="arm") if part.parent == "body" else part for part in cabinet().parts)
     model = Model(parts=(parts[0], arm, *parts[1:])).with_part("drawer", axis=(-1.0, 0.0, 0.0))
-    (finding,) = told(model, tmp_path).results["KV405"].findings
+    (finding,) = reported(model, tmp_path).results["KV405"].findings
     assert (finding.severity, finding.blame) == (Severity.NOTE, Blame.KINEMATICS)
     assert (finding.joint, finding.pair) == ("drawer_joint", ("arm", "drawer"))
 
 
 def test_overlap_at_rest_of_parts_that_no_joint_connects(tmp_path: Path) -> None:
     door = {"at": (0.19, 0.32, 0.0), "boxes": (Box(size=(0.02, 0.4, 0.3), at=(0.0, -0.2, 0.0)),)}
-    result = told(cabinet().with_part("door", **door), tmp_path)
+    result = reported(cabinet().with_part("door", **door), tmp_path)
     finding = only(result, "KV403")
     assert finding.pair == ("drawer", "door")
     assert finding.value == pytest.approx(0.015, abs=1e-4)
@@ -162,7 +162,7 @@ def test_convex_hull_of_a_hollow_body_stops_no_drawer(tmp_path: Path) -> None:
 
 
 def test_weak_motor_sags(tmp_path: Path) -> None:
-    result = told(pendulum(effort=3.0), tmp_path)
+    result = reported(pendulum(effort=3.0), tmp_path)
     finding = only(result, "KV404")
     assert (finding.severity, finding.joint, finding.unit) == (Severity.WARNING, "rod_joint", "N m")
     assert finding.value == pytest.approx(2.0 * 9.81 * 0.2)
@@ -172,12 +172,12 @@ def test_weak_motor_sags(tmp_path: Path) -> None:
 
 
 def test_strong_motor_holds(tmp_path: Path) -> None:
-    assert told(pendulum(effort=5.0), tmp_path).results["KV404"].status is Status.PASS
+    assert reported(pendulum(effort=5.0), tmp_path).results["KV404"].status is Status.PASS
 
 
 def test_stiff_joint_is_driven_against_its_friction(tmp_path: Path) -> None:
     light = {"mass": 0.01, "inertia": (2e-6, 1.4e-4, 1.4e-4), "extra": '<dynamics damping="2.0" friction="4.0"/>'}
-    result = told(pendulum(**light), tmp_path)
+    result = reported(pendulum(**light), tmp_path)
     assert result.results["KV405"].status is Status.PASS
     assert result.results["KV405"].measured["arrived"] == 2
 
@@ -228,7 +228,7 @@ def test_inertia_at_the_edge_of_what_can_be_is_balanced(tmp_path: Path) -> None:
 def test_link_called_world_is_a_link(tmp_path: Path) -> None:
     body, *others = cabinet().parts
     renamed = Model(parts=(Part(name="world", boxes=()), replace(body, parent="world", at=(0.0, 0.0, 1.0)), *others))
-    result = told(renamed, tmp_path)
+    result = reported(renamed, tmp_path)
     assert {check for check, r in result.results.items() if r.status is not Status.PASS} == {"KV413"}
 
 
@@ -247,7 +247,7 @@ def test_follower_goes_along(tmp_path: Path) -> None:
     other = replace(finger, name="right", at=(-0.02, 0.0, 0.1), axis=(-1.0, 0.0, 0.0), extra=mimic)
     palm = Part(name="palm", boxes=(Box(size=(0.2, 0.05, 0.05)),))
     model = Model(parts=(palm, finger, other))
-    result = told(model, tmp_path)
+    result = reported(model, tmp_path)
     assert result.results["KV405"].measured == {"drives": 2.0, "arrived": 2.0}
     assert result.results["KV402"].status is Status.PASS
 
@@ -255,27 +255,27 @@ def test_follower_goes_along(tmp_path: Path) -> None:
 def test_follower_with_less_room_than_its_leader_stops_it_without_contact(tmp_path: Path) -> None:
     mimic = '<mimic joint="rod_joint" multiplier="1" offset="0"/>'
     follower = replace(pendulum().parts[1], name="short", at=(0.06, 0.3, 0.1), limits=(-1.0, 0.3), extra=mimic)
-    result = told(Model(parts=(*pendulum().parts, follower)), tmp_path)
+    result = reported(Model(parts=(*pendulum().parts, follower)), tmp_path)
     finding = only(result, "KV405")
     assert (finding.joint, finding.pair, finding.blame) == ("rod_joint", None, Blame.PHYSICS)
 
 
-def test_soft_stop_is_told(tmp_path: Path) -> None:
-    result = told(cabinet(), tmp_path, push=20.0, escape=0.002, servo_margin=300.0)
+def test_soft_stop_is_reported(tmp_path: Path) -> None:
+    result = reported(cabinet(), tmp_path, push=20.0, escape=0.002, servo_margin=300.0)
     assert {f.joint for f in result.results["KV409"].findings} >= {"drawer_joint"}
 
 
-def test_coarse_steps_are_told(tmp_path: Path) -> None:
-    result = told(pendulum(kind="continuous"), tmp_path, time_step=0.05, step_difference=0.01)
+def test_coarse_steps_are_reported(tmp_path: Path) -> None:
+    result = reported(pendulum(kind="continuous"), tmp_path, time_step=0.05, step_difference=0.01)
     assert [(f.severity, f.joint) for f in result.results["KV412"].findings] == [(Severity.NOTE, "rod_joint")]
 
 
 def test_growth_of_energy_is_a_finding() -> None:
-    steps, told_as = np.linspace(0.0, 1.0, 50), {"floor": 0.01, "share": 0.1, "how": "Released"}
+    steps, reported_as = np.linspace(0.0, 1.0, 50), {"floor": 0.01, "share": 0.1, "how": "Released"}
     check = OpenCheck(id="KV408", engine="mujoco")
-    find_growth(check, np.stack([10.0 - 5.0 * steps, 5.0 * steps], axis=1), **told_as)
+    find_growth(check, np.stack([10.0 - 5.0 * steps, 5.0 * steps], axis=1), **reported_as)
     assert check.findings == []
-    find_growth(check, np.stack([10.0 - 5.0 * steps, 6.0 * steps], axis=1), **told_as)
+    find_growth(check, np.stack([10.0 - 5.0 * steps, 6.0 * steps], axis=1), **reported_as)
     assert [f.value for f in check.findings] == [pytest.approx(1.0)]
 
 
@@ -296,7 +296,7 @@ def test_flying_link_is_a_warning() -> None:
 
 
 def test_drop_that_does_not_end(tmp_path: Path) -> None:
-    finding = told(cabinet(), tmp_path, drop_seconds=0.11).results["KV411"].findings[0]
+    finding = reported(cabinet(), tmp_path, drop_seconds=0.11).results["KV411"].findings[0]
     assert (finding.severity, finding.unit) == (Severity.NOTE, "m/s")
     check = OpenCheck(id="KV411", engine="mujoco")
     find_drop(check, depth=0.02, speed=0.0, size=0.5, settings=load_settings().engines)
@@ -306,13 +306,13 @@ def test_drop_that_does_not_end(tmp_path: Path) -> None:
 
 
 def test_nobody_sees_a_limit_that_gives_way_by_a_tenth_of_a_millimetre(tmp_path: Path) -> None:
-    results = told(cabinet().with_part("drawer", limits=(0.0, 0.002)), tmp_path).results
+    results = reported(cabinet().with_part("drawer", limits=(0.0, 0.002)), tmp_path).results
     found = [item for check in ("KV404", "KV409") for item in results[check].findings if item.joint == "drawer_joint"]
     assert found == []
 
 
 def test_model_without_joints_is_skipped_with_a_reason(tmp_path: Path) -> None:
-    result = told(Model(parts=cabinet().parts[:1]), tmp_path)
+    result = reported(Model(parts=cabinet().parts[:1]), tmp_path)
     skipped = {check for check, r in result.results.items() if r.status is Status.SKIPPED}
     assert skipped == {"KV404", "KV405", "KV406", "KV408", "KV409", "KV412", "KV413"}
     assert {r.reason for r in result.results.values() if r.status is Status.SKIPPED} == {"no joint moves"}
@@ -355,13 +355,13 @@ def test_panda_has_no_error_and_is_quick(tmp_path: Path) -> None:
 
 
 def test_empty_range_is_no_way_to_drive(tmp_path: Path) -> None:
-    result = told(cabinet().with_part("door", limits=(0.0, 0.0)), tmp_path)
+    result = reported(cabinet().with_part("door", limits=(0.0, 0.0)), tmp_path)
     assert [(f.severity, f.joint) for f in result.results["KV401"].findings] == [(Severity.WARNING, "door_joint")]
     assert result.results["KV405"].measured["drives"] == 2
     assert not {r.status for r in result.results.values()} & {Status.BLOCKED}
 
 
-def test_only_what_was_asked_for_is_told(tmp_path: Path) -> None:
+def test_only_what_was_asked_for_is_reported(tmp_path: Path) -> None:
     request = replace(prepared_request(cabinet(), tmp_path), selected=frozenset({"KV402", "KV411"}))
     result = tell(run, request)
     assert set(result.results) == {"KV402", "KV411"}

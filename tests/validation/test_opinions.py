@@ -24,21 +24,26 @@ def test_opinions_about_a_joint_are_one_note() -> None:
 
 def test_an_error_of_fact_about_the_same_joint_lets_them_count() -> None:
     fact = failed("KV312", "hinge", Severity.ERROR)
-    told = evidence_before_blame([fact, failed("KV344", "hinge"), failed("KV344", "slide")])
-    assert told[0] == fact
-    assert [finding.severity for result in told[1:] for finding in result.findings] == [Severity.WARNING, Severity.NOTE]
+    reported = evidence_before_blame([fact, failed("KV344", "hinge"), failed("KV344", "slide")])
+    assert reported[0] == fact
+    assert [finding.severity for result in reported[1:] for finding in result.findings] == [
+        Severity.WARNING,
+        Severity.NOTE,
+    ]
 
 
 def test_a_warning_is_no_proof() -> None:
-    told = evidence_before_blame([failed("KV311", "hinge"), failed("KV344", "hinge")])
-    assert told[1].findings[0].severity is Severity.NOTE
+    reported = evidence_before_blame([failed("KV311", "hinge"), failed("KV344", "hinge")])
+    assert reported[1].findings[0].severity is Severity.NOTE
 
 
 def test_a_fact_about_the_line_takes_the_place_of_the_opinions_about_it() -> None:
     fact = failed("KV349", "hinge")
-    told = evidence_before_blame([fact, failed("KV342", "hinge"), failed("KV345", "hinge"), failed("KV342", "slide")])
-    assert told[0] == fact
-    assert [[(item.joint, item.severity) for item in result.findings] for result in told[1:]] == [
+    reported = evidence_before_blame(
+        [fact, failed("KV342", "hinge"), failed("KV345", "hinge"), failed("KV342", "slide")]
+    )
+    assert reported[0] == fact
+    assert [[(item.joint, item.severity) for item in result.findings] for result in reported[1:]] == [
         [],
         [("hinge", Severity.NOTE)],
         [("slide", Severity.NOTE)],

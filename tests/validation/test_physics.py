@@ -123,7 +123,7 @@ def only(urdf: Path, check: str) -> Finding:
     return finding
 
 
-def test_every_check_is_told_once_and_a_good_model_passes(good: Path) -> None:
+def test_every_check_is_reported_once_and_a_good_model_passes(good: Path) -> None:
     results = checked(good)
     assert set(results) == {check.id for check in checks_of("KV2")}
     assert not counted(good)
@@ -303,7 +303,7 @@ def test_a_sensor_that_is_not_modelled_may_weigh_a_gram_in_one_point(good: Path)
     assert only(good, "KV208").link == "knob"  # half of the drawer's mass is no sensor
 
 
-def test_a_base_without_mass_is_how_pybullet_is_told_that_it_stands(good: Path) -> None:
+def test_a_base_without_mass_is_how_pybullet_is_reported_that_it_stands(good: Path) -> None:
     edited(good, "//link[@name='body']/inertial/mass", value="0")
     assert [finding.severity for finding in checked(good)["KV202"].findings] == [Severity.NOTE]
 

@@ -190,7 +190,7 @@ def test_what_is_let_pass_can_be_read(fault: str, tmp_path: Path) -> None:
     assert len(read_robot(tmp_path / "model.urdf").links) == 3
 
 
-def test_all_problems_are_told_at_once(tmp_path: Path) -> None:
+def test_all_problems_are_reported_at_once(tmp_path: Path) -> None:
     names = ("zero axis", "swapped limits", "dangling mimic", "zero radius", "missing mesh", "infinite mass")
     text = CLEAN
     for name in names:

@@ -54,7 +54,7 @@ def prepared(urdf: Path, settings: ValidationSettings = SETTINGS) -> Prepared:
     """What the stage leaves."""
     work = urdf.parent / "work"
     work.mkdir(exist_ok=True)
-    told: list[object] = []
+    reported: list[object] = []
     request = StageRequest(
         urdf=urdf,
         package_dirs=(),
@@ -63,8 +63,8 @@ def prepared(urdf: Path, settings: ValidationSettings = SETTINGS) -> Prepared:
         selected=frozenset(CHECKS),
         deadline=time.process_time() + 60.0,
     )
-    run(request, Recorder(told.append, request.selected))
-    assert not told, "it tells no checks"
+    run(request, Recorder(reported.append, request.selected))
+    assert not reported, "it tells no checks"
     return load_prepared(work)
 
 

@@ -26,7 +26,7 @@ run = partial(engine_stage.run, engine="pybullet")
 PANDA = BENCH / "robots/panda/model.urdf"
 
 
-def told(model: Model, folder: Path) -> FindingGroup:
+def reported(model: Model, folder: Path) -> FindingGroup:
     return tell(run, prepared_request(model, folder))
 
 
@@ -51,7 +51,7 @@ def pendulum(**changes: object) -> Model:
 
 
 def test_good_cabinet_passes_every_check(tmp_path: Path) -> None:
-    result = told(cabinet(), tmp_path)
+    result = reported(cabinet(), tmp_path)
     assert set(result.results) == IDS
     skipped = {check: r.reason for check, r in result.results.items() if r.status is not Status.PASS}
     assert skipped == {"KV513": "no loop joint closes a chain"}
@@ -75,7 +75,7 @@ def test_leaves_poses_inertias_and_torques_that_agree_with_the_kinematics(tmp_pa
 
 
 def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> None:
-    result = told(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
+    result = reported(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
     finding = only(result, "KV505")
     assert (finding.severity, finding.blame) == (Severity.ERROR, Blame.KINEMATICS)
     assert (finding.joint, finding.pair) == ("drawer_joint", ("body", "drawer"))
@@ -91,7 +91,7 @@ def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> N
 def test_pair_that_touches_at_rest_stops_a_joint_although_it_does_not_act(tmp_path: Path) -> None:
     # The drawer fills the cabinet to its back: PyBullet must not push it out, and must not let it in.
     model = cabinet().with_part("drawer", boxes=(Box(size=(0.4, 0.27, 0.38)),), axis=(-1.0, 0.0, 0.0))
-    result = told(model, tmp_path)
+    result = reported(model, tmp_path)
     assert result.results["KV503"].measured["switched_off_pairs"] == 1.0
     finding = only(result, "KV505")
     assert (finding.joint, finding.pair) == ("drawer_joint", ("body", "drawer"))
@@ -100,13 +100,15 @@ def test_pair_that_touches_at_rest_stops_a_joint_although_it_does_not_act(tmp_pa
 
 def test_overlap_at_rest_names_the_pair(tmp_path: Path) -> None:
     block = Part(name="block", parent="drawer", kind="prismatic", boxes=(Box(size=(0.1, 0.1, 0.1)),), at=(0, 0.5, 0))
-    finding = only(told(Model(parts=(*cabinet().parts, block)).with_part("block", at=(0.2, 0.3, 0)), tmp_path), "KV503")
+    finding = only(
+        reported(Model(parts=(*cabinet().parts, block)).with_part("block", at=(0.2, 0.3, 0)), tmp_path), "KV503"
+    )
     assert finding.severity is Severity.WARNING
     assert "block" in (finding.pair or ())
 
 
 def test_weak_joint_does_not_hold(tmp_path: Path) -> None:
-    result = told(pendulum(effort=0.5), tmp_path)  # 2 kg at 0.2 m need 3.9 N m
+    result = reported(pendulum(effort=0.5), tmp_path)  # 2 kg at 0.2 m need 3.9 N m
     finding = only(result, "KV504")
     assert finding.joint == "rod_joint"
     assert finding.value == pytest.approx(2.0 * 9.81 * 0.2, rel=1e-3)
@@ -114,7 +116,7 @@ def test_weak_joint_does_not_hold(tmp_path: Path) -> None:
 
 
 def test_released_pendulum_keeps_its_energy_and_its_limits(tmp_path: Path) -> None:
-    result = told(pendulum(), tmp_path)
+    result = reported(pendulum(), tmp_path)
     assert result.results["KV508"].status is Status.PASS
     assert result.results["KV508"].measured["kinetic_J"] > 1.0  # it really fell
     assert result.results["KV504"].measured["drift_rad"] > 0.9
@@ -133,7 +135,7 @@ def test_follower_follows(tmp_path: Path) -> None:
         extra=mimic,
     )
     model = Model(parts=(*(part for part in cabinet().parts if part.name != "door"), other))
-    result = told(model, tmp_path)
+    result = reported(model, tmp_path)
     assert result.results["KV505"].status is Status.PASS
     assert result.results["KV505"].measured["drives"] == 2  # the leader's
 
@@ -159,7 +161,7 @@ def test_refused_file_blocks_the_rest_and_gives_the_cause(tmp_path: Path) -> Non
     assert {r.status for check, r in result.results.items() if check != "KV501"} == {Status.BLOCKED}
 
 
-def test_what_pybullet_prints_is_told(tmp_path: Path) -> None:
+def test_what_pybullet_prints_is_reported(tmp_path: Path) -> None:
     request = prepared_request(cabinet(), tmp_path)
     (tmp_path / "pybullet.log").write_text("pybullet build time: today\nb3Warning: odd thing\n")
     finding = only(tell(run, request), "KV510")
@@ -173,7 +175,7 @@ def test_no_time_is_said(tmp_path: Path) -> None:
 
 
 def test_model_without_joints_is_looked_at_and_dropped(tmp_path: Path) -> None:
-    result = told(Model(parts=cabinet().parts[:1]), tmp_path)
+    result = reported(Model(parts=cabinet().parts[:1]), tmp_path)
     assert set(result.results) == IDS
     assert {r.status for r in result.results.values()} == {Status.PASS, Status.SKIPPED}
     assert result.results["KV511"].status is Status.PASS
@@ -182,7 +184,7 @@ def test_model_without_joints_is_looked_at_and_dropped(tmp_path: Path) -> None:
 def test_more_joints_than_pybullet_has_room_for_are_not_given_to_it(tmp_path: Path) -> None:
     parts = [Part(name="p0", boxes=())]
     parts += [Part(name=f"p{k}", boxes=(), parent=f"p{k - 1}", kind="revolute") for k in range(1, 130)]
-    result = told(Model(parts=tuple(parts)), tmp_path)
+    result = reported(Model(parts=tuple(parts)), tmp_path)
     assert {r.status for r in result.results.values()} == {Status.SKIPPED}
 
 
@@ -219,7 +221,7 @@ def test_margin_of_hulls_is_not_counted(tmp_path: Path, offset: float, depth: fl
 def test_inertias_of_heavy_models_are_not_refused(tmp_path: Path) -> None:
     # PyBullet's inverse dynamics compares tensors with their transposes to 2e-16 kg m^2.
     model = pendulum(mass=5000.0, inertia=(311.7, 417.3, 523.9), axis=(0.36, 0.48, 0.8))
-    result = told(model, tmp_path)
+    result = reported(model, tmp_path)
     assert not any(r.status is Status.BLOCKED for r in result.results.values())
     poses = read_poses(tmp_path, "pybullet")
     assert poses is not None

@@ -35,12 +35,12 @@ def press(page: Page, words: str) -> None:
     page.locator("button", has_text=words).first.evaluate("button => button.click()")
 
 
-def mistakes(told: list[str]) -> list[str]:
+def mistakes(reported: list[str]) -> list[str]:
     """Errors of the page's scripts.
 
     Without those of a slow page, where viser takes updates of a panel and the new panel together and says so.
     """
-    return [line for line in told if line.startswith("error") and "non-existent component" not in line]
+    return [line for line in reported if line.startswith("error") and "non-existent component" not in line]
 
 
 def downloaded(page: Page, button: str, out: Path) -> Path:

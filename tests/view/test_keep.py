@@ -36,13 +36,13 @@ def test_keeping_writes_the_joint_the_hint_and_the_command_and_can_be_taken_back
     choices = load_alternatives(folder / "inference.json")[joint.parent, joint.child]
     slide = next(item for item in choices if item.kind is JointType.PRISMATIC)
     kept = ModelFolder(folder)
-    told = kept.keep(joint.child, slide)
+    reported = kept.keep(joint.child, slide)
     (found,) = read_robot(folder / "model.urdf").joints
     assert found.kind is JointType.PRISMATIC
     assert abs(float(found.axis @ slide.axis)) > 0.99
-    assert told.hints[0] == f"{joint.child}=prismatic"
-    assert tuple(read_record(folder)["hints"]) == told.hints
-    assert all(f"--hint {text}" in told.command for text in told.hints)
+    assert reported.hints[0] == f"{joint.child}=prismatic"
+    assert tuple(read_record(folder)["hints"]) == reported.hints
+    assert all(f"--hint {text}" in reported.command for text in reported.hints)
     kept.undo()
     (again,) = read_robot(folder / "model.urdf").joints
     assert (again.kind, again.lower, again.upper) == (joint.kind, joint.lower, joint.upper)
@@ -57,9 +57,9 @@ def test_fixed_is_a_choice_and_another_viewer_goes_on_from_it(folder: Path) -> N
     ModelFolder(folder).keep(joint.child, fixed)
     assert read_robot(folder / "model.urdf").joints[0].kind is JointType.FIXED
     turn = replace(fixed, kind=JointType.REVOLUTE, pivot=joint.T_parent_child[:3, 3])
-    told = ModelFolder(folder).keep(joint.child, turn)
+    reported = ModelFolder(folder).keep(joint.child, turn)
     assert read_robot(folder / "model.urdf").joints[0].kind is JointType.REVOLUTE
-    assert f"{joint.child}=fixed" not in told.command, "the last word counts"
+    assert f"{joint.child}=fixed" not in reported.command, "the last word counts"
 
 
 def test_a_model_that_was_changed_by_hand_is_left_as_it_is(folder: Path) -> None:
@@ -77,14 +77,14 @@ def test_what_was_set_by_hand_is_written_with_its_limits(folder: Path) -> None:
     (joint,) = read_robot(folder / "model.urdf").joints
     axis, pivot = np.array([0.0, 0.6, -0.8]), np.array([0.01, 0.02, 0.03])
     by_hand = JointAlternative(kind=JointType.REVOLUTE, axis=axis, pivot=pivot, by_hand=True, limits=(-0.25, 1.25))
-    told = ModelFolder(folder).keep(joint.child, by_hand)
-    assert f"{joint.child}:range=-0.25..1.25" in told.hints
+    reported = ModelFolder(folder).keep(joint.child, by_hand)
+    assert f"{joint.child}:range=-0.25..1.25" in reported.hints
     (found,) = read_robot(folder / "model.urdf").joints
     turned = float(found.axis @ axis)
     assert abs(turned) > 1.0 - 1e-9
     assert (found.lower, found.upper) == pytest.approx((-0.25, 1.25) if turned > 0.0 else (-1.25, 0.25))
     assert np.linalg.norm(np.cross(found.T_parent_child[:3, 3] - pivot, axis)) < 1e-5
-    assert tuple(read_record(folder)["hints"]) == told.hints
+    assert tuple(read_record(folder)["hints"]) == reported.hints
     endless = replace(by_hand, kind=JointType.CONTINUOUS, limits=None)
     ModelFolder(folder).keep(joint.child, endless)
     assert read_robot(folder / "model.urdf").joints[0].kind is JointType.CONTINUOUS
@@ -99,8 +99,8 @@ def test_another_parent_is_written_as_a_hint_and_can_be_taken_back(tmp_path: Pat
     shown = shown_with(ViewScene(read_robot(folder / "model.urdf")), folder / "inference.json")
     assert other in shown.parents["lid"]
     kept = ModelFolder(folder)
-    told = kept.hang("lid", other)
-    assert told.hints == (f"lid:parent={other}",)
+    reported = kept.hang("lid", other)
+    assert reported.hints == (f"lid:parent={other}",)
     (joint,) = (joint for joint in read_robot(folder / "model.urdf").joints if joint.child == "lid")
     assert joint.parent == other
     kept.undo()

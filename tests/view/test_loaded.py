@@ -88,7 +88,7 @@ def test_it_is_shown_until_it_is_closed(urdf: Path) -> None:
         window.close()
 
 
-def test_what_is_not_there_is_told(tmp_path: Path) -> None:
+def test_what_is_not_there_is_reported(tmp_path: Path) -> None:
     with pytest.raises(kinematify.KinematifyError, match="has no URDF file"):
         kinematify.load(tmp_path)
 

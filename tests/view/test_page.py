@@ -37,13 +37,13 @@ def folder(tmp_path: Path) -> Path:
 
 def test_a_candidate_is_chosen_kept_and_found_in_the_file(folder: Path) -> None:
     (joint,) = read_robot(folder / "model.urdf").joints
-    with served(folder, 18140) as window, opened(window.url, width=400) as (page, told):
+    with served(folder, 18140) as window, opened(window.url, width=400) as (page, reported):
         page.wait_for_selector("text=At rest", timeout=PATIENCE)
         window.viewer.choose(joint.name)
         said = keep_candidate(page, joint.name, "fixed")
         assert f"--hint {joint.child}=fixed" in said
         assert page.evaluate("document.documentElement.scrollWidth") <= 400, "nothing hangs over the side"
-        assert not mistakes(told)
+        assert not mistakes(reported)
     assert read_robot(folder / "model.urdf").joints[0].kind is JointType.FIXED
 
 
@@ -51,7 +51,7 @@ def test_a_joint_is_set_by_hand_kept_and_taken_back_while_a_second_browser_watch
     folder: Path,
 ) -> None:
     (joint,) = read_robot(folder / "model.urdf").joints
-    with served(folder, 18150) as window, opened(window.url, width=400) as (page, told):
+    with served(folder, 18150) as window, opened(window.url, width=400) as (page, reported):
         leaving, second = (page.context.browser.new_page(viewport=page.viewport_size) for _ in range(2))
         for seen in (leaving, second):
             seen.goto(window.url, timeout=PATIENCE)
@@ -71,7 +71,7 @@ def test_a_joint_is_set_by_hand_kept_and_taken_back_while_a_second_browser_watch
         assert np.allclose(found.axis, joint.axis, atol=1e-5)
         press(second, "Undo")
         page.get_by_text("The same from the command line").wait_for(state="detached", timeout=PATIENCE)
-        assert not mistakes(told)
+        assert not mistakes(reported)
     (again,) = read_robot(folder / "model.urdf").joints
     assert (again.lower, again.upper) == (joint.lower, joint.upper)
 
@@ -80,7 +80,7 @@ def test_where_a_chain_closes_is_shown_and_it_stays_closed(tmp_path: Path) -> No
     pytest.importorskip("viser", reason="viser is not installed")
     write_inference(infer(four_bars().assembly), tmp_path / "model", preview=False)
     model = read_robot(tmp_path / "model" / "model.urdf")
-    with served(tmp_path / "model", 18190) as window, opened(window.url, width=800) as (page, told):
+    with served(tmp_path / "model", 18190) as window, opened(window.url, width=800) as (page, reported):
         page.wait_for_selector("text=Nothing collides", timeout=PATIENCE)
         assert "closes the chain" in page.inner_text("body")
         page.wait_for_timeout(1000)
@@ -90,7 +90,7 @@ def test_where_a_chain_closes_is_shown_and_it_stays_closed(tmp_path: Path) -> No
         changed = np.abs(drawn - _picture(page, tmp_path / "removed.png")).max(axis=2) > 20
         assert changed.sum() > 50, "the dashed line along its pin"
         assert _gap(model, {"crank_joint": 0.4}) < 1e-6, "its followers keep the pin in one place"
-        assert not mistakes(told)
+        assert not mistakes(reported)
 
 
 def _gap(robot: Robot, q: dict[str, float]) -> float:

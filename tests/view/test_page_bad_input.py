@@ -1,4 +1,4 @@
-"""What goes wrong on the viewer's page or with what it shows is told, and nothing is lost."""
+"""What goes wrong on the viewer's page or with what it shows is reported, and nothing is lost."""
 
 from __future__ import annotations
 
@@ -48,12 +48,12 @@ def read_only(folder: Path) -> Iterator[None]:
             path.chmod(mode)
 
 
-def test_a_read_only_folder_is_told_and_stays_as_it_is(tmp_path: Path) -> None:
+def test_a_read_only_folder_is_reported_and_stays_as_it_is(tmp_path: Path) -> None:
     pytest.importorskip("viser", reason="viser is not installed")
     folder = tmp_path / "safe" / "model"
     write_inference(infer(BUILDERS["edge_door"]().assembly), folder, preview=False)
     before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-    with served(folder, 18170) as window, opened(window.url) as (page, told):
+    with served(folder, 18170) as window, opened(window.url) as (page, reported):
         page.wait_for_selector("text=At rest", timeout=PATIENCE)
         joint = next(iter(window.viewer.values))
         window.viewer.choose(joint)
@@ -63,7 +63,7 @@ def test_a_read_only_folder_is_told_and_stays_as_it_is(tmp_path: Path) -> None:
             press(page, "Keep this")
             page.get_by_text("Nothing was changed").first.wait_for(timeout=PATIENCE)
         assert "permissions" in page.inner_text("body")
-        assert not mistakes(told)
+        assert not mistakes(reported)
         assert before == {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
         press(page, "Keep this")
         page.get_by_text("The same from the command line").wait_for(timeout=PATIENCE)
@@ -119,11 +119,11 @@ def test_a_file_of_5000_materials_is_shown_in_its_colours(tmp_path: Path) -> Non
     assembly = load_assembly(tmp_path / "many.glb")
     assert any("more than 64 materials" in warning for warning in assembly.warnings)
     write_inference(infer(assembly), tmp_path / "model", preview=False)
-    with served(tmp_path / "model", 18180) as window, opened(window.url) as (page, told):
+    with served(tmp_path / "model", 18180) as window, opened(window.url) as (page, reported):
         page.wait_for_selector("text=At rest", timeout=PATIENCE)
         page.wait_for_timeout(2000)
         page.screenshot(path=tmp_path / "page.png", timeout=PATIENCE)
-        assert not mistakes(told)
+        assert not mistakes(reported)
     with Image.open(tmp_path / "page.png") as picture:
         pixels = np.asarray(picture.convert("RGB"), dtype=int)
     red = (pixels[:, :, 0] > 120) & (pixels[:, :, 1:].max(axis=2) < pixels[:, :, 0] - 40)

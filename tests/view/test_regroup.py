@@ -42,9 +42,9 @@ def test_a_part_is_split_its_pieces_are_merged_and_the_command_does_the_same(fol
     lid, knob = frozenset({"piece_005"}), frozenset({"piece_006"})
     assert {lid, knob} < pieces_of(folder)
     assert {child for _, child in load_alternatives(folder / "inference.json")} == {"piece_005", "piece_006"}
-    told = ModelFolder(folder).merge("piece_005", "piece_006")
+    reported = ModelFolder(folder).merge("piece_005", "piece_006")
     assert pieces_of(folder) == before
-    command = [*shlex.split(told.command)[1:], "--no-preview", "--no-validation"]
+    command = [*shlex.split(reported.command)[1:], "--no-preview", "--no-validation"]
     assert run(command) == 0
     assert pieces_of(folder) == before
     with pytest.raises(InputError, match="another one remains"):

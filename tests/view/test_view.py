@@ -56,7 +56,7 @@ def test_bodies_stand_where_the_joints_put_them(scene: ViewScene) -> None:
     assert vertices[:, 0].max() == pytest.approx(0.85)
 
 
-def test_collisions_are_told_apart_from_contact(scene: ViewScene) -> None:
+def test_collisions_are_reported_apart_from_contact(scene: ViewScene) -> None:
     assert scene.touches({"hinge": 1.0}) == []
     (inside,) = scene.touches({"hinge": -0.5})
     assert set(inside.pair) == {"frame", "door"}

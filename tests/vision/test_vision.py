@@ -180,8 +180,12 @@ def test_a_right_answer_changes_joint_confidence_and_record(doubtful: Inference)
     assert found.confidence > 0.5
     assert not after.doubtful
     assert after.vision is not None
-    told = json.loads(json.dumps(after.vision))["joints"][0]
-    assert (told["child"], told["reason"], len(told["options"])) == ("lid", "so it is", len(voting.results[0].options))
+    reported = json.loads(json.dumps(after.vision))["joints"][0]
+    assert (reported["child"], reported["reason"], len(reported["options"])) == (
+        "lid",
+        "so it is",
+        len(voting.results[0].options),
+    )
 
 
 def is_like(one: JointCandidate, other: JointCandidate) -> bool:

@@ -48,7 +48,7 @@ class MeshContext:
         if any(file.mesh is None for file in self.files):
             return None
         try:
-            with np.errstate(all="ignore"):  # what is not finite is told by a check
+            with np.errstate(all="ignore"):  # what is not finite is reported by a check
                 return parse_robot(self._robot, self._request.urdf, self._source)
         except DescriptionError as error:
             return str(error)

@@ -96,10 +96,10 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     result.measured["read"] = float(len(context.mechanism.joints) - len(context.lost) - len(context.misread))
     for joint in context.misread:
         lower, upper = context.loaded.limits[joint.name]
-        told = f"{lower:.4g} to {upper:.4g}" if np.isfinite([lower, upper]).all() else "none"
+        loaded = f"{lower:.4g} to {upper:.4g}" if np.isfinite([lower, upper]).all() else "none"
         result.find(
-            f"The joint {joint.name} has the limits {joint.lower:.4g} to {joint.upper:.4g} in the file, and {told} in "
-            f"{context.title}.",
+            f"The joint {joint.name} has the limits {joint.lower:.4g} to {joint.upper:.4g} in the file, and {loaded} "
+            f"in {context.title}.",
             f"Give {joint.name} a lower limit that is less than the upper one; what does not move has a fixed joint.",
             joint=joint.name,
             reproduction=context.loaded.lines_of_joints(),

@@ -182,10 +182,10 @@ def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
     """
     settings, travel = motion.scene.settings, motion.sweep.travel
     early = {sign: motion.early(motion.side(sign)) for sign in (-1.0, 1.0)}
-    told = any(early[sign] and (early[-sign] or motion.one_sided(sign)) for sign in motion.blocked)  # by KV310
+    reported = any(early[sign] and (early[-sign] or motion.one_sided(sign)) for sign in motion.blocked)  # by KV310
     for sign, meeting in motion.blocked.items():
         side = motion.side(sign)
-        if told or abs(side.declared - meeting.first) < settings.late * travel.range:
+        if reported or abs(side.declared - meeting.first) < settings.late * travel.range:
             continue
         end = "upper" if sign > 0 else "lower"
         _meet(

@@ -69,8 +69,8 @@ def _slider(joint: dict[str, Any]) -> str:
 
 def show_button(index: int, q: dict[str, float], links: Sequence[str], words: str, joint: str | None = None) -> str:
     """Return a button that brings the viewer of a model into a configuration and marks links, or what a joint moves."""
-    told = text(json.dumps({"q": q, "links": list(links), "joint": joint}))
-    attributes = f'data-show="{told}" data-scene="{scene_name(index)}"'
+    shown = text(json.dumps({"q": q, "links": list(links), "joint": joint}))
+    attributes = f'data-show="{shown}" data-scene="{scene_name(index)}"'
     return f'<button type="button" class="plain" {attributes}>{text(words)}</button>'
 
 

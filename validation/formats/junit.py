@@ -73,14 +73,14 @@ def _add_case(suite: _Element, model: str, check: CheckResult) -> None:
         # A check that fell over did not come to an answer: that is an error of the test, not a failure of the model.
         tag = "error" if check.status is Status.BLOCKED else "failure"
         element = etree.SubElement(case, tag, message=printable(failing[0].message), type=failing[0].blame.value)
-        element.text = "\n\n".join(_told(finding) for finding in failing)
+        element.text = "\n\n".join(_text(finding) for finding in failing)
     elif check.status in (Status.SKIPPED, Status.BLOCKED):
         etree.SubElement(case, "skipped", message=printable(f"{check.status.value}: {check.reason or 'no reason'}"))
     if others:
-        etree.SubElement(case, "system-out").text = "\n\n".join(_told(finding) for finding in others)
+        etree.SubElement(case, "system-out").text = "\n\n".join(_text(finding) for finding in others)
 
 
-def _told(finding: Finding) -> str:
+def _text(finding: Finding) -> str:
     about = [part for part in (where(finding), measure(finding)) if part]
     about += [f"line {finding.line}"] if finding.line is not None else []
     lines = [

@@ -1,4 +1,4 @@
-"""One cause, one finding: what follows from another finding is told under it and not counted beside it.
+"""One cause, one finding: what follows from another finding is reported under it and not counted beside it.
 
 Which checks can be the cause of which stands at each check (`Check.follows`), and what both must be about.
 """

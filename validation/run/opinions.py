@@ -30,14 +30,14 @@ def evidence_before_blame(results: Sequence[CheckResult]) -> list[CheckResult]:
     facts = {finding.joint for finding in _findings(results, opinion=False) if _proves(finding)}
     lines = {finding.joint for finding in _findings(results, opinion=False) if _doubts_line(finding)}
     spoken: dict[str | None, list[Finding]] = {}
-    told: list[Finding] = []
+    apart: list[Finding] = []
     for finding in _findings(results, opinion=True):
         if finding.joint in facts or finding.blame is Blame.ENGINE:  # a crash of the stage is no opinion
             continue
-        group = told if finding.joint in lines and _doubts_line(finding) else spoken.setdefault(finding.joint, [])
+        group = apart if finding.joint in lines and _doubts_line(finding) else spoken.setdefault(finding.joint, [])
         group.append(finding)
     notes = {id(group[0]): _note(group) for group in spoken.values()}
-    folded = {id(finding) for group in (*spoken.values(), told) for finding in group}
+    folded = {id(finding) for group in (*spoken.values(), apart) for finding in group}
     return [_without_blame(result, notes, folded) if CHECKS[result.check].opinion else result for result in results]
 
 

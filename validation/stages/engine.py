@@ -54,7 +54,7 @@ def _run(context: EngineContext, recorder: Recorder) -> None:
     gathering = recorder.wants(*(checks[number].id for number in _GATHERING))
     obstacle: str | None = None
     for number, check in checks.items():
-        # What is wanted of none is not told; the poses are always left, and those that gather need all runs.
+        # What no check wants is not recorded; the poses are always left, and those that gather need all runs.
         if number not in {_LOAD, _POSES} and not gathering and not recorder.wants(check.id):
             continue
         with recorder.check(check.id, entry.name) as result:

@@ -13,5 +13,5 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     from kinematify.simulation.prepared import prepare
     from kinematify.validation.left_model import model_of
 
-    del recorder  # what was changed is told by the checks that look at it
+    del recorder  # what was changed is reported by the checks that look at it
     prepare(model_of(request), request.work, request.settings.prepare)

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 OBJECT_FILE = "object.urdf"
 LEEWAY = 20.0
-"""Before the deadline no more work is begun, so that what is known can be told [s]."""
+"""Before the deadline no more work is begun, so that what is known can be reported [s]."""
 _FILM_SECONDS = 15.0  # a film is begun only with so much time left [s]
 _HOLD = {Hold.WELD: "with the hand welded to the part", Hold.CONTACT: "with fingers that hold by friction"}
 
@@ -280,9 +280,9 @@ class PullTask:
 
     def tell_executions(self, result: OpenCheck, hold: Hold) -> None:
         """Execute each plan in the engine of the check, and add those that fail."""
-        told = 0
+        executed = 0
         for joint, execution in self.execute(result.engine or "", hold):
-            told += 1
+            executed += 1
             result.measured[f"{joint} share"] = execution.share
             result.measured[f"{joint} depth"] = execution.depth
             if not execution.success:
@@ -295,9 +295,9 @@ class PullTask:
                     limit=self.settings.execution.opened,
                     pair=execution.deepest,
                 )
-        if told < len(self.worlds):
-            result.leave(f"{len(self.worlds) - told} of the plans were executed")
-        elif not told:
+        if executed < len(self.worlds):
+            result.leave(f"{len(self.worlds) - executed} of the plans were executed")
+        elif not executed:
             result.skip("no joint has a plan that could be executed")
 
     def tell_films(self, result: OpenCheck) -> None:

@@ -353,14 +353,14 @@ def _arranged(
     for band, strip in zip(bands, rows(side.area, [weight for weight, _ in bands]) if bands else [], strict=True):
         free = _beside_wheels(strip, wheels) if band[1][0].mechanism.arranged == "grid" else strip
         if free.width <= 0.0 or free.height <= 0.0:
-            raise _TooSmallError(_told(band[1][0].mechanism, wanted, name), {1, 2})
+            raise _TooSmallError(_too_small(band[1][0].mechanism, wanted, name), {1, 2})
         for item, cell in _divided(band[1], free):
             needed = least[item.mechanism.words]
             if cell.width < needed[0] or cell.height < needed[1]:
                 axes = {0 if name in ("front", "back", "top", "bottom") else 1} if cell.width < needed[0] else set()
                 if cell.height < needed[1]:
                     axes.add(1 if name in ("top", "bottom") else 2)
-                raise _TooSmallError(_told(item.mechanism, wanted, name), axes)
+                raise _TooSmallError(_too_small(item.mechanism, wanted, name), axes)
             placed.append((item, cell))
     for item in wanted:
         if item.mechanism.arranged == "axles" and side.axles is not None:
@@ -368,16 +368,16 @@ def _arranged(
         elif item.mechanism.arranged == "corners":
             cells = _corners(side.area, item.count)
             if cells[0].width < least[item.mechanism.words][0]:
-                raise _TooSmallError(_told(item.mechanism, wanted, name), {0, 1})
+                raise _TooSmallError(_too_small(item.mechanism, wanted, name), {0, 1})
             placed += [(item, cell) for cell in cells]
         elif item.mechanism.arranged in ("edge", "over", "alone", "apart"):
             if side.area.width < least[item.mechanism.words][0] or side.area.height < least[item.mechanism.words][1]:
-                raise _TooSmallError(_told(item.mechanism, wanted, name), {0, 1 if name == "top" else 2})
+                raise _TooSmallError(_too_small(item.mechanism, wanted, name), {0, 1 if name == "top" else 2})
             placed += [(item, side.area)] * item.count
     return placed
 
 
-def _told(mechanism: MechanismKind, wanted: Sequence[MechanismSpec], side: str) -> str:
+def _too_small(mechanism: MechanismKind, wanted: Sequence[MechanismSpec], side: str) -> str:
     count = sum(item.count for item in wanted if item.mechanism is mechanism)
     return f"{count} {mechanism.words[0]}{'s' if count > 1 else ''} on the {side}"
 

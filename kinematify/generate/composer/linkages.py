@@ -1,7 +1,7 @@
 """Mechanisms of several bars: cantilever trays, a scissor lift, a gripper, and what folds out on a fork.
 
 As all mechanisms, each is built in the frame of its side. Bars of a closed chain follow their leader by a fixed
-multiple, which is exact for parallelograms and scissors; the pin that closes the chain is told besides.
+multiple, which is exact for parallelograms and scissors; the pin that closes the chain is given beside it.
 """
 
 from __future__ import annotations

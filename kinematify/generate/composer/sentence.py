@@ -293,14 +293,14 @@ def _words_of_part(part: PartSpecification) -> set[int]:
     return {k for claim in part.claims for k in claim.at}
 
 
-def told(composition: Composition) -> str:
+def sentence_of(composition: Composition) -> str:
     """Return a sentence that `read_composition` understands as this composition, its openness and lengths apart."""
-    items = [_told(item) for item in composition.wanted]
+    items = [_listed(item) for item in composition.wanted]
     listed = " and ".join([*([", ".join(items[:-1])] if items[1:] else []), items[-1]])
     return f"{_phrase(1, composition.color, composition.material, composition.title)} with {listed}"
 
 
-def _told(item: MechanismSpec) -> str:
+def _listed(item: MechanismSpec) -> str:
     noun = item.title + ("s" if item.count > 1 else "")
     return _phrase(item.count, item.color, item.material, noun) + (f" on the {item.side} side" if item.side else "")
 

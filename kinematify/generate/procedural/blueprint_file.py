@@ -61,7 +61,7 @@ LARGEST_FILE = 2_000_000
 MIRRORS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 """Normals of planes that things are mirrored across, by axis."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
-_SHOWN = 5  # problems of a file that are told at once
+_SHOWN = 5  # problems of a file that are shown at once
 
 Length = Annotated[float, Field(gt=0.0, le=LARGEST)]
 Coordinate = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]

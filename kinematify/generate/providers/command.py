@@ -86,10 +86,10 @@ class CommandSource:
         if status is None:
             raise EnvironmentFault(
                 f"The program {arguments[0]!r} was stopped after {self.limit:.0f} s. Give it more with --time-limit. "
-                f"{_told(log)}"
+                f"{_end_of(log)}"
             )
         if status != 0:
-            raise EnvironmentFault(f"The program {arguments[0]!r} ended with status {status}. {_told(log)}")
+            raise EnvironmentFault(f"The program {arguments[0]!r} ended with status {status}. {_end_of(log)}")
         job.accept(_STEP, seconds=time.monotonic() - start)
 
     def _waited(self, program: subprocess.Popen[bytes], name: str, start: float, progress: Progress) -> int | None:
@@ -142,7 +142,7 @@ def _stop(program: subprocess.Popen[bytes]) -> None:
             return
 
 
-def _told(log: Path) -> str:
+def _end_of(log: Path) -> str:
     """The last lines of a log that may hold anything."""
     text = log.read_bytes()[-20_000:].decode("utf-8", errors="replace")
     clean = "".join(letter if letter.isprintable() or letter == "\n" else "?" for letter in text)

@@ -38,7 +38,7 @@ class PaidJob:
         return self.steps.get(step, {}).get("state")
 
     def facts(self, step: str) -> dict[str, Any]:
-        """What the provider told about a step."""
+        """What the provider reported about a step."""
         return dict(self.steps.get(step, {}))
 
     def begin(self, step: str) -> None:

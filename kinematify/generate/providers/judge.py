@@ -56,11 +56,11 @@ def _loose(blueprint: Blueprint, solids: Mapping[str, Manifold]) -> Iterable[str
 
 
 def _overlaps(blueprint: Blueprint, solids: Mapping[str, Manifold]) -> Iterable[str]:
-    told = {(min(pair), max(pair)) for pair in _fixed_together(blueprint)}
+    reported = {(min(pair), max(pair)) for pair in _fixed_together(blueprint)}
     for one, other in combinations(sorted(solids), 2):
-        deep = 0.0 if (one, other) in told else _depth(solids[one], solids[other])
+        deep = 0.0 if (one, other) in reported else _depth(solids[one], solids[other])
         if deep > _DEEP:
-            told.add((one, other))
+            reported.add((one, other))
             yield (
                 f'The parts "{one}" and "{other}" are {_millimetres(deep)} deep in each other where they are drawn. '
                 'Make room with "subtract", or move one of them ("xyz").'
@@ -77,11 +77,11 @@ def _overlaps(blueprint: Blueprint, solids: Mapping[str, Manifold]) -> Iterable[
             for name, solid in where.items():
                 for other in set(solids) - moving:
                     pair = (min(name, other), max(name, other))
-                    if pair in told:
+                    if pair in reported:
                         continue
                     deep = _depth(solid, solids[other])
                     if deep > _DEEP:
-                        told.add(pair)
+                        reported.add(pair)
                         value = values[joint.child]
                         at = f"{value:.2g} {'rad' if joint.kind.turns else 'm'}"
                         yield (

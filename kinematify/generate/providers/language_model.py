@@ -211,7 +211,7 @@ class LanguageModel:
     def _service(self, progress: Progress) -> Service:
         return Service(
             name="The language model", url=self.url, key=self.key, settings=self.settings, key_name=KEY,
-            told=lambda words: progress(words, 0.0),
+            report=lambda words: progress(words, 0.0),
         )  # fmt: skip
 
     def _question(self, prompt: Prompt, examples: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:

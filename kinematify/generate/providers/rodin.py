@@ -43,7 +43,7 @@ class RodinSource:
     name: str = "rodin"
 
     def options(self) -> dict[str, object]:
-        """What the service is told besides the prompt."""
+        """What the service is sent besides the prompt."""
         chosen = self.settings
         return {
             "tier": chosen.tier,
@@ -224,7 +224,7 @@ class _RodinRun:
     def _tell(self, step: str, words: str, share: float) -> None:
         low, high = _SHARES[step]
         done = low + share * (high - low)
-        self.service.told = lambda why: self.progress(why, done)
+        self.service.report = lambda why: self.progress(why, done)
         self.progress(words, done)
 
 

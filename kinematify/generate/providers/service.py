@@ -42,7 +42,7 @@ class Service:
     settings: ServiceConfig
     key_name: str
     """Environment variable that holds the key, for messages."""
-    told: Callable[[str], None] = lambda words: None
+    report: Callable[[str], None] = lambda words: None
     """Told why it is asked again, and when."""
 
     def __post_init__(self) -> None:
@@ -182,7 +182,7 @@ class Service:
         if pause is None:
             return
         seconds = max(pause, least)
-        self.told(f"{self.name} did not take it ({fault}), once more in {seconds:.0f} s")
+        self.report(f"{self.name} did not take it ({fault}), once more in {seconds:.0f} s")
         time.sleep(seconds)
 
     def _json(self, answer: httpx.Response) -> Any:

@@ -44,7 +44,7 @@ class Prompt:
     seed: int
 
     def digest(self, options: dict[str, object]) -> str:
-        """SHA-256 of everything that a generator is told: the same request has the same digest."""
+        """SHA-256 of everything that a generator is given: the same request has the same digest."""
         facts = {
             "text": self.text,
             "images": [hashlib.sha256(image.read_bytes()).hexdigest() for image in self.images],

@@ -250,8 +250,8 @@ class _Voter:
 def _voted(voter: _Voter, twins: Sequence[_Twin], diagonal: float, config: BearingConfig) -> EdgeBearing:
     """The lines of a contact and of its twins, each with the mean of what all of them say of it."""
     own = voter.bearing
-    told = [_carried(line, twin.motion.inverse, voter.centroid) for twin in twins for line in twin.voter.bearing.lines]
-    candidates = best_distinct([*own.lines, *told], diagonal, config.model_copy(update={"keep": 2 * config.keep}))
+    lines = [_carried(line, twin.motion.inverse, voter.centroid) for twin in twins for line in twin.voter.bearing.lines]
+    candidates = best_distinct([*own.lines, *lines], diagonal, config.model_copy(update={"keep": 2 * config.keep}))
     lines = []
     for candidate in candidates:
         mine = voter.opinion(candidate.line)

@@ -39,7 +39,7 @@ MEASUREMENTS = (
 )  # fmt: skip
 """Columns of `edge_measurements`."""
 _NEAR, _WIDE = 1.0, 8.0  # tolerances of the contact within which area counts
-_LOWEST = -18.0  # scores below the best by more than this are as unlikely as can be told
+_LOWEST = -18.0  # scores below the best by more than this are equally unlikely
 _SOFT = 2.0  # the quality is a growing function of s; half of it keeps apart what is beyond doubt
 
 

@@ -234,7 +234,7 @@ def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, conf
     level = float(1.0 - abs(float(slides.axes[0] @ UP)))
     depth = float(_is_box(scene)) * _depth(scene, slides)
     box = float(np.interp(depth, (config.kind.box_none, config.kind.box_full), (0.0, 1.0)))
-    # Outside of its body a box is told from a thick door by its depth alone.
+    # Outside of its body a box differs from a thick door by its depth alone.
     deep = float(np.interp(depth, (config.kind.pulled_none, config.kind.pulled_full), (0.0, 1.0)))
     large = 1.0 - scene.smallness
     furniture = large * (1.0 - scene.mechanism)

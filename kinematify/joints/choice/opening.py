@@ -213,7 +213,7 @@ def side_columns(sides: Mapping[str, FloatArray], names: Sequence[str]) -> NDArr
     return np.concatenate([ahead, mean], axis=1)
 
 
-_FREE = -0.5  # log odds beyond which what meets nothing goes round: both kinds are told about equally often
+_FREE = -0.5  # log odds beyond which what meets nothing goes round: both kinds are then recognised about equally often
 _STOPPED = 1.0  # the same of what meets something on its way, as a tyre its mudguard
 
 

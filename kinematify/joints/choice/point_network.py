@@ -41,7 +41,7 @@ class Scale:
     counts: IntArray
     """How many of them are a column's own; below two, nothing is read of it, shape (f,)."""
     missing: IntArray
-    """Columns of which it is told whether they are missing, shape (m,)."""
+    """Columns that have a second input, which shows where they are missing, shape (m,)."""
 
     def inputs(self, columns: NDArray[Any]) -> FloatArray:
         """Columns (n, f) as inputs (n, f + m); what is missing is 0, the middle."""
@@ -78,9 +78,9 @@ class Network:
 
     def log_probabilities(self, columns: NDArray[Any]) -> FloatArray:
         """Mean log probability of each hypothesis of an edge, from its columns (h, f), shape (h,)."""
-        told = self.scale.inputs(columns)
-        untold = np.where(self.verdicts, 0.0, told)
-        asked = np.stack([told, untold])[:, None]
+        with_verdicts = self.scale.inputs(columns)
+        without_verdicts = np.where(self.verdicts, 0.0, with_verdicts)
+        asked = np.stack([with_verdicts, without_verdicts])[:, None]
         own = swish(asked @ self.embed + self.embed_bias[:, None])
         shared = own @ self.share + self.share_bias[:, None]
         of_all = np.concatenate([shared.mean(axis=2), shared.max(axis=2)], axis=2)[:, :, None]

@@ -70,7 +70,7 @@ SUMMARIES = (
     "uncovers",
     "gap_large",
 )
-"""Measurements of which every hypothesis is also told the best and worst among all turns and among all slides."""
+"""Measurements of which every hypothesis also has the best and worst among all turns and among all slides."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -219,7 +219,7 @@ def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray, config: J
     longer = 1.0 if free[0] > free[1] else -1.0
     one_way = abs(float(free[0] - free[1])) > config.limits.one_way * scene.diagonal
     if scene.smallness >= 1.0 and not (scene.has_bearing or _in_linkage(scene)) and one_way:
-        return -longer  # there is a floor below a button and nothing before it; round ones are told below from collars
+        return -longer  # there is a floor below a button and nothing before it; round ones and collars are split below
     if scene.has_bearing and not _in_linkage(scene) and not _is_sheath(scene, axis):
         clearance = slide_clearance(scene, outwards * axis, config)
         if clearance is not None and config.limits.room * scene.frame.diagonal < clearance[1] < np.inf:

@@ -99,7 +99,7 @@ def test_mesh_with_labels_is_one_object(tmp_path: Path, image: Path) -> None:
         ("(out / 'part.obj').write_text('')", "left no mesh"),
     ],
 )
-def test_program_that_fails_is_told_with_what_it_said(tmp_path: Path, image: Path, body: str, said: str) -> None:
+def test_program_that_fails_is_reported_with_what_it_said(tmp_path: Path, image: Path, body: str, said: str) -> None:
     with pytest.raises(EnvironmentFault, match=said) as caught:
         generate(tmp_path / "job", program(body), image)
     assert str(caught.value).isprintable()

@@ -80,10 +80,10 @@ def test_a_fence_about_the_answer_does_no_harm(server, tmp_path):
 def test_what_is_wrong_goes_back_until_nothing_is(server, tmp_path):
     server.script = ["It is a box.", lidded(axis=0.0), lidded(colour="red"), lidded()]
     assert written(model_at(server), tmp_path).rounds == 4
-    told = [request["messages"][-1]["content"] for request in server.requests[1:]]
-    assert "no JSON" in told[0]
-    assert "joints.0.axis" in told[1]
-    assert "colour: Extra inputs" in told[2]
+    reported = [request["messages"][-1]["content"] for request in server.requests[1:]]
+    assert "no JSON" in reported[0]
+    assert "joints.0.axis" in reported[1]
+    assert "colour: Extra inputs" in reported[2]
 
 
 def test_the_best_of_all_rounds_is_kept(server, tmp_path):
@@ -186,9 +186,9 @@ def test_what_the_validation_finds_is_mended(server, tmp_path, monkeypatch):
     out, answer = tmp_path / "box", tmp_path / "answer.json"
     command = ["generate", "--text", TEXT, "--source", "llm", "-o", str(out), "--no-preview", "--json", str(answer)]
     assert run(command) == 0
-    told = server.requests[2]["messages"][-1]["content"]
-    assert '"axis"' in told
-    assert "<axis>" not in told
+    reported = server.requests[2]["messages"][-1]["content"]
+    assert '"axis"' in reported
+    assert "<axis>" not in reported
     facts = json.loads(answer.read_text())
     assert facts["language_model"]["rounds"] == 2
     assert facts["validation"]["failed"] == []

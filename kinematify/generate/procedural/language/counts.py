@@ -23,7 +23,7 @@ _PLACES = {
     "over": "top", "under": "bottom", "underneath": "bottom", "beneath": "bottom", "middle": "middle",
     "center": "middle", "centre": "middle", "between": "middle", "upper": "top", "lower": "bottom",
 }  # fmt: skip
-"""Words for a place of its own, by which one count is told from another of the same thing."""
+"""Words for a place of its own, that distinguish one count from another of the same thing."""
 _SIDES = (("either", "each", "both"), ("side", "sides", "end", "ends"))
 _LEADING = ("on", "at", "to", "in", "the", "further", "more", "other", "another", "below", "above", "under", "over")
 _TOGETHER = (

@@ -70,7 +70,7 @@ _PLAIN_TEXT = """
     custom original
 """
 PLAIN_WORDS = frozenset(_PLAIN_TEXT.split())
-"""What something is like, where that asks for no shape and no motion; told as of no effect."""
+"""What something is like, where that asks for no shape and no motion; reported as of no effect."""
 STOP_WORDS = frozenset(_STOP_TEXT.split()) | PLAIN_WORDS
 """Words that ask for nothing that could be built differently; every other word is understood or refused."""
 
