@@ -221,7 +221,8 @@ class ModelViewer:
             self._end_by_hand()
         assert self._open_folder is not None
         self._folder = self._folder or self._open_folder()
-        self._written(partial(self._folder.state, Hint(part=joint.child, **{key: name})))
+        hint = Hint(part=joint.child, parent=name) if key == "parent" else Hint(part=joint.child, twin=name)
+        self._written(partial(self._folder.state, hint))
 
     def _try(self, joint: str, alternative: JointAlternative | None) -> None:
         item = self._scene.robot.joint_by_name[joint]
