@@ -142,7 +142,7 @@ def _split(mesh: RawMesh, index: IntArray, names: Sequence[str]) -> tuple[RawMes
     ends = np.cumsum(np.bincount(index, minlength=len(names)))[:-1]
     return tuple(
         compacted(replace(mesh.of_faces(part), name=name))
-        for name, part in zip(names, np.split(order, ends), strict=True)
+        for name, part in zip(names, np.split(order, ends), strict=False)  # no face: no name, one empty part
     )
 
 

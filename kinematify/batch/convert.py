@@ -59,8 +59,8 @@ class Conversion:
     config: Config
     settings: ValidationSettings
     engines: tuple[str, ...]
-    up: str
-    scale: float | None
+    reading: dict[str, Any]
+    """Arguments of `load_assembly`."""
     hash: str
     """Of all of these."""
 
@@ -114,7 +114,7 @@ def _do_steps(
     if "infer" in steps:
         with clock.stage("infer", 0.0):
             config = conversion.config
-            assembly = load_assembly(model, config=config.assembly, up=conversion.up, scale=conversion.scale)
+            assembly = load_assembly(model, config=config.assembly, **conversion.reading)
             known["parts"] = len(assembly.parts)
             known["faces"] = sum(len(part.faces) for part in assembly.parts)
             inference = infer(assembly, config=config)

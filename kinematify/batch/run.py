@@ -10,10 +10,10 @@ import tempfile
 import time
 import zlib
 from contextlib import closing, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from kinematify import __version__
 from kinematify.batch.convert import FORMATS, STEPS, Conversion, convert
@@ -58,9 +58,8 @@ class BatchRequest:
     """Some of `FORMATS`, for the step ``export``."""
     engines: tuple[str, ...] = DEFAULT_ENGINES
     """Of the validation."""
-    up: str = "auto"
-    scale: float | None = None
-    """Both as `load_assembly` takes them."""
+    reading: dict[str, Any] = field(default_factory=dict)
+    """Arguments of `load_assembly`: `up`, `scale`, `pieces`."""
     share: tuple[int, int] = (1, 1)
     """Number of the share of the objects to convert, from 1, and how many shares there are."""
     timeout: float = 900.0
@@ -86,7 +85,7 @@ class BatchRequest:
         facts = {
             "config": self.config.model_dump(mode="json"),
             "settings": self.settings.model_dump(mode="json"),
-            "asked": [sorted(self.steps), sorted(self.formats), sorted(self.engines), self.up, self.scale],
+            "asked": [sorted(self.steps), sorted(self.formats), sorted(self.engines), self.reading],
             "kinematify": __version__,
         }
         return Conversion(
@@ -95,8 +94,7 @@ class BatchRequest:
             config=self.config,
             settings=self.settings,
             engines=self.engines,
-            up=self.up,
-            scale=self.scale,
+            reading=self.reading,
             hash=hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest(),
         )
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.options import examples, listed, scale_option
+from kinematify.cli.options import examples, listed, pieces_option, scale_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
@@ -61,13 +61,9 @@ _SHOWN = 10
     help="Wall time for an object.",
 )  # fmt: skip
 @click.option(
-    "--memory",
-    type=click.FloatRange(min=1.0),
-    default=8.0,
-    show_default=True,
-    metavar="GB",
+    "--memory", type=click.FloatRange(min=1.0), default=8.0, show_default=True, metavar="GB",
     help="Address space of a worker.",
-)
+)  # fmt: skip
 @click.option("--resume", is_flag=True, help="Continue the run in the output and skip finished objects.")
 @click.option("--retry", is_flag=True, help="With --resume, convert again every object that gave no model.")
 @click.option("--shard", metavar="I/N", help="Only share I of N of the objects, for runs side by side.")
@@ -79,6 +75,7 @@ _SHOWN = 10
     help="Axis of the inputs that points up.",
 )
 @scale_option
+@pieces_option
 @click.option(
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
 )
@@ -108,8 +105,7 @@ def command(**values: Any) -> int:
         settings=load_settings(**seed),
         steps=listed(values["steps"]),
         formats=listed(values["to"]),
-        up=values["up"],
-        scale=values["scale"],
+        reading={name: values[name] for name in ("up", "scale", "pieces")},
         share=_share(values["shard"]),
         timeout=values["timeout"],
         resume=values["resume"],

@@ -12,7 +12,7 @@ import click
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.asking import Asking, asking_options, with_answers
 from kinematify.cli.inferred import as_loaded, confidences, describe, load_as_loaded, renamed
-from kinematify.cli.options import collision_option, examples, scale_option, with_collision
+from kinematify.cli.options import collision_option, examples, pieces_option, scale_option, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS, describe_refinement, exit_status
 from kinematify.errors import EnvironmentFault, InputError, KinematifyError
@@ -65,14 +65,7 @@ _LONGEST = 86400.0
     type=click.Path(path_type=Path),
     help="NPY or JSON file with the part of every face, if ASSEMBLY is one mesh.",
 )
-@click.option(
-    "--pieces",
-    type=click.Choice(["auto", "group", "keep"]),
-    default="auto",
-    show_default=True,
-    help="How parts come about. auto: the pieces of one mesh are grouped into rigid parts, other files have a part per "
-    "node or group; group: nodes and groups are split and grouped too; keep: every piece is a part.",
-)
+@pieces_option
 @click.option(
     "--groups",
     type=click.Path(path_type=Path),

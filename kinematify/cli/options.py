@@ -56,6 +56,16 @@ scale_option = click.option(
 )
 
 
+pieces_option = click.option(
+    "--pieces",
+    type=click.Choice(["auto", "group", "keep"]),
+    default="auto",
+    show_default=True,
+    help="How parts come about. auto: the pieces of one mesh are grouped into rigid parts, other files have a part per "
+    "node or group; group: nodes and groups are split and grouped too; keep: every piece is a part.",
+)
+
+
 def with_collision(config: Config, mode: str | None) -> Config:
     """A configuration with the collision geometry that was asked for, if any was."""
     if mode is None:

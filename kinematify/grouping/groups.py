@@ -353,7 +353,7 @@ def read_groups(path: Path, assembly: Assembly) -> Grouping:
         wrong = f"names {unknown[0]}, which is no piece" if unknown else f"names {twice[0]} twice"
         raise InputError(
             f"The file {path} {wrong} of {assembly.source}. It has {len(index)} pieces, from {assembly.names[0]} to "
-            f"{assembly.names[-1]}; each belongs to one part."
+            f"{assembly.names[-1]}; each belongs to one part. Give the --pieces with which the file was made."
         )
     left = [(name,) for name in assembly.names if name not in set(names)]
     indices = [np.array(sorted(index[name] for name in group)) for group in (*groups, *left)]

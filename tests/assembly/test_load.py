@@ -434,6 +434,8 @@ def test_natural_order() -> None:
 EMPTY = "v 0 0 0\n"
 LINE = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3\nf 2 3 4\n"
 POINT = "v 8 1 1\nv 8 1 1\nv 8 1 1\nf 1 2 3\n"
+NO_AREA = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+NO_AREA += "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 1 1\n2 2 2\n3 0 1 2\n"
 TRIANGLE = "v 8 0 0\nv 8 1 0\nv 8 0 1\nf 1 2 3\n"
 SHEET = "v 8 0 0\nv 8 1 0\nv 8 1 1\nv 8 0 1\nf 1 2 3\nf 1 3 4\n"
 
@@ -541,6 +543,8 @@ def test_one_part_only(tmp_path: Path) -> None:
     (tmp_path / "only.obj").write_text(LINE)
     (tmp_path / "twin.obj").write_text(EMPTY)
     refused(tmp_path, "No part .* with area")
+    (tmp_path / "pieces.ply").write_text(NO_AREA)
+    refused(tmp_path / "pieces.ply", "No part .* with area")
 
 
 @pytest.mark.parametrize("suffix", ["obj", "stl", "ply", "off", "glb", "gltf", "3mf"])

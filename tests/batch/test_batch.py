@@ -63,10 +63,16 @@ def test_meshes_that_nobody_segmented_are_grouped_and_one_of_several_objects_is_
     one.export(tmp_path / "assets" / "bin.ply")
     scene = [box((3, 2, 0.02), (0.5, 0, -0.01)), one, one.copy().apply_translation((1, 0, 0))]
     trimesh.util.concatenate(scene).export(tmp_path / "assets" / "two.ply")
-    assert batch(tmp_path / "assets/*.ply", "-o", tmp_path / "out", *INFER) == 1
+    nodes = trimesh.Scene()
+    for name, pieces in (("wood", [*boards, lid[0]]), ("metal", lid[1:])):
+        nodes.add_geometry(trimesh.util.concatenate(pieces), node_name=name)
+    nodes.export(tmp_path / "assets" / "materials.glb")
+    asked = ("--pieces", "group", *INFER)
+    assert batch(tmp_path / "assets/*.*", "-o", tmp_path / "out", *asked) == 1
     records = by_object(tmp_path / "out")
     assert records["bin"]["status"] == "ok"
     assert 2 <= int(str(records["bin"]["parts"])) < 7
+    assert records["materials"]["parts"] == records["bin"]["parts"], "nodes named by material are no parts"
     assert records["two"]["status"] == "unusable"
     assert "shows 2 objects on a floor" in str(records["two"]["error"])
 
