@@ -16,7 +16,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from kinematify.generate.composer.bodies import BODIES
-from kinematify.generate.described import known_families, library
+from kinematify.generate.described import known_families
 from kinematify.generate.procedural.language.motions import MOTIONS
 from kinematify.generate.procedural.layout import parse_layout
 from kinematify.generate.procedural.materials import COLOR_WORDS, COLORS, MATERIALS
@@ -133,21 +133,14 @@ def _words_of(text: str) -> set[str]:
 # ---- what is expected of the whole ---------------------------------------------------------------------------------
 
 
-def _kind_of(made: Blueprint) -> str:
-    """Its family, or the one that it is another way to build."""
-    described = library().get(made.family)
-    return (described.like if described is not None else "") or made.family
-
-
 def _family(made: Blueprint, closed: Blueprint, wanted: str) -> list[str]:
-    return [] if wanted in (made.family, _kind_of(made)) else [f"built is a {made.family}"]
+    return [] if wanted == made.family else [f"built is a {made.family}"]
 
 
 def _object(made: Blueprint, closed: Blueprint, wanted: list[str]) -> list[str]:
     family = known_families().get(made.family)
     kind = made.family.replace("_", " ")
     names = family.words if family else next(body.words for body in BODIES if kind in body.words)
-    names += known_families()[_kind_of(made)].words if family else ()
     called = any(f" {name}".endswith(f" {word}") for name in names for word in wanted)
     return [] if called else [f"built is a {made.family}"]
 

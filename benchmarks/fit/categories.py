@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 ALIKE: Mapping[str, tuple[str, ...]] = {
     "aircraft": ("light_aircraft", "airplane"),
     "bag": ("plain_bag",),
+    "blender": ("food_processor",),
     "bottle": ("spray_bottle", "soap_dispenser", "jar_with_clip", "pump_bottle"),
     "box": ("toolbox", "treasure_chest", "jack_in_the_box", "bread_bin", "lidded_box", "music_box"),
     "bucket": ("plain_bucket",),
@@ -68,6 +69,7 @@ ALIKE: Mapping[str, tuple[str, ...]] = {
     "gimbal": ("camera_on_tripod",),
     "globe": ("plain_globe",),
     "hand_pump": ("floor_pump",),
+    "humanoid": ("articulated_doll",),
     "iv_stand": ("drip_stand",),
     "kettle": ("plain_kettle",),
     "kick_scooter": ("scooter",),

@@ -1,12 +1,12 @@
 """Convex pieces cut back until the motion is free: what one joint moves never meets what it leaves behind.
 
-Every joint is swept over its range from rest, the others at rest. Two pieces are apart over a step of the sweep if a
-face plane of one of them, or a plane across an axis of the joint's frame, has the other one on its far side at both
-ends of the step; the arc between them is counted by its height over the chord. That is a statement about the whole
-step, so nothing slips through between two samples. Where no plane is found, the piece that loses less of its link is
-cut: by one plane if that leaves nearly all of it, else into the convex rest around the swept obstacle. What is lost is
-how far points on the link's surface are then from its pieces, because these also fill hollows, where nothing is lost;
-volume counts where the surface does not decide.
+Every joint is swept over its range from rest, with those that follow it; the others are at rest. Two pieces are apart
+over a step of the sweep if a face plane of one of them, or a plane across an axis of the joint's frame, has the other
+one on its far side at both ends of the step; the arc between them is counted by its height over the chord. That is a
+statement about the whole step, so nothing slips through between two samples. Where no plane is found, the piece that
+loses less of its link is cut: by one plane if that leaves nearly all of it, else into the convex rest around the swept
+obstacle. What is lost is how far points on the link's surface are then from its pieces, because these also fill
+hollows, where nothing is lost; volume counts where the surface does not decide.
 """
 
 from __future__ import annotations
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
+    Motions = tuple[FloatArray, FloatArray]
+    """Rotations (n, 3, 3) and translations (n, 3)."""
     FreeEnd = Callable[[int, int, int, float], float]
     """Value up to which two bodies may be kept apart on one side of a sweep [rad or m]: sweep, body, body, its sign."""
 
@@ -60,10 +62,14 @@ _CACHED = 200_000
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SweptJoint:
-    """The motion of one joint from rest, others at rest, in the world frame."""
+    """The motion of one joint from rest, with its followers, others at rest, in the world frame."""
 
     moved: frozenset[int]
     """Bodies that it moves."""
+    against: frozenset[int] | None = None
+    """Bodies that it moves them against; None: all others."""
+    followed: Callable[[FloatArray], Motions] | None = None
+    """How it moves them against these at values (n,), where other joints follow; None: it turns or slides them."""
     turns: bool
     axis: FloatArray
     """Unit direction, shape (3,)."""
@@ -74,8 +80,10 @@ class SweptJoint:
     upper: float
     """[rad or m], at least 0."""
 
-    def motions(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def motions(self, values: FloatArray) -> Motions:
         """Rotations (n, 3, 3) and translations (n, 3) of what moves, at values (n,) [rad or m]."""
+        if self.followed is not None:
+            return self.followed(values)
         if not self.turns:
             return np.broadcast_to(np.eye(3), (len(values), 3, 3)), values[:, None] * self.axis
         rotations = rotation_about(self.axis, values)
@@ -251,7 +259,8 @@ class _Clearing:
         self._alive, self._volumes, self._extents, self._thinnest = alive, volumes, extents, thinnest
         self._free_end, self._clearance = cache(free_end), clearance
         self._moving = [item for body in sorted(sweep.moved) for item in alive[body]]
-        self._resting = [item for body, group in enumerate(alive) if body not in sweep.moved for item in group]
+        against = frozenset(range(len(alive))) - sweep.moved if sweep.against is None else sweep.against
+        self._resting = [item for body in sorted(against) for item in alive[body]]
         self._path = _Path(sweep, self._moving, clearance)
         self._rest_of: dict[_Polytope, list[_Polytope]] = {}
 
@@ -357,14 +366,15 @@ class _Path:
     def __init__(self, sweep: SweptJoint, moving: Sequence[_Polytope], clearance: float) -> None:
         """Choose steps whose arcs rise over their chords by at most a third of the clearance, and one at rest."""
         self._sweep, self._clearance = sweep, clearance
-        count = _LEAST_STEPS
-        if sweep.turns:
+        count = _LEAST_STEPS if sweep.followed is None else _MOST_STEPS
+        if sweep.turns and sweep.followed is None:
             radius = max((sweep.radius(item.vertices) for item in moving), default=0.0)
             step = np.sqrt(8.0 * clearance / 3.0 / max(radius, 1e-9))
             count = int(min(max(np.ceil((sweep.upper - sweep.lower) / step), _LEAST_STEPS), _MOST_STEPS))
         below = int(np.ceil(count * -sweep.lower / max(sweep.upper - sweep.lower, 1e-300)))
         down = np.linspace(sweep.lower, 0.0, below + 1)
         self._values = np.concatenate([down, np.linspace(0.0, sweep.upper, max(count - below, 0) + 1)])
+        self._down = len(down)
         self._rotations, self._translations = sweep.motions(self._values)
         self._arc = 1.0 - np.cos(0.5 * np.diff(self._values).max()) if sweep.turns else 0.0
         self._across = np.concatenate([np.eye(3), sweep.axis[None], -np.eye(3), -sweep.axis[None]])
@@ -467,8 +477,12 @@ class _Path:
         return self._tracks[key]
 
     def _rise(self, piece: _Polytope) -> float:
-        """How far the arcs of a piece rise over their chords [m]."""
-        return self._arc * self._sweep.radius(piece.vertices)
+        """How far the arcs of a piece rise over their chords [m]; by second differences where it is no turn."""
+        if self._sweep.followed is None:
+            return self._arc * self._sweep.radius(piece.vertices)
+        track = self._track(piece, backwards=piece.body not in self._sweep.moved)
+        bends = [np.diff(part, n=2, axis=0) for part in (track[: self._down], track[self._down :])]
+        return max(float(np.linalg.norm(bend, axis=2).max(initial=0.0)) for bend in bends) / 8.0
 
 
 def _support(normals: FloatArray, points: FloatArray) -> FloatArray:

@@ -2,8 +2,8 @@
 
 Engines see each mesh as its convex hull, and MuJoCo does not filter contacts with a root that it welds to the world: a
 drawer in a hollow cabinet would start inside of a solid block. So every surface is taken apart into convex pieces
-(`decomposed`), and these are cut back (`carved`) until no joint, swept alone over its range, brings what it moves
-nearer to anything else than the clearance. Contacts stay switched on for every pair.
+(`decomposed`), and these are cut back (`carved`) until no joint, swept over its range with those that follow it, brings
+what it moves nearer to anything else than the clearance. Contacts stay switched on for every pair.
 """
 
 from __future__ import annotations
@@ -11,6 +11,8 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass, replace
+from functools import cache, partial
+from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,20 +31,20 @@ from kinematify.geometry.scene import read_scene, visible_shapes
 from kinematify.geometry.sweep import Sweeper
 from kinematify.model.collision_pieces import decomposed, fewer_pieces, shapes_of
 from kinematify.model.urdf import MESH_FOLDER
-from kinematify.robot.joint_type import JointType
+from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import LinkMesh, Shape, forward_kinematics, joint_ends, rest_configuration
 from kinematify.robot.transforms import rotation_from_x
 from kinematify.robot.vectors import crossed, lengths_of
 from kinematify.robot.weld import snapped
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from kinematify.config import CollisionConfig
     from kinematify.config.validation import GeometrySettings, PrepareSettings
     from kinematify.model.collision_pieces import Pieces
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.robot import Joint, Link, Robot
+    from kinematify.robot.robot import Link, Robot
 
 
 _THINNEST = 1e-4
@@ -119,9 +121,9 @@ def fit_collision(
 ) -> FittedCollision:
     """Replace the collision geometry of links, or their visual geometry, by boxes, cylinders and convex pieces.
 
-    Joints are swept one by one, over their limits and a little beyond, because engines' limits are soft; the others
-    rest. What no sweep meets stays: primitives are the same ones. Where the surfaces themselves block a motion, the
-    pieces do too.
+    Joints are swept one by one, over their limits and a little beyond, because engines' limits are soft; those that
+    follow one move with it, the others rest. What no sweep meets stays: primitives are the same ones. Where the
+    surfaces themselves block a motion, the pieces do too.
 
     Args:
         robot: The robot; a link may have any number of shapes.
@@ -143,11 +145,12 @@ def fit_collision(
         for i, link in enumerate(robot.links)
     ]
     clearance = min(config.clearance, config.clearance_share * _size(bodies))
-    exact = _ExactSweeps(robot, geometry, config.forced_share)
+    sweeps = _sweeps(robot, poses, config)
+    exact = _ExactSweeps(robot, geometry, config.forced_share, [joint for joint, _ in sweeps])
     result = carved(
         bodies,
         [np.empty((0, 3)) if i in kept else _marks(link, poses[link.name]) for i, link in enumerate(robot.links)],
-        _sweeps(robot, poses, config),
+        [sweep for _, sweep in sweeps],
         exact.free_end,
         clearance=clearance,
         thinnest=config.thinnest_share * clearance,
@@ -170,12 +173,11 @@ def fit_collision(
             outside = pieces[link.name].gap + max(beyond for _, beyond in fitted)
             moved = _thinning(given.links[index])
             facts.append(_fitted(link, shapes, outside=outside + moved, lost=result.lost[index], thinned=moved))
-    joints = _moving(robot)
     return FittedCollision(
         robot=replace(given, links=tuple(links)),
         links=tuple(facts),
         clearance=clearance,
-        jams=tuple((joints[k].name, robot.links[a].name, robot.links[b].name) for k, a, b in result.jams),
+        jams=tuple((sweeps[k][0], robot.links[a].name, robot.links[b].name) for k, a, b in result.jams),
         blocked=tuple(exact.blocked),
     )
 
@@ -226,8 +228,8 @@ def _convex(mesh: LinkMesh) -> bool:
 class _ExactSweeps:
     """Where the visible surfaces of two links let a joint move, asked pair by pair."""
 
-    def __init__(self, robot: Robot, settings: GeometrySettings, forced_share: float) -> None:
-        self._robot, self._joints = robot, _moving(robot)
+    def __init__(self, robot: Robot, settings: GeometrySettings, forced_share: float, joints: Sequence[str]) -> None:
+        self._robot, self._joints = robot, joints
         self._scene = read_scene(robot, settings, visible_shapes)
         self._forced = forced_share * self._scene.size
         self._sweeper = Sweeper.of(self._scene)
@@ -238,11 +240,8 @@ class _ExactSweeps:
 
     def free_end(self, sweep: int, first: int, second: int, sign: float) -> float:
         """Value from rest up to which a joint does not bring two links into each other on one side [rad or m]."""
-        joint = self._joints[sweep].name
         a, b = sorted(self._body_of[self._robot.links[link].name] for link in (first, second))
-        if joint not in self._leader_of:  # followers are swept for the clearance alone: they never move by themselves
-            return sign * np.inf
-        key = (self._leader_of[joint], a, b, sign)
+        key = (self._leader_of[self._joints[sweep]], a, b, sign)
         if key not in self._asked:
             self._asked[key] = self._end(*key)
         return self._asked[key]
@@ -257,35 +256,67 @@ class _ExactSweeps:
         return meeting.first - travel.rest
 
 
-def _moving(robot: Robot) -> list[Joint]:
-    return [joint for joint in robot.joints if joint.kind is not JointType.FIXED]
-
-
-def _sweeps(robot: Robot, poses: Mapping[str, FloatArray], config: CollisionConfig) -> list[SweptJoint]:
-    """One sweep for every joint that moves, relative to where it rests."""
-    joints = _moving(robot)
-    index = {link.name: number for number, link in enumerate(robot.links)}
-    rest = rest_configuration(robot)
+def _sweeps(robot: Robot, poses: Mapping[str, FloatArray], config: CollisionConfig) -> list[tuple[str, SweptJoint]]:
+    """Joints that lead with their sweeps from where they rest: one for each two groups that a joint moves apart."""
+    mechanism = LeaderMechanism(robot=robot)
     found = []
-    for joint, low, high in zip(joints, *joint_ends(joints), strict=True):
+    leaders = robot.leaders
+    for column, (joint, low, high) in enumerate(zip(leaders, *joint_ends(leaders), strict=True)):
         slack = config.turn_slack if joint.kind.turns else config.slide_slack
-        T_world_child = poses[joint.child]
-        found.append(
-            SweptJoint(
-                moved=frozenset(index[name] for name in _carried(robot, joint.child)),
+        moving = {name for name, lead in zip(mechanism.joints, mechanism.leads[:, column], strict=True) if lead}
+        together = _MovedTogether(robot, joint.name, moving)
+        rest, T_world_child = together.rest[joint.name], poses[joint.child]
+        for resting, moved in combinations(together.groups, 2):
+            sweep = SweptJoint(
+                moved=together.groups[moved],
+                against=together.groups[resting],
+                followed=partial(together.motions, resting, moved) if moving != {joint.name} else None,
                 turns=joint.kind.turns,
                 axis=T_world_child[:3, :3] @ joint.axis,
                 pivot=T_world_child[:3, 3],
-                lower=min(float(low) - rest[joint.name], 0.0) - slack,
-                upper=max(float(high) - rest[joint.name], 0.0) + slack,
+                lower=min(float(low) - rest, 0.0) - slack,
+                upper=max(float(high) - rest, 0.0) + slack,
             )
-        )
+            found.append((joint.name, sweep))
     return found
 
 
-def _carried(robot: Robot, link: str) -> list[str]:
-    """A link and all that hangs on it."""
-    return [link, *(name for joint in robot.joints_below[link] for name in _carried(robot, joint.child))]
+class _MovedTogether:
+    """Links in groups that a leader and its followers do not move against each other."""
+
+    def __init__(self, robot: Robot, leader: str, moving: Collection[str]) -> None:
+        self._robot, self._leader, self.rest = robot, leader, rest_configuration(robot)
+        index = {link.name: number for number, link in enumerate(robot.links)}
+        way: dict[str, frozenset[str]] = {robot.root: frozenset()}
+        for joint in robot.joints_downward:
+            way[joint.child] = way[joint.parent] | ({joint.name} & set(moving))
+        self.groups: dict[frozenset[str], frozenset[int]] = {}
+        """Joints that move -> links, those nearest the root first."""
+        for link, joints in way.items():
+            self.groups[joints] = self.groups.get(joints, frozenset()) | {index[link]}
+        self._link = {joints: min(links) for joints, links in self.groups.items()}
+        self._displaced = cache(self._displacements)
+
+    def motions(
+        self, resting: frozenset[str], moved: frozenset[str], values: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """How a group moves as another one sees it, both begun at rest in the world frame; values from rest (n,)."""
+        displaced = self._displaced(tuple(values.tolist()))
+        T = np.linalg.inv(displaced[self._link[resting]]) @ displaced[self._link[moved]]
+        return T[:, :3, :3], T[:, :3, 3]
+
+    def _displacements(self, values: tuple[float, ...]) -> dict[int, FloatArray]:
+        """From where it rests, for one link of every group, shape (n, 4, 4)."""
+        rest = forward_kinematics(self._robot, self.rest)
+        poses = [
+            forward_kinematics(self._robot, {**self.rest, self._leader: self.rest[self._leader] + value})
+            for value in values
+        ]
+        names = {number: self._robot.links[number].name for number in self._link.values()}
+        return {
+            number: np.stack([pose[name] for pose in poses]) @ np.linalg.inv(rest[name])
+            for number, name in names.items()
+        }
 
 
 def _size(bodies: Sequence[Sequence[ConvexPiece]]) -> float:

@@ -26,7 +26,6 @@ from kinematify.topology.arborescence import tree_with_parents
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.contact.tree import KinematicTree
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import FloatArray
@@ -38,6 +37,7 @@ HINTED = "hinted"
 _NEAR = np.cos(np.radians(30.0))  # a candidate along the named axis: parts are tilted, and people name the nearest
 _SAME = np.cos(np.radians(1.0))  # a candidate along an axis that is given by its numbers
 _THROUGH = 0.005  # of the object's diagonal: a candidate that goes through the point that is given
+_ROUNDED = 1e-4  # a full turn is typed as 6.2832 [rad]
 _HELD = 0.1  # a slide that is stopped within a tenth of the part's length has no way to go
 _FORMS = (
     "Write PART=TYPE, PART:fixed, PART:axis=AXIS, PART:pivot=X,Y,Z, PART:range=LOWER..UPPER, PART:parent=LINK or "
@@ -142,6 +142,19 @@ def _check(hint: Hint) -> None:
             raise _contradiction(f"{hint.part} cannot {'' if hint.kind is None else f'be {hint.kind} and '}have {said}")
     if hint.twin is not None and hint.about_joint:
         raise _contradiction(f"{hint.part} takes its joint from {hint.twin} and cannot have one of its own")
+    if angle or hint.kind is JointType.REVOLUTE:
+        _check_turn(hint)
+
+
+def _check_turn(hint: Hint) -> None:
+    """Refuse a range of a turn that reaches poses twice."""
+    ends = _ends(hint.limits or "")
+    if ends is not None and float(np.ptp(ends)) > 2.0 * np.pi + _ROUNDED:
+        raise InputError(
+            f"The hint {hint.part}:range={hint.limits} spans {np.degrees(np.ptp(ends)):.0f} deg. A limited turn has "
+            f"360 deg at most, since beyond that it reaches every pose twice. Write {hint.part}=continuous for what "
+            "turns without end, or give a unit of length for what slides."
+        )
 
 
 def _check_circles(hints: Mapping[str, Hint], name: str, said: str) -> None:
@@ -242,22 +255,18 @@ def with_hints(inference: Inference, hints: Sequence[Hint]) -> Inference:
         InputError: A hint is about the base link, which has no joint above it.
     """
     names = list(inference.assembly.names)
+    base = names[inference.trees[0].root]
+    if any(base in (hint.part, hint.twin) for hint in hints):
+        raise _about_the_base(base)
     parents = {names.index(hint.part): names.index(hint.parent) for hint in hints if hint.parent is not None}
-    for child in parents:
-        if inference.trees[0].parents[child] < 0:
-            raise _about_the_base(names[child])
     if parents:
         inference = _with_parents(inference, parents)
     maker = CandidateJoints(inference.assembly, inference.graph, inference.bearings, inference.config)
     joints, warnings = list(inference.joints), list(inference.warnings)
     place = {names[joint.child]: k for k, joint in enumerate(joints)}
     for hint in _models_first(hints):
-        if hint.part not in place:
-            raise _about_the_base(hint.part)
         before = joints[place[hint.part]]
         if hint.twin is not None:
-            if hint.twin not in place:
-                raise _about_the_base(hint.twin)
             joints[place[hint.part]] = _as_twin(inference, joints[place[hint.twin]], before)
         elif hint.about_joint:
             joints[place[hint.part]] = _hinted(inference, maker, before, hint)
@@ -310,6 +319,8 @@ def _limited(found: JointEstimate, hint: Hint, before: JointEstimate) -> JointEs
     """The joint with the limits of a hint, which are along the axis that was named, or had before."""
     ends = _ends(hint.limits or "")
     assert ends is not None
+    if found.kind.turns:
+        _check_turn(hint)
     named = before.axis if hint.direction is None else hint.direction
     lower, upper = ends if float(found.axis @ named) >= 0.0 else -ends[::-1]
     kind = JointType.REVOLUTE if found.kind is JointType.CONTINUOUS else found.kind
@@ -322,7 +333,10 @@ def _certain(joint: JointEstimate) -> JointEstimate:
 
 def _best(joint: JointEstimate, hint: Hint, reach: float) -> JointCandidate:
     """The best candidate that agrees with a hint, its pivot to within reach [m]; else the joint that it asks for."""
-    every = (*filter(None, (_of_estimate(joint),)), *joint.alternatives)
+    every = joint.alternatives
+    if joint.kind is not JointType.FIXED:
+        own = JointType.REVOLUTE if joint.kind.turns else joint.kind
+        every = (JointCandidate(kind=own, axis=joint.axis, pivot=joint.pivot, score=0.0, source="chosen"), *every)
     turns, pivot = hint.turns, None if hint.pivot is None else _vector(hint.pivot)
     for candidate in every:
         if (turns is None or candidate.kind.turns == turns) and hint.agrees(candidate.axis):
@@ -340,13 +354,6 @@ def _direction(every: Sequence[JointCandidate], hint: Hint, joint: JointEstimate
     if named is None:
         return joint.axis
     return next((item.axis for item in every if hint.agrees(item.axis)), named)
-
-
-def _of_estimate(joint: JointEstimate) -> JointCandidate | None:
-    if joint.kind is JointType.FIXED:
-        return None
-    kind = JointType.REVOLUTE if joint.kind.turns else joint.kind
-    return JointCandidate(kind=kind, axis=joint.axis, pivot=joint.pivot, score=0.0, source="chosen")
 
 
 def _objections(joint: JointEstimate, hint: Hint, inference: Inference, before: JointEstimate) -> list[str]:
@@ -379,20 +386,13 @@ def _with_parents(inference: Inference, parents: Mapping[int, int]) -> Inference
         return inference
     assembly, graph, config = inference.assembly, inference.graph, inference.config
     tree = tree_with_parents(tree_reward(assembly, graph, inference.bearings, config), before, parents)
-    known = {(joint.parent, joint.child): joint for joint in inference.joints}
+    known = {(joint.parent, joint.child, before.subtree(joint.child)): joint for joint in inference.joints}
     chosen = with_doubt_of_parents(choose_joints(assembly, graph, tree, inference.bearings, config), tree)
     joints = tuple(
-        known[edge] if _is_as_before(edge, before, tree) else joint
-        for edge, joint in zip(tree.edges(), chosen, strict=True)
+        known.get((*edge, tree.subtree(edge[1])), joint) for edge, joint in zip(tree.edges(), chosen, strict=True)
     )
     old, new = (set(floating_parts(assembly, graph, item)) for item in (before, tree))
     warnings = tuple(warning for warning in inference.warnings if warning not in old - new)
     added = tuple(sorted(new - old - set(warnings)))
     others = tuple(other for other in inference.trees if other.parents != tree.parents)
     return replace(inference, trees=(tree, *others), joints=joints, warnings=(*warnings, *added))
-
-
-def _is_as_before(edge: tuple[int, int], before: KinematicTree, after: KinematicTree) -> bool:
-    """Whether a part has the parent that it had, and carries what it carried."""
-    parent, child = edge
-    return before.parents[child] == parent and before.subtree(child) == after.subtree(child)

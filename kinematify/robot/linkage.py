@@ -211,14 +211,14 @@ class _Chain:
         dead = f"{self.joints[driver]} is at its dead point"
         stops = stops[0] if begin == 0 else dead, stops[1] if end == len(rows) - 1 else dead
         curve = rows[begin : end + 1]
-        turned = abs(float(np.ptp(curve[:, driver]))) > 2.0 * np.pi - 2.0 * _SAME
-        if around and whole and turned:
+        turns = abs(float(np.ptp(curve[:, driver]))) / (2.0 * np.pi)
+        # What is nearly a parallelogram comes back to its begin after two turns: it does not repeat each turn.
+        around = around and whole and abs(turns - 1.0) < _SAME / np.pi
+        if around:
             curve = np.concatenate([curve, curve[:1] + self._whole_turn(curve)])
         if curve[-1, driver] < curve[0, driver]:
             curve, stops = curve[::-1], stops[::-1]
-        around = around and whole and turned
-        if around:
-            stops = ("", "")
+        stops = ("", "") if around else stops
         return replace(empty, driver=self.joints[driver], curve=curve, turns_around=around, stops=stops)
 
     def _whole_turn(self, curve: FloatArray) -> FloatArray:

@@ -59,9 +59,9 @@ class ModelFolder:
         """
         return self._keep(lambda before: hint_of(part, chosen, _kind_of(before, part)))
 
-    def hang(self, part: str, parent: str) -> Kept:
-        """Let a part hang on another one, and write the model; errors as those of `keep`."""
-        return self._keep(lambda _: Hint(part=part, parent=parent))
+    def state(self, hint: Hint) -> Kept:
+        """Follow a hint, and write the model; errors as those of `keep`, and that the hint cannot be followed."""
+        return self._keep(lambda _: hint)
 
     def merge(self, one: str, other: str) -> Kept:
         """Make one part of two, infer again and write the model; errors as those of `keep`."""

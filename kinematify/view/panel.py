@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kinematify.view.record import Shown, Sight
     from kinematify.view.scene import Touch, ViewScene
 
-_AS_WRITTEN = "as in the file"
+_AS_WRITTEN, _OWN = "as in the file", "-"
 _TYPES = {
     "turns": JointType.REVOLUTE,
     "turns without end": JointType.CONTINUOUS,
@@ -54,8 +54,8 @@ class Actions(Protocol):
     def try_candidate(self, joint: str, number: int) -> None:
         """Move a joint as one of its candidates says, 0 for as in the file."""
 
-    def try_parent(self, name: str) -> None:
-        """Write the model with another parent of the chosen joint's part."""
+    def state(self, key: Literal["parent", "twin"], name: str) -> None:
+        """Write the model with another parent of the chosen joint's part, or with the joint of its twin."""
 
     def set_by_hand(self) -> None:
         """Begin to set the chosen joint by hand."""
@@ -154,8 +154,8 @@ class Panel:
         slider.min, slider.max, slider.step = lower, upper, step
         slider.value = float(np.clip(0.0, lower, upper))
 
-    def show_joint(self, joint: Joint, candidates: Sequence[str], parents: Sequence[str]) -> None:
-        """Show what is known of a joint, its candidates in words and what its part could hang on, below the sliders."""
+    def show_joint(self, joint: Joint, candidates: Sequence[str], parents: Sequence[str], twins: Sequence[str]) -> None:
+        """Show a joint, its candidates in words, what its part could hang on and whose joint it could have."""
         self._joint = joint.name
         self._play.visible = True
         self._play.label = f"Play {joint.name}"
@@ -166,6 +166,9 @@ class Panel:
         self._parent.options = tuple(parents) or (joint.parent,)
         self._parent.value = joint.parent if joint.parent in self._parent.options else self._parent.options[0]
         self._parent.visible = self._can_keep and len(parents) > 1
+        self._twin.options = (_OWN, *twins)
+        self._twin.value = _OWN
+        self._twin.visible = self._can_keep and bool(twins)
         self._by_hand.visible = self._can_keep
         self._keep.visible = False
 
@@ -243,7 +246,9 @@ class Panel:
         self._play.on_click(_ignoring_event(actions.play))
         self._options = [_AS_WRITTEN]
         self._parent: Any = gui.add_dropdown("Parent", ("",), visible=False)
-        self._parent.on_update(_ignoring_event(lambda: actions.try_parent(self._parent.value)))
+        self._parent.on_update(_ignoring_event(lambda: actions.state("parent", self._parent.value)))
+        self._twin: Any = gui.add_dropdown("Joint as of", (_OWN,), visible=False)
+        self._twin.on_update(_ignoring_event(lambda: actions.state("twin", self._twin.value)))
         self._choice: Any = gui.add_dropdown("Candidates", (_AS_WRITTEN,), visible=False)
         self._choice.on_update(_ignoring_event(self._tried))
         self._by_hand = gui.add_button(

@@ -82,6 +82,8 @@ class Shown:
     """Where chains of joints close."""
     parents: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """What each part but the base could hang on: the parts that it touches first, then all others."""
+    twins: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Congruent parts with a joint, of each part that has such."""
     rejected: tuple[Group, ...] = ()
     """Pieces of a mesh that was not segmented that were taken for fixed, but may move."""
 
@@ -116,32 +118,14 @@ def shown_with(scene: ViewScene, path: Path) -> Shown:
                 *(_chain(item, scene.robot) for item in record.get("closed_chains", ()) if not item.get("loop")),
             ),
             parents=_possible_parents(record),
+            twins=_twins(record),
             rejected=stated_groups(record, "rejected"),
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise _no_record(path, error) from error
-
-
-def load_alternatives(path: Path) -> dict[tuple[str, str], tuple[JointAlternative, ...]]:
-    """Return the candidates of every joint, best first, keyed by (parent, child) part names; the last one is fixed.
-
-    Args:
-        path: `inference.json` of a model folder.
-
-    Raises:
-        InputError: It cannot be read.
-    """
-    try:
-        return _alternatives_of(json.loads(path.read_text(encoding="utf-8")))
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise _no_record(path, error) from error
-
-
-def _no_record(path: Path, error: Exception) -> InputError:
-    return InputError(
-        f"{path} is no record of an inference ({type(error).__name__}: {error}). Run `kinematify infer` again, or "
-        "view the model from another folder."
-    )
+        raise InputError(
+            f"{path} is no record of an inference ({type(error).__name__}: {error}). Run `kinematify infer` again, or "
+            "view the model from another folder."
+        ) from error
 
 
 def _possible_parents(record: dict[str, Any]) -> dict[str, tuple[str, ...]]:
@@ -151,6 +135,12 @@ def _possible_parents(record: dict[str, Any]) -> dict[str, tuple[str, ...]]:
         child: tuple(sorted((name for name in names if name != child), key=lambda name: {child, name} not in touching))
         for child in (joint["child"] for joint in record["joints"])
     }
+
+
+def _twins(record: dict[str, Any]) -> dict[str, tuple[str, ...]]:
+    moved = {joint["child"] for joint in record["joints"]}
+    groups = [[name for name in cluster if name in moved] for cluster in record.get("clusters", ())]
+    return {name: tuple(twin for twin in group if twin != name) for group in groups for name in group}
 
 
 def _alternatives_of(record: dict[str, Any]) -> dict[tuple[str, str], tuple[JointAlternative, ...]]:

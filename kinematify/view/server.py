@@ -8,12 +8,13 @@ import threading
 import time
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from PIL import Image
 
 from kinematify.errors import KinematifyError
+from kinematify.refinement.hints import Hint
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import quaternion_of, rotation_from_quaternion, rotation_from_x
 from kinematify.view.alternatives import JointAlternative, agreeing, described, distinct
@@ -208,18 +209,20 @@ class ModelViewer:
             self._try(joint, candidates[number - 1] if number else None)
             self._glow()
 
-    def try_parent(self, name: str) -> None:
-        """Write the model with another parent of the chosen joint's part; its joint is inferred again."""
+    def state(self, key: Literal["parent", "twin"], name: str) -> None:
+        """Write the model with another parent of the chosen joint's part, or with the joint of its twin."""
         with self._lock:
             if self._chosen is None:
                 return
             joint = self._scene.robot.joint_by_name[self._chosen]
-            if name == joint.parent or name not in self._shown.parents.get(joint.child, ()):
+            offered = self._shown.parents if key == "parent" else self._shown.twins
+            if (key == "parent" and name == joint.parent) or name not in offered.get(joint.child, ()):
                 return
             self._end_by_hand()
         assert self._open_folder is not None
         self._folder = self._folder or self._open_folder()
-        self._written(partial(self._folder.hang, joint.child, name))
+        hint = Hint(part=joint.child, parent=name) if key == "parent" else Hint(part=joint.child, twin=name)
+        self._written(partial(self._folder.state, hint))
 
     def _try(self, joint: str, alternative: JointAlternative | None) -> None:
         item = self._scene.robot.joint_by_name[joint]
@@ -361,7 +364,9 @@ class ModelViewer:
         joint = self._scene.robot.joint_by_name[name]
         bounds = self._scene.bounds.get(self._scene.group_of(joint.child), np.zeros((2, 3)))
         said = [described(item, bounds) for item in self._candidates(joint)]
-        self._panel.show_joint(joint, said, self._shown.parents.get(joint.child, ()))
+        self._panel.show_joint(
+            joint, said, *(of.get(joint.child, ()) for of in (self._shown.parents, self._shown.twins))
+        )
         self._panel.describe(joint, self._probability(joint))
 
     def _probability(self, joint: Joint) -> float | None:

@@ -49,6 +49,8 @@ def test_hints_are_read_and_those_on_one_part_are_taken_together() -> None:
         (["door_1:pivot=1,2"], "three numbers"),
         (["door_1:range=0.1..1.5"], "zero, which is the pose of the input"),
         (["door_1:range=1"], "two numbers"),
+        (["door_1:range=-200..200deg"], "spans 400 deg"),
+        (["lid=revolute", "lid:range=0..7"], "spans 401 deg"),
         (["lid=fixed", "lid:range=0..1"], "cannot be fixed and have limits"),
         (["door_1"], "PART=TYPE"),
         (["=prismatic"], "PART=TYPE"),
@@ -201,6 +203,8 @@ def test_a_hint_against_the_geometry_is_followed_and_said() -> None:
     hinted = with_hints(inference, [Hint(part=name, kind=JointType.PRISMATIC, axis="x")])
     assert abs(joint_of(hinted, name).axis[0]) > 0.9
     assert any(name in warning and "slides by" in warning for warning in hinted.warnings)
+    with pytest.raises(InputError, match="every pose twice"):
+        with_hints(inferred("edge_door"), [Hint(part=moving(inferred("edge_door")), limits="-7..0")])
 
 
 def test_the_base_has_no_joint_to_be_hinted() -> None:

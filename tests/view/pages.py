@@ -5,16 +5,27 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from kinematify.robot.read import read_robot
+from kinematify.view.record import shown_with
+from kinematify.view.scene import ViewScene
+
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
     from playwright.sync_api import Page
 
+    from kinematify.view.alternatives import JointAlternative
     from kinematify.view.window import Window
+
 
 PATIENCE = 180_000
 """Without a graphics card [ms]."""
+
+
+def candidates_in(folder: Path) -> Mapping[tuple[str, str], tuple[JointAlternative, ...]]:
+    """What the page offers for each joint of a model folder, by parent and child."""
+    return shown_with(ViewScene(read_robot(folder / "model.urdf")), folder / "inference.json").alternatives
 
 
 @contextmanager

@@ -12,13 +12,15 @@ from kinematify.errors import InputError
 from kinematify.pipeline.infer import infer
 from kinematify.pipeline.record import write_inference
 from kinematify.refinement.folder import read_record
+from kinematify.refinement.hints import Hint
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.view.alternatives import JointAlternative
 from kinematify.view.keep import ModelFolder
-from kinematify.view.record import load_alternatives, shown_with
+from kinematify.view.record import shown_with
 from kinematify.view.scene import ViewScene
 from tests.objects import BUILDERS
+from tests.view.pages import candidates_in
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,7 +35,7 @@ def folder(tmp_path: Path) -> Path:
 def test_keeping_writes_the_joint_the_hint_and_the_command_and_can_be_taken_back(folder: Path) -> None:
     (joint,) = read_robot(folder / "model.urdf").joints
     assert joint.kind is JointType.REVOLUTE
-    choices = load_alternatives(folder / "inference.json")[joint.parent, joint.child]
+    choices = candidates_in(folder)[joint.parent, joint.child]
     slide = next(item for item in choices if item.kind is JointType.PRISMATIC)
     kept = ModelFolder(folder)
     reported = kept.keep(joint.child, slide)
@@ -53,7 +55,7 @@ def test_keeping_writes_the_joint_the_hint_and_the_command_and_can_be_taken_back
 
 def test_fixed_is_a_choice_and_another_viewer_goes_on_from_it(folder: Path) -> None:
     (joint,) = read_robot(folder / "model.urdf").joints
-    *_, fixed = load_alternatives(folder / "inference.json")[joint.parent, joint.child]
+    *_, fixed = candidates_in(folder)[joint.parent, joint.child]
     ModelFolder(folder).keep(joint.child, fixed)
     assert read_robot(folder / "model.urdf").joints[0].kind is JointType.FIXED
     turn = replace(fixed, kind=JointType.REVOLUTE, pivot=joint.T_parent_child[:3, 3])
@@ -67,7 +69,7 @@ def test_a_model_that_was_changed_by_hand_is_left_as_it_is(folder: Path) -> None
     path.write_text(path.read_text().replace("<robot", "<!-- mine --><robot", 1))
     changed = path.read_bytes()
     (joint,) = read_robot(path).joints
-    *_, fixed = load_alternatives(folder / "inference.json")[joint.parent, joint.child]
+    *_, fixed = candidates_in(folder)[joint.parent, joint.child]
     with pytest.raises(InputError, match="was changed"):
         ModelFolder(folder).keep(joint.child, fixed)
     assert path.read_bytes() == changed
@@ -99,9 +101,23 @@ def test_another_parent_is_written_as_a_hint_and_can_be_taken_back(tmp_path: Pat
     shown = shown_with(ViewScene(read_robot(folder / "model.urdf")), folder / "inference.json")
     assert other in shown.parents["lid"]
     kept = ModelFolder(folder)
-    reported = kept.hang("lid", other)
+    reported = kept.state(Hint(part="lid", parent=other))
     assert reported.hints == (f"lid:parent={other}",)
     (joint,) = (joint for joint in read_robot(folder / "model.urdf").joints if joint.child == "lid")
     assert joint.parent == other
     kept.undo()
     assert read_record(folder)["trees"][0]["parents"]["lid"] == lid["parent"]
+
+
+def test_a_part_takes_the_joint_of_its_twin(tmp_path: Path) -> None:
+    folder = tmp_path / "model"
+    write_inference(infer(BUILDERS["torso"]().assembly), folder, preview=False)
+    shown = shown_with(ViewScene(read_robot(folder / "model.urdf")), folder / "inference.json")
+    assert shown.twins["right_upper_arm"] == ("left_upper_arm",)
+    assert all(part not in twins for part, twins in shown.twins.items())
+    kept = ModelFolder(folder)
+    kept.state(Hint(part="left_upper_arm", limits="-0.1..1.2"))
+    reported = kept.state(Hint(part="right_upper_arm", twin=shown.twins["right_upper_arm"][0]))
+    assert reported.hints == ("right_upper_arm:twin=left_upper_arm",)
+    ranges = {joint.child: (joint.lower, joint.upper) for joint in read_robot(folder / "model.urdf").joints}
+    assert ranges["right_upper_arm"] == pytest.approx(ranges["left_upper_arm"])

@@ -11,8 +11,8 @@ import pytest
 from kinematify.cli.app import run
 from kinematify.errors import InputError
 from kinematify.view.keep import ModelFolder
-from kinematify.view.record import load_alternatives
 from tests.one_mesh import write_bin_with_lid
+from tests.view.pages import candidates_in
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -41,14 +41,14 @@ def test_a_part_is_split_its_pieces_are_merged_and_the_command_does_the_same(fol
     model.split("piece_005")
     lid, knob = frozenset({"piece_005"}), frozenset({"piece_006"})
     assert {lid, knob} < pieces_of(folder)
-    assert {child for _, child in load_alternatives(folder / "inference.json")} == {"piece_005", "piece_006"}
+    assert {child for _, child in candidates_in(folder)} == {"piece_005", "piece_006"}
     reported = ModelFolder(folder).merge("piece_005", "piece_006")
     assert pieces_of(folder) == before
     command = [*shlex.split(reported.command)[1:], "--no-preview", "--no-validation"]
     assert run(command) == 0
     assert pieces_of(folder) == before
     with pytest.raises(InputError, match="another one remains"):
-        ModelFolder(folder).merge(*{part for pair in load_alternatives(folder / "inference.json") for part in pair})
+        ModelFolder(folder).merge(*{part for pair in candidates_in(folder) for part in pair})
 
 
 def test_pieces_that_were_taken_for_fixed_become_a_part_and_that_can_be_undone(folder: Path) -> None:

@@ -21,9 +21,9 @@ from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.view.alternatives import JointAlternative, agreeing, described, distinct
 from kinematify.view.drawn import glb_of
-from kinematify.view.record import load_alternatives
 from kinematify.view.scene import ViewScene
 from tests.colored_objects import make_object, unlike
+from tests.view.pages import candidates_in
 
 _URDF = """<robot name="door">
 <link name="frame"><collision><geometry><box size="1 0.1 2"/></geometry></collision></link>
@@ -92,11 +92,12 @@ def test_glyph_shows_the_range(scene: ViewScene) -> None:
     assert angle == pytest.approx(2.0, abs=1e-6)
 
 
+@pytest.mark.usefixtures("urdf")
 def test_alternatives_of_a_record(tmp_path: Path) -> None:
     candidate = {"type": "revolute", "axis": [0, 0, 1], "pivot": [1, 2, 3], "score": 0.5, "source": "panel"}
     record = {"joints": [{"parent": "frame", "child": "door", "candidates": [candidate]}]}
     (tmp_path / "inference.json").write_text(json.dumps(record))
-    found, fixed = load_alternatives(tmp_path / "inference.json")["frame", "door"]
+    found, fixed = candidates_in(tmp_path)["frame", "door"]
     assert (found.kind, found.pivot.tolist()) == (JointType.REVOLUTE, [1.0, 2.0, 3.0])
     assert fixed.kind is JointType.FIXED
 

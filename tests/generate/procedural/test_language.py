@@ -10,6 +10,7 @@ import pytest
 from benchmarks.expectations import SETS, broken_expectations, load_sentences
 from benchmarks.studies.sentences import RIGHT, WRONG, outcome
 from kinematify.errors import InputError
+from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.parse import head_of
@@ -54,6 +55,8 @@ def test_what_is_built_instead_counts_as_wrong():
     made = build(FAMILIES["cabinet"], {"doors": 2, "drawers": 0})
     expected = {"text": "", "object": ["fridge"], "moving": {"door": 3}, "size": {"width": 0.5}, "side": "right"}
     assert len(broken_expectations(expected, made, made)) == 4
+    variant = build(known_families()["slab_cabinet"], {})
+    assert broken_expectations({"text": "", "family": "cabinet"}, variant, variant) == ["built is a slab_cabinet"]
     assert broken_expectations({"text": "", "refuse": ["doors"]}, made, made)
 
 
