@@ -61,8 +61,8 @@ pieces_option = click.option(
     type=click.Choice(["auto", "group", "cut", "keep"]),
     default="auto",
     show_default=True,
-    help="How parts come about. auto: pieces of one mesh are grouped into rigid parts, other files have a part per node "
-    "or group; group: these are split and grouped too; cut: after cuts where surfaces fold inwards; keep: piece by piece.",
+    help="How parts come about. auto: pieces of one mesh are grouped into rigid parts, other files have a part per "
+    "node or group; group: these are grouped too; cut: after cuts where surfaces fold inwards; keep: all pieces.",
 )
 
 
