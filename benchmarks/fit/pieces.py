@@ -342,10 +342,8 @@ def main(folders: tuple[Path, ...], out: Path, rounds: int, most: int, cache: Pa
     sources = [*real, *generated_sources(rounds, 0)]
     examples = [example for source in sources if (example := _kept_example(source, cache)) is not None]
     blocks = write_all(examples, out)
-    commit = git_commit()[0]
-    made = (
-        f"- date: {datetime.datetime.now(tz=datetime.UTC).date().isoformat()}, commit {commit}, {len(examples)} objects"
-    )
+    today = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
+    made = f"- date: {today}, commit {git_commit()[0]}, {len(examples)} objects"
     text = "\n\n".join(["# Which pieces are one moving part", made, *blocks]) + "\n"
     (out / "grouping.md").write_text(text, encoding="utf-8")
     click.echo(text)

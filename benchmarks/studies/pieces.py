@@ -5,7 +5,8 @@ what is fixed to it, is matched with the true part of the highest IoU of their t
 S2O). *Parts* counts matches alone; M asks for the right type as well (continuous counts as revolute), MA for the axis
 within 5 deg, MAO for the line of a turning joint within 10 % of the part's diagonal. All are F1: 2 * right / (true +
 predicted). *Whole* objects have every moving part with MA and no other. PartNet objects never enter weights that ship,
-and with --weights the category of every object is held out of the weights that group its pieces.
+and with --weights the category of every object is held out of the weights that group its pieces. With --nodes the
+object is a GLB with a node per part, or per link, which has the name of its link; --pieces group regroups it.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from __future__ import annotations
 import json
 import tempfile
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -28,6 +29,7 @@ from benchmarks.study import Options, Study, explained
 from kinematify.assembly.erase import erase
 from kinematify.assembly.load import load_assembly
 from kinematify.assembly.part import Part
+from kinematify.assembly.pieces import baked
 from kinematify.config import load_config
 from kinematify.errors import KinematifyError
 from kinematify.evaluation.datasets import bench_folder, find_objects
@@ -37,6 +39,7 @@ from kinematify.grouping.groups import group_pieces
 from kinematify.pipeline.infer import infer
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
+from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -63,7 +66,8 @@ class PiecesOptions(Options):
     )
     most: int = Field(1000, ge=1, description="Objects of a set; of more, evenly drawn ones.")
     weights: str | None = Field(None, description="Folder of held-out weights that `benchmarks.fit.pieces` wrote.")
-    pieces: Literal["auto", "keep"] = Field("auto", description="keep: every piece is a part, as before grouping.")
+    pieces: Literal["auto", "keep", "group"] = Field("auto", description="As `infer` takes it.")
+    nodes: Literal["none", "part", "link"] = Field("none", description="A node for each, in place of one mesh.")
     seconds: float = Field(240.0, gt=0.0, description="Wall time for one object.")
 
 
@@ -75,6 +79,7 @@ class MergedObject:
     group: str
     weights: str | None
     pieces: str
+    nodes: str
 
 
 def measure(options: PiecesOptions, work: Work) -> Measured:
@@ -87,7 +92,7 @@ def measure(options: PiecesOptions, work: Work) -> Measured:
         rows = np.linspace(0, len(found) - 1, min(options.most, len(found))).round().astype(int)
         for item in (found[row] for row in rows):
             asked[f"{place.name}/{item.name}"] = MergedObject(
-                item=item, group=place.name, weights=options.weights, pieces=options.pieces
+                item=item, group=place.name, weights=options.weights, pieces=options.pieces, nodes=options.nodes
             )
 
     def failed(name: str, failure: object) -> Record:
@@ -104,18 +109,18 @@ def erased_object(item: BenchObject) -> ErasedModel:
 
 def run_case(case: MergedObject) -> Record:
     """Merge one object, infer it and count what is right."""
-    erased = erased_object(case.item)
+    erased, category = erased_object(case.item), category_of_piece(case.item.category)
     started = time.process_time()
     found, status, pieces = None, "ok", 0
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "object.ply"
-        write_merged(erased, path)
+        path = Path(folder) / ("object.ply" if case.nodes == "none" else "object.glb")
+        write_merged(erased, path) if case.nodes == "none" else write_nodes(case.item, path, case.nodes)
         try:
             config = load_config()
-            given = load_assembly(path, config=config.assembly, pieces=case.pieces)
+            given = load_assembly(path, config=config.assembly, up="z", pieces=case.pieces)
             pieces = len(given.parts)
             if not given.segmented:
-                weights = None if case.weights is None else HeldOut(Path(case.weights)).weights_of(_category(case.item))
+                weights = None if case.weights is None else HeldOut(Path(case.weights)).weights_of(category)
                 found = infer(group_pieces(given, config.grouping, weights), config=config)
             else:
                 found = infer(given, config=config)
@@ -133,15 +138,24 @@ def write_merged(erased: ErasedModel, path: Path) -> None:
     trimesh.Trimesh(vertices, faces, process=False).export(path)
 
 
+def write_nodes(item: BenchObject, path: Path, nodes: str) -> None:
+    """Write a GLB, z up, with a node per rigid part or per link, named after its first link."""
+    robot, scene = read_robot(item.urdf, geometry="shown"), trimesh.Scene()
+    poses = forward_kinematics(robot, rest_configuration(robot))
+    for group in rigid_groups(robot):
+        of_links = [replace(group, links=(link,)) for link in group.links if robot.link_by_name[link].has_geometry]
+        for node in [group] if nodes == "part" and of_links else of_links:
+            mesh = baked(robot, node, poses)
+            shape = trimesh.Trimesh(mesh.vertices.astype(np.float32), mesh.faces, process=False)
+            scene.add_geometry(shape, node_name=mesh.name)
+    path.write_bytes(scene.export(file_type="glb"))  # type: ignore[no-untyped-call]
+
+
 def _facts(case: MergedObject) -> Record:
     facts = json.loads((case.item.urdf.parent / "source.json").read_text(encoding="utf-8"))
     of_partnet = "partnet" in str(facts.get("license", "")).lower()
     group = "PartNet" if of_partnet else case.group
     return {"object": case.item.name, "group": group, "category": case.item.category, "fits": may_be_fitted_to(facts)}
-
-
-def _category(item: BenchObject) -> str:
-    return category_of_piece(item.category)
 
 
 def _counts(erased: ErasedModel, found: Inference | None) -> Record:
@@ -221,16 +235,8 @@ def report(found: Report[Record]) -> list[str]:
     records = found.records
     sets = {**grouped(records, by=lambda record: str(record["group"])), "**all**": list(records)}
     rows = [_row(name, group) for name, group in sets.items()]
-    columns = (
-        "set",
-        "objects",
-        "move",
-        "predicted",
-        "precision",
-        "recall",
-        *(f"F1 {kind}" for kind in _KINDS),
-        "whole",
-    )
+    kinds = tuple(f"F1 {kind}" for kind in _KINDS)
+    columns = ("set", "objects", "move", "predicted", "precision", "recall", *kinds, "whole")
     held_out = found.header.configuration.get("weights") is not None
     seconds = [record["seconds"] for record in records if "seconds" in record]
     return [
@@ -239,7 +245,7 @@ def report(found: Report[Record]) -> list[str]:
             f"Weights of the grouping: {'category held out' if held_out else 'those that ship'}. Precision and recall "
             f"are those of MA. Processor time: median {np.median(seconds):.1f} s, longest {max(seconds):.1f} s."
         ),
-        table((*columns,), rows),
+        table(columns, rows),
         "## Objects",
         table(
             ("object", "set", "pieces", "move", "predicted", *_KINDS, "seconds", "status"),
@@ -258,16 +264,9 @@ def _row(name: str, records: Sequence[Record]) -> tuple[str, ...]:
     true, predicted = (sum(record[key] for record in records) for key in ("true", "predicted"))
     right = {kind: sum(record[kind] for record in records) for kind in _KINDS}
     whole = np.mean([record["whole"] for record in records])
-    return (
-        name,
-        str(len(records)),
-        str(true),
-        str(predicted),
-        f"{right['MA'] / max(predicted, 1):.2f}",
-        f"{right['MA'] / max(true, 1):.2f}",
-        *(f"{2 * right[kind] / max(true + predicted, 1):.2f}" for kind in _KINDS),
-        f"{whole:.0%}",
-    )
+    f1 = (f"{2 * right[kind] / max(true + predicted, 1):.2f}" for kind in _KINDS)
+    of_axes = (f"{right['MA'] / max(count, 1):.2f}" for count in (predicted, true))
+    return (name, str(len(records)), str(true), str(predicted), *of_axes, *f1, f"{whole:.0%}")
 
 
 STUDY = Study(title="Meshes that nobody segmented", options=PiecesOptions, measure=measure, report=report)

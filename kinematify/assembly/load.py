@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.assemble import assemble, check_finite, natural_key
+from kinematify.assembly.assemble import assemble, check_finite, natural_key, part_names
 from kinematify.assembly.pieces import baked, connected_sheets, labelled_parts
 from kinematify.assembly.scenes import one_object
 from kinematify.config import load_config
@@ -101,7 +101,7 @@ def load_assembly(
     written by `erase` is never opened.
 
     A mesh without labels is split into connected pieces, of which several may be one rigid part: the assembly is then
-    not `segmented`, and `kinematify.infer` groups its pieces.
+    not `segmented`, and `kinematify.infer` groups its pieces. Their `original_names` are those of their nodes.
 
     Args:
         path: File or folder.
@@ -250,17 +250,18 @@ def _description(path: Path, reading: _Reading) -> _Given:
 
 
 def _single_file(path: Path, reading: _Reading) -> _Given:
-    meshes = _read(path, reading, empty_ok=False)
+    meshes = tuple(replace(mesh, name=mesh.name or path.stem) for mesh in _read(path, reading, empty_ok=False))
     if reading.labels is not None:
         return _Given(meshes=labelled_parts(merged(meshes, path.stem), reading.labels))
     by_standard = _up_by_standard([path], reading)
     if len(meshes) > 1 and reading.pieces != "group":
-        named = tuple(mesh if mesh.name else replace(mesh, name=path.stem) for mesh in meshes)
-        return _Given(meshes=named, up_by_standard=by_standard)
-    whole = merged(meshes, path.stem) if len(meshes) > 1 else meshes[0]
-    check_finite(whole, str(path))
-    sheets = connected_sheets(whole, reading.config.weld)
-    return _Given(meshes=sheets, segmented=reading.pieces == "keep", up_by_standard=by_standard)
+        return _Given(meshes=meshes, up_by_standard=by_standard)
+    sheets: list[RawMesh] = []
+    for mesh, name in zip(meshes, part_names([mesh.name for mesh in meshes]), strict=True):
+        check_finite(mesh, str(path))
+        of_node = connected_sheets(mesh, reading.config.weld)
+        sheets += [replace(sheet, name=name) for sheet in of_node] if len(meshes) > 1 else of_node
+    return _Given(meshes=tuple(sheets), segmented=reading.pieces == "keep", up_by_standard=by_standard)
 
 
 def _read(path: Path, reading: _Reading, *, empty_ok: bool) -> tuple[RawMesh, ...]:

@@ -77,8 +77,7 @@ def labelled_parts(mesh: RawMesh, labels: Path) -> tuple[RawMesh, ...]:
             "one label per triangle, in the order of the file; polygons count as their triangles."
         )
     distinct, index = np.unique(values, return_inverse=True)
-    prefix = "" if values.dtype.kind == "U" else "part_"
-    return _split(mesh, index, [f"{prefix}{label}" for label in distinct.tolist()])
+    return _split(mesh, index, [f"{'' if values.dtype.kind == 'U' else 'part_'}{label}" for label in distinct.tolist()])
 
 
 def _read_labels(path: Path) -> NDArray[Any]:

@@ -44,7 +44,7 @@ def describe(inference: Inference, out: Path) -> str:
 
 def renamed(assembly: Assembly) -> dict[str, str]:
     """Parts that got another name than in the input, which maps to that."""
-    return {new: old for new, old in assembly.original_names.items() if new != old}
+    return {new: old for new, old in assembly.original_names.items() if new != old and new in assembly.names}
 
 
 def _size(assembly: Assembly) -> str:

@@ -7,6 +7,8 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from kinematify.grouping.lattice import CELLS, PAD
 from kinematify.grouping.measure import FREE, freedom_columns, place_columns
@@ -20,12 +22,31 @@ if TYPE_CHECKING:
 
 _SMALLER = (0.4, 0.8)
 """Neighbours below these shares of a piece's size may move with it."""
+_TOGETHER = 0.9
+"""Share of the pieces that hang together in their nodes, if nodes are parts: 1 in most files, .2 to .9 by material."""
 _POINTS = 160
 """Of a candidate, which are turned."""
 _ANGLES, _NAMES = (12.0, 40.0, 80.0), ("slightly", "half", "wide")
 """Turns about an edge of the box around a candidate [deg]."""
 
 Candidate = frozenset[int]
+
+
+def node_of_pieces(names: Sequence[str], pairs: IntArray) -> IntArray | None:
+    """Node that each piece came from, shape (n,); None where nodes say nothing of the parts.
+
+    So it is if there is one node or one per piece, and if pieces of a node hang apart, as those of one material do.
+
+    Args:
+        names: Of the node of every piece.
+        pairs: Neighbours, shape (m, 2).
+    """
+    node = np.unique(names, return_inverse=True)[1]
+    count, within = int(node.max()) + 1, pairs[node[pairs[:, 0]] == node[pairs[:, 1]]]
+    links = coo_array((np.ones(len(within)), within.T), shape=(len(node), len(node)))
+    joined = connected_components(links, directed=False)[1]
+    together = sum(int(np.bincount(joined[node == k]).max()) for k in range(count))
+    return node if 1 < count < len(node) and together >= _TOGETHER * len(node) else None
 
 
 def propose(measured: MeasuredPieces, odds: FloatArray) -> list[Candidate]:

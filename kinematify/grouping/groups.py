@@ -11,7 +11,7 @@ from scipy.optimize import Bounds, LinearConstraint, milp
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.errors import AssemblyError, InputError
-from kinematify.grouping.candidates import Candidate, measure_candidates, propose
+from kinematify.grouping.candidates import Candidate, measure_candidates, node_of_pieces, propose
 from kinematify.grouping.measure import measure_pieces
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.joints.choice.scorer import MOVING_WEIGHTS, PIECES_WEIGHTS, shipped_scorer
@@ -94,6 +94,8 @@ def _said(group: Group) -> str:
 
 
 _DOUBTFUL = 0.7
+_WHOLE_NODES = 3.0
+"""Log odds by which a set of whole nodes is likelier than one of their pieces (results/grouping.md)."""
 _LIKELY = 0.25
 """Rejected sets that are likelier than this are named."""
 _MOST_NAMED = 8
@@ -130,7 +132,19 @@ def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeigh
     kept = np.flatnonzero(owner == np.arange(len(parts)))
     if len(kept) < 2:
         raise one_part(assembly)
-    candidates, likely = judged([parts[k] for k in kept], weights or shipped_weights())
+    weights = weights or shipped_weights()
+    candidates, odds, pairs = judged([parts[k] for k in kept], weights)
+    node = node_of_pieces([assembly.original_names.get(parts[k].name, "") for k in kept], pairs)
+    if node is not None:
+        node_of_part = node[np.searchsorted(kept, owner)]
+        nodes = joined_pieces(assembly, [np.flatnonzero(node_of_part == k) for k in np.unique(node)])
+        sets, of_nodes, _ = judged(nodes.parts, weights)
+        best = dict(zip(candidates, odds, strict=True))
+        for members, value in zip(sets, of_nodes + _WHOLE_NODES, strict=True):
+            pieces = frozenset(np.flatnonzero(np.isin(node, list(members))).tolist())
+            best[pieces] = max(value, best.get(pieces, value))
+        candidates, odds = list(best), np.array(list(best.values()))
+    likely = 1.0 / (1.0 + np.exp(-odds))
     chosen, rejected = select(candidates, likely, config)
     if not chosen:
         raise one_part(assembly)
@@ -155,16 +169,16 @@ def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeigh
     )
 
 
-def judged(parts: Sequence[Part], weights: PieceWeights) -> tuple[list[Candidate], FloatArray]:
-    """Sets of pieces that may be a moving part, and how likely each is, shape (c,)."""
+def judged(parts: Sequence[Part], weights: PieceWeights) -> tuple[list[Candidate], FloatArray, IntArray]:
+    """Sets of pieces that may be a moving part, the log odds of each, shape (c,), and neighbours, shape (m, 2)."""
     measured = measure_pieces(parts)
     odds = odds_of(weights.pairs, measured.columns, measured.names)
     candidates = propose(measured, odds)
     if not candidates:
-        return [], np.empty(0)
+        return [], np.empty(0), measured.pairs
     areas = np.array([part.area for part in parts])
     columns, names = measure_candidates(measured, odds, areas, candidates)
-    return candidates, 1.0 / (1.0 + np.exp(-odds_of(weights.moving, columns, names)))
+    return candidates, odds_of(weights.moving, columns, names), measured.pairs
 
 
 def odds_of(scorer: Scorer, columns: FloatArray, names: tuple[str, ...]) -> FloatArray:
@@ -274,7 +288,7 @@ def crumb_owners(parts: Sequence[Part], size: float) -> IntArray:
 
 def _group(assembly: Assembly, index: IntArray, moves: float | None) -> Group:
     return Group(
-        name=assembly.names[_largest(assembly, index)], pieces=tuple(assembly.names[k] for k in index), moves=moves
+        name=assembly.names[_main_piece(assembly, index)], pieces=tuple(assembly.names[k] for k in index), moves=moves
     )
 
 
@@ -288,12 +302,14 @@ def one_part(assembly: Assembly) -> AssemblyError:
 
 def joined_pieces(assembly: Assembly, groups: Sequence[IntArray]) -> Assembly:
     """The assembly with each group of pieces as one part, named after its largest piece."""
-    parts = tuple(_joined([assembly.parts[k] for k in group], _largest(assembly, group), assembly) for group in groups)
+    parts = tuple(
+        _joined([assembly.parts[k] for k in group], _main_piece(assembly, group), assembly) for group in groups
+    )
     originals = {}
     for part, group in zip(parts, groups, strict=True):
         if any(assembly.names[k] in assembly.originals for k in group):
             whole = [assembly.originals.get(assembly.names[k], assembly.parts[k]) for k in group]
-            originals[part.name] = _joined(whole, _largest(assembly, group), assembly)
+            originals[part.name] = _joined(whole, _main_piece(assembly, group), assembly)
     into = {assembly.names[k]: part.name for part, group in zip(parts, groups, strict=True) for k in group}
     return replace(
         assembly,
@@ -304,8 +320,11 @@ def joined_pieces(assembly: Assembly, groups: Sequence[IntArray]) -> Assembly:
     )
 
 
-def _largest(assembly: Assembly, group: IntArray) -> int:
-    return int(max(group, key=lambda k: (assembly.parts[k].area, -k)))
+def _main_piece(assembly: Assembly, group: IntArray) -> int:
+    """The largest piece, or the first one of its node: that one has the name of the node."""
+    largest = int(max(group, key=lambda k: (assembly.parts[k].area, -k)))
+    node = assembly.original_names.get(assembly.names[largest])
+    return next((int(k) for k in group if assembly.names[k] == node), largest)
 
 
 def _joined(pieces: Sequence[Part], largest: int, assembly: Assembly) -> Part:

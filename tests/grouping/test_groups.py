@@ -14,6 +14,7 @@ from kinematify.assembly.load import load_assembly
 from kinematify.assembly.pieces import connected_sheets
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
+from kinematify.grouping.candidates import node_of_pieces
 from kinematify.grouping.groups import Group, Grouping, fixed_merged, group_pieces, joined_pieces, read_groups, unsure
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.robot.mesh_file import RawMesh
@@ -80,6 +81,29 @@ def test_a_group_whose_joint_says_fixed_is_merged_into_its_parent_unless_a_user_
     assert unsure(merged, [*doubtful, joints[0]], config) == ()
     stated = replace(merged, groups=tuple(replace(group, moves=None) for group in merged.groups))
     assert unsure(stated, doubtful, config) == (), "a user stated them"
+
+
+def test_nodes_that_hang_together_are_evidence_and_name_the_parts(bin_with_lid: Path, tmp_path: Path) -> None:
+    pieces = trimesh.load_mesh(bin_with_lid).split(only_watertight=False)
+    scene, path = trimesh.Scene(), tmp_path / "nodes.glb"
+    for name, of_node in (("bin", [0, 1, 2, 3, 4]), ("top", [5, 6])):
+        scene.add_geometry(trimesh.util.concatenate([pieces[k] for k in of_node]), node_name=name)
+    scene.export(path)
+    given = load_assembly(path, up="z", pieces="group")
+    assert given.names == ("bin", "bin_2", "bin_3", "bin_4", "bin_5", "top", "top_2")
+    found = group_pieces(given, load_config().grouping)
+    assert {group.name: len(group.pieces) for group in found.groups} == {"bin": 5, "top": 2}
+    assert set(found.assembly.names) == {"bin", "top"}
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [("aabb", [0, 0, 1, 1]), ("abab", None), ("aaaa", None), ("abcd", None)],
+    ids=["parts", "materials", "one node", "a node per piece"],
+)
+def test_nodes_whose_pieces_hang_apart_are_no_evidence(names: str, expected: list[int] | None) -> None:
+    found = node_of_pieces(list(names), np.array([[0, 1], [1, 2], [2, 3]]))
+    assert (None if found is None else found.tolist()) == expected
 
 
 def test_a_groups_file_with_an_unknown_or_repeated_piece_is_refused(bin_with_lid: Path, tmp_path: Path) -> None:
