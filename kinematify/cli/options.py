@@ -42,8 +42,7 @@ def _metres(_context: click.Context, _parameter: click.Parameter, given: str) ->
     try:
         return None if given == "auto" else float(given)
     except ValueError as error:
-        hint = "Give auto, or metres per unit: 0.001 for millimetres."
-        raise click.BadParameter(f"{given!r} is no number. {hint}") from error
+        raise click.BadParameter(f"{given!r} is no number; give auto, or metres per unit: 0.001 for mm.") from error
 
 
 scale_option = click.option(
@@ -54,7 +53,6 @@ scale_option = click.option(
     metavar="auto|NUMBER",
     help="Metres per unit of the input; auto: the unit that a file states, else metres.",
 )
-
 
 pieces_option = click.option(
     "--pieces",

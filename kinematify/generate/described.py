@@ -25,7 +25,7 @@ from kinematify.generate.procedural.blueprint_file import (
 )
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import Parameter, choice, counted, parse_table
+from kinematify.generate.procedural.parameter import Parameter, choice, number, parse_table, read_parameter
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
@@ -67,19 +67,6 @@ class CopyDescription(BaseModel):
         return found
 
 
-class CountDescription(BaseModel):
-    """A number that a sentence may ask for."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    usual: int
-    """If nothing is said."""
-    range: tuple[int, int]
-    """Fewest and most."""
-    words: tuple[str, ...] = ()
-    """How people call what is counted, besides the name of the count."""
-
-
 class Spoken(BaseModel):
     """How an object is asked for."""
 
@@ -100,11 +87,19 @@ class Spoken(BaseModel):
     like: str = ""
     """The kind that it is another way to build; empty where it is a kind of its own."""
 
+    @property
+    def own(self) -> tuple[Parameter, ...]:
+        """Counts of what belongs to its parts."""
+        return tuple(
+            number(f"{word}s", count, (count, count), "Belongs to it.", words=word)
+            for word, count in self.details.items()
+        )
+
 
 class ObjectDescription(Spoken, BlueprintDescription):
     """A blueprint that sentences may ask for; its first part is the base link."""
 
-    counts: dict[str, CountDescription] = Field({})
+    counts: dict[str, dict[str, Any]] = Field({})
     """Word for what repeats -> how often it may; named where a shape or a copy is repeated."""
     copies: tuple[CopyDescription, ...] = ()
     """In this order; a later one may take up what an earlier one made."""
@@ -126,16 +121,7 @@ class ObjectDescription(Spoken, BlueprintDescription):
             name=self.category,
             title=self.title,
             words=self.words,
-            parameters=tuple(
-                counted(f"{word}s", count, (count, count), "Belongs to it.", words=word)
-                for word, count in self.details.items()
-            )
-            + tuple(
-                counted(
-                    f"{word}s", said.usual, said.range, "So many.", words=", ".join((word, *said.words)), drawn=False
-                )
-                for word, said in self.counts.items()
-            ),
+            parameters=self.own + tuple(_repeated(word, said) for word, said in self.counts.items()),
             material=self.parts[0].material,
             part_words=self.part_words,
             motions=self.motions,
@@ -163,60 +149,6 @@ class ObjectDescription(Spoken, BlueprintDescription):
         put_together(solids, looks, list(joints.values()), values, workshop)
 
 
-_Range = tuple[float, float]
-
-
-class ParameterDescription(BaseModel):
-    """What may be asked of an object in steps; ``[0.2, 0.4]`` is short for a range."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    range: _Range | None = None
-    """What can be built, and what a seed draws from; whole numbers make it a count."""
-    default: float | None = None
-    """The middle if absent."""
-    unit: Literal["m", "rad", ""] = "m"
-    yes: float | None = None
-    """It is a choice of yes and no, yes in this share of the draws."""
-    choices: tuple[str, ...] = ()
-    """It is a choice of these; the first is the default."""
-    words: tuple[str, ...] = ()
-    """How people call it, besides its name."""
-    help: str = "As the object has it."
-    whole: bool = False
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_a_range(cls, given: Any) -> Any:
-        said = {"range": given} if isinstance(given, list) else dict(given)
-        bounds = said.get("range")
-        return said | {"whole": True} if bounds and all(isinstance(end, int) for end in bounds) else said
-
-    def parameter(self, name: str) -> Parameter:
-        """As a family has it."""
-        if self.range is None:
-            options = self.choices or (("yes", "no") if self.yes is None or self.yes >= 0.5 else ("no", "yes"))
-            return replace(choice(name, options, self.help), words=self.words)
-        low, high = self.range
-        middle = float(f"{0.5 * (low + high):.3g}") if self.default is None else self.default
-        return Parameter(
-            name=name,
-            default=int(middle) if self.whole else middle,
-            unit="" if self.whole else self.unit,
-            bounds=self.range,
-            usual=self.range,
-            help=self.help,
-            words=self.words,
-        )
-
-    def drawn(self, builder: ObjectBuilder) -> float | int | str:
-        """A value for one more object of a corpus."""
-        if self.range is not None:
-            low, high = self.range
-            return builder.count(int(low), int(high)) if self.whole else builder.draw(low, high)
-        return str(builder.pick(*self.choices)) if self.choices else "yes" if builder.maybe(self.yes or 0.5) else "no"
-
-
 class SteppedDescription(Spoken):
     """An object that a file writes down in steps, with parameters; see `kinematify.generate.library.steps`."""
 
@@ -225,7 +157,8 @@ class SteppedDescription(Spoken):
     """Its file without the ending: ``kitchen``."""
     about: str = ""
     """One sentence for readers of the file."""
-    parameters: dict[Name, ParameterDescription] = Field({})
+    parameters: dict[Name, Any] = Field({})
+    """As `read_parameter` reads them."""
     written_steps: str
     """YAML, which is only read once the object is built."""
 
@@ -241,11 +174,8 @@ class SteppedDescription(Spoken):
             title=self.title,
             words=self.words,
             parameters=(
-                *(said.parameter(name) for name, said in self.parameters.items()),
-                *(
-                    counted(f"{word}s", count, (count, count), "Belongs to it.", words=word)
-                    for word, count in self.details.items()
-                ),
+                *self.asked,
+                *self.own,
                 choice("modeling", tuple(MODELING), "How it is modelled.", drawn=False),
             ),
             material="plastic",
@@ -255,6 +185,11 @@ class SteppedDescription(Spoken):
             build=self._build,
         )
 
+    @cached_property
+    def asked(self) -> tuple[Parameter, ...]:
+        """What may be asked of it."""
+        return tuple(read_parameter(name, said) for name, said in self.parameters.items())
+
     def description(self, style: ModelingStyle, rng: np.random.Generator) -> dict[str, Any]:
         """A blueprint of it with everything drawn, as a file holds one.
 
@@ -262,10 +197,24 @@ class SteppedDescription(Spoken):
             InputError: A step cannot be carried out with what was drawn.
         """
         builder = ObjectBuilder(self.name, style, rng)
-        return carried_out(self.steps, builder, {name: said.drawn(builder) for name, said in self.parameters.items()})
+        return carried_out(self.steps, builder, {item.name: _drawn(item, builder) for item in self.asked})
 
     def _build(self, values: Values, workshop: Workshop) -> None:
         builder_of(self.name, self.title, lambda: self.steps, self.parameters)(values, workshop)
+
+
+def _drawn(asked: Parameter, builder: ObjectBuilder) -> float | int | str:
+    """A value for one more object of a corpus."""
+    if asked.bounds is not None:
+        low, high = asked.bounds
+        return builder.count(int(low), int(high)) if isinstance(asked.default, int) else builder.draw(low, high)
+    return str(builder.pick(*asked.choices)) if asked.yes is None else "yes" if builder.maybe(asked.yes) else "no"
+
+
+def _repeated(word: str, said: Mapping[str, Any]) -> Parameter:
+    """The count of what a blueprint repeats."""
+    words = (word, *said.get("words", ()))
+    return read_parameter(f"{word}s", {"help": "So many.", "drawn": False, **said, "words": words})
 
 
 def _carried(name: str, joints: Mapping[str, BlueprintJoint]) -> list[str]:

@@ -438,7 +438,7 @@ def _missing(plan: _Plan, blueprint: Blueprint) -> tuple[str, ...]:
     taken = {*specification.name, *plan.used} - {k for item in plan.dropped for k in item.at}
     found = [item for item in plan.dropped if not item.at or not item.at <= compared.held]
     for item in compared.missing:
-        if item.at <= taken and not item.is_sure:
+        if not item.is_sure and all(k in taken or _says_nothing(specification, k) for k in item.at):
             continue
         within = [other for other in found if other.at and other.at < item.at]
         if any(other.at & item.at for other in found if other not in within):

@@ -180,10 +180,11 @@ def test_the_categories_and_their_parameters_are_listed(capsys):
         (["--text", "a flying carpet"], "names no kind"),
         (["--category", "cabnet"], "Did you mean cabinet"),
         (["--category", "cabinet", "--set", "drawer=2"], "Did you mean drawers"),
-        (["--category", "cabinet", "--set", "drawers=500"], "from 0 to 12"),
+        (["--category", "cabinet", "--set", "drawers=500"], "from 0 to 40"),
         (["--category", "cabinet", "--set", "drawers"], "KEY=VALUE"),
         (["--strict", "--text", "a cabinet with a vent"], "Not built: vent"),
         (["--text", "a cabinet", "--category", "cabinet"], "either --text, --category or --blueprint"),
+        (["a tool box"], 'kinematify generate --text "a tool box"'),
         ([], "either --text, --category or --blueprint"),
     ],
 )

@@ -64,6 +64,9 @@ class Asked:
     def _take(self, part: PartSpecification) -> None:
         at = part.claims[0].at
         words, kind = self._mechanism(max(at))
+        if kind is None and not part.of:  # an adjective asks for it: a rolling cabinet
+            words = tuple(part.noun.split()[-1:])
+            kind = _mechanisms().get(words)
         look = (_first(part, "material"), _first(part, "color"))
         plain_handles = part.noun in _HANDLES and not any(claim.about == "count" for claim in part.claims)
         if plain_handles and (part.count is None or part.of):

@@ -11,7 +11,7 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
-from kinematify.generate.procedural.parameter import angle, choice, length, share
+from kinematify.generate.procedural.parameter import choice, number
 from kinematify.generate.procedural.workshop import STYLES, Workshop
 from kinematify.robot.joint_type import JointType
 
@@ -82,33 +82,17 @@ class Values:
         return str(self._values[name])
 
 
+_INSTEAD = "How far {} stand open instead of a share; {} stay closed."
 COMMON = (
-    share("open", 0.0, (0.0, 1.0), "Share of the way that moving parts stand open."),
-    length("clearance", 0.001, (0.0, 0.003), "Gap between parts that move past each other.", usual=(0.0002, 0.003)),
+    number("open", 0.0, (0.0, 1.0), "Share of the way that moving parts stand open."),
+    number("clearance", 0.001, (0.0, 0.003), "Gap between what moves past each other.", unit="m", usual=(2e-4, 3e-3)),
     choice("style", STYLES, "Of the meshes: as drawn, or as from elsewhere."),
     choice("material", ("", *MATERIALS), "What the base is made of."),
     choice("color", ("", *COLORS), "Colour of what names no material of its own."),
-    choice(
-        "handle_material",
-        ("metal", *(name for name in MATERIALS if name != "metal")),
-        "What handles are made of.",
-        drawn=False,
-    ),
+    choice("handle_material", sorted(MATERIALS, key="metal".__ne__), "What handles are made of.", drawn=False),
     choice("handle_color", ("", *COLORS), "Colour of handles, if painted.", drawn=False),
-    angle(
-        "open_angle",
-        0.0,
-        (0.0, math.pi),
-        "How far hinges stand open instead of a share; slides stay closed.",
-        drawn=False,
-    ),
-    length(
-        "open_distance",
-        0.0,
-        (0.0, 5.0),
-        "How far slides stand open instead of a share; hinges stay closed.",
-        drawn=False,
-    ),
+    number("open_angle", 0.0, (0.0, math.pi), _INSTEAD.format("hinges", "slides"), unit="rad", drawn=False),
+    number("open_distance", 0.0, (0.0, 5.0), _INSTEAD.format("slides", "hinges"), unit="m", drawn=False),
 )
 """Parameters of every family."""
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import yaml
@@ -28,6 +29,8 @@ def parse_table(text: str) -> Any:
 
 Value = float | int | str
 _Range = tuple[float, float]
+Words = str | tuple[str, ...]
+"""How people call something; a text is split at its commas."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,56 +53,36 @@ class Parameter:
     """How people call what is counted, measured or chosen, singular; the name itself and its singular count anyway."""
     choice_words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """How people call a choice, besides its own name."""
+    yes: float | None = None
+    """Share of the draws in which it is yes, of a choice of yes and no."""
     drawn: bool = True
     """False: a seed draws no value, and no number either, so that what else it draws stays the same without it."""
 
 
-def length(
+def number(
     name: str,
     default: float,
     bounds: _Range,
     help: str,
     *,
+    unit: str = "",
     usual: _Range | None = None,
-    words: str = "",
+    words: Words = "",
     drawn: bool = True,
 ) -> Parameter:
-    """A length [m]; `words` are separated by commas, here and below."""
+    """A number with its unit, a count where the default is whole."""
     return Parameter(
-        name=name, default=default, unit="m", bounds=bounds, usual=usual, help=help, words=phrases(words), drawn=drawn
-    )
-
-
-def angle(
-    name: str, default: float, bounds: _Range, help: str, *, usual: _Range | None = None, drawn: bool = True
-) -> Parameter:
-    """An angle [rad]."""
-    return Parameter(name=name, default=default, unit="rad", bounds=bounds, usual=usual, help=help, drawn=drawn)
-
-
-def share(name: str, default: float, bounds: _Range, help: str, *, usual: _Range | None = None) -> Parameter:
-    """A number without a unit."""
-    return Parameter(name=name, default=default, bounds=bounds, usual=usual, help=help)
-
-
-def counted(
-    name: str,
-    default: int,
-    bounds: _Range,
-    help: str,
-    *,
-    usual: _Range | None = None,
-    words: str = "",
-    drawn: bool = True,
-) -> Parameter:
-    """How many there are."""
-    return Parameter(
-        name=name, default=default, bounds=bounds, usual=usual, help=help, words=phrases(words), drawn=drawn
+        name=name, default=default, unit=unit, bounds=bounds, usual=usual, help=help, words=phrases(words), drawn=drawn
     )
 
 
 def choice(
-    name: str, choices: Sequence[str] | Mapping[str, str], help: str, *, words: str = "", drawn: bool = True
+    name: str,
+    choices: Sequence[str] | Mapping[str, str],
+    help: str,
+    *,
+    words: Words = "",
+    drawn: bool = True,
 ) -> Parameter:
     """One of several, the first if nothing is said; a mapping gives words for each. Any text if there are none."""
     named = choices if isinstance(choices, Mapping) else {}
@@ -114,21 +97,39 @@ def choice(
     )
 
 
+def _ranged(name: str, bounds: _Range, help: str, *, default: float | None = None, **facts: Any) -> Parameter:
+    """A number that is drawn from all that can be built; whole bounds make it a count, the middle is the default."""
+    whole = all(isinstance(end, int) for end in bounds)
+    middle = float(f"{0.5 * sum(bounds):.3g}") if default is None else default
+    unit = {} if whole else {"unit": "m"}
+    return number(name, int(middle) if whole else middle, bounds, help, usual=bounds, **(unit | facts))
+
+
+def _yes_or_no(name: str, share: float, help: str, **facts: Any) -> Parameter:
+    """A choice that is yes in a share of the draws."""
+    return replace(choice(name, ("yes", "no") if share >= 0.5 else ("no", "yes"), help, **facts), yes=share)
+
+
 _KINDS: Mapping[str, Callable[..., Parameter]] = {
-    "length": length, "angle": angle, "share": share, "count": counted, "choices": choice,
+    "length": partial(number, unit="m"), "angle": partial(number, unit="rad"), "share": number, "count": number,
+    "choices": choice, "range": _ranged, "yes": _yes_or_no,
 }  # fmt: skip
 
 
-def read_parameter(name: str, said: Mapping[str, Any]) -> Parameter:
-    """Return the parameter that a table describes: what it is with its default or choices, and the arguments above."""
-    kind = next(kind for kind in _KINDS if kind in said)
-    facts = {key: tuple(value) if isinstance(value, list) else value for key, value in said.items() if key != kind}
-    return _KINDS[kind](name, said[kind], **facts)
+def read_parameter(name: str, said: Mapping[str, Any] | Sequence[float]) -> Parameter:
+    """Return the parameter that a table describes: its kind with a default, range or choices, and arguments above.
+
+    A list is short for a range.
+    """
+    facts = {"help": "As the object has it.", **(said if isinstance(said, Mapping) else {"range": said})}
+    facts = {key: tuple(value) if isinstance(value, list) else value for key, value in facts.items()}
+    kind = next(kind for kind in _KINDS if kind in facts)
+    return _KINDS[kind](name, facts.pop(kind), **facts)
 
 
-def phrases(text: str) -> tuple[str, ...]:
-    """Split a text at its commas."""
-    return tuple(text.split(", ")) if text else ()
+def phrases(text: Words) -> tuple[str, ...]:
+    """Split a text at its commas; what is a list stays one."""
+    return tuple(text.split(", ") if isinstance(text, str) else text) if text else ()
 
 
 PARAMETER_HEADINGS = ("parameter", "default", "values", "what it is")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.language.motions import WAYS, goes, moves_so, turns_about_itself
-from kinematify.generate.procedural.language.words import PURPOSES, lemma
+from kinematify.generate.procedural.language.words import ARTICLES, PURPOSES, lemma
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.robot.joint_type import JointType
 
@@ -43,6 +43,8 @@ _OF_ANY_OBJECT = frozenset({
     "grid", "line", "stack", "half", "way", "direction", "degree",
 })  # fmt: skip
 """What every object has, and what it may stand on or hang from."""
+_FACES = ("front", "face", "panel", "surface")
+"""What looks as the part that it belongs to."""
 _ON_EACH = ("handle", "knob", "pull", "grip")
 """What a parameter gives to every door and drawer."""
 _COVERS = (
@@ -219,47 +221,66 @@ class _Compared:
     def _check_group(self, parts: Sequence[PartSpecification]) -> None:
         """Check parts of one noun together: the left door is one of two doors."""
         numbers = [part.count for part in parts if part.count is not None]
-        placed = [part for part in parts if any(claim.about == "place" for claim in part.claims)]
-        apart = len(placed) == len(parts) and len(parts) > 1
+        new = len(parts) > 1 and all(map(self._is_new, parts))
+        placed = all(any(claim.about == "place" for claim in part.claims) for part in parts)
+        apart = len(parts) > 1 and (new or placed)
         asked = (sum(numbers) if apart else max(numbers)) if numbers else None
         for part in sorted(parts, key=_is_one):
-            there = part.claims[0]
             found, known = self.parts_called(part.noun)
+            if not found and part.noun in _FACES and (owner := self._owner(part)):
+                found = _chosen(self.parts_called(part.of)[0], owner)
             number = len(found) if found else self.counted(part.noun)
             if part.absent:
                 self._absent(part, found, number)
-                continue
-            if not found and part.of and self._all_have_it(part):
-                continue
-            if not number:
-                moved = any(claim.about in ("moves", "way", "hinge") for claim in part.claims)
-                if part.noun.split()[-1] in _OF_ANY_OBJECT and not moved:
-                    self._account_for_modifiers(part, there, 1)
-                else:
-                    at = frozenset(k for claim in part.claims for k in claim.at)
-                    words = " ".join(self.specification.tokens[k].given for k in sorted(at))
-                    self.missing.append(Missing(words=words, at=at, is_sure=moved))
-                    self.absent.append(part)
-                continue
-            self._account_for_modifiers(part, there, known)
-            before = len(self.missing)
-            self._check_number(part, found, {asked, -1, part.count}, alone=len(parts) == 1)
-            chosen = _chosen(found, part)
-            for claim in part.claims[1:]:
-                if claim.about == "count":
-                    continue
-                meant = chosen
-                if claim.about in _LOOKS and len(chosen) == len(found):  # but for those of which is said otherwise
-                    ones = [_chosen(found, other) for other in parts if other is not part and _is_one(other)]
-                    meant = [item for item in chosen if not any(item in one for one in ones)] or chosen
-                wrong = self._part_keeps(part, claim, meant, found)
-                if wrong is not None and meant:
-                    self._to_be_changed(claim, meant)
-                self._judge_part(part, claim, wrong, is_there=bool(chosen))
-            if not self._joints_of(found) and self._would_move(part):
-                self._miss(there.words, there.at, "it does not move")
-            if len(self.missing) == before and len(chosen) == len(found) and part.count in (None, len(found)):
-                self._call(found, "_".join(part.noun.split()[-known:]), part.noun)
+            elif number:
+                before = len(self.missing)
+                self._account_for_modifiers(part, part.claims[0], known)
+                self._check_number(part, found, {asked, -1, asked if apart else part.count}, alone=len(parts) == 1)
+                chosen = self._individuals(part, found, parts, new=new)
+                self._check_claims(part, found, chosen, parts)
+                if len(self.missing) == before and len(chosen) == len(found) and part.count in (None, len(found)):
+                    self._call(found, "_".join(part.noun.split()[-known:]), part.noun)
+            elif not (part.of and self._all_have_it(part)):
+                self._not_there(part)
+
+    def _not_there(self, part: PartSpecification) -> None:
+        moved = any(claim.about in ("moves", "way", "hinge") for claim in part.claims)
+        if part.noun.split()[-1] in _OF_ANY_OBJECT and not moved:
+            self._account_for_modifiers(part, part.claims[0], 1)
+            return
+        at = frozenset(k for claim in part.claims for k in claim.at)
+        words = " ".join(self.specification.tokens[k].given for k in sorted(at))
+        self.missing.append(Missing(words=words, at=at, is_sure=moved))
+        self.absent.append(part)
+
+    def _individuals(
+        self, part: PartSpecification, found: Sequence[Part], parts: Sequence[PartSpecification], *, new: bool
+    ) -> list[Part]:
+        """Those that are meant; of `a glass door and a steel door` the first is the glass one."""
+        k, placed = parts.index(part), any(claim.about == "place" for claim in part.claims)
+        if new and found and k >= len(found):
+            self._miss(_said(part), part.claims[0].at, f"{len(found)} built in all")
+        return [found[k]] if new and not placed and len(found) == len(parts) else _chosen(found, part)
+
+    def _check_claims(
+        self,
+        part: PartSpecification,
+        found: Sequence[Part],
+        chosen: Sequence[Part],
+        parts: Sequence[PartSpecification],
+    ) -> None:
+        for claim in (claim for claim in part.claims[1:] if claim.about != "count"):
+            meant = chosen
+            if claim.about in _LOOKS and len(chosen) == len(found):  # but for those of which is said otherwise
+                ones = [_chosen(found, other) for other in parts if other is not part and _is_one(other)]
+                meant = [item for item in chosen if not any(item in one for one in ones)] or chosen
+            wrong = self._part_keeps(part, claim, meant, found)
+            if wrong is not None and meant:
+                self._to_be_changed(claim, meant)
+            self._judge_part(part, claim, wrong, is_there=bool(chosen))
+        still = not self._joints_of(found) and not any(self._carrying(item.name) for item in found)
+        if still and self._would_move(part):
+            self._miss(part.claims[0].words, part.claims[0].at, "it does not move")
 
     def _to_be_changed(self, claim: Claim, parts: Sequence[Part]) -> None:
         """Take up parts that are to look otherwise, or to be open."""
@@ -288,18 +309,23 @@ class _Compared:
         """Check how many there are; `a door` is one, and `legs` are several."""
         there, numbers = part.claims[0], self._numbers(part.noun, found)
         said = next((claim for claim in part.claims if claim.about == "count"), None)
-        built = f"{len(found) or self.counted(part.noun)} built"
-        if said is not None and ((_is_one(part) and said.words != "single") or numbers & {*asked, said.value}):
+        built = f"{len(found) or self.counted(part.noun)} built{'' if part.count in asked else ' in all'}"
+        if said is not None and ((_is_one(part) and said.words != "single") or numbers & asked):
             self.held.update(said.at)
         elif said is not None:
             words, at = f"{said.words} {there.words}", frozenset((*said.at, there.at[-1]))
             self.missing.append(Missing(words=words, at=at, reason=built, is_sure=bool(found)))
         elif _on_sides(part) and len(found) == 1:
             self._miss(f"{there.words} on each side", there.at, built)
-        elif part.count is None and len(found) == 1 and not self.counted(part.noun):
+        elif part.count is None and len(found) == 1 and not self._several(part, found[0]):
             self._miss(_said(part), there.at, "in one part")
         elif part.count == 1 and alone and not part.of and found and 1 not in numbers and not _on_sides(part):
             self._miss(_said(part), there.at, built)
+
+    def _several(self, part: PartSpecification, found: Part) -> bool:
+        """Whether one part is several of something by its name, by what it is called, or by a parameter."""
+        stem, said = _stem(found.name), part.claims[0].words.split()[-1]
+        return bool(self.counted(part.noun)) or lemma(stem) != stem or said in self.nouns
 
     def _call(self, found: Sequence[Part], noun: str, said: str) -> None:
         """Call moving parts of one name as the sentence does."""
@@ -334,6 +360,16 @@ class _Compared:
         words, at = f"{part.noun} of the {place} {part.of} alone", frozenset(part.claims[0].at)
         self.missing.append(Missing(words=words, at=at, reason=f"every {part.of} has one", is_sure=True))
         return True
+
+    def _is_new(self, part: PartSpecification) -> bool:
+        """Whether an article says that a part was not named before: `a glass door and a steel door`."""
+        first = min(part.claims[0].at)
+        before = {token.given for token in self.specification.tokens[max(first - 3, 0) : first]}
+        return part.count == 1 and bool(before & {*ARTICLES, "another"}) and "the" not in before
+
+    def _owner(self, part: PartSpecification) -> PartSpecification | None:
+        """The part whose face is meant."""
+        return next((item for item in self.specification.parts if item.noun == part.of), None)
 
     def _judge_part(self, part: PartSpecification, claim: Claim, wrong: str | None, *, is_there: bool) -> None:
         if wrong is not None and claim.about != "there":
@@ -383,7 +419,7 @@ class _Compared:
             "size": lambda: self._sized(claim.value, chosen),
             "color": lambda: self._look_of(claim, chosen),
             "material": lambda: self._look_of(claim, chosen),
-            "place": lambda: self._placed(claim.value, chosen, found),
+            "place": lambda: None if self._is_on_other(part, claim) else self._placed(claim.value, chosen, found),
             "relation": lambda: self._related(claim, part, chosen),
             "like": lambda: self._mirrored(found),
             "does": lambda: "no such motion",
@@ -391,11 +427,21 @@ class _Compared:
         return judges[claim.about]() if claim.about in judges else None
 
     def _joints_of(self, parts: Sequence[Part]) -> list[BlueprintJoint]:
-        """Joints of parts; of what is fixed, those of what it carries."""
+        """Joints of parts; of what is fixed, those of what it carries, else of what spins with it."""
         names = {part.name for part in parts}
         moving = [joint for joint in self.made.joints if joint.kind is not JointType.FIXED]
         above = [joint for joint in moving if joint.child in names]
-        return above or [joint for joint in moving if joint.parent in names - {self.made.root}]
+        above = above or [joint for joint in moving if joint.parent in names - {self.made.root}]
+        carrying = [joint for part in parts for joint in self._carrying(part.name)[:1]]
+        return above or [joint for joint in carrying if joint.kind is JointType.CONTINUOUS]
+
+    def _carrying(self, name: str) -> list[BlueprintJoint]:
+        """Joints that move a part, its own first, up to a door or the like: a blade spins on an arm that goes down."""
+        chain: list[BlueprintJoint] = []
+        while (joint := self.made.joint_above.get(name)) is not None and not (chain and _covers(name, ())):
+            chain += [joint] if joint.kind is not JointType.FIXED else []
+            name = joint.parent
+        return chain
 
     def _would_move(self, part: PartSpecification) -> bool:
         """Whether a part is one that moves wherever it is, and not the handle of each door."""
@@ -412,7 +458,8 @@ class _Compared:
 
     def _joints_keep(self, claim: Claim, joints: Sequence[BlueprintJoint]) -> str | None:
         if claim.about == "moves":
-            right = all(moves_so(self.made, joint, claim.value) for joint in joints)
+            chains = (self._carrying(joint.child) for joint in joints)
+            right = all(any(moves_so(self.made, joint, claim.value) for joint in chain) for chain in chains)
             return None if right else joints[0].kind.value
         if claim.about == "way":
             return None if self._any_goes(joints, claim.value) else f"{joints[0].kind.value}, another way"
@@ -524,6 +571,12 @@ class _Compared:
         aside = [float((closed[part.name].bounds.mean(axis=0) - middle) @ np.array(toward)) for part in chosen]
         return None if max(aside) > -_EDGE else "elsewhere"
 
+    def _is_on_other(self, part: PartSpecification, place: Claim) -> bool:
+        """Whether a place is one of another part: at the bottom of the handle."""
+        own = _OF_ANY_OBJECT | set(self.specification.kind.split())
+        behind = (claim for claim in part.claims if claim.about == "relation" and min(claim.at) == max(place.at) + 1)
+        return any(claim.value[0] == "of" and claim.value[1].split()[-1] not in own for claim in behind)
+
     def _mirrored(self, found: Sequence[Part]) -> str | None:
         """Whether two parts are mirror images across a plane from front to back."""
         closed = {part.name: part for part in self.closed.parts}
@@ -538,6 +591,8 @@ class _Compared:
         if preposition == "of" and min(claim.at) - 1 in part.claims[0].at and noun.split()[-1] not in _OF_ANY_OBJECT:
             return "not so built"
         others, _ = self.parts_called(noun)
+        if not others and self.counted(noun):
+            return None  # it belongs to another part, whose solid it is
         if not others:
             own = noun.split()[-1] in self.specification.kind.split()
             return None if own or noun.split()[-1] in _OF_ANY_OBJECT else f"no {noun}"
@@ -546,7 +601,7 @@ class _Compared:
         if preposition in _ABOVE:
             sign = _ABOVE[preposition]
             heights = [[sign * float(part.bounds.mean(axis=0)[2]) for part in group] for group in (chosen, others)]
-            return None if max(heights[0]) > min(heights[1]) else f"not {preposition} it"
+            return None if min(heights[0]) > max(heights[1]) else f"not {preposition} it"
         return None
 
 
@@ -570,7 +625,8 @@ def _is_one(part: PartSpecification) -> bool:
 
 def _on_sides(part: PartSpecification) -> bool:
     """Whether one is asked for on either side."""
-    return any(claim.value == "side" and claim.about == "place" for claim in part.claims)
+    places = [claim for claim in part.claims if claim.about == "place" and claim.value == "side"]
+    return any(set(claim.words.split()) & {"each", "either", "both", "every"} for claim in places)
 
 
 def _covers(name: str, own: Sequence[str]) -> bool:

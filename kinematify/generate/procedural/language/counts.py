@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.language.arrangement import Mention
+from kinematify.generate.procedural.language.parse import FUNCTION_WORDS
 from kinematify.generate.procedural.language.reading import nouns_of
 from kinematify.generate.procedural.language.sizes import JOINING
 from kinematify.generate.procedural.language.words import ARTICLES, KINDS, UNITS, singular
@@ -64,7 +65,7 @@ def read_grids(reading: ParseState) -> None:
         parameter, noun = found
         total = columns * rows
         number, counting = _number_before(reading, noun) if noun < k else (None, ())
-        said = f"{total} {parameter.name} in {columns} columns and {rows} rows"
+        said = f"{total} {reading.tokens[noun].given} in {columns} columns and {rows} rows"
         reading.take(parameter.name, int(number or total), said, *counting)
         reading.take(parameter.name, total, said, *range(k, end), noun)
         reading.counted.add(noun)
@@ -177,6 +178,7 @@ def _take_counts(reading: ParseState, parameter: Parameter, counts: list[_Count]
     numbered = [count for count in counts if count.number is not None]
     places = [_place(reading, c.where.stop) or _place_before(reading, c.where.start) for c in numbered]
     apart = len(numbered) > 1 and all(places) and len(set(places)) == len(places)
+    apart = apart or (len(numbered) > 1 and all(_is_new(reading, count) for count in numbered))
     totals = [_total(reading, count) for count in numbered]
     if apart:
         total = sum(totals)
@@ -192,6 +194,12 @@ def _take_counts(reading: ParseState, parameter: Parameter, counts: list[_Count]
     for count in counts:
         reading.counted.update(count.where)
         reading.mentions += _mentions(reading, parameter, count, stated.get(count))
+
+
+def _is_new(reading: ParseState, count: _Count) -> bool:
+    """Whether an article says that a thing was not named before: `a glass door and a steel door` are two."""
+    behind = reading.text(count.where.stop)
+    return reading.text(count.counting[0]) in ARTICLES and (not behind.isalpha() or behind in FUNCTION_WORDS)
 
 
 def _mentions(reading: ParseState, parameter: Parameter, count: _Count, total: int | None) -> list[Mention]:

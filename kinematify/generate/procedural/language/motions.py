@@ -50,9 +50,11 @@ GOING = ("open", "opens", "opening", "go", "goes", "going", "come", "comes")
 WAYS = {
     "left": (-1, 0, 0), "right": (1, 0, 0), "up": (0, 0, 1), "upward": (0, 0, 1), "down": (0, 0, -1),
     "downward": (0, 0, -1), "out": (0, -1, 0), "outward": (0, -1, 0), "forward": (0, -1, 0), "inward": (0, 1, 0),
-    "back": (0, 1, 0), "backward": (0, 1, 0),
+    "back": (0, 1, 0), "backward": (0, 1, 0), "vertically": (0, 0, 1), "horizontally": (1, 0, 0),
 }  # fmt: skip
 """Words for where a part goes when it opens; fronts look along -y."""
+LINES = ("vertically", "horizontally")
+"""Of these, those that say a line, and not which way along it."""
 _SLANT = 0.2  # of a part's way that must go where it is said to go; a door goes out as much as aside
 _QUARTER = 0.5 * math.pi
 _ABOUT, _LARGE = 0.2, 0.3  # of a part's diagonal from its middle to its axis; of the whole's diagonal
@@ -64,7 +66,8 @@ def goes(blueprint: Blueprint, joint: BlueprintJoint, way: str) -> bool:
     value = min(joint.upper, _QUARTER) if joint.kind.turns else joint.upper
     middle = part.bounds.mean(axis=0)
     moved: FloatArray = (joint.motion(value) @ np.append(middle, 1.0))[:3] - middle
-    return float(moved @ np.array(WAYS[way])) > _SLANT * float(np.linalg.norm(moved)) > 0.0
+    along = float(moved @ np.array(WAYS[way]))
+    return (abs(along) if way in LINES else along) > _SLANT * float(np.linalg.norm(moved)) > 0.0
 
 
 def turns_about_itself(blueprint: Blueprint, joint: BlueprintJoint) -> bool:
@@ -80,6 +83,11 @@ def _lies(joint: BlueprintJoint) -> bool:
     return bool(abs(joint.axis[2]) < _SLANT)
 
 
+def _upright(joint: BlueprintJoint) -> str:
+    """What is raised can be lowered again."""
+    return "vertically" if joint.kind is JointType.PRISMATIC else ""
+
+
 _MOVES: dict[str, Callable[[Blueprint, BlueprintJoint], bool]] = {
     "slides": lambda made, joint: joint.kind is JointType.PRISMATIC,
     "turns": lambda made, joint: joint.kind.turns,
@@ -89,8 +97,8 @@ _MOVES: dict[str, Callable[[Blueprint, BlueprintJoint], bool]] = {
     "spins": lambda made, joint: joint.kind is JointType.CONTINUOUS,
     "folds": lambda made, joint: joint.kind is JointType.REVOLUTE,
     "moves": lambda made, joint: joint.kind is not JointType.FIXED,
-    "rises": lambda made, joint: goes(made, joint, "up"),
-    "sinks": lambda made, joint: goes(made, joint, "down"),
+    "rises": lambda made, joint: goes(made, joint, _upright(joint) or "up"),
+    "sinks": lambda made, joint: goes(made, joint, _upright(joint) or "down"),
 }
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import InputError
-from kinematify.generate.procedural.language.motions import DONE, GOING, MOTIONS, PARTICLES, WAYS
+from kinematify.generate.procedural.language.motions import DONE, GOING, LINES, MOTIONS, PARTICLES, WAYS
 from kinematify.generate.procedural.language.openness import NOT_A_STATE, PULLED, amount_at, measured_at
 from kinematify.generate.procedural.language.sizes import DIMENSIONS, SIZE_WORDS, length_at
 from kinematify.generate.procedural.language.specification import Claim, PartSpecification, Specification
@@ -49,13 +49,16 @@ _AT = ("on", "at", "in", "to", "near", "from", "against", "by", "along", "onto")
 _BEGINS_PART = (*_WITH, *_RELATIVE, "whose", "where", "without", *_JOINERS)
 _BEING = ("is", "are", "can", "could", "be", "may", "will", "each", "all", "both", "it", "they", "being", "also")
 _CAN = ("be", "can", "to", "may")
-_BARE = frozenset(word for word in MOTIONS if not word.endswith(("s", "ing", "able", "ible", "ic")))
+_BARE = frozenset(word for word in MOTIONS if not word.endswith(("s", "ing", "ed", "able", "ible", "ic")))
 """Verbs that a singular noun right before them makes a noun."""
 _GOES = ("go", "goes", "opens", "come", "comes")
 _ANYHOW = ("away", "aside", "open", "over")
 """Behind a particle they say no direction: a swing-away arm."""
+_PRONOUNS = ("it", "them", "these", "those")
 _DROPPED = ("up", "down")
 """Behind a part at the end of a statement they say that it is open there."""
+_BACK = ("lowered", "retracted", "collapsed")
+"""Behind a share they say how far something is back at its lower limit."""
 _DETERMINERS = (
     "a", "an", "the", "its", "their", "some", "any", "each", "every", "both", "all", "other", "another", "either",
 )  # fmt: skip
@@ -85,23 +88,13 @@ _QUOTED = 15  # words of a sentence in a message
 _SHORTEST_DONE = 5
 NOT_DONE = frozenset({"spring", "string", "bearing", "railing", "awning", "ceiling", "building", "painting"})
 """Nouns that end as verbs do."""
-_HAVING = {"lockable": "lock", "locking": "lock", "locked": "lock"}
-"""Adjectives -> what has to be there."""
+_HAVING: dict[str, tuple[str, int | None]] = {
+    "lockable": ("lock", 1), "locking": ("lock", 1), "locked": ("lock", 1), "rolling": ("caster", None),
+}  # fmt: skip
+"""Adjectives -> what has to be there, and how many; None is some."""
 _STATES = (
-    "half",
-    "way",
-    "halfway",
-    "slightly",
-    "partly",
-    "fully",
-    "wide",
-    "apart",
-    "x",
-    "about",
-    "degree",
-    "degrees",
-    "ajar",
-)
+    "half", "way", "halfway", "slightly", "partly", "fully", "wide", "apart", "x", "about", "degree", "degrees", "ajar",
+)  # fmt: skip
 """Behind the name of an object they say how far it stands open."""
 
 
@@ -412,12 +405,13 @@ class _Parser(Words):
 
     def _has(self, k: int, part: _Draft) -> bool:
         """Whether a word says that a part has another one: what is lockable has a lock."""
-        noun = _HAVING.get(self.given(k))
-        if noun is not None:
-            of = "" if part is self.whole else self.noun(part)
-            there = Claim(about="there", value=True, words=self.given(k), at=(k,))
-            self.implied.append(PartSpecification(noun=noun, claims=(there,), of=of))
-        return noun is not None
+        noun, count = _HAVING.get(self.given(k), ("", 1))
+        if not noun or (count is None and part is not self.whole):  # a rolling door has no casters
+            return False
+        of = "" if part is self.whole else self.noun(part)
+        there = Claim(about="there", value=True, words=self.given(k), at=(k,))
+        self.implied.append(PartSpecification(noun=noun, count=count, claims=(there,), of=of))
+        return True
 
     def _part(self, k: int, *, count: int | None = 1, of: _Draft | None = None) -> int:
         """A noun phrase that names a part; what has no noun is said of the part before."""
@@ -487,6 +481,8 @@ class _Parser(Words):
         elif word in PARTICLES and behind in WAYS and (part is not self.whole or k < self.name[0]):
             self.claim(part, "way", behind, k, k + 1)
             return 2
+        elif word in LINES and behind in MOTIONS and self._noun_behind(k + 1):
+            self.claim(part, "way", word, k)
         elif word in PARTICLES and word in MOTIONS and behind in _ANYHOW and self._noun_behind(k + 1):
             self.claim(part, "moves", MOTIONS[word], k, k + 1)
             return 2
@@ -503,10 +499,11 @@ class _Parser(Words):
         while before and self.given(at) in ("of", "the", "way"):
             at += 1
         word = self.given(at)
-        if word not in (*OPENNESS, *PULLED) or self.given(at + 1) in NOT_A_STATE:
+        raised = before is not None and before[0] == "share" and word in DONE and not self._noun_behind(at)
+        if not (raised or word in (*OPENNESS, *PULLED)) or self.given(at + 1) in NOT_A_STATE:
             return 0
         how, much = before[:2] if before else ("share", OPENNESS.get(word, 1.0))
-        if before and OPENNESS.get(word) == 0.0:
+        if before and (OPENNESS.get(word) == 0.0 or word in _BACK):
             how, much = "share", 1.0 - much if how == "share" else 0.0  # fully closed
         end = at + 1 + (self.given(at + 1) in ("out", "up"))
         if amount := amount_at(self, end) if (how, much) == ("share", 1.0) else None:
@@ -630,15 +627,21 @@ class _Parser(Words):
         while self.given(end) in ("to", "the", "on", "at", "towards", "sideways"):
             end += 1
         way = self.given(end).removesuffix("s")
+        first = end + (way in WAYS)
+        far = measured_at(self, first) if end == k + 1 else None
+        if far and far[0] != "share" and not _dimension(self.given(far[2])):  # `goes up 3 m`
+            self.claim(subject, "range", far[:2], *range(first, far[2]))
+        else:
+            far = None
         if way in WAYS and not (way == "up" and self.given(end + 1) == "to"):
             both = self.given(end + 1) == "and" and self.given(end + 2).removesuffix("s") in WAYS
             if word in ("hinged", "hinges", "hinge"):
                 self.claim(subject, "hinge", way, k, end)
             else:
                 self.claim(subject, "way", way, k, end, *((end + 2,) if both else ()))
-            return end + (3 if both else 1)
+            return far[2] if far else end + (3 if both else 1)
         self.claim(subject, "moves", moves or "moves", k)
-        return k + 1
+        return far[2] if far else k + 1
 
     def _preposition(self, k: int) -> int:
         """`on the left side`, `under the bed`, `of glass`, `on four casters`."""
@@ -660,6 +663,9 @@ class _Parser(Words):
             return k + 1
         target = _Draft()
         end = self._noun_phrase(k + 1, target)
+        back = self.given(k) in LEVELS and self.given(k + 1) in _PRONOUNS
+        if back and self.current in self.parts[1:]:
+            target.nouns = self.parts[self.parts.index(self.current) - 1].nouns  # what was named before
         noun = self.noun(target)
         if target.nouns and noun.split()[-1] in _UNDER_WHOLE and self.given(k) in ("on", "onto"):
             self.parts.append(target)

@@ -87,17 +87,8 @@ def understand(specification: Specification, family: Family) -> Understanding:
     reading = ParseState(
         tokens=tokens, family=family, used=set(specification.name), named=frozenset(specification.name)
     )
-    for step in (
-        read_sizes,
-        read_overall,
-        read_grids,
-        read_counts,
-        read_counted_name,
-        _double,
-        _choices,
-        _parts_it_has,
-        read_bare_length,
-    ):
+    counting = (read_sizes, read_overall, read_grids, read_counts, read_counted_name)
+    for step in (*counting, _double, _choices, _parts_it_has, read_bare_length):
         step(reading)
     _arrangement(reading)
     read_size_words(reading)

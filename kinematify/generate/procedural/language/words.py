@@ -36,6 +36,7 @@ _PURPOSE_TEXT = """
     burner cash crisper cutlery detergent emergency freezer glove main power soap start stop storage vegetable volume
     battery mail coin card ticket cable cup bottle spice fuse inspection service access charging dust filter ash crumb
     drip bread laundry trash book wine toy cat dog pet engine water paper tool food feed paint letter
+    countertop tabletop benchtop cupboard child children kid kids
 """
 PURPOSES = frozenset(_PURPOSE_TEXT.split())
 """What a part is for, right before its noun; it asks for nothing that could be built differently."""
@@ -109,20 +110,9 @@ _MANNER = re.compile(
     re.IGNORECASE,
 )
 _ROUGHLY = (
-    "big",
-    "large",
-    "huge",
-    "small",
-    "little",
-    "tiny",
-    "mini",
-    "wide",
-    "narrow",
-    "tall",
-    "long",
-    "short",
-    "deep",
-)
+    "big", "large", "huge", "small", "little", "tiny", "mini", "wide", "narrow", "tall", "long", "short", "deep",
+    "shallow", "slim",
+)  # fmt: skip
 """Sizes of parts without a number; parts have the sizes that fit."""
 _NO_UNIT = "".join(
     rf"(?<!\b{unit} )" for unit in ("cm", "mm", "m", "metre", "metres", "meter", "meters", "inch", "feet")
