@@ -124,7 +124,10 @@ def load_assembly(
     _check_arguments(up, scale)
     if pieces not in PIECES_CHOICES:
         raise InputError(f"The word {pieces!r} for pieces is unknown. Choose one of {', '.join(PIECES_CHOICES)}.")
-    given = _given(path, _Reading(up=up, scale=scale, labels=labels, pieces=pieces, config=config))
+    reading = _Reading(up=up, scale=scale, labels=labels, pieces=pieces, config=config)
+    given = _given(path, reading)
+    if labels is None and (not given.segmented or pieces in ("group", "cut")):
+        given = _in_pieces(given, reading, path)
     meshes = sorted(given.meshes, key=lambda mesh: natural_key(mesh.name))
     lengths = _lengths(meshes, scale)
     assembly = assemble(meshes, source=str(path), config=config, warnings=given.warnings)
@@ -253,17 +256,19 @@ def _single_file(path: Path, reading: _Reading) -> _Given:
     meshes = tuple(replace(mesh, name=mesh.name or path.stem) for mesh in _read(path, reading, empty_ok=False))
     if reading.labels is not None:
         return _Given(meshes=labelled_parts(merged(meshes, path.stem), reading.labels))
-    by_standard = _up_by_standard([path], reading)
-    if len(meshes) > 1 and reading.pieces not in ("group", "cut"):
-        return _Given(meshes=meshes, up_by_standard=by_standard)
+    return _Given(meshes=meshes, segmented=len(meshes) > 1, up_by_standard=_up_by_standard([path], reading))
+
+
+def _in_pieces(given: _Given, reading: _Reading, path: Path) -> _Given:
+    """Connected pieces in place of meshes; those of several meshes have the name of theirs."""
     sheets: list[RawMesh] = []
-    for mesh, name in zip(meshes, part_names([mesh.name for mesh in meshes]), strict=True):
+    for mesh, name in zip(given.meshes, part_names([mesh.name for mesh in given.meshes]), strict=True):
         check_finite(mesh, str(path))
-        of_node = connected_sheets(mesh, reading.config.weld, cut=reading.pieces == "cut")
-        sheets += [replace(sheet, name=name) for sheet in of_node] if len(meshes) > 1 else of_node
+        found = connected_sheets(mesh, reading.config.weld, cut=reading.pieces == "cut") or (mesh,)
+        sheets += [replace(sheet, name=name) for sheet in found] if len(given.meshes) > 1 else found
     if len(sheets) == 1 and reading.pieces != "cut":
-        _report_folds(path, connected_sheets(meshes[0], reading.config.weld, cut=True))
-    return _Given(meshes=tuple(sheets), segmented=reading.pieces == "keep", up_by_standard=by_standard)
+        _report_folds(path, connected_sheets(sheets[0], reading.config.weld, cut=True))
+    return replace(given, meshes=tuple(sheets), segmented=reading.pieces == "keep")
 
 
 def _report_folds(path: Path, cut: Sequence[RawMesh]) -> None:

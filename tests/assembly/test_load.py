@@ -273,6 +273,15 @@ def test_one_mesh_without_labels_falls_into_its_pieces(tmp_path: Path) -> None:
     assert all(len(part.vertices) == 8 for part in loaded.parts)
 
 
+def test_parts_of_any_form_are_pieces_where_they_are_to_be_grouped(tmp_path: Path) -> None:
+    folder = folder_of(tmp_path / "parts", body=trimesh.util.concatenate([box(), box(3)]), door=box(6))
+    assert load_assembly(folder).segmented
+    pieces = load_assembly(folder, pieces="group")
+    assert not pieces.segmented
+    assert pieces.names == ("body", "body_2", "door")
+    assert set(pieces.original_names.values()) == {"body", "door"}
+
+
 @pytest.mark.parametrize("form", ["npy", "list", "dict", "texts"])
 def test_labels_cut_one_mesh(tmp_path: Path, form: str) -> None:
     trimesh.util.concatenate([box(0), box(1), box(2)]).export(tmp_path / "a.ply")
