@@ -83,11 +83,6 @@ def _lies(joint: BlueprintJoint) -> bool:
     return bool(abs(joint.axis[2]) < _SLANT)
 
 
-def _upright(joint: BlueprintJoint) -> str:
-    """What is raised can be lowered again."""
-    return "vertically" if joint.kind is JointType.PRISMATIC else ""
-
-
 _MOVES: dict[str, Callable[[Blueprint, BlueprintJoint], bool]] = {
     "slides": lambda made, joint: joint.kind is JointType.PRISMATIC,
     "turns": lambda made, joint: joint.kind.turns,
@@ -97,8 +92,9 @@ _MOVES: dict[str, Callable[[Blueprint, BlueprintJoint], bool]] = {
     "spins": lambda made, joint: joint.kind is JointType.CONTINUOUS,
     "folds": lambda made, joint: joint.kind is JointType.REVOLUTE,
     "moves": lambda made, joint: joint.kind is not JointType.FIXED,
-    "rises": lambda made, joint: goes(made, joint, _upright(joint) or "up"),
-    "sinks": lambda made, joint: goes(made, joint, _upright(joint) or "down"),
+    # What slides up can be lowered again.
+    "rises": lambda made, joint: goes(made, joint, "vertically" if joint.kind is JointType.PRISMATIC else "up"),
+    "sinks": lambda made, joint: goes(made, joint, "vertically" if joint.kind is JointType.PRISMATIC else "down"),
 }
 
 
