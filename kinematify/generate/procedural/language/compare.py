@@ -211,7 +211,7 @@ class _Compared:
         if wrong is None:
             self.held.update(claim.at)
         else:
-            sure = claim.about in _MEASURED
+            sure = claim.about in _MEASURED and claim.about != "relation"
             self.missing.append(Missing(words=claim.words, at=frozenset(claim.at), reason=wrong, is_sure=sure))
 
     def _check_group(self, parts: Sequence[PartSpecification]) -> None:
@@ -266,11 +266,7 @@ class _Compared:
         return so if part.count is not None and len(so) == part.count < len(found) else _chosen(found, part)
 
     def _check_claims(
-        self,
-        part: PartSpecification,
-        found: Sequence[Part],
-        chosen: Sequence[Part],
-        parts: Sequence[PartSpecification],
+        self, part: PartSpecification, found: Sequence[Part], chosen: list[Part], parts: Sequence[PartSpecification]
     ) -> None:
         for claim in (claim for claim in part.claims[1:] if claim.about != "count"):
             meant = chosen

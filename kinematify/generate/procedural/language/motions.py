@@ -51,9 +51,10 @@ WAYS = {
     "left": (-1, 0, 0), "right": (1, 0, 0), "up": (0, 0, 1), "upward": (0, 0, 1), "down": (0, 0, -1),
     "downward": (0, 0, -1), "out": (0, -1, 0), "outward": (0, -1, 0), "forward": (0, -1, 0), "inward": (0, 1, 0),
     "back": (0, 1, 0), "backward": (0, 1, 0), "vertically": (0, 0, 1), "horizontally": (1, 0, 0),
+    "vertical": (0, 0, 1), "horizontal": (1, 0, 0),
 }  # fmt: skip
 """Words for where a part goes when it opens; fronts look along -y."""
-LINES = ("vertically", "horizontally")
+LINES = ("vertically", "horizontally", "vertical", "horizontal")
 """Of these, those that say a line, and not which way along it."""
 _SLANT = 0.2  # of a part's way that must go where it is said to go; a door goes out as much as aside
 _QUARTER = 0.5 * math.pi
