@@ -56,11 +56,11 @@ scale_option = click.option(
 
 pieces_option = click.option(
     "--pieces",
-    type=click.Choice(["auto", "group", "keep"]),
+    type=click.Choice(["auto", "group", "cut", "keep"]),
     default="auto",
     show_default=True,
-    help="How parts come about. auto: the pieces of one mesh are grouped into rigid parts, other files have a part per "
-    "node or group; group: nodes and groups are split and grouped too; keep: every piece is a part.",
+    help="How parts come about. auto: pieces of one mesh are grouped into rigid parts, other files have a part per "
+    "node or group; group: these are grouped too; cut: after cuts where surfaces fold inwards; keep: all pieces.",
 )
 
 
