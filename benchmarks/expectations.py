@@ -57,7 +57,7 @@ _CALLED = {
     "casement": ("sash",), "gate": ("gate", "door", "leaf"), "turntable": ("turntable", "lazy_susan"),
     "caster": ("castor", "caster", "swivel_wheel"), "door": ("door", "leaf", "sliding_door"),
     "globe": ("ball",), "handle": ("handle", "lever"), "lid": ("lid", "screen"), "needle": ("gauge", "needle"),
-    "flap": ("flap", "flap_door", "tilting_flap"),
+    "flap": ("flap", "flap_door", "tilting_flap", "compartment"), "seat": ("seat", "swing"),
     "switch": ("rocker", "switch", "lever"), "tailgate": ("flap", "tailgate"),
 }  # fmt: skip
 """How a reader calls what the models call otherwise."""

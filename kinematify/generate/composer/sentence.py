@@ -67,6 +67,8 @@ class Asked:
         if kind is None and not part.of:  # an adjective asks for it: a rolling cabinet
             words = tuple(part.noun.split()[-1:])
             kind = _mechanisms().get(words)
+            if any(item.mechanism is kind for item in self.wanted):
+                return  # it was named
         look = (_first(part, "material"), _first(part, "color"))
         plain_handles = part.noun in _HANDLES and not any(claim.about == "count" for claim in part.claims)
         if plain_handles and (part.count is None or part.of):

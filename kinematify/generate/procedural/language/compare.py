@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.language.motions import WAYS, goes, moves_so, turns_about_itself
-from kinematify.generate.procedural.language.words import ARTICLES, PURPOSES, lemma
+from kinematify.generate.procedural.language.words import ARTICLES, PURPOSES, lemma, stem_of
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.robot.joint_type import JointType
 
@@ -43,8 +42,6 @@ _OF_ANY_OBJECT = frozenset({
     "grid", "line", "stack", "half", "way", "direction", "degree",
 })  # fmt: skip
 """What every object has, and what it may stand on or hang from."""
-_FACES = ("front", "face", "panel", "surface")
-"""What looks as the part that it belongs to."""
 _ON_EACH = ("handle", "knob", "pull", "grip")
 """What a parameter gives to every door and drawer."""
 _COVERS = (
@@ -63,7 +60,6 @@ _MOVING = frozenset({
     "sash", "knob", "hinge",
 })  # fmt: skip
 """Parts that move wherever they are."""
-_NUMBERED = re.compile(r"(?:_(?:\d+|left|right))+$")
 _LOOKS = ("color", "material")
 _MEASURED = (
     "size", "moves", "way", "range", "hinge", "place", "relation", "color", "material", "open", "like", "count"
@@ -147,13 +143,13 @@ class _Compared:
         others = [other for group in _SYNONYMS if stem in group for other in sorted(group - {stem})]
 
         def matches() -> Iterator[Callable[[str], bool]]:
-            yield lambda name: name in names or _stem(name) in names
+            yield lambda name: name in names or stem_of(name) in names
             for word in (stem, *others):
                 if word in self._nouns_asked and word != stem:
                     continue  # it is asked for, too
-                yield lambda name, word=word: word in (_stem(name), lemma(_stem(name)))  # type: ignore[misc]
+                yield lambda name, word=word: word in (stem_of(name), lemma(stem_of(name)))  # type: ignore[misc]
                 yield lambda name, word=word: _ends_with(name, word)  # type: ignore[misc]
-            yield lambda name: _stem(name).startswith(f"{stem}_")
+            yield lambda name: stem_of(name).startswith(f"{stem}_")
 
         groups = ([part for part in self.made.parts if match(part.name)] for match in matches())
         there = [found for found in groups if found]
@@ -175,7 +171,7 @@ class _Compared:
 
     def _numbers(self, noun: str, found: Sequence[Part]) -> set[int | None]:
         """How many there are: all that are called so, those of one name, or as many as a parameter says."""
-        stems = Counter(_stem(part.name) for part in found)
+        stems = Counter(stem_of(part.name) for part in found)
         words = {word for group in _SYNONYMS if noun.rsplit(maxsplit=1)[-1] in group for word in group} | {noun}
         names = {part.name for part in found}  # a finger has three links
         chains = [name for name in names if name in self.made.joint_above]
@@ -215,7 +211,7 @@ class _Compared:
         if wrong is None:
             self.held.update(claim.at)
         else:
-            sure = claim.about in _MEASURED
+            sure = claim.about in _MEASURED and claim.about != "relation"
             self.missing.append(Missing(words=claim.words, at=frozenset(claim.at), reason=wrong, is_sure=sure))
 
     def _check_group(self, parts: Sequence[PartSpecification]) -> None:
@@ -227,8 +223,9 @@ class _Compared:
         asked = (sum(numbers) if apart else max(numbers)) if numbers else None
         for part in sorted(parts, key=_is_one):
             found, known = self.parts_called(part.noun)
-            if not found and part.noun in _FACES and (owner := self._owner(part)):
-                found = _chosen(self.parts_called(part.of)[0], owner)
+            owners = [item for item in self.specification.parts if item.noun == part.of]
+            if not found and owners and part.noun in ("front", "face", "panel"):  # which looks as its owner does
+                found = _chosen(self.parts_called(part.of)[0], owners[0])
             number = len(found) if found else self.counted(part.noun)
             if part.absent:
                 self._absent(part, found, number)
@@ -238,7 +235,8 @@ class _Compared:
                 self._check_number(part, found, {asked, -1, asked if apart else part.count}, alone=len(parts) == 1)
                 chosen = self._individuals(part, found, parts, new=new)
                 self._check_claims(part, found, chosen, parts)
-                if len(self.missing) == before and len(chosen) == len(found) and part.count in (None, len(found)):
+                all_meant = len(chosen) == len(found) and part.count in (None, len(found))
+                if known and len(self.missing) == before and all_meant:
                     self._call(found, "_".join(part.noun.split()[-known:]), part.noun)
             elif not (part.of and self._all_have_it(part)):
                 self._not_there(part)
@@ -257,17 +255,18 @@ class _Compared:
         self, part: PartSpecification, found: Sequence[Part], parts: Sequence[PartSpecification], *, new: bool
     ) -> list[Part]:
         """Those that are meant; of `a glass door and a steel door` the first is the glass one."""
-        k, placed = parts.index(part), any(claim.about == "place" for claim in part.claims)
-        if new and found and k >= len(found):
-            self._miss(_said(part), part.claims[0].at, f"{len(found)} built in all")
-        return [found[k]] if new and not placed and len(found) == len(parts) else _chosen(found, part)
+        k, placed = parts.index(part), any(claim.value in _PLACES for claim in part.claims if claim.about == "place")
+        every = {item.name for other in parts for item in self.parts_called(other.noun)[0]}
+        if new and found and k >= len(every):
+            self._miss(_said(part), part.claims[0].at, f"{len(every)} built in all")
+        if new and not placed and len(every) == len(found) == len(parts):
+            return [found[k]]
+        how = [claim.value for claim in part.claims if claim.about == "moves"]
+        so = [item for item in found if any(moves_so(self.made, j, m) for j in self._joints_of([item]) for m in how)]
+        return so if part.count is not None and len(so) == part.count < len(found) else _chosen(found, part)
 
     def _check_claims(
-        self,
-        part: PartSpecification,
-        found: Sequence[Part],
-        chosen: Sequence[Part],
-        parts: Sequence[PartSpecification],
+        self, part: PartSpecification, found: Sequence[Part], chosen: list[Part], parts: Sequence[PartSpecification]
     ) -> None:
         for claim in (claim for claim in part.claims[1:] if claim.about != "count"):
             meant = chosen
@@ -317,27 +316,27 @@ class _Compared:
             self.missing.append(Missing(words=words, at=at, reason=built, is_sure=bool(found)))
         elif _on_sides(part) and len(found) == 1:
             self._miss(f"{there.words} on each side", there.at, built)
-        elif part.count is None and len(found) == 1 and not self._several(part, found[0]):
+        elif part.count is None and len(found) == 1 and not self._several(part):
             self._miss(_said(part), there.at, "in one part")
         elif part.count == 1 and alone and not part.of and found and 1 not in numbers and not _on_sides(part):
             self._miss(_said(part), there.at, built)
 
-    def _several(self, part: PartSpecification, found: Part) -> bool:
-        """Whether one part is several of something by its name, by what it is called, or by a parameter."""
-        stem, said = _stem(found.name), part.claims[0].words.split()[-1]
-        return bool(self.counted(part.noun)) or lemma(stem) != stem or said in self.nouns
+    def _several(self, part: PartSpecification) -> bool:
+        """Whether one part is several of something by what it is called, or by a parameter."""
+        said = part.claims[0].words.split()[-1]
+        return bool(self.counted(part.noun)) or (said in self.nouns and said not in map(stem_of, self.nouns[said]))
 
     def _call(self, found: Sequence[Part], noun: str, said: str) -> None:
         """Call moving parts of one name as the sentence does."""
-        stems = {_stem(part.name) for part in found}
-        taken = {_stem(part.name) for part in self.made.parts}
+        stems = {stem_of(part.name) for part in found}
+        taken = {stem_of(part.name) for part in self.made.parts}
         moving = all(part.name in self.made.joint_above for part in found)
         if (
             moving
             and len(stems) == 1
             and not stems & set(said.split())
             and noun not in taken
-            and not f"_{_stem(found[0].name)}".endswith(f"_{noun}")
+            and not f"_{stem_of(found[0].name)}".endswith(f"_{noun}")
         ):
             several = len(found) > 1
             self.names |= {part.name: f"{noun}_{k}" if several else noun for k, part in enumerate(found, start=1)}
@@ -366,10 +365,6 @@ class _Compared:
         first = min(part.claims[0].at)
         before = {token.given for token in self.specification.tokens[max(first - 3, 0) : first]}
         return part.count == 1 and bool(before & {*ARTICLES, "another"}) and "the" not in before
-
-    def _owner(self, part: PartSpecification) -> PartSpecification | None:
-        """The part whose face is meant."""
-        return next((item for item in self.specification.parts if item.noun == part.of), None)
 
     def _judge_part(self, part: PartSpecification, claim: Claim, wrong: str | None, *, is_there: bool) -> None:
         if wrong is not None and claim.about != "there":
@@ -476,8 +471,8 @@ class _Compared:
         if claim.value in ("turns", "spins"):
             joints = [joint for joint in joints if turns_about_itself(self.made, joint)]
         if claim.value == "tilts":  # ribs do not tilt an umbrella
-            stems = Counter(_stem(joint.child) for joint in self.made.joints)
-            joints = [joint for joint in joints if stems[_stem(joint.child)] == 1 or len(stems) == 1]
+            stems = Counter(stem_of(joint.child) for joint in self.made.joints)
+            joints = [joint for joint in joints if stems[stem_of(joint.child)] == 1 or len(stems) == 1]
         joints_of_doors = [joint for joint in self.made.joints if joint.kind is JointType.REVOLUTE]
         judges: dict[str, Callable[[], str | None]] = {
             "moves": lambda: None if any(moves_so(self.made, item, claim.value) for item in joints) else "no part does",
@@ -631,16 +626,11 @@ def _on_sides(part: PartSpecification) -> bool:
 
 def _covers(name: str, own: Sequence[str]) -> bool:
     """Whether a part only covers or controls something, and does not give the object its name."""
-    return any(f"_{_stem(name)}".endswith(f"_{word}") and word not in own for word in _COVERS)
+    return any(f"_{stem_of(name)}".endswith(f"_{word}") and word not in own for word in _COVERS)
 
 
 def _ends_with(name: str, word: str) -> bool:
-    return any(f"_{stem}".endswith(f"_{word}") for stem in (_stem(name), lemma(_stem(name))))
-
-
-def _stem(name: str) -> str:
-    """A part's name without its number and its side."""
-    return _NUMBERED.sub("", name)
+    return any(f"_{stem}".endswith(f"_{word}") for stem in (stem_of(name), lemma(stem_of(name))))
 
 
 def _said(part: PartSpecification) -> str:
@@ -653,7 +643,9 @@ def _said(part: PartSpecification) -> str:
 
 def _chosen(found: Sequence[Part], part: PartSpecification) -> list[Part]:
     """Those that are meant: of several, the one that is furthest in the place that is said."""
-    places = [_PLACES[claim.value] for claim in part.claims if claim.about == "place" and claim.value in _PLACES]
+    said = [claim.value for claim in part.claims if claim.about == "place"]
+    found = [item for item in found if set(said) & set(item.name.split("_"))] or found
+    places = [_PLACES[place] for place in said if place in _PLACES]
     if not places or part.count is None or part.count >= len(found):
         return list(found)
     middles = np.array([item.bounds.mean(axis=0) for item in found])

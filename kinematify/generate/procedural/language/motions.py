@@ -51,9 +51,10 @@ WAYS = {
     "left": (-1, 0, 0), "right": (1, 0, 0), "up": (0, 0, 1), "upward": (0, 0, 1), "down": (0, 0, -1),
     "downward": (0, 0, -1), "out": (0, -1, 0), "outward": (0, -1, 0), "forward": (0, -1, 0), "inward": (0, 1, 0),
     "back": (0, 1, 0), "backward": (0, 1, 0), "vertically": (0, 0, 1), "horizontally": (1, 0, 0),
+    "vertical": (0, 0, 1), "horizontal": (1, 0, 0),
 }  # fmt: skip
 """Words for where a part goes when it opens; fronts look along -y."""
-LINES = ("vertically", "horizontally")
+LINES = ("vertically", "horizontally", "vertical", "horizontal")
 """Of these, those that say a line, and not which way along it."""
 _SLANT = 0.2  # of a part's way that must go where it is said to go; a door goes out as much as aside
 _QUARTER = 0.5 * math.pi
@@ -83,11 +84,6 @@ def _lies(joint: BlueprintJoint) -> bool:
     return bool(abs(joint.axis[2]) < _SLANT)
 
 
-def _upright(joint: BlueprintJoint) -> str:
-    """What is raised can be lowered again."""
-    return "vertically" if joint.kind is JointType.PRISMATIC else ""
-
-
 _MOVES: dict[str, Callable[[Blueprint, BlueprintJoint], bool]] = {
     "slides": lambda made, joint: joint.kind is JointType.PRISMATIC,
     "turns": lambda made, joint: joint.kind.turns,
@@ -97,8 +93,9 @@ _MOVES: dict[str, Callable[[Blueprint, BlueprintJoint], bool]] = {
     "spins": lambda made, joint: joint.kind is JointType.CONTINUOUS,
     "folds": lambda made, joint: joint.kind is JointType.REVOLUTE,
     "moves": lambda made, joint: joint.kind is not JointType.FIXED,
-    "rises": lambda made, joint: goes(made, joint, _upright(joint) or "up"),
-    "sinks": lambda made, joint: goes(made, joint, _upright(joint) or "down"),
+    # What slides up can be lowered again.
+    "rises": lambda made, joint: goes(made, joint, "vertically" if joint.kind is JointType.PRISMATIC else "up"),
+    "sinks": lambda made, joint: goes(made, joint, "vertically" if joint.kind is JointType.PRISMATIC else "down"),
 }
 
 

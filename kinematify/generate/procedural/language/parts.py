@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.language.reading import nouns_of
+from kinematify.generate.procedural.language.words import stem_of
 from kinematify.generate.procedural.materials import MATERIALS, of_one_material, surface_of
 from kinematify.robot.joint_type import JointType
 
@@ -33,14 +34,9 @@ def part_nouns(family: Family, made: Blueprint) -> dict[tuple[str, ...], tuple[s
         for noun in nouns_of(parameter) if of else ():
             found.setdefault(tuple(noun.split()), set()).update(of)
     for stem, others in family.part_words.items():
-        for noun in others if stem in stems else ():
-            found.setdefault(tuple(noun.split()), set()).add(stem)
+        for noun in others if stem_of(stem) in stems else ():
+            found.setdefault(tuple(noun.split()), set()).add(stem_of(stem))
     return {words: tuple(sorted(names)) for words, names in found.items()}
-
-
-def stem_of(name: str) -> str:
-    """A part's name without its number."""
-    return name.rstrip("0123456789_")
 
 
 def looking(blueprint: Blueprint, names: Sequence[str], material: str, color: str) -> Blueprint:

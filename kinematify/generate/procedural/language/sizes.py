@@ -128,7 +128,10 @@ def _angles(reading: ParseState) -> None:
 
 
 def _lengths(reading: ParseState) -> None:
-    """`80 cm wide`, `a height of 2 m`, `0.3 m in diameter`."""
+    """`80 cm wide`, `a height of 2 m`, `0.3 m in diameter`; what is long and wide is so deep as it is wide."""
+    there = {p.name for p in reading.family.all_parameters if p.unit == "m"}
+    said = {name for token in reading.tokens for name, words in DIMENSIONS.items() if token.text in words}
+    both = {"length", "width"} <= said and "length" not in there
     k = 0
     while k < len(reading.tokens):
         length = length_at(reading, k)
@@ -138,6 +141,9 @@ def _lengths(reading: ParseState) -> None:
         metres, end = length
         for at in (end, end + 1, k - 1, k - 2):
             name = _dimension(reading, reading.text(at), metres) if at not in reading.used else None
+            if both and reading.text(at) in (*DIMENSIONS["length"], *DIMENSIONS["width"]):
+                is_long, has_depth = reading.text(at) in DIMENSIONS["length"], "depth" in there - said
+                name = ("width" if is_long else "depth") if has_depth else None if is_long else name
             if name is not None and not _is_of_a_part(reading, at + 1):
                 reading.take(name, metres, f"{name} {metres:g} m", *range(min(k, at), max(end, at + 1)))
                 break

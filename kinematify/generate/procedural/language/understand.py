@@ -47,7 +47,7 @@ _PLACES = {
 }
 _NOT = ("no", "without")
 _SWINGS = {"hinged", "hinge", "hinges", "opens", "opening", "swings"}
-_DOUBLED = ("leaves", "sashes", "doors")
+_DOUBLED = ("leaf", "sash", "door")
 _OPEN = {"share": "open", "angle": "open_angle", "distance": "open_distance"}
 _HANDLES = ("handle", "knob", "pull", "grip")
 """Words for handles, which are no parts of their own."""
@@ -111,7 +111,8 @@ def understand(specification: Specification, family: Family) -> Understanding:
 def _double(reading: ParseState) -> None:
     """`a double gate` has two leaves."""
     for k in range(min(reading.named)):
-        parameter = next((p for p in reading.family.parameters if p.name in _DOUBLED), None)
+        counts = [p for p in reading.family.parameters if isinstance(p.default, int)]
+        parameter = next((p for p in counts if set(_DOUBLED) & set(nouns_of(p))), None)
         if reading.text(k) in KINDS and k not in reading.used and parameter and parameter.name not in reading.values:
             reading.take(parameter.name, NUMBERS[reading.text(k)], reading.text(k), k)
 

@@ -63,6 +63,7 @@ _PLAIN_TEXT = """
     luxury luxurious professional practical functional handy versatile ergonomic comfortable realistic detailed basic
     regular usual common everyday generic scandinavian victorian farmhouse industrial traditional style styled design
     designed look looking kind type sort brand brushed polished matte glossy shiny painted lacquered varnished worn
+    galvanised galvanized
     weathered dusty clean well built good great best high quality lightweight portable electric electrical electronic
     manual home family professional commercial domestic sized size motorized motorised hydraulic pneumatic digital
     outdoor indoor garden patio playground hallway entryway hotel restaurant shop library basement attic nursery
@@ -76,6 +77,7 @@ STOP_WORDS = frozenset(_STOP_TEXT.split()) | PLAIN_WORDS
 """Words that ask for nothing that could be built differently; every other word is understood or refused."""
 
 _TOKEN = re.compile(r"\d+(?:[.,]\d+)?(?:e\d+)?|[a-z]+|[,;:.]|[^\sa-z0-9]")
+_NUMBERED = re.compile(r"(?:_(?:\d+|left|right))+$")
 _BODY_CM = {
     "ankle": 15, "knee": 50, "hip": 90, "waist": 100, "chest": 130, "shoulder": 145, "head": 175, "man": 175,
     "ceiling": 240, "floor to ceiling": 240, "desk": 75, "table": 75, "counter": 90,
@@ -255,6 +257,11 @@ def lemma(word: str) -> str:
     if word.endswith(("ches", "shes", "xes", "sses")):
         return word[:-2]
     return word.removesuffix("s")
+
+
+def stem_of(name: str) -> str:
+    """A part's name without its number and its side."""
+    return _NUMBERED.sub("", name)
 
 
 def singular(word: str, known: frozenset[str]) -> str:
