@@ -13,7 +13,7 @@ from gymnasium.utils import EzPickle
 from kinematify.envs.articulated_object import AUTO, ENGINES, held_links, shared_articulated_object, shared_target
 from kinematify.envs.dynamics import draw, drawing
 from kinematify.envs.goal import Goal
-from kinematify.envs.picture import Piece, Renderer, View, ViewerWindow, has_screen, require_screen
+from kinematify.envs.picture import CameraView, Piece, Renderer, ViewerWindow, has_screen, require_screen
 from kinematify.envs.settings import load_settings
 from kinematify.envs.verdict import require_valid
 from kinematify.errors import InputError
@@ -334,7 +334,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
             if len(shape.mesh.faces)
         ]
 
-    def _view(self) -> View:
+    def _view(self) -> CameraView:
         """All of the object, at rest and open, from the side to which it opens."""
         scene, T = self.articulated_object.scene, self.T_world_root
         rows = np.stack([scene.mechanism.rest] * 2)
@@ -350,7 +350,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         center = 0.5 * (low + high)
         # The object stands in the middle of the world: where its part is held is the side to which it opens.
         azimuth = float(np.arctan2(self.middle[1], self.middle[0])) + self.settings.picture.azimuth
-        return View(center=center, radius=0.5 * float(np.linalg.norm(high - low)), azimuth=azimuth)
+        return CameraView(center=center, radius=0.5 * float(np.linalg.norm(high - low)), azimuth=azimuth)
 
     def _beside(self) -> Sequence[FloatArray]:
         """Points beside the object that are to be seen [m], shape (n, 3) each."""

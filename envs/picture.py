@@ -50,7 +50,7 @@ class Piece:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class View:
+class CameraView:
     """Where the camera stands."""
 
     center: FloatArray
@@ -64,7 +64,7 @@ class View:
 class Renderer:
     """Draws pieces at poses; `close` frees what it holds."""
 
-    def __init__(self, pieces: Sequence[Piece], view: View, settings: PictureSettings) -> None:
+    def __init__(self, pieces: Sequence[Piece], view: CameraView, settings: PictureSettings) -> None:
         """Put the pieces into a world of their own, which is never simulated."""
         self._pieces = tuple(pieces)
         self._client = Client()
@@ -142,7 +142,7 @@ def require_screen() -> None:
 class ViewerWindow:
     """MuJoCo's viewer, for ``render_mode="human"``: the pieces are bodies that are moved by hand, never simulated."""
 
-    def __init__(self, pieces: Sequence[Piece], view: View, settings: PictureSettings) -> None:
+    def __init__(self, pieces: Sequence[Piece], view: CameraView, settings: PictureSettings) -> None:
         """Open a window.
 
         Raises:
@@ -162,7 +162,7 @@ class ViewerWindow:
         camera.distance = settings.distance * view.radius
         camera.azimuth, camera.elevation = np.degrees(view.azimuth) + 180.0, -np.degrees(settings.elevation)
 
-    def _spec(self, view: View, settings: PictureSettings) -> mujoco.MjSpec:
+    def _spec(self, view: CameraView, settings: PictureSettings) -> mujoco.MjSpec:
         spec = mujoco.MjSpec()
         spec.visual.global_.fovy = settings.field_of_view
         spec.visual.headlight.ambient, spec.visual.headlight.diffuse = [0.35] * 3, [0.45] * 3

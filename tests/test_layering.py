@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterable, Mapping
 
 import networkx as nx
@@ -93,6 +94,17 @@ def test_every_module_imports_only_from_its_left() -> None:
 
 def test_no_files_import_each_other() -> None:
     assert circles(import_graph()) == []
+
+
+def test_no_two_public_classes_of_the_package_have_one_name() -> None:
+    places: dict[str, list[str]] = {}
+    package = {name: path for name, path in modules().items() if name.split(".")[0] == "kinematify"}
+    for name, path in package.items():
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                places.setdefault(node.name, []).append(name)
+    assert "KinematicModel" in places
+    assert {name: found for name, found in places.items() if len(found) > 1} == {}
 
 
 def test_circles_are_found() -> None:

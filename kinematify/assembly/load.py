@@ -42,7 +42,7 @@ _TO_Z_UP = {
 }
 """Axis that points up in the input -> rotation that turns it to z."""
 UP_CHOICES = ("auto", *_TO_Z_UP)
-PIECES_CHOICES = ("auto", "group", "keep")
+PIECES_CHOICES = ("auto", "group", "cut", "keep")
 PART_SUFFIXES = (".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".3mf", ".dae", *CAD_SUFFIXES)
 """Files that an assembly can be given as."""
 _SILENT_SUFFIXES = (".mtl", ".bin", ".png", ".jpg", ".jpeg", ".json", ".txt", ".md")
@@ -254,14 +254,36 @@ def _single_file(path: Path, reading: _Reading) -> _Given:
     if reading.labels is not None:
         return _Given(meshes=labelled_parts(merged(meshes, path.stem), reading.labels))
     by_standard = _up_by_standard([path], reading)
-    if len(meshes) > 1 and reading.pieces != "group":
+    if len(meshes) > 1 and reading.pieces not in ("group", "cut"):
         return _Given(meshes=meshes, up_by_standard=by_standard)
     sheets: list[RawMesh] = []
     for mesh, name in zip(meshes, part_names([mesh.name for mesh in meshes]), strict=True):
         check_finite(mesh, str(path))
-        of_node = connected_sheets(mesh, reading.config.weld)
+        of_node = connected_sheets(mesh, reading.config.weld, cut=reading.pieces == "cut")
         sheets += [replace(sheet, name=name) for sheet in of_node] if len(meshes) > 1 else of_node
+    if len(sheets) == 1 and reading.pieces != "cut":
+        _report_folds(path, connected_sheets(meshes[0], reading.config.weld, cut=True))
     return _Given(meshes=tuple(sheets), segmented=reading.pieces == "keep", up_by_standard=by_standard)
+
+
+def _report_folds(path: Path, cut: Sequence[RawMesh]) -> None:
+    """Refuse one surface that folds inwards around what may be parts: it is not cut without being asked.
+
+    Raises:
+        AssemblyError: There are several, with the size, faces and place of each but the widest.
+    """
+    wide = sorted(cut, key=lambda sheet: -float(np.linalg.norm(np.ptp(sheet.vertices, axis=0))))
+    said = [
+        f"{' x '.join(f'{side:.3g}' for side in np.ptp(sheet.vertices, axis=0))} m ({len(sheet.faces)} faces around "
+        f"{', '.join(f'{x:.3g}' for x in sheet.vertices.mean(axis=0))})"
+        for sheet in wide[1:]
+    ]
+    if said:
+        raise AssemblyError(
+            f"{path} is one surface. It could be cut where it folds inwards, around {'; '.join(said[:5])}"
+            f"{f' and {len(said) - 5} more' if len(said) > 5 else ''}. Give --pieces cut to cut it there and group the "
+            "pieces, or --labels."
+        )
 
 
 def _read(path: Path, reading: _Reading, *, empty_ok: bool) -> tuple[RawMesh, ...]:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
     from kinematify.robot.robot import RigidGroup, Robot
 
 
@@ -115,15 +115,16 @@ def connected_pieces(mesh: RawMesh, tolerance: float) -> tuple[RawMesh, ...]:
     return _pieces(mesh, (vertices, faces, kept), corners[faces[:, 0]])
 
 
-def connected_sheets(mesh: RawMesh, tolerance: float) -> tuple[RawMesh, ...]:
+def connected_sheets(mesh: RawMesh, tolerance: float, *, cut: bool = False) -> tuple[RawMesh, ...]:
     """Return the connected sheets of a mesh, in the order of their first triangle; arguments as above.
 
     Faces are connected across edges that two of them share. An edge of more faces is where two shells touch or boards
     meet, and separates them; a sheet that is too small to be a part joins the one with which it shares most of them.
-    Coincident faces (double-sided meshes) count as one.
+    Coincident faces (double-sided meshes) count as one. With `cut`, closed surfaces are cut where they fold inwards, as
+    in the grooves and steps around a door that is drawn on its body.
     """
     vertices, faces, kept = weld(mesh.vertices, mesh.faces, tolerance)
-    return _pieces(mesh, (vertices, faces, kept), sheet_of_faces(vertices, faces))
+    return _pieces(mesh, (vertices, faces, kept), sheet_of_faces(vertices, faces, cut=cut))
 
 
 def _pieces(mesh: RawMesh, welded: tuple[FloatArray, IntArray, IntArray], label: IntArray) -> tuple[RawMesh, ...]:
@@ -145,16 +146,37 @@ def _split(mesh: RawMesh, index: IntArray, names: Sequence[str]) -> tuple[RawMes
     )
 
 
+def _inward(corners: FloatArray, normals: FloatArray, sheet: IntArray, one: IntArray, other: IntArray) -> BoolArray:
+    """Whether a closed surface folds inwards by more than `_FOLD` between two faces each, shape (n,).
+
+    Args:
+        corners: Of all faces, shape (F, 3, 3).
+        normals: Of any length, shape (F, 3).
+        sheet: Of every face, shape (F,); one with a negative volume has normals that point inwards.
+        one: Faces, shape (n,).
+        other: Their neighbours, shape (n,).
+    """
+    volume = np.bincount(sheet, (corners[:, 0] * crossed(corners[:, 1], corners[:, 2])).sum(axis=1))
+    sides = np.bincount(sheet[one], minlength=len(volume)) * 2 == np.bincount(sheet, minlength=len(volume)) * 3
+    lengths = np.maximum(lengths_of(normals), 1e-300)
+    bent = (normals[one] * normals[other]).sum(axis=1) < np.cos(_FOLD) * lengths[one] * lengths[other]
+    beyond = (normals[one] * (corners[other].mean(axis=1) - corners[one].mean(axis=1))).sum(axis=1)
+    return np.asarray(bent & sides[sheet[one]] & (beyond * np.sign(volume[sheet[one]]) > 0.0))
+
+
+_FOLD = np.radians(15.0)
+"""Angle between faces from which an inward fold is an edge, not a part of something round."""
 _SMALL_SHEET = 0.01
 """Share of the whole surface below which a sheet that others share edges with is none of its own."""
 
 
-def sheet_of_faces(vertices: FloatArray, faces: IntArray) -> IntArray:
+def sheet_of_faces(vertices: FloatArray, faces: IntArray, *, cut: bool = False) -> IntArray:
     """Connected sheet of every face, shape (F,), as described in `connected_sheets`.
 
     Args:
         vertices: Welded, shape (V, 3).
         faces: Shape (F, 3).
+        cut: Whether inward folds of closed surfaces separate as well.
     """
     if not len(faces):
         return np.empty(0, dtype=np.int64)
@@ -170,11 +192,14 @@ def sheet_of_faces(vertices: FloatArray, faces: IntArray) -> IntArray:
     pairs = starts[counts == 2]
     sheet = _components(face[pairs], face[pairs + 1], len(single))
     corners = vertices[single]
-    areas = 0.5 * lengths_of(crossed(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+    normals = crossed(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    areas = 0.5 * lengths_of(normals)
+    folds = pairs[_inward(corners, normals, sheet, face[pairs], face[pairs + 1])] if cut else pairs[:0]
+    sheet = _components(face[np.setdiff1d(pairs, folds)], face[np.setdiff1d(pairs, folds) + 1], len(single))
     later = np.flatnonzero(~begins & (np.repeat(counts, counts) > 2))
-    earliest = np.repeat(starts, counts)[later]
-    one, other = sheet[face[np.concatenate([later - 1, earliest])]], sheet[face[np.concatenate([later, later])]]
-    lengths = np.tile(lengths_of(vertices[ends[order][later, 0]] - vertices[ends[order][later, 1]]), 2)
+    second = np.concatenate([later, later, folds + 1])
+    one = sheet[face[np.concatenate([later - 1, np.repeat(starts, counts)[later], folds])]]
+    other, lengths = sheet[face[second]], lengths_of(np.diff(vertices[ends[order][second]], axis=1)[:, 0])
     joined_to = _small_ones_joined(one, other, lengths, np.bincount(sheet, areas).astype(np.float64))
     return np.asarray(joined_to[sheet][same.reshape(-1)], dtype=np.int64)
 

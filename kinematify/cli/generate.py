@@ -40,6 +40,7 @@ _WIDTH = 100
         "kinematify generate --image chair.png --source command --command 'partcrafter {image} {out}' -o out/chair",
     ),
 )
+@click.argument("words", nargs=-1, metavar="")
 @click.option("--text", metavar="SENTENCE", help="What to build, in English.")
 @click.option(
     "--category",
@@ -75,9 +76,7 @@ _WIDTH = 100
     "model that writes a blueprint (llm; address in KINEMATIFY_LLM_URL).",
 )
 @click.option("--command", "program", metavar="WORDS", help="Your program, with {image}, {text}, {seed} and {out}.")
-@click.option(
-    "--time-limit", type=click.FloatRange(min=1.0), metavar="SECONDS", help="Limit of the program, or of one job."
-)
+@click.option("--time-limit", type=click.FloatRange(min=1.0), metavar="SECONDS", help="Limit of the program or job.")
 @click.option(
     "--budget",
     type=click.FloatRange(min=0.0),
@@ -105,6 +104,7 @@ _WIDTH = 100
 @json_option
 def command(
     *,
+    words: tuple[str, ...],
     text: str | None,
     category: str | None,
     settings: tuple[str, ...],
@@ -153,6 +153,8 @@ def command(
     model (llm) writes a blueprint; the command builds it and sends the findings of the validation back. The job is
     saved beside OUT (OUT.job): the same command resumes it, and no step is paid for twice.
     """
+    if words:
+        raise click.UsageError(f'A sentence follows --text: kinematify generate --text "{" ".join(words)}" -o FOLDER.')
     if listing:
         _list(category, json_to)
         return 0

@@ -11,7 +11,7 @@ import click
 
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.asking import Asking, asking_options, with_answers
-from kinematify.cli.inferred import as_loaded, confidences, describe, load_as_loaded, renamed
+from kinematify.cli.inferred import as_loaded, describe, estimates, load_as_loaded, renamed
 from kinematify.cli.options import collision_option, examples, pieces_option, scale_option, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS, describe_refinement, exit_status
@@ -364,5 +364,5 @@ def _joint_answer(inference: Inference, joint: Joint) -> dict[str, Any]:
         "axis": joint.axis.tolist(),
         "lower": joint.lower if math.isfinite(joint.lower) else None,
         "upper": joint.upper if math.isfinite(joint.upper) else None,
-        "confidence": confidences(inference)[joint.child],
+        **{key: getattr(estimates(inference)[joint.child], key) for key in ("confidence", "stops")},
     }

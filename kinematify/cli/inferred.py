@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.assembly.part import Assembly
+    from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline.inference import Inference
     from kinematify.robot.robot import Joint
 
@@ -21,20 +22,21 @@ _RENAMED = 10
 """Changed names that are printed."""
 
 
-def confidences(inference: Inference) -> dict[str, float]:
-    """Confidence of the joint above every part, by the part's name."""
+def estimates(inference: Inference) -> dict[str, JointEstimate]:
+    """The joint above every part as it was inferred, by the part's name."""
     names = inference.assembly.names
-    return {names[estimate.child]: estimate.confidence for estimate in inference.joints}
+    return {names[estimate.child]: estimate for estimate in inference.joints}
 
 
 def describe(inference: Inference, out: Path) -> str:
     """What was found, as people read it: the joints, what to look at first, and the files."""
-    confidence_of = confidences(inference)
+    bounds = inference.assembly.bounds
+    size = " x ".join(length_text(float(side)) for side in bounds[1] - bounds[0])
     lines = [
         f"Base: {inference.model.root}",
-        f"Lengths: read in {inference.assembly.lengths}; the object is {_size(inference.assembly)} (x, y, z)",
+        f"Lengths: read in {inference.assembly.lengths}; the object is {size} (x, y, z)",
         "",
-        describe_joints(inference.model.joints, confidence_of),
+        describe_joints(inference.model.joints, estimates(inference)),
         "",
         *_describe_doubts(inference),
         *describe_files(out),
@@ -47,18 +49,16 @@ def renamed(assembly: Assembly) -> dict[str, str]:
     return {new: old for new, old in assembly.original_names.items() if new != old and new in assembly.names}
 
 
-def _size(assembly: Assembly) -> str:
-    return " x ".join(length_text(float(side)) for side in assembly.bounds[1] - assembly.bounds[0])
-
-
-def describe_joints(joints: Sequence[Joint], confidence_of: Mapping[str, float] | None = None) -> str:
-    """A table of joints; with the confidence by child link if they were inferred."""
+def describe_joints(joints: Sequence[Joint], inferred: Mapping[str, JointEstimate] | None = None) -> str:
+    """A table of joints; with confidence and what ends the ranges if they were inferred, by child link."""
     headings = ("joint", "type", "parent -> child", "range")
     rows = [(joint.name, joint.kind.value, f"{joint.parent} -> {joint.child}", _range(joint)) for joint in joints]
-    if confidence_of is None:
+    if inferred is None:
         return format_table(headings, rows)
-    sure = [(*row, f"{confidence_of[joint.child]:.0%}") for row, joint in zip(rows, joints, strict=True)]
-    return format_table((*headings, "confidence"), sure)
+    found = [inferred[joint.child] for joint in joints]
+    ended = ["; ".join(dict.fromkeys(filter(None, item.stops))) for item in found]
+    sure = [(*rows[k], f"{item.confidence:.0%}", ended[k]) for k, item in enumerate(found)]
+    return format_table((*headings, "confidence", "ended by"), sure)
 
 
 def as_loaded(urdf: Path) -> str:

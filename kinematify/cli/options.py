@@ -42,8 +42,7 @@ def _metres(_context: click.Context, _parameter: click.Parameter, given: str) ->
     try:
         return None if given == "auto" else float(given)
     except ValueError as error:
-        hint = "Give auto, or metres per unit: 0.001 for millimetres."
-        raise click.BadParameter(f"{given!r} is no number. {hint}") from error
+        raise click.BadParameter(f"{given!r} is no number; give auto, or metres per unit: 0.001 for mm.") from error
 
 
 scale_option = click.option(
@@ -55,14 +54,13 @@ scale_option = click.option(
     help="Metres per unit of the input; auto: the unit that a file states, else metres.",
 )
 
-
 pieces_option = click.option(
     "--pieces",
-    type=click.Choice(["auto", "group", "keep"]),
+    type=click.Choice(["auto", "group", "cut", "keep"]),
     default="auto",
     show_default=True,
-    help="How parts come about. auto: the pieces of one mesh are grouped into rigid parts, other files have a part per "
-    "node or group; group: nodes and groups are split and grouped too; keep: every piece is a part.",
+    help="How parts come about. auto: pieces of one mesh are grouped into rigid parts, other files have a part per "
+    "node or group; group: these are grouped too; cut: after cuts where surfaces fold inwards; keep: all pieces.",
 )
 
 

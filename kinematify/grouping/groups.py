@@ -295,8 +295,8 @@ def _group(assembly: Assembly, index: IntArray, moves: float | None) -> Group:
 def one_part(assembly: Assembly) -> AssemblyError:
     """The error for a mesh of which no part moves."""
     return AssemblyError(
-        f"The {len(assembly.parts)} pieces of {assembly.source} look like one rigid part, so that nothing moves. Give "
-        "--groups or --labels if parts of it move, or --pieces keep to take every piece for a part."
+        f"The {len(assembly.parts)} pieces of {assembly.source} look like one rigid part. If parts of it move, give "
+        "--groups or --labels, --pieces cut if they are drawn on its surface, or --pieces keep if every piece is one."
     )
 
 

@@ -60,6 +60,8 @@ class JointEstimate:
     """Upper limit [rad if it turns, m if it slides]; 0 for fixed, +inf for continuous."""
     confidence: float
     """Between 0 and 1; how likely parent, type and axis are right (calibration: `results/choice.md`)."""
+    stops: tuple[str, str] = ("", "")
+    """What ends the range at `lower` and at `upper`, in words; empty where nothing does or it is not known."""
     alternatives: tuple[JointCandidate, ...] = ()
     """Every candidate that was kept, best first, the chosen one included."""
     evidence: Mapping[str, float] = field(default_factory=dict)
@@ -70,3 +72,5 @@ class JointEstimate:
         object.__setattr__(self, "axis", read_only(axis / np.linalg.norm(axis), np.float64))
         object.__setattr__(self, "pivot", read_only(self.pivot, np.float64))
         object.__setattr__(self, "evidence", MappingProxyType(dict(self.evidence)))
+        if self.kind in (JointType.FIXED, JointType.CONTINUOUS):
+            object.__setattr__(self, "stops", ("", ""))

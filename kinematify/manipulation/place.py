@@ -53,7 +53,7 @@ class ObjectMotion:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Placement:
+class RobotPlacement:
     """A place of the robot with a grasp."""
 
     T_world_base: FloatArray
@@ -155,14 +155,14 @@ class Places:
         self._arm, self._motion, self._settings = arm, motion, settings
         self._box = box + motion.T_world_object[:3, 3]
 
-    def ranked(self, grasps: Sequence[Grasp], given: FloatArray | None = None) -> list[Placement]:
+    def ranked(self, grasps: Sequence[Grasp], given: FloatArray | None = None) -> list[RobotPlacement]:
         """Return the most promising pairs of place and grasp, the best first.
 
         Args:
             grasps: The best first.
             given: The robot stands there, shape (4, 4); anywhere if None.
         """
-        found: list[tuple[float, int, int, Placement]] = []
+        found: list[tuple[float, int, int, RobotPlacement]] = []
         for number, grasp in enumerate(self._diverse(grasps)):
             for T_link_tool in (grasp.T_link_grasp, grasp.T_link_grasp @ _FLIP):
                 tools = self._motion.link_poses[self._looked_at] @ T_link_tool
@@ -170,7 +170,7 @@ class Places:
                 if not len(bases):
                     continue
                 found += [
-                    (far + _QUALITY * (1.0 - grasp.score), number, spot, Placement(
+                    (far + _QUALITY * (1.0 - grasp.score), number, spot, RobotPlacement(
                         T_world_base=bases[spot], grasp=grasp, T_link_tool=T_link_tool))
                     for spot, far in enumerate(self._far(bases, tools))
                 ]  # fmt: skip
@@ -188,7 +188,7 @@ class Places:
                 chosen.append(grasp)
         return chosen[: settings.grasps]
 
-    def _spread(self, found: list[tuple[float, int, int, Placement]]) -> list[tuple[float, Placement]]:
+    def _spread(self, found: list[tuple[float, int, int, RobotPlacement]]) -> list[tuple[float, RobotPlacement]]:
         """Make further tries of the same grasp, or of the same place, dearer."""
         grasps: dict[int, int] = {}
         spots: dict[tuple[int, int], int] = {}

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from kinematify.geometry.scene import Scene
     from kinematify.manipulation.grasp import GraspReport
     from kinematify.manipulation.kinematics import Arm
-    from kinematify.manipulation.place import ObjectMotion, Placement
+    from kinematify.manipulation.place import ObjectMotion, RobotPlacement
     from kinematify.manipulation.robot import TaskRobot
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import Travel
@@ -125,7 +125,7 @@ class PullPlan:
     joint: str
     turns: bool
     grasps: GraspReport | None
-    place: Placement | None
+    place: RobotPlacement | None
     T_world_object: FloatArray
     reach: FloatArray | None
     """Arm joints from home to the grasp [rad or m], shape (n, dof)."""
@@ -312,7 +312,7 @@ class JointPlanning:
             return self._nothing()
         return self._plan_of(*best)
 
-    def _pulls(self, puller: Puller, places: list[Placement], *, column: bool) -> Iterator[Pull]:
+    def _pulls(self, puller: Puller, places: list[RobotPlacement], *, column: bool) -> Iterator[Pull]:
         """Pulls as they are found: followed from the middle, then searched for, then followed as far as it goes."""
         partial: list[Pull] = []
         for from_start, share in ((False, 0.6), (True, 1.0)):

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from kinematify.config.planning import PlanSettings
     from kinematify.manipulation.collision import CollisionWorld, Hit
     from kinematify.manipulation.kinematics import Arm
-    from kinematify.manipulation.place import ObjectMotion, Placement
+    from kinematify.manipulation.place import ObjectMotion, RobotPlacement
     from kinematify.robot.arrays import FloatArray
 
 LIMIT, SINGULAR, JUMP, SELF, OBJECT, FLOOR, UNREACHED, ITSELF = (
@@ -43,7 +43,7 @@ class Stop:
 class Pull:
     """How far the arm can take the part from one place."""
 
-    place: Placement
+    place: RobotPlacement
     path: FloatArray
     """Arm joints [rad or m], shape (m, dof)."""
     values: FloatArray
@@ -63,11 +63,11 @@ class Puller:
         """Keep what is given."""
         self.arm, self.world, self.motion, self.settings = arm, world, motion, settings
 
-    def targets(self, place: Placement) -> FloatArray:
+    def targets(self, place: RobotPlacement) -> FloatArray:
         """Poses of the tool in the frame of the robot's root, shape (k, 4, 4)."""
         return np.asarray(np.linalg.inv(place.T_world_base) @ self.motion.link_poses @ place.T_link_tool)
 
-    def follow(self, place: Placement, *, column: bool, from_start: bool = False) -> Pull | Stop:
+    def follow(self, place: RobotPlacement, *, column: bool, from_start: bool = False) -> Pull | Stop:
         """Follow the joint as far as the arm can from a place.
 
         Args:
@@ -105,13 +105,13 @@ class Puller:
         first, second = pin.SE3(targets[row]), pin.SE3(targets[row + 1])
         return np.asarray(pin.SE3.Interpolate(first, second, position - row).homogeneous)
 
-    def free_at(self, q: FloatArray, share: float, place: Placement) -> bool:
+    def free_at(self, q: FloatArray, share: float, place: RobotPlacement) -> bool:
         """True if nothing collides where a share of the range is open."""
         row = round(min(max(share, 0.0), 1.0) * (len(self.motion.values) - 1))
         return self._hit(q, row, place) is None
 
     def _continued(
-        self, q: FloatArray, targets: FloatArray, rows: range, place: Placement
+        self, q: FloatArray, targets: FloatArray, rows: range, place: RobotPlacement
     ) -> tuple[list[FloatArray], Stop | None]:
         """Go on from a posture to further poses until something stops it."""
         found: list[FloatArray] = []
@@ -129,14 +129,14 @@ class Puller:
             before, q = q, now
         return found, None
 
-    def _blocked(self, q: FloatArray, row: int, place: Placement) -> Stop | None:
+    def _blocked(self, q: FloatArray, row: int, place: RobotPlacement) -> Stop | None:
         hit = self._hit(q, row, place)
         if hit is None:
             return None
         words = f"its {hit.first} meets {hit.second}" + (" of the object" if hit.kind == "object" else "")
         return Stop(kind=_KINDS[hit.kind], words=words, pair=(hit.first, hit.second))
 
-    def _hit(self, q: FloatArray, row: int, place: Placement) -> Hit | None:
+    def _hit(self, q: FloatArray, row: int, place: RobotPlacement) -> Hit | None:
         self.world.pose_object(self.motion.body_poses[row], place.grasp.spread)
         return self.world.hit(q, holding=True)
 
@@ -153,7 +153,7 @@ class Puller:
             return Stop(kind=SINGULAR, words="it is stretched out or its wrist is aligned (singular)")
         return Stop(kind=UNREACHED, words="the next pose is out of its reach")
 
-    def _pull(self, place: Placement, path: FloatArray, stop: Stop | None) -> Pull:
+    def _pull(self, place: RobotPlacement, path: FloatArray, stop: Stop | None) -> Pull:
         values = self.motion.values[: len(path)]
         whole = float(self.motion.values[-1] - self.motion.values[0])
         fraction = abs(float(values[-1] - values[0]) / whole)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kinematify.config.planning import PlanSettings
     from kinematify.manipulation.collision import CollisionWorld
     from kinematify.manipulation.kinematics import Arm
-    from kinematify.manipulation.place import Placement
+    from kinematify.manipulation.place import RobotPlacement
     from kinematify.manipulation.pull import Pull, Puller
     from kinematify.robot.arrays import FloatArray
 
@@ -104,7 +104,7 @@ def search_pull(puller: Puller, pull: Pull, *, column: bool, seed: int) -> Pull:
 
 
 def search_manifold(
-    puller: Puller, place: Placement, start: FloatArray, goals: Sequence[FloatArray], *, seed: int
+    puller: Puller, place: RobotPlacement, start: FloatArray, goals: Sequence[FloatArray], *, seed: int
 ) -> FloatArray | None:
     """Search a way from a state to one of several others.
 
@@ -130,7 +130,7 @@ def search_manifold(
 
 
 def _solved(
-    puller: Puller, place: Placement, constraint: _HoldsOn, start: FloatArray, goal: FloatArray
+    puller: Puller, place: RobotPlacement, constraint: _HoldsOn, start: FloatArray, goal: FloatArray
 ) -> FloatArray | None:
     arm = puller.arm
     ambient = ob.RealVectorStateSpace(arm.dof + 1)

@@ -18,8 +18,6 @@ from kinematify.pipeline.inference import DOUBTFUL
 from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from kinematify.contact.graph import ContactEdge
     from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import BearingLine
@@ -172,8 +170,9 @@ def _joint(joint: JointEstimate, names: tuple[str, ...]) -> dict[str, Any]:
         "pivot": joint.pivot.tolist(),
         "lower": joint.lower,
         "upper": joint.upper,
+        "stops": list(joint.stops),
         "confidence": joint.confidence,
-        "evidence": _plain(joint.evidence),
+        "evidence": {key: float(value) for key, value in joint.evidence.items()},
         "candidates": [_candidate(candidate) for candidate in joint.alternatives],
     }
 
@@ -202,12 +201,8 @@ def _candidate(candidate: JointCandidate) -> dict[str, Any]:
         "pivot": candidate.pivot.tolist(),
         "score": candidate.score,
         "source": candidate.source,
-        "evidence": _plain(candidate.evidence),
+        "evidence": {key: float(value) for key, value in candidate.evidence.items()},
     }
-
-
-def _plain(values: Mapping[str, float]) -> dict[str, float]:
-    return {key: float(value) for key, value in values.items()}
 
 
 def _finite(value: Any) -> Any:

@@ -97,16 +97,10 @@ class CandidateJoints:
         found = find_range(scene, candidate.kind, candidate.axis, candidate.pivot, self._config)
         return replace(
             joint,
-            kind=found.kind,
             axis=found.sign * candidate.axis,
             pivot=candidate.pivot,
-            lower=found.lower,
-            upper=found.upper,
-            evidence={
-                **joint.evidence,
-                "free_forward": found.free_forward,
-                "free_backward": found.free_backward,
-            },
+            evidence={**joint.evidence, **found.evidence},
+            **found.facts,
         )
 
     def scene(self, tree: KinematicTree, edge: tuple[int, int]) -> JointScene:

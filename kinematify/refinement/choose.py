@@ -239,7 +239,9 @@ def shortened(joint: JointEstimate, signal: RangeSignal) -> JointEstimate | None
     sign = 1.0 if upper >= -lower else -1.0
     low, high = (lower, upper) if sign > 0 else (-upper, -lower)
     kind = JointType.REVOLUTE if joint.kind.turns else joint.kind
-    return replace(joint, kind=kind, axis=sign * joint.axis, lower=low, upper=high)
+    known = zip((lower, upper), (joint.lower, joint.upper), joint.stops, strict=True)
+    stops = [stop if end == before else signal.check for end, before, stop in known][:: int(sign)]
+    return replace(joint, kind=kind, axis=sign * joint.axis, lower=low, upper=high, stops=(stops[0], stops[1]))
 
 
 def _known(joint: JointEstimate, score: float, against: float, tier: str) -> Trial:

@@ -106,6 +106,7 @@ def _joint(edge: tuple[int, int], item: dict[str, Any], known: JointEstimate | N
         pivot=np.array(item["pivot"]),
         lower=ends[0] if item["lower"] is None else item["lower"],
         upper=ends[1] if item["upper"] is None else item["upper"],
+        stops=tuple(item.get("stops", ("", ""))),
         confidence=item["confidence"],
         alternatives=known.alternatives if known is not None else alternatives,
         evidence={key: value for key, value in item["evidence"].items() if value is not None},

@@ -38,6 +38,7 @@ _NEAR = np.cos(np.radians(30.0))  # a candidate along the named axis: parts are 
 _SAME = np.cos(np.radians(1.0))  # a candidate along an axis that is given by its numbers
 _THROUGH = 0.005  # of the object's diagonal: a candidate that goes through the point that is given
 _ROUNDED = 1e-4  # a full turn is typed as 6.2832 [rad]
+_HELD_TURN = np.radians(5.0)  # less is the clearance of meshes
 _HELD = 0.1  # a slide that is stopped within a tenth of the part's length has no way to go
 _FORMS = (
     "Write PART=TYPE, PART:fixed, PART:axis=AXIS, PART:pivot=X,Y,Z, PART:range=LOWER..UPPER, PART:parent=LINK or "
@@ -324,7 +325,7 @@ def _limited(found: JointEstimate, hint: Hint, before: JointEstimate) -> JointEs
     named = before.axis if hint.direction is None else hint.direction
     lower, upper = ends if float(found.axis @ named) >= 0.0 else -ends[::-1]
     kind = JointType.REVOLUTE if found.kind is JointType.CONTINUOUS else found.kind
-    return replace(found, kind=kind, lower=float(lower), upper=float(upper))
+    return replace(found, kind=kind, lower=float(lower), upper=float(upper), stops=("a hint", "a hint"))
 
 
 def _certain(joint: JointEstimate) -> JointEstimate:
@@ -362,7 +363,7 @@ def _objections(joint: JointEstimate, hint: Hint, inference: Inference, before: 
         return []
     free = max(joint.evidence.get("free_forward", np.inf), joint.evidence.get("free_backward", np.inf))
     length = float(np.ptp(inference.assembly.parts[joint.child].vertices @ joint.axis))
-    if joint.kind.turns and free < np.radians(inference.config.joints.limits.least_deg):
+    if joint.kind.turns and free < _HELD_TURN:
         stopped = f"turns by {np.degrees(free):.1f} deg"
     elif not joint.kind.turns and free < _HELD * length:
         stopped = f"slides by {1e3 * free:.1f} mm"

@@ -34,7 +34,7 @@ from pydrake.systems.framework import DiagramBuilder
 
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import deepest
-from kinematify.simulation.engine import FINER, LoadedJoint, LoadedModel, Measured, Refused
+from kinematify.simulation.engine import FINER, LoadedJoint, LoadedRobot, Measured, Refused
 from kinematify.simulation.raw_model import NO_NUMBERS, MovesFreely, Reproductions, RunningFile, Unloadable
 from kinematify.simulation.servos import acting_pairs, commands
 from kinematify.simulation.stepped import count_steps, drive_run, drop_run, free_run
@@ -334,7 +334,7 @@ class DrakeModel:
         return copy
 
     @cached_property
-    def loaded(self) -> LoadedModel:
+    def loaded(self) -> LoadedRobot:
         """What became of joints and masses."""
         world = self.looking
         joints = {
@@ -348,7 +348,7 @@ class DrakeModel:
         }
         bodies = zip(self.mechanism.links, world.bodies, strict=True)
         masses = {name: float(body.default_mass()) for name, body in bodies if body is not None}
-        return LoadedModel(joints=joints, masses=masses, total_mass=float(sum(masses.values())))
+        return LoadedRobot(joints=joints, masses=masses, total_mass=float(sum(masses.values())))
 
     @property
     def complete(self) -> bool:

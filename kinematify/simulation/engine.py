@@ -50,7 +50,7 @@ class LoadedJoint:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class LoadedModel:
+class LoadedRobot:
     """What an engine made of `prepared.urdf`."""
 
     joints: Mapping[str, LoadedJoint]
@@ -174,7 +174,7 @@ class EngineModel(Protocol):
     """A loaded model in which everything collides; it is set to configurations and never runs."""
 
     @property
-    def loaded(self) -> LoadedModel:
+    def loaded(self) -> LoadedRobot:
         """What became of joints and masses."""
 
     @property

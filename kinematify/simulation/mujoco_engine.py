@@ -19,7 +19,7 @@ from kinematify.simulation.engine import (
     Dropped,
     FreeRun,
     LoadedJoint,
-    LoadedModel,
+    LoadedRobot,
     Measured,
 )
 from kinematify.simulation.mujoco_model import (
@@ -100,7 +100,7 @@ class MujocoModel:
     """Everything collides at any depth."""
 
     @property
-    def loaded(self) -> LoadedModel:
+    def loaded(self) -> LoadedRobot:
         """What became of joints and masses."""
         model, mechanism = self.measuring.model, self.source.mechanism
         joints = {
@@ -116,7 +116,7 @@ class MujocoModel:
         bodies = zip(mechanism.links, self.measuring.body.tolist(), strict=True)
         masses = {name: float(model.body_mass[body]) for name, body in bodies if body >= 0}
         total = float(model.body_mass.sum())
-        return LoadedModel(joints=joints, masses=masses, total_mass=total, balanced=self.measuring.balanced)
+        return LoadedRobot(joints=joints, masses=masses, total_mass=total, balanced=self.measuring.balanced)
 
     @property
     def complete(self) -> bool:

@@ -13,7 +13,7 @@ from lxml import etree
 
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import NO_CONTACTS
-from kinematify.simulation.engine import LoadedJoint, LoadedModel, Measured, Refused
+from kinematify.simulation.engine import LoadedJoint, LoadedRobot, Measured, Refused
 from kinematify.simulation.raw_model import MovesFreely, RawEngineModel, Reproductions, Unloadable, deepest_first
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class PinocchioModel:
     mechanism: LeaderMechanism
 
     @cached_property
-    def loaded(self) -> LoadedModel:
+    def loaded(self) -> LoadedRobot:
         """What became of joints and masses."""
         model, joints = self.model, {}
         for name, joint in list(zip(model.names, model.joints, strict=True))[1:]:  # the first represents the world
@@ -78,7 +78,7 @@ class PinocchioModel:
                 upper=float(model.upperPositionLimit[joint.idx_q]) if bounded else np.inf,
             )
         total = sum(inertia.mass for inertia in model.inertias)
-        return LoadedModel(joints=joints, masses=self._masses, total_mass=float(total))
+        return LoadedRobot(joints=joints, masses=self._masses, total_mass=float(total))
 
     @property
     def _masses(self) -> dict[str, float]:

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import Contacts
-from kinematify.simulation.engine import FINER, LoadedJoint, LoadedModel, Measured, Refused
+from kinematify.simulation.engine import FINER, LoadedJoint, LoadedRobot, Measured, Refused
 from kinematify.simulation.pybullet_body import PybulletBody, load, text_of
 from kinematify.simulation.pybullet_raw import PybulletFile
 from kinematify.simulation.pybullet_world import PybulletWorld
@@ -98,7 +98,7 @@ class PybulletModel:
     """[kg], keyed by link."""
 
     @cached_property
-    def loaded(self) -> LoadedModel:
+    def loaded(self) -> LoadedRobot:
         """What became of joints and masses."""
         joints = {}
         for info in self.looking.joint_infos:
@@ -109,7 +109,7 @@ class PybulletModel:
                     lower=-np.inf if unlimited else info[8],
                     upper=np.inf if unlimited else info[9],
                 )
-        return LoadedModel(joints=joints, masses=self.masses, total_mass=sum(self.masses.values()))
+        return LoadedRobot(joints=joints, masses=self.masses, total_mass=sum(self.masses.values()))
 
     @property
     def complete(self) -> bool:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from kinematify.refinement.candidates import CandidateJoints
     from kinematify.render.camera import Camera
     from kinematify.robot.arrays import FloatArray
-    from kinematify.vision.views import View, Viewpoints
+    from kinematify.vision.views import Viewpoint, Viewpoints
 
 _CHILD, _CARRIED = np.array([0.85, 0.13, 0.12]), np.array([0.96, 0.62, 0.60])
 _PARENT, _REST, _GHOST = np.array([0.45, 0.62, 0.90]), np.array([0.80, 0.80, 0.80]), np.array([1.0, 0.62, 0.08])
@@ -153,7 +153,7 @@ def _pixels(shown: _Shown, camera: Camera) -> int:
 def _whole(shown: _Shown, preview: PreviewConfig) -> Image.Image:
     """The whole object from the side of the best view, with a frame around the part that moves."""
     assembly, config = shown.inference.assembly, shown.config
-    view: View = shown.views.best
+    view: Viewpoint = shown.views.best
     camera = view.camera(corners(*assembly.bounds), config.view_pixels, config)
     image = render_scene(shown.scene(glass=False), camera, preview)
     box, _ = camera.project(corners(*assembly.parts[shown.child].bounds))

@@ -29,7 +29,7 @@ _MARGIN = 8  # [pixels]
 
 
 @dataclass(frozen=True, kw_only=True)
-class View:
+class Viewpoint:
     """A point of view."""
 
     azimuth: float
@@ -55,8 +55,8 @@ class View:
 class Viewpoints:
     """Where to look at one part from."""
 
-    best: View
-    second: View
+    best: Viewpoint
+    second: Viewpoint
     see_through: bool
     """Most of the part is hidden from everywhere."""
 
@@ -101,7 +101,7 @@ def find_viewpoints(
     mesh_of = [PosedMesh(vertices=item.vertices, faces=item.faces, color=np.ones(3)) for item in assembly.parts]
     whole, alone = PictureScene(meshes=tuple(mesh_of)), PictureScene(meshes=(mesh_of[child],))
     region = around(assembly, [child])
-    views = [View(azimuth=float(a), elevation=float(e)) for e in _HEIGHTS for a in _AZIMUTHS]
+    views = [Viewpoint(azimuth=float(a), elevation=float(e)) for e in _HEIGHTS for a in _AZIMUTHS]
     counted = [part_pixels(whole, alone, child, view.camera(region, _PROBE, config)) for view in views]
     clear = np.array([_clarity(view, options) for view in views])
     seen, outline = (np.array([count[k] for count in counted], dtype=np.float64) for k in (0, 1))
@@ -114,7 +114,7 @@ def find_viewpoints(
     return Viewpoints(best=views[best], second=views[second], see_through=see_through)
 
 
-def _clarity(view: View, options: Sequence[JointCandidate]) -> float:
+def _clarity(view: Viewpoint, options: Sequence[JointCandidate]) -> float:
     """How well motions are seen from somewhere, in [0, 1]: slides from their side, turns neither along nor across."""
     if not options:
         return 1.0

@@ -184,6 +184,7 @@ def test_the_categories_and_their_parameters_are_listed(capsys):
         (["--category", "cabinet", "--set", "drawers"], "KEY=VALUE"),
         (["--strict", "--text", "a cabinet with a vent"], "Not built: vent"),
         (["--text", "a cabinet", "--category", "cabinet"], "either --text, --category or --blueprint"),
+        (["a tool box"], 'kinematify generate --text "a tool box"'),
         ([], "either --text, --category or --blueprint"),
     ],
 )

@@ -31,7 +31,7 @@ def bin_with_lid(tmp_path: Path) -> Path:
 def test_a_mesh_without_labels_is_pieces_unless_they_are_kept(bin_with_lid: Path) -> None:
     assert not load_assembly(bin_with_lid).segmented
     assert load_assembly(bin_with_lid, pieces="keep").segmented
-    with pytest.raises(InputError, match="Choose one of auto, group, keep"):
+    with pytest.raises(InputError, match="Choose one of auto, group, cut, keep"):
         load_assembly(bin_with_lid, pieces="some")
 
 
@@ -121,6 +121,24 @@ def test_boxes_that_share_an_edge_are_two_sheets_and_coincident_faces_are_one() 
     one = box((1, 1, 1), (0, 0, 0))
     doubled = RawMesh(name="double", vertices=one.vertices, faces=np.concatenate([one.faces, one.faces[:, ::-1]]))
     assert len(connected_sheets(doubled, 1e-7)) == 1
+
+
+def test_a_door_drawn_on_one_surface_is_reported_and_cut_only_when_asked_for(tmp_path: Path) -> None:
+    door = [box((0.8, 0.1, 0.8), (0, -0.5, 0)), box((0.2, 0.1, 0.3), (0.2, -0.57, 0))]
+    one = trimesh.boolean.union([box((1, 1, 1), (0, 0, 0)), *door])
+    path, ball = tmp_path / "one.ply", tmp_path / "ball.ply"
+    one.export(path)
+    trimesh.creation.icosphere().export(ball)
+    with pytest.raises(AssemblyError, match=r"one surface.*inwards, around 0.8 x .* m \(\d+ faces.*--pieces cut"):
+        load_assembly(path)
+    pieces = load_assembly(path, pieces="cut")
+    assert not pieces.segmented
+    assert sorted(tuple(np.ptp(part.bounds, axis=0).round(2)) for part in pieces.parts)[-1] == (1.0, 1.0, 1.0)
+    assert len(pieces.parts) == 3
+    assert sum(len(part.faces) for part in pieces.parts) == len(one.faces)
+    for asked in ("auto", "cut"):
+        with pytest.raises(AssemblyError, match="1 usable part"):
+            load_assembly(ball, pieces=asked)
 
 
 def test_of_a_scene_on_a_floor_one_object_is_asked_for_and_the_floor_is_removed(

@@ -21,7 +21,11 @@ def lid_range(angle: float, axis: np.ndarray) -> tuple[float, float]:
     scene = scene_of(moved(known_object("laptop", solids, joint), {"screen": angle}), "screen")
     found = find_range(scene, JointType.REVOLUTE, axis, np.array([0.0, 0.0, 0.0201]), CONFIG.joints)
     # Back into the direction of the true joint, whose positive direction opens.
-    return (found.lower, found.upper) if found.sign * float(axis @ -Y) > 0 else (-found.upper, -found.lower)
+    return (
+        (-found.back.motion, found.ahead.motion)
+        if found.sign * float(axis @ -Y) > 0
+        else (-found.ahead.motion, found.back.motion)
+    )
 
 
 @pytest.mark.parametrize("angle", [0.8, np.pi / 2, 1.9, 2.3])
@@ -46,5 +50,5 @@ def test_a_bail_lies_down_to_either_side(angle: float) -> None:
     known = known_object("pail", {"pail": pail, "bail": bail}, turning("pail", "bail", Y, (0, 0, 0.195), (-1.4, 1.4)))
     known = moved(known, {"bail": angle})
     found = find_range(scene_of(known, "bail"), JointType.REVOLUTE, Y, np.array([0.0, 0.0, 0.195]), CONFIG.joints)
-    assert found.upper == pytest.approx(-found.lower, abs=0.15 + 2.0 * angle)
-    assert 1.2 - angle < found.upper < 1.7
+    assert found.ahead.motion == pytest.approx(found.back.motion, abs=0.15 + 2.0 * angle)
+    assert 1.2 - angle < found.ahead.motion < 1.7

@@ -86,13 +86,13 @@ def test_parts_that_do_not_touch_have_no_guide() -> None:
 def test_a_collar_runs_along_its_rod_although_it_is_small() -> None:
     found = find_range(collar(), JointType.PRISMATIC, Z, np.array([0.0, 0.0, 0.05]), CONFIG.joints)
     assert collar().smallness >= 1.0
-    assert found.upper - found.lower == pytest.approx(0.93, abs=0.05)
+    assert found.ahead.motion + found.back.motion == pytest.approx(0.93, abs=0.05)
 
 
 def test_the_stem_of_a_button_is_no_travel() -> None:
     found = find_range(push_button(), JointType.PRISMATIC, -Z, np.array([0.0, 0.0, 0.2]), CONFIG.joints)
     assert found.sign > 0.0
-    assert 0.003 < found.upper < 0.009
+    assert 0.003 < found.ahead.motion < 0.009
 
 
 def test_a_lid_that_lies_on_top_does_not_sink() -> None:
@@ -104,8 +104,8 @@ def test_a_lid_that_lies_on_top_does_not_sink() -> None:
     )
     found = find_range(scene, JointType.PRISMATIC, Z, np.array([0.0, 0.0, 0.2]), CONFIG.joints)
     assert found.sign > 0.0
-    assert found.lower == 0.0
-    assert found.upper > 0.02
+    assert found.back.motion == 0.0
+    assert found.ahead.motion > 0.02
 
 
 def test_a_cap_that_goes_round_its_pen_is_drawn_off() -> None:
@@ -117,7 +117,7 @@ def test_a_cap_that_goes_round_its_pen_is_drawn_off() -> None:
     )
     found = find_range(scene, JointType.PRISMATIC, Z, np.array([0.0, 0.0, 0.03]), CONFIG.joints)
     assert found.sign < 0.0
-    assert found.upper > 0.03
+    assert found.ahead.motion > 0.03
 
 
 def test_a_ram_at_its_upper_end_opens_downwards() -> None:
@@ -136,5 +136,5 @@ def test_a_ram_at_its_upper_end_opens_downwards() -> None:
     )
     found = find_range(scene, JointType.PRISMATIC, Z, np.array([0.0, 0.0, 0.9]), CONFIG.joints)
     assert found.sign < 0.0
-    assert 0.4 < found.upper < 0.7
-    assert -0.25 < found.lower <= 0.0
+    assert 0.4 < found.ahead.motion < 0.7
+    assert found.back.motion < 0.25

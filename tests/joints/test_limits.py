@@ -12,6 +12,7 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.pieces.bearings import barrel
 from kinematify.generate.procedural.solids import box, cylinder
+from kinematify.joints.choice import limits
 from kinematify.joints.choice.limits import find_range
 from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
@@ -41,7 +42,7 @@ def test_reversing_the_given_axis_gives_the_same_joint(name: str) -> None:
     there = find_range(scene, joint.kind, joint.axis, joint.pivot, CONFIG.joints)
     back = find_range(scene, joint.kind, -joint.axis, joint.pivot, CONFIG.joints)
     assert there.sign == -back.sign
-    assert (there.lower, there.upper) == pytest.approx((back.lower, back.upper))
+    assert there.facts == back.facts
 
 
 def test_limits_bound_the_designed_range_from_above() -> None:
@@ -106,7 +107,7 @@ def test_a_level_disc_on_top_that_is_larger_than_a_button_is_lifted() -> None:
     assert 0.5 < scene.smallness < 1.0
     found = find_range(scene, JointType.PRISMATIC, np.array([0.0, 0.0, 1.0]), joint.pivot, CONFIG.joints)
     assert found.sign > 0.0
-    assert found.upper >= 0.006
+    assert found.ahead.motion >= 0.006
 
 
 def test_a_button_on_the_foot_of_a_lamp_is_pressed_down() -> None:
@@ -124,7 +125,7 @@ def test_a_button_on_the_foot_of_a_lamp_is_pressed_down() -> None:
     assert scene.serial
     found = find_range(scene, JointType.PRISMATIC, np.array([0.0, 0.0, 1.0]), joints[0].pivot, CONFIG.joints)
     assert found.sign < 0.0
-    assert found.upper < 0.011
+    assert found.ahead.motion < 0.011
 
 
 def test_what_stands_at_its_stop_opens_to_a_right_angle_at_most() -> None:
@@ -142,9 +143,9 @@ def test_what_stands_at_its_stop_opens_to_a_right_angle_at_most() -> None:
     joint = turning("lever", "other", (0, 0, 1), (0, 0, 0.012), (0.0, 1.0))
     scene = scene_of(known_object("pliers", solids, joint), "other")
     found = find_range(scene, JointType.REVOLUTE, np.array([0.0, 0.0, 1.0]), joint.pivot, CONFIG.joints)
-    assert found.free_forward > np.radians(100.0)
-    assert found.free_backward < np.radians(CONFIG.joints.limits.stopped_deg)
-    assert found.upper == pytest.approx(np.radians(CONFIG.joints.limits.panel_deg))
+    assert found.free[0].motion > np.radians(100.0)
+    assert found.free[1].motion < np.radians(CONFIG.joints.limits.stopped_deg)
+    assert found.ahead.motion == pytest.approx(np.radians(CONFIG.joints.limits.panel_deg))
 
 
 @pytest.mark.parametrize("share", [0.0, 0.6])
@@ -157,3 +158,31 @@ def test_what_stands_ajar_opens_to_a_right_angle_from_its_stop(share: float) -> 
     for estimate in infer_joints(glasses).values():
         assert estimate.upper - estimate.lower == pytest.approx(np.pi / 2, abs=0.15)
         assert estimate.lower == pytest.approx(-share * np.pi / 2, abs=0.15)
+
+
+def test_both_ends_say_what_stops_them() -> None:
+    """A flap that its body stops, a door and a knob."""
+    body = box((0, 0, 0), (0.2, 0.3, 0.02)) + box((0, 0, 0.02), (0.2, 0.02, 0.2))
+    flap = box((0.02, 0.14, 0.021), (0.18, 0.15, 0.12))
+    joint = turning("body", "flap", (1, 0, 0), (0.1, 0.145, 0.0205), (0.0, 1.0))
+    scene = scene_of(known_object("stand", {"body": body, "flap": flap}, joint), "flap")
+    found = find_range(scene, JointType.REVOLUTE, np.array([1.0, 0.0, 0.0]), joint.pivot, CONFIG.joints)
+    assert all(stop for stop in found.facts["stops"])
+    assert [way.stop for way in found.free] == ["contact with body"] * 2
+    door = estimates_of("edge_door")["door"]
+    assert door.stops == ("the given pose", "what is usual for such a part")
+    assert estimates_of("knob")["knob"].stops == ("", "")
+
+
+def test_what_meets_nothing_is_not_limited_by_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A bar on a post with room all round, if it is no wheel: its range is what is usual, not half turns."""
+    monkeypatch.setattr(limits, "is_continuous", lambda *_: False)
+    post = cylinder(0.01, (0, 0, 0), (0, 0, 0.1))
+    handle = box((-0.1, -0.008, 0.1), (0.1, 0.008, 0.115)) - cylinder(0.0102, (0, 0, 0.09), (0, 0, 0.11))
+    post += cylinder(0.01, (0, 0, 0.1), (0, 0, 0.11))
+    joint = turning("post", "handle", (0, 0, 1), (0, 0, 0.1), (-1.0, 1.0))
+    scene = scene_of(known_object("tap", {"post": post, "handle": handle}, joint), "handle")
+    found = find_range(scene, JointType.REVOLUTE, np.array([0.0, 0.0, 1.0]), joint.pivot, CONFIG.joints)
+    assert {way.stop for way in found.free} == {"the end of the search"}
+    assert found.ahead == found.back
+    assert found.ahead.motion == pytest.approx(np.radians(CONFIG.joints.limits.unmet_deg))

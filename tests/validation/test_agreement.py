@@ -22,7 +22,7 @@ from kinematify.simulation.configurations import (
     read_poses,
     write_poses,
 )
-from kinematify.simulation.engine import LoadedJoint, LoadedModel
+from kinematify.simulation.engine import LoadedJoint, LoadedRobot
 from kinematify.simulation.prepared import URDF_FILE, load_prepared, prepare
 from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks.engine_loading import compare_with_file
@@ -271,7 +271,7 @@ def test_lost_and_swapped_joints_are_found(tmp_path: Path) -> None:
     request = prepared_request(cabinet(), tmp_path)
     prepared = load_prepared(request.work)
     check = OpenCheck(id="KV606", engine="pinocchio")
-    loaded = LoadedModel(
+    loaded = LoadedRobot(
         joints={"door_joint": LoadedJoint(turns=False, lower=0.0, upper=1.5)},
         masses={link.link: link.mass for link in prepared.links},
         total_mass=prepared.total_mass + 1.0,

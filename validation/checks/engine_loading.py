@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint, Robot
     from kinematify.simulation.configurations import Configurations
-    from kinematify.simulation.engine import LoadedJoint, LoadedModel
+    from kinematify.simulation.engine import LoadedJoint, LoadedRobot
     from kinematify.simulation.prepared import Prepared
     from kinematify.validation.check import OpenCheck
     from kinematify.validation.engine_context import EngineContext
@@ -92,7 +92,7 @@ def _load(result: OpenCheck, context: EngineContext, same: float) -> None:
         )
 
 
-def _compare_axes(result: OpenCheck, context: EngineContext, loaded: LoadedModel, same: float) -> None:
+def _compare_axes(result: OpenCheck, context: EngineContext, loaded: LoadedRobot, same: float) -> None:
     for name, joint in loaded.joints.items():
         declared = context.declared.joint_by_name[name].axis
         if joint.axis is not None and np.abs(joint.axis - declared).max() > same:
@@ -111,7 +111,7 @@ def _vector(values: FloatArray) -> str:
 
 
 def compare_with_file(
-    result: OpenCheck, model: Robot, prepared: Prepared, loaded: LoadedModel, mass_error: float
+    result: OpenCheck, model: Robot, prepared: Prepared, loaded: LoadedRobot, mass_error: float
 ) -> None:
     """Add a finding for every joint or mass that an engine has otherwise than it was given.
 

@@ -83,11 +83,9 @@ def _estimate(weighed: ScoredHypotheses, judged: Posterior, *, config: JointsCon
     return JointEstimate(
         parent=scene.parent,
         child=scene.child,
-        kind=found.kind,
         axis=found.sign * axis,
         pivot=pivot,
-        lower=found.lower,
-        upper=found.upper,
+        **found.facts,
         confidence=judged.fixed if judged.fixed > config.confidence.fixed else judged.confidence,
         alternatives=judged.alternatives(config.alternatives),
         evidence={
@@ -97,8 +95,7 @@ def _estimate(weighed: ScoredHypotheses, judged: Posterior, *, config: JointsCon
             "bearing_gate": float(scene.has_bearing),
             "smallness": scene.smallness,
             "mechanism": scene.mechanism,
-            "free_forward": found.free_forward,
-            "free_backward": found.free_backward,
+            **found.evidence,
         },
     )
 
@@ -220,8 +217,12 @@ def with_exact_lines(assembly: Assembly, joint: JointEstimate) -> JointEstimate:
 def _exact(item: _Joint, stated: ExactFaces, diagonal: float) -> _Joint:
     axes, points = stated.axes, stated.points
     if item.kind is JointType.PRISMATIC:
-        direction = _nearest(np.concatenate([axes, stated.normals]), item.axis)
-        return item if direction is None else replace(item, axis=direction)
+        directions = np.concatenate([axes, stated.normals])
+        angles = _angles(directions, item.axis)
+        if not len(angles) or angles.min() >= _NEAR:
+            return item
+        direction = directions[np.argmin(angles)]
+        return replace(item, axis=direction * np.sign(direction @ item.axis))
     if not item.kind.turns:
         return item
     beside = lengths_of(np.cross(points - item.pivot, axes))
@@ -231,15 +232,6 @@ def _exact(item: _Joint, stated: ExactFaces, diagonal: float) -> _Joint:
     best = np.flatnonzero(near)[np.argmin(beside[near])]
     axis = axes[best] * np.sign(axes[best] @ item.axis)
     return replace(item, axis=axis, pivot=Line(axis=axis, point=points[best]).foot(item.pivot))
-
-
-def _nearest(directions: FloatArray, axis: FloatArray) -> FloatArray | None:
-    """The direction nearest to an axis, with its sign, if it is near."""
-    if not len(directions):
-        return None
-    angles = _angles(directions, axis)
-    best = int(np.argmin(angles))
-    return directions[best] * np.sign(directions[best] @ axis) if angles[best] < _NEAR else None
 
 
 def _angles(directions: FloatArray, axis: FloatArray) -> FloatArray:

@@ -64,7 +64,10 @@ class TwinJoints:
         if not motions:
             return None
         axis, pivot = carried_line(model, motions[0])
-        return replace(joint, kind=model.kind, axis=axis, pivot=pivot, lower=model.lower, upper=model.upper)
+        stops = (f"as of {self._assembly.parts[model.child].name}",) * 2
+        return replace(
+            joint, kind=model.kind, axis=axis, pivot=pivot, lower=model.lower, upper=model.upper, stops=stops
+        )
 
     def _of_parts(self, first: int, second: int) -> list[RigidMotion]:
         if (first, second) not in self._between:

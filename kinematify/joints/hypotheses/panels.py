@@ -7,8 +7,9 @@ wants. No cue decides alone: each is bounded, and the sum is compared among line
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from kinematify.joints.measure.sweep import moving_points, turn_paths
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from kinematify.config import JointsConfig
     from kinematify.joints.bearings.line import Line
@@ -67,18 +68,19 @@ class RankedTurns:
     @property
     def proposed(self) -> RankedTurns:
         """Without those that were given."""
-        return self.subset(np.flatnonzero(np.array(self.lines.sources) != GIVEN))
+        found: RankedTurns = some_of(self, np.flatnonzero(np.array(self.lines.sources) != GIVEN))
+        return found
 
-    def subset(self, index: IntArray) -> RankedTurns:
-        """The candidates at these positions, in this order."""
-        return RankedTurns(
-            lines=_reorder(self.lines, index),
-            scores=self.scores[index],
-            cues={name: value[index] for name, value in self.cues.items()},
-            free=self.free[index],
-            free_parent=self.free_parent[index],
-            outward=self.outward[index],
-        )
+
+def some_of(ranked: Any, index: IntArray) -> Any:
+    """Candidates at these positions, in this order: of arrays, tuples, mappings and dataclasses of such."""
+    if isinstance(ranked, np.ndarray):
+        return ranked[index]
+    if isinstance(ranked, tuple):
+        return tuple(ranked[i] for i in index)
+    if isinstance(ranked, Mapping):
+        return {name: value[index] for name, value in ranked.items()}
+    return replace(ranked, **{item.name: some_of(getattr(ranked, item.name), index) for item in fields(ranked)})
 
 
 def rank_turns(scene: JointScene, config: JointsConfig, given: Sequence[Line] = ()) -> RankedTurns:
@@ -104,11 +106,8 @@ def rank_turns(scene: JointScene, config: JointsConfig, given: Sequence[Line] = 
         **_gravity_cues(scene, lines, with_parent),
     }
     cues |= _shape_cues(scene, lines, near=1.0 - cues["contact_radius"])
-    weights = config.panels.weights
-    scores = sum(
-        (np.clip(weights[name] * value, -config.panels.cap, config.panels.cap) for name, value in cues.items()),
-        start=np.zeros(len(lines.axes)),
-    )
+    weights, cap = config.panels.weights, config.panels.cap
+    scores = np.sum([np.clip(weights[name] * value, -cap, cap) for name, value in cues.items()], axis=0)
     telling = "bearing" if scene.has_bearing else "fold"
     scores = scores + config.panels.bearing_bonus * np.array([source == telling for source in lines.sources])
     ranked = RankedTurns(
@@ -119,16 +118,8 @@ def rank_turns(scene: JointScene, config: JointsConfig, given: Sequence[Line] = 
         free_parent=with_parent.free(config.sweep.share),
         outward=outward,
     )
-    return ranked.subset(np.argsort(-scores, kind="stable"))
-
-
-def _reorder(lines: CandidateLines, order: IntArray) -> CandidateLines:
-    return CandidateLines(
-        axes=lines.axes[order],
-        pivots=lines.pivots[order],
-        places=tuple(lines.places[i] for i in order),
-        sources=tuple(lines.sources[i] for i in order),
-    )
+    best_first: RankedTurns = some_of(ranked, np.argsort(-scores, kind="stable"))
+    return best_first
 
 
 # ---- candidates ----------------------------------------------------------------------------------------------------

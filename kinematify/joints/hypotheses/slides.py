@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.panels import GIVEN
+from kinematify.joints.hypotheses.panels import GIVEN, some_of
 from kinematify.joints.measure.frames import UP
 from kinematify.joints.measure.scene import is_cap
 from kinematify.joints.measure.sweep import moving_points, sweep_slides
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from kinematify.config import JointsConfig
     from kinematify.joints.measure.scene import JointScene
     from kinematify.joints.measure.sweep import Sweep
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -41,18 +41,8 @@ class RankedSlides:
     @property
     def proposed(self) -> RankedSlides:
         """Without those that were given."""
-        return self.subset(np.flatnonzero(np.array(self.sources) != GIVEN))
-
-    def subset(self, index: IntArray) -> RankedSlides:
-        """The candidates at these positions, in this order."""
-        return RankedSlides(
-            axes=self.axes[index],
-            sources=tuple(self.sources[i] for i in index),
-            scores=self.scores[index],
-            cues={name: value[index] for name, value in self.cues.items()},
-            free=self.free[index],
-            free_parent=self.free_parent[index],
-        )
+        found: RankedSlides = some_of(self, np.flatnonzero(np.array(self.sources) != GIVEN))
+        return found
 
 
 def rank_slides(
@@ -80,11 +70,8 @@ def rank_slides(
         **_shape_cues(scene, axes, twins, with_parent, config),
         "small_way": _small_way(scene, points, axes, config),
     }
-    weights = config.slides.weights
-    scores = sum(
-        (np.clip(weights[name] * value, -config.slides.cap, config.slides.cap) for name, value in cues.items()),
-        start=np.zeros(len(axes)),
-    )
+    weights, cap = config.slides.weights, config.slides.cap
+    scores = np.sum([np.clip(weights[name] * value, -cap, cap) for name, value in cues.items()], axis=0)
     ranked = RankedSlides(
         axes=axes,
         sources=sources,
@@ -93,7 +80,8 @@ def rank_slides(
         free=everything.free(config.sweep.share) / scene.diagonal,
         free_parent=with_parent.free(config.sweep.share) / scene.diagonal,
     )
-    return ranked.subset(np.argsort(-scores, kind="stable"))
+    best_first: RankedSlides = some_of(ranked, np.argsort(-scores, kind="stable"))
+    return best_first
 
 
 def _directions(scene: JointScene, twins: FloatArray, config: JointsConfig) -> tuple[FloatArray, tuple[str, ...]]:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from kinematify.joints.measure.frames import UP
 from kinematify.joints.measure.scene import is_cap
-from kinematify.joints.measure.sweep import moving_points, slide_clearance, sweep_slides
+from kinematify.joints.measure.sweep import Sweep, moving_points, slide_clearance, sweep_slides
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
     from kinematify.config import JointsConfig
     from kinematify.joints.measure.scene import JointScene
     from kinematify.robot.arrays import FloatArray
@@ -85,22 +87,66 @@ def _first_below(travels: FloatArray, shares: FloatArray, level: float) -> float
     return float(travels[k - 1] + part * (travels[k] - travels[k - 1]))
 
 
+class End(NamedTuple):
+    """How far a joint goes one way."""
+
+    motion: float
+    """From the given pose, not negative [rad or m]."""
+    stop: str
+    """What ends it there, in words; empty where nothing does."""
+
+
+AS_GIVEN, USUAL, GUIDE = End(0.0, "the given pose"), "what is usual for such a part", "the end of its guide"
+Ways = tuple[End, End]
+"""Along an axis and against it."""
+
+
+def free_ways(
+    scene: JointScene, sweep: Callable[[Sequence[int]], Sweep], obstacles: Sequence[int], share: float
+) -> Ways:
+    """How far one joint goes both ways until more than a share of the part has met others, and which it meets.
+
+    Args:
+        scene: The pair.
+        sweep: The motion against some parts.
+        obstacles: All parts that may be in the way.
+        share: Of the points that are swept.
+    """
+    whole = sweep(obstacles)
+    each = [sweep((part,)) for part in obstacles] if len(obstacles) > 1 else [whole]
+    ways = []
+    for side, motion in enumerate(whole.free(share)[0]):
+        met = obstacles[int(np.argmax([one.crossed(motion)[0, side] for one in each]))]
+        stop = f"contact with {scene.cache.assembly.parts[met].name}"
+        ways.append(End(float(motion), stop if motion < whole.limit else "the end of the search"))
+    return ways[0], ways[1]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Range:
-    """Signed limits of a joint whose axis is turned so that q > 0 opens."""
+    """Limits of a joint whose axis is turned so that q > 0 opens."""
 
     kind: JointType
     """`continuous` where a wheel or knob meets nothing in a full turn; else as given."""
     sign: float
     """+1 if the given axis opens the joint as it is, -1 if it must be reversed."""
-    lower: float
-    """Lower limit [rad or m]."""
-    upper: float
-    """Upper limit [rad or m]."""
-    free_forward: float
-    """Free motion in the opening direction [rad or m]."""
-    free_backward: float
-    """Free motion against it [rad or m]."""
+    back: End
+    """Lower limit."""
+    ahead: End
+    """Upper limit."""
+    free: Ways
+    """Free motion in the opening direction and against it."""
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """The fields of a joint that it decides, but for the axis and what else is evidence."""
+        ends = {"lower": 0.0 - self.back.motion, "upper": self.ahead.motion}
+        return {"kind": self.kind, **ends, "stops": (self.back.stop, self.ahead.stop)}
+
+    @property
+    def evidence(self) -> Mapping[str, float]:
+        """Free motion in the opening direction and against it [rad or m]."""
+        return {"free_forward": self.free[0].motion, "free_backward": self.free[1].motion}
 
 
 def slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> Range:
@@ -114,54 +160,47 @@ def slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> Ra
     points = moving_points(scene.cache, scene.child, config.sweep)
     # A door in front of a tray moves away first, so furniture slides are bounded by the body alone.
     obstacles = (scene.parent, *scene.others) if _in_linkage(scene) else (scene.parent,)
-    limit = scene.diagonal
-    sweep = sweep_slides(scene.cache, points, axis[None], obstacles, limit=limit, config=config.sweep)
-    free = sweep.free(config.sweep.share)[0]
+
+    def swept(parts: Sequence[int]) -> Sweep:
+        return sweep_slides(scene.cache, points, axis[None], parts, limit=scene.diagonal, config=config.sweep)
+
+    ways = free_ways(scene, swept, obstacles, config.sweep.share)
+    free = np.array([way.motion for way in ways])
     length = float(np.ptp(scene.frame.local(points) @ (scene.frame.axes @ axis)))
     runs = _in_linkage(scene) or _is_runner(scene, axis, free, length, config)
-    guided = free.copy()
+    guided = ways
     if runs:
-        for side, direction in enumerate((axis, -axis)):
-            guided[side] = _guided(scene, direction, float(free[side]), length, config)
-    sign = _slide_sign(scene, axis, guided if _in_linkage(scene) else free, config)
-    ahead, behind = (0, 1) if sign > 0 else (1, 0)
-    forward, backward = float(free[ahead]), float(free[behind])
-    if runs:
-        lower, upper = -float(guided[behind]), float(guided[ahead])
-    else:
-        lower, upper = _ends(scene, sign * axis, (forward, backward), length, config)
-    return Range(
-        kind=JointType.PRISMATIC,
-        sign=sign,
-        lower=lower,
-        upper=max(upper, config.limits.least_slide * scene.diagonal),
-        free_forward=forward,
-        free_backward=backward,
-    )
+        guided = _guided(scene, axis, ways[0], length, config), _guided(scene, -axis, ways[1], length, config)
+    limited = np.array([way.motion for way in guided])
+    sign = _slide_sign(scene, axis, limited if _in_linkage(scene) else free, config)
+    ways, guided = (ways, guided) if sign > 0 else (ways[::-1], guided[::-1])
+    ahead, back = guided if runs else _ends(scene, sign * axis, ways, length, config)
+    ahead = max(ahead, End(config.limits.least_slide * scene.diagonal, "the least travel that is kept"))
+    return Range(kind=JointType.PRISMATIC, sign=sign, back=back, ahead=ahead, free=ways)
 
 
-def _ends(
-    scene: JointScene, direction: FloatArray, free: tuple[float, float], length: float, config: JointsConfig
-) -> tuple[float, float]:
-    """Limits [m] of a button, drawer or lid that opens along a direction; `free` is forward and backward."""
+def _ends(scene: JointScene, direction: FloatArray, free: Ways, length: float, config: JointsConfig) -> Ways:
+    """Ends of a button, drawer or lid that opens along a direction, ahead and back; `free` likewise."""
     forward, backward = free
     if (scene.smallness > 0.5 and not _is_small_lid(scene)) or (
         scene.has_bearing and _outwards(scene, direction) < 0.0
     ):
-        return 0.0, _press(scene, direction, forward, length, config)
-    ajar = min(backward, _standing_out(scene, direction))
-    ajar = ajar if ajar > config.limits.ajar * length else 0.0
-    forward = max(forward, length) if is_cap(scene) else forward  # the shrunk skirt of a cap sweeps into the rim
-    return -ajar, min(forward, max(config.limits.drawer * length - ajar, _slotted(scene, direction, forward, config)))
+        return _press(scene, direction, forward, length, config), AS_GIVEN
+    ajar = min(backward, End(_standing_out(scene, direction), "flush with the body"))
+    ajar = ajar if ajar.motion > config.limits.ajar * length else AS_GIVEN
+    if is_cap(scene):  # its shrunk skirt sweeps into the rim
+        forward = max(forward, End(length, "clear of the rim"))
+    usual = End(config.limits.drawer * length - ajar.motion, USUAL)
+    return min(forward, max(usual, End(_slotted(scene, direction, forward.motion, config), GUIDE))), ajar
 
 
-def _guided(scene: JointScene, direction: FloatArray, free: float, length: float, config: JointsConfig) -> float:
-    """Travel along `direction` [m] up to the next stop, or until the guide lets the part go.
+def _guided(scene: JointScene, direction: FloatArray, free: End, length: float, config: JointsConfig) -> End:
+    """Travel along `direction` up to the next stop, or until the guide lets the part go.
 
     Where no guide is seen, by as much of its own length as drawers travel.
     """
     guided = guided_travel(scene, direction, config)
-    return min(free, config.limits.drawer * length if guided is None else guided)
+    return min(free, End(config.limits.drawer * length, USUAL) if guided is None else End(guided, GUIDE))
 
 
 def _slotted(scene: JointScene, direction: FloatArray, free: float, config: JointsConfig) -> float:
@@ -191,8 +230,8 @@ def _standing_out(scene: JointScene, direction: FloatArray) -> float:
     return max(float(np.quantile(own, 0.98) - body.max()), 0.0)
 
 
-def _press(scene: JointScene, direction: FloatArray, free: float, length: float, config: JointsConfig) -> float:
-    """Travel of a button pressed along a direction [m]: what stands out of its surroundings, or until it is stopped."""
+def _press(scene: JointScene, direction: FloatArray, free: End, length: float, config: JointsConfig) -> End:
+    """Travel of a button pressed along a direction: what stands out of its surroundings, or until it is stopped."""
     own = scene.cache.samples(scene.child).points
     body = scene.cache.samples(scene.parent).points
     centre = 0.5 * (own.min(axis=0) + own.max(axis=0))
@@ -203,8 +242,8 @@ def _press(scene: JointScene, direction: FloatArray, free: float, length: float,
         visible = min(length, max(float((around @ direction).min() - (own @ direction).min()), 0.0))
     # A stem behind the cap is no travel: what is flush is pressed by a share of its length or width.
     whole = min(length, wide)
-    reach = config.limits.button * (visible if visible > 0.1 * whole else whole)
-    return min(free, reach) if free > 0.2 * reach else reach
+    reach = End(config.limits.button * (visible if visible > 0.1 * whole else whole), USUAL)
+    return min(free, reach) if free.motion > 0.2 * reach.motion else reach
 
 
 def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray, config: JointsConfig) -> float:
