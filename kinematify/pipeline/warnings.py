@@ -12,6 +12,8 @@ import numpy as np
 
 from kinematify.contact.graph import pair
 from kinematify.joints.bearings.refine import across_axis
+from kinematify.joints.choice.judge import alike_edges
+from kinematify.joints.choice.twins import TwinJoints
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -42,6 +44,7 @@ def warnings_of(
         *floating_parts(assembly, graph, trees[0]),
         *_compound_joints(assembly, joints, graph, config.joints.compound),
         *_followed_twins(assembly, joints, bearings),
+        *unlike_twins(assembly, graph, trees[0], joints, config),
     )
 
 
@@ -102,6 +105,49 @@ def _followed_twins(
 def _runs_along(joint: JointEstimate, line: BearingLine) -> bool:
     """Whether a joint has the direction of a line, to 1 deg."""
     return bool(abs(float(joint.axis @ line.axis)) > math.cos(math.radians(1.0)))
+
+
+_SAME_END, _SAME_PLACE = 0.1, 0.02  # shares of the wider range and of the part's diagonal within which joints are alike
+
+
+def unlike_twins(
+    assembly: Assembly, graph: ContactGraph, tree: KinematicTree, joints: Sequence[JointEstimate], config: Config
+) -> list[str]:
+    """Warn of congruent parts with mirrored or repeated contacts whose joints differ, and name what they differ in."""
+    twins, joint_of = TwinJoints(assembly, graph, config.bearing, seed=config.seed), {j.child: j for j in joints}
+    said = []
+    for group in alike_edges(graph, tree):
+        alike = [joint_of[child] for _, child in group]
+        model = max(alike, key=lambda joint: joint.confidence)
+        unlike: dict[str, list[str]] = {}
+        for joint in alike:
+            # What is the same as it stands needs no motion, which takes longer to find.
+            if joint is not model and _difference(model, joint, math.inf):
+                size = assembly.parts[joint.child].diagonal
+                found = [_difference(item, joint, size) for item in twins.carried(model, joint)]
+                if found and all(found):
+                    unlike.setdefault(found[0], []).append(assembly.names[joint.child])
+        said += [
+            f"{', '.join(names)} and {assembly.names[model.child]} are congruent and held alike, but their joints "
+            f"differ in {aspect}. If they move alike, give --hint {names[0]}:twin={assembly.names[model.child]}."
+            for aspect, names in unlike.items()
+        ]
+    return said
+
+
+def _difference(one: JointEstimate, other: JointEstimate, size: float) -> str:
+    """In what two joints differ of which one was carried over to the place of the other; empty if in nothing."""
+    if one.kind is not other.kind:
+        return "type"
+    cosine = float(one.axis @ other.axis)
+    if one.kind is not JointType.FIXED and abs(cosine) < math.cos(math.radians(5.0)):
+        return "the direction of their axes"
+    if one.kind.turns and np.linalg.norm(np.cross(other.pivot - one.pivot, one.axis)) > _SAME_PLACE * size:
+        return "the place of their axes"
+    ends = (one.lower, one.upper) if cosine > 0.0 else (-one.upper, -one.lower)
+    widest = _SAME_END * max(one.upper - one.lower, other.upper - other.lower)
+    apart = max(abs(ends[0] - other.lower), abs(ends[1] - other.upper)) if math.isfinite(widest) else 0.0
+    return "range" if apart > widest else ""
 
 
 def cut_parts(assembly: Assembly, groups: Sequence[Sequence[int]], mains: Sequence[int]) -> list[str]:

@@ -18,7 +18,7 @@ from kinematify.errors import InputError
 from kinematify.joints.candidate import JointCandidate
 from kinematify.joints.choice.twins import TwinJoints
 from kinematify.pipeline.stages import choose_joints, tree_reward, with_doubt_of_parents
-from kinematify.pipeline.warnings import floating_parts
+from kinematify.pipeline.warnings import floating_parts, unlike_twins
 from kinematify.refinement.candidates import CandidateJoints, described
 from kinematify.robot.joint_type import JointType
 from kinematify.topology.arborescence import tree_with_parents
@@ -266,16 +266,21 @@ def with_hints(inference: Inference, hints: Sequence[Hint]) -> Inference:
     joints, warnings = list(inference.joints), list(inference.warnings)
     place = {names[joint.child]: k for k, joint in enumerate(joints)}
     for hint in _models_first(hints):
-        before = joints[place[hint.part]]
+        old = joints[place[hint.part]]
         if hint.twin is not None:
-            joints[place[hint.part]] = _as_twin(inference, joints[place[hint.twin]], before)
+            joints[place[hint.part]] = _as_twin(inference, joints[place[hint.twin]], old)
         elif hint.about_joint:
-            joints[place[hint.part]] = _hinted(inference, maker, before, hint)
-            warnings += _objections(joints[place[hint.part]], hint, inference, before)
+            joints[place[hint.part]] = _hinted(inference, maker, old, hint)
+            warnings += _objections(joints[place[hint.part]], hint, inference, old)
     spoken = {hint.part for hint in hints}
     earlier = tuple(text for text in inference.hints if text.partition("=")[0].partition(":")[0] not in spoken)
-    texts = tuple(text for hint in hints for text in hint.texts)
-    return replace(inference, joints=tuple(joints), warnings=tuple(warnings), hints=(*earlier, *texts))
+    before, after = (
+        unlike_twins(inference.assembly, inference.graph, inference.trees[0], found, inference.config)
+        for found in (inference.joints, joints)
+    )
+    said = (*(text for text in warnings if text not in before), *after)
+    texts = (*earlier, *(text for hint in hints for text in hint.texts))
+    return replace(inference, joints=tuple(joints), warnings=said, hints=texts)
 
 
 def _models_first(hints: Sequence[Hint]) -> list[Hint]:
@@ -292,13 +297,13 @@ def _as_twin(inference: Inference, model: JointEstimate, joint: JointEstimate) -
     """A joint as that of the part of which the user said that it is its twin."""
     names, config = inference.assembly.names, inference.config
     carried = TwinJoints(inference.assembly, inference.graph, config.bearing, seed=config.seed).carried(model, joint)
-    if carried is None:
+    if not carried:
         raise InputError(
             f"The hint {names[joint.child]}:twin={names[model.child]} cannot be followed: no motion or reflection "
             f"lays {names[model.child]} and its contact with {names[model.parent]} upon {names[joint.child]} and its "
             f"contact with {names[joint.parent]}. Give the joint of {names[joint.child]} by its type, axis and range."
         )
-    return _certain(carried)
+    return _certain(carried[0])
 
 
 def _hinted(inference: Inference, maker: CandidateJoints, joint: JointEstimate, hint: Hint) -> JointEstimate:
@@ -346,15 +351,10 @@ def _best(joint: JointEstimate, hint: Hint, reach: float) -> JointCandidate:
                 return candidate
     kind = joint.kind if turns is None else JointType.REVOLUTE if turns else JointType.PRISMATIC
     place = joint.pivot if pivot is None else pivot
-    return JointCandidate(kind=kind, axis=_direction(every, hint, joint), pivot=place, score=0.0, source="hint")
-
-
-def _direction(every: Sequence[JointCandidate], hint: Hint, joint: JointEstimate) -> FloatArray:
-    """The axis that is asked for, square to the part where a candidate of any type runs that way."""
-    named = hint.direction
-    if named is None:
-        return joint.axis
-    return next((item.axis for item in every if hint.agrees(item.axis)), named)
+    axis = joint.axis
+    if hint.direction is not None:  # square to the part where a candidate of any type runs that way
+        axis = next((item.axis for item in every if hint.agrees(item.axis)), hint.direction)
+    return JointCandidate(kind=kind, axis=axis, pivot=place, score=0.0, source="hint")
 
 
 def _objections(joint: JointEstimate, hint: Hint, inference: Inference, before: JointEstimate) -> list[str]:

@@ -165,6 +165,11 @@ def test_a_twin_has_the_joint_of_its_model_mirrored() -> None:
     away = inference.assembly.parts[one.child].centroid - inference.assembly.parts[other.child].centroid
     mirror = np.eye(3) - 2.0 * np.outer(away, away) / (away @ away)
     np.testing.assert_allclose(other.axis, -mirror @ one.axis, atol=1e-6)
+    assert not any("congruent" in text for text in (*inference.warnings, *hinted.warnings))
+    alone = with_hints(inference, parse_hints(hints[:1], inference.assembly.names))
+    said = "joints differ in range. If they move alike, give --hint right_upper_arm:twin=left_upper_arm"
+    assert any(said in text for text in alone.warnings)
+    assert with_hints(alone, parse_hints(hints[1:], inference.assembly.names)).warnings == inference.warnings
     with pytest.raises(InputError, match="cannot be followed"):
         with_hints(inference, [Hint(part="left_forearm", twin="left_upper_arm")])
 

@@ -53,21 +53,18 @@ class TwinJoints:
                 found.append((float(tree.query(motion.points(self._cloud(model[0])))[0].mean()), motion))
         return [motion for _, motion in sorted(found, key=lambda item: item[0])]
 
-    def carried(self, model: JointEstimate, joint: JointEstimate) -> JointEstimate | None:
-        """A joint as its twin's is; None where their contacts are no twins.
+    def carried(self, model: JointEstimate, joint: JointEstimate) -> list[JointEstimate]:
+        """A joint as its twin's is, by each of `motions`.
 
         Args:
             model: The joint that is carried over.
             joint: That of the twin, of which candidates and evidence are kept.
         """
+        stop = f"as of {self._assembly.parts[model.child].name}"
+        found = replace(joint, kind=model.kind, lower=model.lower, upper=model.upper, stops=(stop, stop))
         motions = self.motions((model.parent, model.child), (joint.parent, joint.child))
-        if not motions:
-            return None
-        axis, pivot = carried_line(model, motions[0])
-        stops = (f"as of {self._assembly.parts[model.child].name}",) * 2
-        return replace(
-            joint, kind=model.kind, axis=axis, pivot=pivot, lower=model.lower, upper=model.upper, stops=stops
-        )
+        lines = (carried_line(model, motion) for motion in motions)
+        return [replace(found, axis=axis, pivot=pivot) for axis, pivot in lines]
 
     def _of_parts(self, first: int, second: int) -> list[RigidMotion]:
         if (first, second) not in self._between:
