@@ -179,10 +179,7 @@ def _left_of(made: Blueprint, closed: Blueprint, wanted: list[list[str]]) -> lis
 
 
 def _beyond(closed: Blueprint, one: str, other: str, axis: int, sign: float) -> bool:
-    places = [
-        [sign * part.bounds.mean(axis=0)[axis] for part in closed.parts if part.name.startswith(stem)]
-        for stem in (one, other)
-    ]
+    places = [[sign * part.bounds.mean(axis=0)[axis] for part in _parts(closed, noun)] for noun in (one, other)]
     return all(places) and bool(min(places[0]) > max(places[1]))
 
 

@@ -206,7 +206,7 @@ class SteppedDescription(Spoken):
 def _drawn(asked: Parameter, builder: ObjectBuilder) -> float | int | str:
     """A value for one more object of a corpus."""
     if asked.bounds is not None:
-        low, high = asked.bounds
+        low, high = asked.usual or asked.bounds
         return builder.count(int(low), int(high)) if isinstance(asked.default, int) else builder.draw(low, high)
     return str(builder.pick(*asked.choices)) if asked.yes is None else "yes" if builder.maybe(asked.yes) else "no"
 

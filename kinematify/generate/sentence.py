@@ -16,6 +16,7 @@ from kinematify.generate.procedural.language.contradictions import refuse_contra
 from kinematify.generate.procedural.language.motions import GOING, MOTIONS
 from kinematify.generate.procedural.language.parse import (
     FUNCTION_WORDS,
+    HAVING,
     MATERIAL_WORDS,
     NOT_DONE,
     parse,
@@ -340,7 +341,7 @@ def _refuse_other_kind(specification: Specification) -> None:
     word = specification.tokens[before].given if before >= 0 else ""
     head = specification.tokens[specification.name[-1]].given
     known = {word for kind in _library() if kind[-1] == head for word in kind[:-1]}
-    known |= STOP_WORDS | FUNCTION_WORDS | PURPOSES | {*MOTIONS, *GOING}
+    known |= STOP_WORDS | FUNCTION_WORDS | PURPOSES | {*MOTIONS, *GOING, *HAVING}
     stem = word.removesuffix("ing")
     if stem != word not in known | NOT_DONE and len(specification.name) == 1 and stem not in nouns_of_mechanisms():
         raise InputError(unknown_object(specification.tokens, _library()))

@@ -230,8 +230,8 @@ class _Compared:
             if part.absent:
                 self._absent(part, found, number)
             elif number:
-                before = len(self.missing)
                 self._account_for_modifiers(part, part.claims[0], known)
+                before = len(self.missing)
                 self._check_number(part, found, {asked, -1, asked if apart else part.count}, alone=len(parts) == 1)
                 chosen = self._individuals(part, found, parts, new=new)
                 self._check_claims(part, found, chosen, parts)

@@ -20,7 +20,7 @@ _NO_OBJECT_TEXT = """
     fly flies flying sing sings singing think thinks thinking dream dreams dreaming talk talks talking swim swims
     swimming eat eats eating sleep sleeps sleeping dance dances dancing cry cries breathe breathes breathing laugh
     laughs invisible infinite endless weightless massless dimensionless imaginary abstract immaterial telepathic
-    magical teleport teleports teleporting levitate levitates levitating
+    magical never nowhere teleport teleports teleporting levitate levitates levitating
 """
 _NO_OBJECT = frozenset(_NO_OBJECT_TEXT.split())
 """What no rigid object is or does."""

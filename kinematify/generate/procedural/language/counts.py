@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.language.arrangement import Mention
-from kinematify.generate.procedural.language.parse import FUNCTION_WORDS
+from kinematify.generate.procedural.language.parse import FUNCTION_WORDS, may_follow
 from kinematify.generate.procedural.language.reading import nouns_of
 from kinematify.generate.procedural.language.sizes import JOINING
 from kinematify.generate.procedural.language.words import ARTICLES, KINDS, UNITS, singular
@@ -141,6 +141,10 @@ def _counts_of(reading: ParseState, parameter: Parameter) -> list[_Count]:
                 of_the_whole = number is None or reading.text(counting[-1]) in ARTICLES
                 if of_the_whole and k < min(reading.named):  # a sash window is a kind of window
                     continue
+                behind = reading.text(where.stop)
+                named = behind.isalpha() and behind not in FUNCTION_WORDS and not may_follow(reading.tokens, where.stop)
+                if named and of_the_whole:  # a drawer unit is no drawer
+                    number, counting = None, ()
                 whole = None if number is None else _whole(reading, number, where.stop - 1)
                 found.append(_Count(number=whole, where=where, counting=counting))
                 reading.used.update((*where, *counting))
@@ -178,7 +182,8 @@ def _take_counts(reading: ParseState, parameter: Parameter, counts: list[_Count]
     numbered = [count for count in counts if count.number is not None]
     places = [_place(reading, c.where.stop) or _place_before(reading, c.where.start) for c in numbered]
     apart = len(numbered) > 1 and all(places) and len(set(places)) == len(places)
-    apart = apart or (len(numbered) > 1 and all(_is_new(reading, count) for count in numbered))
+    # `a glass door and a steel door` are two.
+    apart = apart or (len(numbered) > 1 and all(reading.text(count.counting[0]) in ARTICLES for count in numbered))
     totals = [_total(reading, count) for count in numbered]
     if apart:
         total = sum(totals)
@@ -194,12 +199,6 @@ def _take_counts(reading: ParseState, parameter: Parameter, counts: list[_Count]
     for count in counts:
         reading.counted.update(count.where)
         reading.mentions += _mentions(reading, parameter, count, stated.get(count))
-
-
-def _is_new(reading: ParseState, count: _Count) -> bool:
-    """Whether an article says that a thing was not named before: `a glass door and a steel door` are two."""
-    behind = reading.text(count.where.stop)
-    return reading.text(count.counting[0]) in ARTICLES and (not behind.isalpha() or behind in FUNCTION_WORDS)
 
 
 def _mentions(reading: ParseState, parameter: Parameter, count: _Count, total: int | None) -> list[Mention]:

@@ -88,7 +88,7 @@ _QUOTED = 15  # words of a sentence in a message
 _SHORTEST_DONE = 5
 NOT_DONE = frozenset({"spring", "string", "bearing", "railing", "awning", "ceiling", "building", "painting"})
 """Nouns that end as verbs do."""
-_HAVING: dict[str, tuple[str, int | None]] = {
+HAVING: dict[str, tuple[str, int | None]] = {
     "lockable": ("lock", 1), "locking": ("lock", 1), "locked": ("lock", 1), "rolling": ("caster", None),
 }  # fmt: skip
 """Adjectives -> what has to be there, and how many; None is some."""
@@ -141,7 +141,7 @@ def parse_any(sentence: str) -> Specification:
     tokens = tokens_of(sentence, ())
     boundaries = (*_BEGINS_PART, *_PREPOSITIONS)
     end = next((k for k, token in enumerate(tokens) if k and token.given in boundaries), len(tokens))
-    nouns = [k for k in range(end) if not _may_follow(tokens, k)] or [max(end - 1, 0)]
+    nouns = [k for k in range(end) if not may_follow(tokens, k)] or [max(end - 1, 0)]
     return _specified(sentence, tokens, (nouns[-1],), ())
 
 
@@ -203,10 +203,10 @@ def head_of(
         carried = text == "on" and not found and k > 0 and lemma(tokens[k - 1].given) in mechanisms
         carried = carried or (text == "of" and not found)  # a pair of stools
         carried = carried or (text == "in" and tokens[k - 1].given == "built")
-        carried = carried or (text == "," and not found and all(_may_follow(tokens, at) for at in range(k)))
+        carried = carried or (text == "," and not found and all(may_follow(tokens, at) for at in range(k)))
         if k > 0 and (text in _BEGINS_PART or text in _PREPOSITIONS) and not carried:
             break
-        if found and not _may_follow(tokens, k):
+        if found and not may_follow(tokens, k):
             return ()
         k += 1
     return tuple(found[-1]) if found else ()
@@ -218,7 +218,7 @@ def _counts(tokens: Sequence[Token], k: int) -> bool:
     return before is not None and before.number is not None and before.given not in (*ARTICLES, *KINDS)
 
 
-def _may_follow(tokens: Sequence[Token], k: int) -> bool:
+def may_follow(tokens: Sequence[Token], k: int) -> bool:
     """Whether a word behind a name leaves it the head: a size, a state, a look or a verb, no other noun."""
     token = tokens[k]
     word = token.given
@@ -405,7 +405,7 @@ class _Parser(Words):
 
     def _has(self, k: int, part: _Draft) -> bool:
         """Whether a word says that a part has another one: what is lockable has a lock."""
-        noun, count = _HAVING.get(self.given(k), ("", 1))
+        noun, count = HAVING.get(self.given(k), ("", 1))
         if not noun or (count is None and part is not self.whole):  # a rolling door has no casters
             return False
         of = "" if part is self.whole else self.noun(part)
@@ -535,7 +535,7 @@ class _Parser(Words):
         says_its_kind = self.given(k + 1) == "of"
         if part is self.whole:  # a two-door wardrobe is no two wardrobes
             between = range(k + 1, self.name[0])
-            says_its_kind = word in KINDS or not all(_may_follow(self.tokens, at) for at in between)
+            says_its_kind = word in KINDS or not all(may_follow(self.tokens, at) for at in between)
             if number > 1 and word not in KINDS and k + 1 < self.name[0] and self._is_mechanism(k + 1):
                 counted = _Draft(nouns=[k + 1], count=int(number))
                 self.claim(counted, "count", int(number), k)
