@@ -45,7 +45,7 @@ SETS = {
     "heldout_9": "sixty more with one part unlike its sibling, committed before the grammar of that session was opened",
     "heldout_10": "thirty more, committed after that and before they were tried",
     "heldout_11": "forty more, committed before the grammar or the library was opened in that session",
-    "heldout_12": "forty more, written before the library was opened by somebody who worked on neither it nor the grammar",
+    "heldout_12": "forty more, written before the library was opened by somebody who worked on neither",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }
