@@ -45,6 +45,7 @@ SETS = {
     "heldout_9": "sixty more with one part unlike its sibling, committed before the grammar of that session was opened",
     "heldout_10": "thirty more, committed after that and before they were tried",
     "heldout_11": "forty more, committed before the grammar or the library was opened in that session",
+    "heldout_12": "forty more, written before the library was opened by somebody who worked on neither",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }
@@ -287,12 +288,9 @@ def _count(made: Blueprint, closed: Blueprint, wanted: int) -> list[str]:
 
 
 def _pieces(part: Part) -> int:
-    edges = coo_array((np.ones(len(part.faces) * 2), _edges(part)), shape=2 * (len(part.vertices),))
+    starts, ends = np.repeat(part.faces[:, 0], 2), part.faces[:, 1:].reshape(-1)
+    edges = coo_array((np.ones(len(starts)), (starts, ends)), shape=2 * (len(part.vertices),))
     return int(connected_components(edges)[0])
-
-
-def _edges(part: Part) -> tuple[np.ndarray, np.ndarray]:
-    return np.repeat(part.faces[:, 0], 2), part.faces[:, 1:].reshape(-1)
 
 
 # ---- what is expected of parts -------------------------------------------------------------------------------------

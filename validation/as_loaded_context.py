@@ -172,8 +172,8 @@ class AsLoadedContext:
         from kinematify.robot.robot import forward_kinematics  # noqa: PLC0415 - for this only
 
         poses = forward_kinematics(self.robot, dict(self.values))
-        points = np.array([pose[:3, 3] for pose in poses.values()])
-        return max(float(np.linalg.norm(np.ptp(points, axis=0))), _LEAST_SIZE)
+        extent = np.ptp([pose[:3, 3] for pose in poses.values()], axis=0)
+        return max(float(np.linalg.norm(extent)), _LEAST_SIZE)
 
     @cached_property
     def overlaps(self) -> tuple[Overlap, ...]:
@@ -216,9 +216,8 @@ class AsLoadedContext:
 
     def between(self, travel: Travel, overlaps: Iterable[Overlap]) -> Overlap | None:
         """Return the deepest of the overlaps that a joint moves apart or together; None without any."""
-        leader = [item.joint for item in self.mechanism.travels].index(travel.joint)
         body = dict(zip(self.mechanism.links, self.mechanism.body_of_link.tolist(), strict=True))
-        moved = self.mechanism.moved[leader]
+        moved = self.mechanism.moved[self.mechanism.travels.index(travel)]
         return next((item for item in overlaps if moved[body[item.links[0]]] != moved[body[item.links[1]]]), None)
 
     @cached_property
@@ -273,25 +272,28 @@ class AsLoadedContext:
 
     def ratios(self, travel: Travel) -> dict[str, float]:
         """Return the motion of a joint, 1, and of those that mimic it."""
-        leader = [item.joint for item in self.mechanism.travels].index(travel.joint)
-        moved = dict(zip(self.mechanism.joints, self.mechanism.leads[:, leader].tolist(), strict=True))
+        leads = self.mechanism.leads[:, self.mechanism.travels.index(travel)]
+        moved = dict(zip(self.mechanism.joints, leads.tolist(), strict=True))
         followers = {name: ratio for name, ratio in moved.items() if ratio and name not in (travel.joint, *self.lost)}
         return {travel.joint: 1.0, **followers}
 
     @cached_property
-    def _surfaces(self) -> Sweeper:
-        """What is visible in motion; it takes long, so that only joints that fall short are looked at."""
-        from kinematify.geometry.scene import read_scene, visible_shapes  # noqa: PLC0415 - for what falls short only
+    def _surfaces(self) -> Sweeper | None:
+        """What is visible in motion, for joints that fall short; None where it is what collides, swept already."""
+        from kinematify.geometry.scene import read_scene, simplified, visible_shapes  # noqa: PLC0415 - for these only
         from kinematify.geometry.sweep import Sweeper  # noqa: PLC0415
         from kinematify.validation.left_model import model_of  # noqa: PLC0415
 
-        return Sweeper.of(read_scene(model_of(self.request), self.request.settings.geometry, visible_shapes))
+        model = model_of(self.request)
+        if not simplified(model) and len(self.request.free_travel) == len(self.mechanism.travels):
+            return None
+        return Sweeper.of(read_scene(model, self.request.settings.geometry, visible_shapes))
 
     def _seen_end(self, travel: Travel, end: float) -> float:
         """Value up to which what is visible does not block the way to an end [rad or m]."""
-        leader = [item.joint for item in self.mechanism.travels].index(travel.joint)
-        seen = self._surfaces.free_end(leader, np.sign(end - travel.rest))
-        return min(seen, end, key=lambda value: abs(value - travel.rest))
+        if self._surfaces is not None:
+            return self._surfaces.free_end(self.mechanism.travels.index(travel), end)
+        return float(np.clip(end, *self.request.free_travel[travel.joint]))
 
     def _by_hand(self, travel: Travel, end: float) -> VelocityProbe:
         joint = self.robot.joint_by_name[travel.joint]

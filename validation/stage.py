@@ -102,13 +102,6 @@ class Recorder:
                 with self.check(check.id, engine) as result:
                     result.skip(reason)
 
-    def block(self, checks: Iterable[Check], reason: str) -> None:
-        """Say of checks that an earlier failure keeps them from running."""
-        for check in checks:
-            for engine in check.engines or (None,):
-                with self.check(check.id, engine) as result:
-                    result.block(reason)
-
     def summarise(self, summary: Summary) -> None:
         """Tell what is known of a joint or a pair; later summaries of the same joint add to earlier ones."""
         self._tell(summary)

@@ -6,7 +6,8 @@ and on two folders of models from elsewhere. Every error and warning was judged 
 What nobody has judged counts as *unjudged*. A check that was not finished is no finding.
 
 With `--fix`, `kinematify fix` writes each model of the two folders. A link or joint that differs in the result, apart
-from folder and format of its meshes, and that no error, warning or note of `validate` names is changed *unasked*.
+from folder and format of its meshes, and that no error, warning or note names of the look before a repair is changed
+*unasked*.
 """
 
 from __future__ import annotations
@@ -253,14 +254,11 @@ def _run(command: str, model: PublishedModel, answer: Path, *more: str) -> subpr
 def fix_of(model: PublishedModel) -> Record:
     """Run `fix` on one model: what it changed, of that without a finding, and what engines make of the result."""
     with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
-        answer, result, report = (Path(folder, name) for name in ("answer.json", "model.urdf", "report.json"))
-        _run("validate", model, report)
+        answer, result = Path(folder, "answer.json"), Path(folder, "model.urdf")
         run = _run("fix", model, answer, "--out", str(result))
         if not answer.exists():
             return {"status": run.returncode, "message": run.stderr.strip()[-200:]}
         done = json.loads(answer.read_text("utf-8"))
-        found = json.loads(report.read_text("utf-8"))["findings"]
-        named = {name for item in found for name in (item["joint"], item["link"], *(item["pair"] or ()))}
         before, after = _elements(model.urdf), _elements(result)
     changed = {name for name in before | after if before.get(name) != after.get(name)}
     return {
@@ -268,7 +266,7 @@ def fix_of(model: PublishedModel) -> Record:
         **{key: done[key] for key in ("lost", "fewer")},
         **{key: [done[side][key] for side in ("before", "after")] for key in ("errors", "warnings")},
         "changed": len(changed),
-        "unasked": sorted(" ".join(name) for name in changed if name[1] not in named),
+        "unasked": sorted(" ".join(name) for name in changed if name[1] not in done["named"]),
     }
 
 

@@ -134,7 +134,11 @@ def load_assembly(
     doubts = _size_warnings(assembly, lengths, 1.0 if scale is None else scale, config)
     if given.up_by_standard:
         doubts += _up_warnings(assembly)
-    loaded = replace(assembly, lengths=lengths, segmented=given.segmented, warnings=(*assembly.warnings, *doubts))
+    asked = {"--up": up, "--scale": scale, "--labels": labels, "--pieces": pieces, "--object": number}
+    options = tuple(str(word) for item in asked.items() if item[1] not in ("auto", None) for word in item)
+    loaded = replace(
+        assembly, lengths=lengths, options=options, segmented=given.segmented, warnings=(*assembly.warnings, *doubts)
+    )
     return loaded if given.segmented and number is None else one_object(loaded, number)
 
 

@@ -114,6 +114,8 @@ class Assembly:
     """Part name -> full mesh, for parts that were simplified for the inference; the output shows these."""
     lengths: str = "metres"
     """In which unit the input was read, and why, for reports."""
+    options: tuple[str, ...] = ()
+    """Words of the command line, such as ``--up z``, with which the source was read."""
     segmented: bool = True
     """False where the parts are pieces of a mesh, of which several may be one rigid part."""
 

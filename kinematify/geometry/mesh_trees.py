@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import fcl
 import igl
 import numpy as np
 
@@ -58,6 +59,15 @@ class WindingTree:
         order = _along_curve(points)
         found = self._tree.winding_number(np.ascontiguousarray(points[order]), accuracy)
         return np.asarray(found[_inverse(order)])
+
+
+def collision_tree(vertices: FloatArray, faces: IntArray) -> fcl.BVHModel:
+    """FCL tree of the triangles (F, 3) between vertices (V, 3)."""
+    model = fcl.BVHModel()
+    model.beginModel(len(vertices), len(faces))
+    model.addSubModel(vertices, faces.tolist())
+    model.endModel()
+    return model
 
 
 def _along_curve(points: FloatArray) -> IntArray:

@@ -94,10 +94,5 @@ class DepthAllowance:
         if not (near or joined):
             return None
         depth = self.at_rest(pair) if near else 0.0
-        return AtRest(
-            pair=pair,
-            joined=joined,
-            collide=collide,
-            depth=depth,
-            contained=not collide and depth > 0.0,
-        )
+        contained = not collide and depth > 0.0
+        return AtRest(pair=pair, joined=joined, collide=collide, depth=depth, contained=contained)

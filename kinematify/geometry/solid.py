@@ -10,18 +10,19 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import fcl
 import igl
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
+from kinematify.geometry.mesh_trees import DistanceTree, WindingTree, collision_tree
 from kinematify.geometry.rays import RayScene
 from kinematify.geometry.sampling import curve_order, place_samples
 from kinematify.robot.vectors import all_three, crossed, highest, lengths_of, lowest, referenced
 
 if TYPE_CHECKING:
+    import fcl
+
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 
@@ -79,12 +80,7 @@ class Solid:
     @cached_property
     def tree(self) -> fcl.BVHModel:
         """FCL tree, centred at `middle`, in units of `unit`."""
-        vertices, faces = self.shells.vertices, self.shells.faces
-        model = fcl.BVHModel()
-        model.beginModel(len(vertices), len(faces))
-        model.addSubModel((vertices - self.middle) / self._unit, faces.tolist())
-        model.endModel()
-        return model
+        return collision_tree(self._local(self.shells.vertices) / self._unit, self.shells.faces)
 
     def inside(self, points: FloatArray) -> FloatArray:
         """Depth of points in the closed shells [m], 0 outside, body frame (n, 3) -> (n,)."""

@@ -26,7 +26,7 @@ from kinematify.geometry.denoise import (
     filtered_normals,
     mean_deviation,
 )
-from kinematify.geometry.mesh_trees import DistanceTree
+from kinematify.geometry.mesh_trees import DistanceTree, collision_tree
 from kinematify.geometry.sampling import curve_order, place_samples
 from kinematify.robot.vectors import crossed, lengths_of
 
@@ -364,11 +364,7 @@ class PartSurface:
     def _collision_object(self) -> fcl.CollisionObject:
         """FCL tree of the triangles, in units of `unit` from `origin`."""
         vertices, faces = self.welded
-        model = fcl.BVHModel()
-        model.beginModel(len(vertices), len(faces))
-        model.addSubModel((vertices - self.origin) / self.unit, faces.tolist())
-        model.endModel()
-        return fcl.CollisionObject(model, fcl.Transform())
+        return fcl.CollisionObject(collision_tree((vertices - self.origin) / self.unit, faces), fcl.Transform())
 
 
 def part_surfaces(assembly: Assembly, *, config: SurfaceConfig) -> tuple[PartSurface, ...]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.overlap import OverlapQueries
+from kinematify.geometry.overlap import OverlapQueries, boxes_meet
 from kinematify.geometry.rest import DepthAllowance
 from kinematify.geometry.scene import box_corners, relative
 from kinematify.robot.vectors import lengths_of
@@ -110,13 +110,15 @@ class Sweeper:
         values, poses = self._way(leader, sign)
         return self._within(leader, pair, values, relative(poses, pair))
 
-    def free_end(self, leader: int, sign: float) -> float:
-        """Value on the way to the declared end of one side up to which no pair meets [rad or m]."""
-        travel = self._scene.travels[leader]
-        met = [self.meeting(leader, pair, sign) for pair in self._scene.affected[leader]]
-        declared = max(travel.upper, travel.rest) if sign > 0 else min(travel.lower, travel.rest)
-        ends = [declared, *(meeting.first for meeting in met if meeting is not None)]
-        return min(ends, key=lambda end: sign * end)
+    def free_end(self, leader: int, end: float) -> float:
+        """Value on the way from rest to an end within the declared range up to which no pair meets [rad or m]."""
+        sign = float(np.sign(end - self._scene.travels[leader].rest))
+        values, poses = self._way(leader, sign)
+        for pair in self._scene.affected[leader]:
+            ahead = 1 + int(np.count_nonzero(sign * values < sign * end))
+            meeting = self._within(leader, pair, values, relative(poses, pair), ahead)
+            end = end if meeting is None else min(end, meeting.first, key=lambda value: sign * value)
+        return end
 
     def rows(self, leader: int, values: FloatArray) -> FloatArray:
         """Rows of leaders with one joint at `values` (n,) and the others at rest, shape (n, leaders)."""
@@ -179,15 +181,19 @@ class Sweeper:
         wanted = int(np.ceil(longest / (settings.step * scene.size)))
         return min(max(wanted, settings.samples_least), settings.samples_most)
 
-    def _within(self, leader: int, pair: Pair, values: FloatArray, T: FloatArray) -> Meeting | None:
-        """Where and how deep a pair meets within the declared range, if it does so beyond what it is allowed."""
-        hit = self._overlap.collide(pair, T)
-        growth, passed = self._growth(pair, T, hit)
-        events = np.flatnonzero(growth > self._allowance.tolerance(pair))
-        if not len(events):
+    def _within(self, leader: int, pair: Pair, values: FloatArray, T: FloatArray, ahead: int = 0) -> Meeting | None:
+        """Where and how deep a pair meets beyond what it is allowed in the first `ahead` or all rows of its way."""
+        rows = ahead or len(values)
+        if not boxes_meet(*self._overlap.solids(pair), T[:rows]).any():
             return None
+        hit = self._overlap.collide(pair, T[:rows])
+        growth, passed = self._growth(pair, T[:rows], hit)
+        events = np.flatnonzero(growth > self._allowance.tolerance(pair))
+        if not len(events):  # what is on its way in at the last row may get too deep after it
+            deeper = rows < len(values) and growth[-1] > self._scene.settings.noise * self._scene.size
+            return self._within(leader, pair, values, T) if deeper else None
         first = self._onset(leader, pair, values[: events[0] + 1], growth, hit)
-        return _meeting(pair, first, values, growth, passed, inside=True)
+        return _meeting(pair, first, values[:rows], growth, passed, inside=True)
 
     def _outside(self, leader: int, pair: Pair, values: FloatArray, beyond: FloatArray) -> Meeting | None:
         """The same beyond the declared range, piece by piece, for the first place is enough."""
@@ -227,23 +233,16 @@ class Sweeper:
         while start > 1 and growth[start - 1] > noise:
             start -= 1
         low, high = float(values[start - 1]), float(values[start])
-        free = self._relative_free(leader, pair, noise, by_depth=bool(hit[start - 1]))
-        return bisected(free, low, high, self._fine(leader))
 
-    def _relative_free(self, leader: int, pair: Pair, noise: float, *, by_depth: bool) -> Callable[[float], bool]:
         def free(value: float) -> bool:
             T = relative(self._scene.poses(self.rows(leader, np.array([value]))), pair)
-            if by_depth:
+            if hit[start - 1]:
                 return float(self._overlap.depth(pair, T)[0]) <= self._allowance.at_rest(pair) + noise
             return not bool(self._overlap.collide(pair, T)[0])
 
-        return free
-
-    def _fine(self, leader: int) -> float:
-        settings = self._scene.settings
-        if self._scene.travels[leader].turns:
-            return float(np.radians(settings.fine_angle))
-        return min(settings.fine_length, 1e-4 * self._scene.size)
+        settings, turns = self._scene.settings, self._scene.travels[leader].turns
+        fine = np.radians(settings.fine_angle) if turns else min(settings.fine_length, 1e-4 * self._scene.size)
+        return bisected(free, low, high, float(fine))
 
     def _widest(self, pair: Pair, values: FloatArray, T: FloatArray) -> Iterator[tuple[Pair, float, float]]:
         """Largest gap of a pair over some of the poses; nothing where it is certainly lost in none of them."""

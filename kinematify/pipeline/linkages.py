@@ -276,9 +276,9 @@ def _range(model: KinematicModel, linkage: Linkage, diagonal: float, config: Lin
     )
     settings = load_settings().geometry
     scene = read_scene(replace(robot, joints=joints), settings, visible_shapes)
-    leader = [travel.joint for travel in scene.travels].index(linkage.driver or "")
+    leader, travel = next(item for item in enumerate(scene.travels) if item[1].joint == linkage.driver)
     sweeper = Sweeper.of(scene)
-    free = sweeper.free_end(leader, -1.0), sweeper.free_end(leader, 1.0)
+    free = sweeper.free_end(leader, travel.lower), sweeper.free_end(leader, travel.upper)
     if free[1] - free[0] < config.least:  # its parts are in each other as they are: the motion cannot be judged
         return max(low, float(at[0])), min(high, float(at[-1]))
     return free

@@ -93,6 +93,7 @@ def inference_record(inference: Inference) -> dict[str, Any]:
         "versions": {"python": platform.python_version(), **package_versions(_PACKAGES)},
         "seed": inference.config.seed,
         "source": assembly.source,
+        "options": list(assembly.options),
         "parts": [
             {
                 "name": part.name,
@@ -104,9 +105,7 @@ def inference_record(inference: Inference) -> dict[str, Any]:
             }
             for part in assembly.parts
         ],
-        "set_aside": [
-            {"name": item.part.name, "reason": item.reason, "nearest": item.nearest} for item in assembly.set_aside
-        ],
+        "set_aside": [{"name": k.part.name, "reason": k.reason, "nearest": k.nearest} for k in assembly.set_aside],
         "warnings": list(inference.warnings),
         "clusters": [[assembly.names[part] for part in cluster] for cluster in inference.graph.clusters],
         "contacts": [_contact(inference, edge) for edge in inference.graph.edges],

@@ -96,9 +96,14 @@ class Look:
             if check.check == "KV804" and check.engine is not None
         }
 
-    def _count(self, severity: Severity) -> int:
+    @property
+    def open(self) -> list[Finding]:
+        """Errors and warnings that follow from no other finding and are not suppressed."""
         found = [group.finding for group in self.report.groups]
-        return sum(item.severity is severity and item.suppressed is None for item in found)
+        return [item for item in found if item.severity is not Severity.NOTE and item.suppressed is None]
+
+    def _count(self, severity: Severity) -> int:
+        return sum(item.severity is severity for item in self.open)
 
     def as_json(self) -> dict[str, Any]:
         """As JSON values."""
@@ -122,6 +127,8 @@ class Fix:
     """Changes of joints."""
     left: tuple[str, ...]
     """What was found and not repaired, with the reason."""
+    named: frozenset[str]
+    """Links and joints that a finding or note names of a look that was repaired."""
     before: Look
     after: Look
 
@@ -155,6 +162,7 @@ class Fix:
             "changes": list(self.changes),
             "diffs": [{"title": diff.title, "lines": diff.lines} for diff in self.diffs],
             "left": list(self.left),
+            "named": sorted(self.named),
             "before": self.before.as_json(),
             "after": self.after.as_json(),
             "lost": list(self.lost),
@@ -202,26 +210,24 @@ def fix_urdf(
         return Look(report=report, refusals=refusals(path, DEFAULT_ENGINES, package_dirs))
 
     def look_at_joints(path: Path) -> ValidationReport:
-        checks = (check.id for check in checks_of("KV31", "KV32", "KV34"))
-        return validate(
-            path, package_dirs=package_dirs, settings=settings, selected=set(checks), engines=(), workers=workers
-        )
+        some = {check.id for check in checks_of("KV31", "KV32", "KV34")}
+        return validate(path, package_dirs=package_dirs, settings=settings, selected=some, engines=(), workers=workers)
 
     before = look(model, 0)
     joints = JointEdits(editor=editor, look=look_at_joints) if kinematics else None
     repairs = _Repairs(editor=editor, config=config, settings=settings, everything=everything, joints=joints)
     unread = editor.export_gltf() if any(map(_FORMAT.search, before.refusals.values())) else []
-    repairs.apply(before.report, model, package_dirs)
-    after = look(editor.write(), 1)
-    for part in range(2, _ROUNDS + 1):
-        if not repairs.apply(after.report, out, package_dirs):
+    after, place = before, model
+    for part in range(1, _ROUNDS + 1):
+        if not repairs.apply(after.report, place, package_dirs) and part > 1:
             break
-        after = look(editor.write(), part)
+        after, place = look(editor.write(), part), out
     return Fix(
         path=out,
         changes=tuple(editor.changes),
         diffs=tuple(editor.diffs),
         left=(*unread, *repairs.remarks, *_left(after, repairs, kinematics=kinematics)),
+        named=frozenset(repairs.named),
         before=before,
         after=after,
     )
@@ -244,6 +250,7 @@ class _Repairs:
         self._given: dict[str, Link] = {}
         self._carved: frozenset[str] = frozenset()
         self._weighed: set[str] = set()
+        self.named: set[str] = set()
         self.joints = joints
         self.remarks: list[str] = []
 
@@ -251,6 +258,7 @@ class _Repairs:
         """Repair what a report finds in the editor as it was written to `path`; False if there is nothing to do."""
         editor = self._editor
         done = len(editor.changes) + len(editor.diffs)
+        self.named |= {name for item in report.counted for name in (item.joint, item.link, *(item.pair or ())) if name}
         found = [finding for finding in report.counted if finding.severity is not Severity.NOTE]
         for element in self._repeated(found):
             _keep_first(editor, element)
@@ -312,17 +320,14 @@ class _Repairs:
             if _only_under_a_flag(finding):
                 continue
             pair = [name for name in finding.pair if robot.link_by_name[name].collisions]
-            rough = [name for name in pair if name in beside or not _as_engines_see_it(robot, name)]
+            alone = {name: Robot(name=name, links=(robot.link_by_name[name],), joints=()) for name in pair}
+            rough = [name for name in pair if name in beside or not collides_as_it_is(alone[name])]
             yield from pair if self._carved.issuperset(rough) else rough
 
 
 def _only_under_a_flag(finding: Finding) -> bool:
     """Whether plain loading does not show it."""
     return finding.check.startswith("KV8") and finding.engine is not None and bool(ENGINES[finding.engine].contact_flag)
-
-
-def _as_engines_see_it(robot: Robot, link: str) -> bool:
-    return collides_as_it_is(Robot(name=link, links=(robot.link_by_name[link],), joints=()))
 
 
 def _to_weigh(found: Sequence[Finding]) -> set[str]:
@@ -350,13 +355,8 @@ def _keep_first(editor: UrdfEditor, element: _Element) -> None:
 
 def _left(after: Look, repairs: _Repairs, *, kinematics: bool) -> list[str]:
     """Findings of the result, those of one check together, each with the reason why it stays."""
-    stays = [
-        group.finding
-        for group in after.report.groups
-        if group.finding.severity is not Severity.NOTE and group.finding.suppressed is None
-    ]
     said = []
-    for (check, severity, engine), group in groupby(stays, lambda item: (item.check, item.severity, item.engine)):
+    for (check, severity, engine), group in groupby(after.open, lambda item: (item.check, item.severity, item.engine)):
         first, *more = group
         title = "" if engine is None else f" [{engine}]"
         also = f" (and {len(more)} more)" if more else ""

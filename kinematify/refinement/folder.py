@@ -54,7 +54,8 @@ def open_model_folder(folder: str | Path) -> tuple[Assembly, Config]:
         ) from error
     meshes = _meshes(folder, record)
     assembly = assemble(meshes, source=str(record.get("source", folder)), config=config.assembly)
-    return replace(assembly, parts=tuple(_dressed(part, record) for part in assembly.parts)), config
+    parts, options = tuple(_dressed(part, record) for part in assembly.parts), tuple(record.get("options", ()))
+    return replace(assembly, parts=parts, options=options), config
 
 
 def as_left(inference: Inference, record: dict[str, Any]) -> Inference:

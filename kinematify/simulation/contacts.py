@@ -83,10 +83,9 @@ class Touching:
         """Depth beyond what is allowed [m], negative where there is room, shape (p, rows)."""
         return self.depth - self.allowed[:, None]
 
-    @cached_property
-    def meet(self) -> IntArray:
-        """Indices of the pairs that get deeper than allowed somewhere in the sweep."""
-        return np.flatnonzero((self.excess > 0.0).any(axis=1))
+    def meet(self, rows: slice) -> tuple[int, ...]:
+        """Indices of the pairs that get deeper than allowed in some rows."""
+        return tuple(np.flatnonzero((self.excess[:, rows] > 0.0).any(axis=1)).tolist())
 
     def pair(self, index: int, names: tuple[str, ...], rows: Sequence[int] = ()) -> tuple[str, str]:
         """Return the names of the two links of a pair of bodies that get deepest into each other.

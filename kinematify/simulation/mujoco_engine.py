@@ -12,6 +12,7 @@ import mujoco
 import numpy as np
 from mujoco import rollout
 
+from kinematify.robot.mechanism import sweep_rows
 from kinematify.simulation.engine import (
     FINER,
     SLOW_SECONDS,
@@ -56,6 +57,8 @@ if TYPE_CHECKING:
 _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
 _NUMBERS = 20_000_000
 """Numbers in the states of runs that are kept at a time."""
+_LOOK = 10
+"""Steps of a drive between two looks for pairs that did not act."""
 _TIME = re.compile(r" Time = ")
 
 
@@ -172,14 +175,9 @@ class MujocoSimulation:
         return loaded
 
     @cached_property
-    def _acting(self) -> CompiledModel:
-        """Only pairs that can meet while one joint moves act on each other."""
-        return self._compiled(with_allowances(self._servoed, self.model.measuring, self.sweep, only=True))
-
-    @cached_property
     def _everything(self) -> CompiledModel:
         """All pairs act on each other, beyond what they are allowed."""
-        return self._compiled(with_allowances(self._servoed, self.model.measuring, self.sweep, only=False))
+        return self._compiled(with_allowances(self._servoed, self.model.measuring, self.sweep))
 
     @property
     def _mechanism(self) -> LeaderMechanism:
@@ -206,23 +204,13 @@ class MujocoSimulation:
 
     def release(self, seconds: float, *, fine: bool = False) -> FreeRun:
         """Let the model go."""
-        free = released(self._everything.model)
-        steps = count_steps(seconds, self.step)
-        if not fine:
-            return self._free(free, np.zeros((steps, free.nu)))
-        free.opt.timestep /= FINER
-        return self._free(free, np.zeros((FINER * steps, free.nu)), every=FINER)
+        free, finer = released(self._everything.model), FINER if fine else 1
+        free.opt.timestep /= finer
+        return self._free(free, np.zeros((finer * count_steps(seconds, self.step), free.nu)), every=finer)
 
     def _free(self, model: mujoco.MjModel, control: FloatArray, *, every: int = 1) -> FreeRun:
-        """Run one model; values are kept of every so many steps.
-
-        Args:
-            model: A variant of `_everything`.
-            control: Shape (steps, leaders).
-            every: 1: all.
-        """
-        start = _start_state(self._everything, self._mechanism.values_at_rest)
-        (run,) = _run(self._everything, [model], start, control[None], threads=1)
+        """Run a variant of `_everything` under commands (steps, leaders); values are kept of every so many steps."""
+        (run,) = _run(self._everything, [model], self._mechanism.values_at_rest, control[None], threads=1)
         leaders = [self._mechanism.joints.index(travel.joint) for travel in self._mechanism.travels]
         return FreeRun(
             q=run.q[: run.whole][every - 1 :: every][:, leaders],
@@ -234,14 +222,13 @@ class MujocoSimulation:
     def drive(self, drives: Sequence[Drive]) -> list[DriveRun]:
         """Drive a joint to an end, the others held."""
         samples = self.model.engine.settings.sweep_samples
-        models = []
-        for drive in drives:
-            forces = np.full(len(self._mechanism.travels), np.inf)
-            forces[drive.leader] = self.servos.force[drive.leader]
-            models.append(limited_servos(self._acting.model, forces))
         control = np.stack([commands(drive, self._mechanism, self.servos, samples) for drive in drives])
-        start = _start_state(self._acting, self._mechanism.values_at_rest)
-        runs = _run(self._acting, models, start, control, threads=self.model.engine.threads)
+        met = [self.sweep.meet(sweep_rows(drive.leader, samples)) for drive in drives]
+        runs = self._driven(drives, control, met)
+        if again := [k for k in range(len(drives)) if self._more_meet(runs[k], met[k])]:
+            every = [self.sweep.meet(slice(None))] * len(again)  # what held joints bring together counts then, too
+            for k, run in zip(again, self._driven([drives[k] for k in again], control[again], every), strict=True):
+                runs[k] = run
         return [
             DriveRun(
                 q=run.q,
@@ -253,6 +240,26 @@ class MujocoSimulation:
             for drive, run, targets, fastest in zip(drives, runs, control, self._fastest(runs), strict=True)
         ]
 
+    def _driven(self, drives: Sequence[Drive], control: FloatArray, acting: list[tuple[int, ...]]) -> list[_Run]:
+        """Run drives in each of which only some pairs of the sweep act on each other."""
+        only = {
+            pairs: self._compiled(with_allowances(self._servoed, self.model.measuring, self.sweep, only=pairs)).model
+            for pairs in set(acting)
+        }
+        forces = np.where(np.eye(len(self._mechanism.travels), dtype=bool), self.servos.force, np.inf)
+        models = [limited_servos(only[pairs], forces[k.leader]) for k, pairs in zip(drives, acting, strict=True)]
+        rest, threads = self._mechanism.values_at_rest, self.model.engine.threads
+        return _run(self._everything, models, rest, control, threads=threads)
+
+    def _more_meet(self, run: _Run, acting: tuple[int, ...]) -> bool:
+        """Whether pairs that did not act get too deep in a run, since held joints give way."""
+        found, sweep = self.model.contacts(run.q[: run.whole : _LOOK]), self.sweep
+        bodies = np.sort(self._mechanism.body_of_link[found.links], axis=1)
+        return any(
+            (found.depth[(bodies == sweep.bodies[pair]).all(axis=1)] > sweep.allowed[pair]).any()
+            for pair in {*sweep.meet(slice(None))} - {*acting}
+        )
+
     def _force(self, drive: Drive, run: _Run, targets: FloatArray) -> FloatArray:
         """Of the servo that drives, after every step, shape (steps,)."""
         leader = drive.leader
@@ -263,15 +270,12 @@ class MujocoSimulation:
 
     def drop(self) -> Dropped:
         """Let the model fall on a floor."""
-        settings = self.model.engine.settings
-        measuring = self.model.measuring
-        lowest = _lowest_point(
-            measuring.model, _data_of(measuring, _start_state(measuring, self._mechanism.values_at_rest))
-        )
-        allowed = with_allowances(self._servoed, measuring, self.sweep, only=False)
+        settings, measuring, rest = self.model.engine.settings, self.model.measuring, self._mechanism.values_at_rest
+        lowest = _lowest_point(measuring.model, _data_of(measuring, _start_state(measuring, rest)))
+        allowed = with_allowances(self._servoed, measuring, self.sweep)
         loaded = self._compiled(with_floor(allowed, height=lowest - settings.drop, tolerance=self.sweep.tolerance))
         control = np.repeat(self._held[None, None], count_steps(settings.drop_seconds, self.step), axis=1)
-        (run,) = _run(loaded, [loaded.model], _start_state(loaded, self._mechanism.values_at_rest), control, threads=1)
+        (run,) = _run(loaded, [loaded.model], rest, control, threads=1)
         window = count_steps(SLOW_SECONDS, self.step)
         early, late = (_data_of(loaded, state) for state in (run.state[-1 - window], run.state[-1]))
         moved = np.linalg.norm(late.xpos[loaded.body] - early.xpos[loaded.body], axis=1)
@@ -284,8 +288,7 @@ class MujocoSimulation:
     @property
     def _held(self) -> FloatArray:
         """Commands that hold the joints at rest, their weight made up for, shape (leaders,)."""
-        commands: FloatArray = self._mechanism.rest + self.servos.holding[0] / self.servos.stiffness
-        return commands
+        return np.asarray(self._mechanism.rest + self.servos.holding[0] / self.servos.stiffness)
 
     def _fastest(self, runs: Sequence[_Run]) -> list[float]:
         """Largest speed of a link's frame in each run, around the step with most motion [m/s]."""
@@ -314,17 +317,18 @@ class _Run:
 
 
 def _run(
-    loaded: CompiledModel, models: Sequence[mujoco.MjModel], start: FloatArray, control: FloatArray, *, threads: int
+    loaded: CompiledModel, models: Sequence[mujoco.MjModel], values: FloatArray, control: FloatArray, *, threads: int
 ) -> list[_Run]:
     """Run each model under its commands.
 
     Args:
         loaded: Where the joints stand.
         models: One per run, variants of `loaded.model`; the last two sensors are potential and kinetic energy.
-        start: State from `_start_state`.
+        values: Of all joints at the start, shape (J,).
         control: Shape (runs, steps, leaders).
         threads: At most.
     """
+    start = _start_state(loaded, values)
     states = np.repeat(start[None], len(models), axis=0)
     data = [mujoco.MjData(loaded.model) for _ in range(max(1, min(threads, len(models))))]
     with rollout.Rollout(nthread=len(data) if len(data) > 1 else 0) as pool:

@@ -16,7 +16,7 @@ from kinematify.simulation.contacts import deepest
 from kinematify.simulation.engine import Measured, Refused
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Collection, Iterable
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray, IntArray
@@ -178,22 +178,23 @@ def with_servos(source: ParsedModel) -> ParsedModel:
     return ParsedModel(spec=spec, names=source.names, mechanism=source.mechanism, step=source.step)
 
 
-def with_allowances(source: ParsedModel, measured: CompiledModel, touching: Touching, *, only: bool) -> ParsedModel:
+def with_allowances(
+    source: ParsedModel, measured: CompiledModel, touching: Touching, *, only: Collection[int] | None = None
+) -> ParsedModel:
     """Return a copy in which pairs of bodies act on each other only beyond what they are allowed.
 
     Args:
         source: The file, with servos.
         measured: The same file compiled as it is.
         touching: The pairs that touch in the sweep.
-        only: True: no other pairs act than those that get deeper than allowed in the sweep. Others cannot meet while
-            one joint moves, and to look for their contacts would cost most of the time.
+        only: Indices of the pairs that act, which saves most of the time where few can meet; None: all bodies do.
     """
     spec = source.spec.copy()
     bodies = source.mechanism.body_of_link
     geoms = _geoms_of_bodies(measured, bodies)
     deep = {tuple(pair): allowed for pair, allowed in zip(touching.bodies.tolist(), touching.allowed, strict=True)}
-    acting = {tuple(touching.bodies[index].tolist()) for index in touching.meet} if only else set(deep)
-    if only:
+    acting = set(deep) if only is None else {tuple(touching.bodies[index].tolist()) for index in only}
+    if only is not None:
         for geom in spec.geoms:
             geom.contype = geom.conaffinity = 0
     else:

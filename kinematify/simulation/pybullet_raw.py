@@ -128,15 +128,12 @@ class PybulletFile(MotorFile):
         world = self._opened(contacts=True, seen=True)
         self._now, self._worlds = world, {True: world}
         self._file = {"path": str(urdf), "silent": world.ignored_pairs}
-        infos = [world.client.getJointInfo(world.body, k) for k in range(world.client.getNumJoints(world.body))]
-        self._links = {-1: root, **{k: text_of(info[12]) for k, info in enumerate(infos)}}
+        infos, self._links = world.infos, world.links
         self._index = {text_of(info[1]): k for k, info in enumerate(infos) if info[2] != bullet.JOINT_FIXED}
         self._places = list(self._index.values())
         self.joints = tuple(self._index)
         self.limits = {
-            text_of(info[1]): (info[8], info[9]) if info[8] <= info[9] else (-np.inf, np.inf)
-            for info in infos
-            if info[2] != bullet.JOINT_FIXED
+            name: infos[k][8:10] if infos[k][8] <= infos[k][9] else (-np.inf, np.inf) for name, k in self._index.items()
         }
         above = {k: info[16] for k, info in enumerate(infos)}
         self._below = {k: [link for link in above if k in _chain(above, link)] for k in self._index.values()}
@@ -310,25 +307,24 @@ class _LoadedWorld:
         self.freed: set[int] = set()
         """Joints without motors now; `pushed`: some were so once."""
         self.client.setGravity(0.0, 0.0, -GRAVITY)
-        flags = bullet.URDF_USE_SELF_COLLISION if contacts else 0
-        flags |= 0 if seen else bullet.URDF_IGNORE_VISUAL_SHAPES
+        flags = (bullet.URDF_USE_SELF_COLLISION if contacts else 0) | (0 if seen else bullet.URDF_IGNORE_VISUAL_SHAPES)
         try:
             self.body = self.client.loadURDF(str(urdf), useFixedBase=True, flags=flags)
         except bullet.error as error:
             printed = _printed(lambda: self.client.loadURDF(str(urdf), flags=flags))
             words = f"{error} It prints: {printed}" if printed else str(error)
             raise Unloadable(words, _OPEN.format(path=str(urdf))) from error
-        self.ignored_pairs = self._silent_pairs(root, passing) if contacts else []
+        self.infos = [self.client.getJointInfo(self.body, k) for k in range(self.client.getNumJoints(self.body))]
+        self.links = {-1: root, **{k: text_of(info[12]) for k, info in enumerate(self.infos)}}
+        self.ignored_pairs = self._silent_pairs(passing) if contacts else []
         """Indices of two links each that do not collide."""
         for first, second in self.ignored_pairs:
             self.client.setCollisionFilterPair(self.body, self.body, first, second, 0)
         self.state = self.client.saveState()
 
-    def _silent_pairs(self, root: str, passing: frozenset[str]) -> list[tuple[int, int]]:
+    def _silent_pairs(self, passing: frozenset[str]) -> list[tuple[int, int]]:
         """Pairs that a fixed joint connects, that only one moving joint parts, or that pass by declaration."""
-        infos = [self.client.getJointInfo(self.body, k) for k in range(self.client.getNumJoints(self.body))]
-        names = {-1: root, **{k: text_of(info[12]) for k, info in enumerate(infos)}}
-        top = {-1: -1}
+        infos, names, top = self.infos, self.links, {-1: -1}
         for k, info in enumerate(infos):  # parents come first
             top[k] = top[info[16]] if info[2] == bullet.JOINT_FIXED else k
         above = {k: top[infos[k][16]] if k >= 0 else None for k in set(top.values())}

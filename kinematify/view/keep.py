@@ -135,9 +135,9 @@ class ModelFolder:
 
     def _command(self, inference: Inference) -> str:
         hints = [word for text in inference.hints for word in ("--hint", text)]
-        source, out = inference.assembly.source, str(self.folder)
+        source, out = (inference.assembly.source, *inference.assembly.options), str(self.folder)
         groups = [] if inference.grouping is None else ["--groups", str(self.folder / GROUPS_FILE)]
-        return shlex.join(["kinematify", "infer", source, "-o", out, "--force", *groups, *hints])
+        return shlex.join(["kinematify", "infer", *source, "-o", out, "--force", *groups, *hints])
 
 
 def hint_of(part: str, chosen: JointAlternative, before: JointType) -> Hint:

@@ -34,7 +34,7 @@ def test_positive_motion_opens(name: str) -> None:
         assert estimate.lower <= 0.0
 
 
-@pytest.mark.parametrize("name", ["edge_door", "drawer"])
+@pytest.mark.parametrize("name", ["edge_door", "drawer", "knob", "wheel"])
 def test_reversing_the_given_axis_gives_the_same_joint(name: str) -> None:
     known = BUILDERS[name]()
     joint = known.joints[0]

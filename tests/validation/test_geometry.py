@@ -263,6 +263,9 @@ def test_a_door_about_a_far_line_leaves_its_frame(tmp_path: Path) -> None:
     (finding,) = found(model, tmp_path)["KV320"]
     assert (finding.joint, finding.severity) == ("door_joint", Severity.ERROR)
     assert "turns away from its hinge" in finding.message
+    apart = model.with_part("door", boxes=(Box(size=(0.02, 0.3, 0.4), at=(0.31, -0.83, 0.0)),))
+    (finding,) = found(apart, tmp_path)["KV320"]
+    assert finding.severity is Severity.WARNING, "what touches nothing at rest has no hinge to leave"
 
 
 def test_a_drawer_longer_out_than_it_is_long_has_left_its_guide(tmp_path: Path) -> None:

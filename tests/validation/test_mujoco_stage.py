@@ -104,6 +104,12 @@ def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> N
     assert max(map(abs, curve.force)) > 0.0
 
 
+def test_stop_at_a_body_without_collision_geometry_is_a_note(tmp_path: Path) -> None:
+    inwards = cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0))
+    findings = reported(inwards.with_part("body", collision=()), tmp_path).results["KV405"].findings
+    assert [(item.joint, item.severity) for item in findings] == [("drawer_joint", Severity.NOTE)]
+
+
 def test_stop_names_the_link_that_is_met_on_this_way(tmp_path: Path) -> None:
     cube = (Box(size=(0.1, 0.1, 0.1)),)
     walls = [

@@ -25,7 +25,18 @@ def folder(tmp_path: Path) -> Path:
     write_bin_with_lid(mesh)
     parts = [[f"piece_{k:03d}" for k in range(5)], ["piece_005", "piece_006"]]
     groups.write_text(json.dumps({"parts": [{"pieces": part} for part in parts]}), encoding="utf-8")
-    words = ["infer", mesh, "-o", tmp_path / "model", "--groups", groups, "--no-preview", "--no-validation"]
+    words = [
+        "infer",
+        mesh,
+        "-o",
+        tmp_path / "model",
+        "--groups",
+        groups,
+        "--up",
+        "z",
+        "--no-preview",
+        "--no-validation",
+    ]
     assert run([str(word) for word in words]) == 0
     return tmp_path / "model"
 
@@ -44,6 +55,7 @@ def test_a_part_is_split_its_pieces_are_merged_and_the_command_does_the_same(fol
     assert {child for _, child in candidates_in(folder)} == {"piece_005", "piece_006"}
     reported = ModelFolder(folder).merge("piece_005", "piece_006")
     assert pieces_of(folder) == before
+    assert " --up z " in reported.command, "the mesh is read in the same manner"
     command = [*shlex.split(reported.command)[1:], "--no-preview", "--no-validation"]
     assert run(command) == 0
     assert pieces_of(folder) == before

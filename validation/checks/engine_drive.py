@@ -265,10 +265,15 @@ def _severity(context: EngineContext, index: int, *, certain: bool) -> Severity:
     """How bad it is that a pair stops a joint.
 
     By default, MuJoCo lets neighbours pass each other but for those of a root that is fixed to the world, and PyBullet
-    all of them. Of other pairs the exact geometry knows whether another joint clears the way (KV311).
+    all of them. Of other pairs the exact geometry knows whether another joint clears the way (KV311). What has no
+    collision geometry in a model that has some stops nothing.
     """
-    pair = tuple(sorted(context.drives.sweep.bodies[index].tolist()))
+    sweep, links = context.drives.sweep, context.prepared.link_by_name
+    pair = tuple(sorted(sweep.bodies[index].tolist()))
     if pair not in context.mechanism.neighbours or pair[0] != 0:
+        return Severity.NOTE
+    solid = any(link.pieces and not link.from_visual for link in links.values())
+    if solid and any(links[name].from_visual for name in sweep.pair(index, context.mechanism.links)):
         return Severity.NOTE
     return Severity.ERROR if certain else Severity.WARNING
 

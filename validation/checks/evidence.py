@@ -8,6 +8,7 @@ holds for each of them is.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +24,15 @@ if TYPE_CHECKING:
 
 _NAMED = 8
 """Joints that one finding names."""
+
+
+_opinion = partial(
+    check,
+    blame=Blame.KINEMATICS,
+    doubts=True,
+    opinion=True,
+    follows={"KV341": CauseScope.JOINT, "KV350": CauseScope.BODY},
+)
 
 
 @check(
@@ -109,16 +119,12 @@ def hangs_elsewhere(result: OpenCheck, case: JointCase) -> None:
     )
 
 
-@check(
+@_opinion(
     "KV342",
     title="The axis runs in a direction that the parts show",
     fails="The axis runs in no direction that the parts show",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
     feedback=FeedbackRow.LINE,
-    doubts=True,
-    opinion=True,
-    follows={"KV341": CauseScope.JOINT, "KV350": CauseScope.BODY},
 )
 def unknown_direction(result: OpenCheck, case: JointCase) -> None:
     """The axis lies within evidence.unknown_deg of a direction that the two bodies show: axes of round surfaces and
@@ -147,16 +153,12 @@ def unknown_direction(result: OpenCheck, case: JointCase) -> None:
     )
 
 
-@check(
+@_opinion(
     "KV343",
     title="The axis runs where the parts have a hinge",
     fails="The axis runs beside every hinge of the parts",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
     feedback=FeedbackRow.LINE,
-    doubts=True,
-    opinion=True,
-    follows={"KV341": CauseScope.JOINT, "KV350": CauseScope.BODY},
 )
 def unknown_place(result: OpenCheck, case: JointCase) -> None:
     """A turning joint's axis runs within evidence.unknown_distance of the child's size (in linkages
@@ -184,16 +186,12 @@ def unknown_place(result: OpenCheck, case: JointCase) -> None:
     )
 
 
-@check(
+@_opinion(
     "KV344",
     title="No other joint fits the contact far better",
     fails="Another joint fits the contact far better",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
     feedback=FeedbackRow.LINE,
-    doubts=True,
-    opinion=True,
-    follows={"KV341": CauseScope.JOINT, "KV350": CauseScope.BODY},
 )
 def another_fits(result: OpenCheck, case: JointCase) -> None:
     """The declared joint is scored beside all candidates of its type by the cues of the inference (room, contact near
@@ -221,16 +219,12 @@ def another_fits(result: OpenCheck, case: JointCase) -> None:
     )
 
 
-@check(
+@_opinion(
     "KV345",
     title="The type fits the parts",
     fails="The parts look as if they moved otherwise",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
     feedback=FeedbackRow.TYPE,
-    doubts=True,
-    opinion=True,
-    follows={"KV341": CauseScope.JOINT, "KV350": CauseScope.BODY},
 )
 def other_type(result: OpenCheck, case: JointCase) -> None:
     """Shape and room of the part do not speak for the other type of joint: plates hinge, boxes in a cavity slide,
@@ -276,15 +270,11 @@ def _type_open(case: JointCase) -> bool:
     return better or case.measures.weighed.scene.has_bearing or case.blocked > case.settings.blocked
 
 
-@check(
+@_opinion(
     "KV346",
     title="The permitted motion opens",
     fails="The permitted motion closes",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
-    doubts=True,
-    opinion=True,
-    follows={"KV341": CauseScope.JOINT, "KV350": CauseScope.BODY},
 )
 def opens_inwards(result: OpenCheck, case: JointCase) -> None:
     """With a one-sided range (evidence.one_sided), the permitted side does not lead into the parent within

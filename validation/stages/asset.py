@@ -47,7 +47,9 @@ def check_mesh_files(request: StageRequest, recorder: Recorder) -> Robot | None:
         usable &= not result.harmful and result.status is not Status.BLOCKED
     others = [check for check in checks_of("KV15") if check not in _GUARDS]
     if not usable:
-        recorder.block(others, "a mesh cannot be used")
+        for check in others:
+            with recorder.check(check.id) as result:
+                result.block("a mesh cannot be used")
         return None
     for check in others:
         recorder.run(check, look)

@@ -228,9 +228,12 @@ def is_continuous(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: 
     """
     if scene.serial and scene.smallness < 1.0 and not scene.rolls:
         return False
-    turn = Hypotheses(kinds=np.array([TURN]), axes=axis[None], pivots=pivot[None], sources=("chosen",))
-    scorer = shipped_scorer(TURNING_WEIGHTS)
-    odds = scorer.sums(turning_columns(measure(scene, turn), 0, scorer.measurements)[None])[0] / scorer.temperature
+    # Of both signs of the axis, which measurements around it start from; the mean does not depend on the one given.
+    both, pivots = np.array([axis, -axis]), np.array([pivot, pivot])
+    turn = Hypotheses(kinds=np.array([TURN, TURN]), axes=both, pivots=pivots, sources=("chosen", "chosen"))
+    scorer, measured = shipped_scorer(TURNING_WEIGHTS), measure(scene, turn)
+    columns = np.stack([turning_columns(measured, row, scorer.measurements) for row in range(2)])
+    odds = float(np.sort(scorer.sums(columns)).mean()) / scorer.temperature
     return bool(odds > (_FREE if free.min() >= np.pi else _STOPPED))
 
 

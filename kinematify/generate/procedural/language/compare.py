@@ -30,7 +30,7 @@ _SYNONYMS = (
     {"sash", "casement", "pane"},
     {"rotor", "blade", "propeller", "fan"}, {"seat", "cushion"}, {"back", "backrest"},
     {"handle", "grip", "pull", "knob"},
-    {"lever", "handle"}, {"flap", "tailgate", "door"}, {"shade", "head"}, {"button", "key"}, {"barrel", "drum"},
+    {"lever", "handle"}, {"flap", "tailgate", "door", "ramp"}, {"shade", "head"}, {"button", "key"}, {"barrel", "drum"},
     {"screen", "lid", "display"}, {"shelf", "board"}, {"jaw", "finger"}, {"pedal", "foot_pedal"}, {"rack", "basket"},
 )  # fmt: skip
 """Words of which one may represent another, whatever object it is."""
@@ -57,7 +57,7 @@ _PLACES = {
 _MOVING = frozenset({
     "wheel", "caster", "castor", "door", "drawer", "lid", "flap", "pedal", "button", "lever", "crank", "gate", "dial",
     "tailgate", "switch", "hatch", "shutter", "propeller", "rotor", "roller", "gear", "turntable", "plunger", "slider",
-    "sash", "knob", "hinge",
+    "sash", "knob",
 })  # fmt: skip
 """Parts that move wherever they are."""
 _LOOKS = ("color", "material")
