@@ -49,8 +49,7 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
     ways = _free_turn(scene, axis, pivot, (scene.parent, *scene.others), config)
     free = np.array([way.motion for way in ways])
     if is_continuous(scene, axis, pivot, free):
-        none, half = End(np.inf, ""), End(np.pi, "")
-        sign = clockwise_sign(scene, axis)
+        none, half, sign = End(np.inf, ""), End(np.pi, ""), clockwise_sign(scene, axis)
         return Range(kind=JointType.CONTINUOUS, sign=sign, back=none, ahead=none, free=(half, half))
     if scene.fold is not None and abs(float(axis @ scene.fold.axis)) > np.cos(np.radians(config.limits.square_deg)):
         return _rocker_range(scene, axis, ways)
@@ -68,8 +67,10 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
         return _lever_range(scene, axis, ways, config)
     sign = turn_sign(scene, axis, pivot, free, config.limits)
     forward, backward = ways if sign > 0 else ways[::-1]
-    back, ahead = AS_GIVEN, min(forward, _usual(config.limits.panel_deg))
-    if scene.has_bearing or not furniture:
+    usual, blocked = _usual(config.limits.panel_deg), free.max() < np.radians(config.limits.stopped_deg)
+    # What is blocked both ways overlaps its neighbours, or is fixed: the sweep says nothing of its range.
+    back, ahead = AS_GIVEN, usual if blocked else min(forward, usual)
+    if not blocked and (scene.has_bearing or not furniture):
         back, ahead = backward, _from_stop(scene, forward, backward, config)
     if not scene.serial:  # whose links are stopped by what is not in the mesh, too
         back, ahead = (_usual(config.limits.unmet_deg) if end.motion >= np.pi else end for end in (back, ahead))
