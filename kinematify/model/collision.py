@@ -146,11 +146,11 @@ def fit_collision(
     ]
     clearance = min(config.clearance, config.clearance_share * _size(bodies))
     sweeps = _sweeps(robot, poses, config)
-    exact = _ExactSweeps(robot, geometry, config.forced_share, [joint for joint, _ in sweeps])
+    exact = _ExactSweeps(robot, geometry, config.forced_share, sweeps)
     result = carved(
         bodies,
         [np.empty((0, 3)) if i in kept else _marks(link, poses[link.name]) for i, link in enumerate(robot.links)],
-        [sweep for _, sweep in sweeps],
+        [sweep.motion for sweep in sweeps],
         exact.free_end,
         clearance=clearance,
         thinnest=config.thinnest_share * clearance,
@@ -177,7 +177,7 @@ def fit_collision(
         robot=replace(given, links=tuple(links)),
         links=tuple(facts),
         clearance=clearance,
-        jams=tuple((sweeps[k][0], robot.links[a].name, robot.links[b].name) for k, a, b in result.jams),
+        jams=tuple((sweeps[k].joint, robot.links[a].name, robot.links[b].name) for k, a, b in result.jams),
         blocked=tuple(exact.blocked),
     )
 
@@ -225,11 +225,21 @@ def _convex(mesh: LinkMesh) -> bool:
     return volume >= (1.0 - _FILLED) * hull.volume
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Sweep:
+    """Two groups of links that a joint moves apart."""
+
+    joint: str
+    leads: bool
+    """The joint itself is between them; where only followers are, they are carved for the clearance alone."""
+    motion: SweptJoint
+
+
 class _ExactSweeps:
     """Where the visible surfaces of two links let a joint move, asked pair by pair."""
 
-    def __init__(self, robot: Robot, settings: GeometrySettings, forced_share: float, joints: Sequence[str]) -> None:
-        self._robot, self._joints = robot, joints
+    def __init__(self, robot: Robot, settings: GeometrySettings, forced_share: float, sweeps: Sequence[_Sweep]) -> None:
+        self._robot, self._sweeps = robot, sweeps
         self._scene = read_scene(robot, settings, visible_shapes)
         self._forced = forced_share * self._scene.size
         self._sweeper = Sweeper.of(self._scene)
@@ -240,8 +250,10 @@ class _ExactSweeps:
 
     def free_end(self, sweep: int, first: int, second: int, sign: float) -> float:
         """Value from rest up to which a joint does not bring two links into each other on one side [rad or m]."""
+        if not self._sweeps[sweep].leads:
+            return sign * np.inf
         a, b = sorted(self._body_of[self._robot.links[link].name] for link in (first, second))
-        key = (self._leader_of[self._joints[sweep]], a, b, sign)
+        key = (self._leader_of[self._sweeps[sweep].joint], a, b, sign)
         if key not in self._asked:
             self._asked[key] = self._end(*key)
         return self._asked[key]
@@ -256,8 +268,8 @@ class _ExactSweeps:
         return meeting.first - travel.rest
 
 
-def _sweeps(robot: Robot, poses: Mapping[str, FloatArray], config: CollisionConfig) -> list[tuple[str, SweptJoint]]:
-    """Joints that lead with their sweeps from where they rest: one for each two groups that a joint moves apart."""
+def _sweeps(robot: Robot, poses: Mapping[str, FloatArray], config: CollisionConfig) -> list[_Sweep]:
+    """Of joints that lead, from where they rest: one for each two groups that a joint moves apart."""
     mechanism = LeaderMechanism(robot=robot)
     found = []
     leaders = robot.leaders
@@ -267,7 +279,7 @@ def _sweeps(robot: Robot, poses: Mapping[str, FloatArray], config: CollisionConf
         together = _MovedTogether(robot, joint.name, moving)
         rest, T_world_child = together.rest[joint.name], poses[joint.child]
         for resting, moved in combinations(together.groups, 2):
-            sweep = SweptJoint(
+            motion = SweptJoint(
                 moved=together.groups[moved],
                 against=together.groups[resting],
                 followed=partial(together.motions, resting, moved) if moving != {joint.name} else None,
@@ -277,7 +289,7 @@ def _sweeps(robot: Robot, poses: Mapping[str, FloatArray], config: CollisionConf
                 lower=min(float(low) - rest, 0.0) - slack,
                 upper=max(float(high) - rest, 0.0) + slack,
             )
-            found.append((joint.name, sweep))
+            found.append(_Sweep(joint=joint.name, leads=joint.name in resting ^ moved, motion=motion))
     return found
 
 
