@@ -199,6 +199,18 @@ def test_counts_that_cannot_be_built_are_refused(sentence: str) -> None:
     assert " from " in said_of(sentence)
 
 
+@pytest.mark.parametrize("part", ["two of which are red", "two of them red", "2 of them being red"])
+def test_some_of_several_may_look_otherwise(part: str) -> None:
+    made = from_text(f"a dresser with six drawers, {part}").build()
+    colors = [item.color for item in made.parts if item.name.startswith("drawer")]
+    assert (len(colors), colors.count(COLORS["red"])) == (6, 2)
+
+
+def test_more_than_there_are_cannot_look_otherwise() -> None:
+    with pytest.raises(InputError, match="five of two drawers"):
+        from_text("a cabinet with two drawers, five of which are blue")
+
+
 def test_a_count_without_a_description_is_refused() -> None:
     shape = {"kind": "sphere", "radius": 0.03, "repeated": {"count": "blade"}}
     parts = [{"name": "body", "shapes": [shape]}, {"name": "rotor", "shapes": [{**shape, "xyz": [0, 0, 1]}]}]

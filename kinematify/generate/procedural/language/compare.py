@@ -52,7 +52,7 @@ _COVERS = (
 _PLACES = {
     "left": (-1, 0, 0), "right": (1, 0, 0), "top": (0, 0, 1), "upper": (0, 0, 1), "uppermost": (0, 0, 1),
     "bottom": (0, 0, -1), "lower": (0, 0, -1), "lowest": (0, 0, -1), "underside": (0, 0, -1), "underneath": (0, 0, -1),
-    "front": (0, -1, 0), "back": (0, 1, 0), "rear": (0, 1, 0),
+    "front": (0, -1, 0), "back": (0, 1, 0), "rear": (0, 1, 0), "first": (0, 0, 0),
 }  # fmt: skip
 _MOVING = frozenset({
     "wheel", "caster", "castor", "door", "drawer", "lid", "flap", "pedal", "button", "lever", "crank", "gate", "dial",

@@ -8,6 +8,7 @@ object.
 from __future__ import annotations
 
 import difflib
+import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -64,7 +65,7 @@ _DETERMINERS = (
 )  # fmt: skip
 PLACES = (
     "left", "right", "top", "bottom", "front", "back", "rear", "upper", "lower", "middle", "side", "underside",
-    "inside",
+    "inside", "first",
     "outside", "center", "centre", "corner", "end", "uppermost", "lowest", "outer", "inner", "central", "underneath",
 )  # fmt: skip
 LEVELS = {
@@ -98,6 +99,15 @@ _STATES = (
 """Behind the name of an object they say how far it stands open."""
 
 
+_NUMBER = rf"\d+|{'|'.join(word for word, number in NUMBERS.items() if 0 < number < 100 and len(word) > 2)}"
+_SOME_OF = re.compile(
+    rf"\b(?P<all>{_NUMBER}) (?P<nouns>(?:[a-z]+ )??[a-z]+s),? (?:with )?(?P<some>{_NUMBER}) of (?:which|them)"
+    rf"(?: is| are| being)?(?: made)?(?: of| from| in)? "
+    rf"(?P<look>(?:(?:dark|light) )?(?:{'|'.join((*COLOR_WORDS, *MATERIAL_WORDS))}))\b",
+    re.IGNORECASE,
+)
+
+
 @dataclass
 class _Draft:
     """A part while it is read."""
@@ -125,7 +135,7 @@ def parse(
     Raises:
         InputError: It is empty, too long, no English, or names no kind of object that is known.
     """
-    tokens = tokens_of(sentence, ())
+    tokens = tokens_of(_apart(sentence), ())
     name = head_of(tokens, kinds, mechanisms)
     if not name:
         raise InputError(unknown_object(tokens, kinds))
@@ -138,11 +148,27 @@ def parse_any(sentence: str) -> Specification:
     Raises:
         InputError: It is empty, too long, or no English.
     """
-    tokens = tokens_of(sentence, ())
+    tokens = tokens_of(_apart(sentence), ())
     boundaries = (*_BEGINS_PART, *_PREPOSITIONS)
     end = next((k for k, token in enumerate(tokens) if k and token.given in boundaries), len(tokens))
     nouns = [k for k in range(end) if not may_follow(tokens, k)] or [max(end - 1, 0)]
     return _specified(sentence, tokens, (nouns[-1],), ())
+
+
+def _apart(sentence: str) -> str:
+    """`four castors, two of which are red` -> `four castors, the two first ones red`.
+
+    Raises:
+        InputError: More are said to look otherwise than there are.
+    """
+
+    def split(found: re.Match[str]) -> str:
+        every, some = (int(NUMBERS.get(found[k].lower(), 0) or found[k]) for k in ("all", "some"))
+        if some > every:
+            raise InputError(f"The text asks for {found['some']} of {found['all']} {found['nouns']}. Ask for fewer.")
+        return f"{every} {found['nouns']}, the {some} first ones {found['look']}"
+
+    return _SOME_OF.sub(split, sentence)
 
 
 def _specified(
