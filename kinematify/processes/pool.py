@@ -115,8 +115,9 @@ def run_tasks(
     try:
         while True:
             while len(active) < executor.capacity and (task := again.popleft() if again else next(upcoming, None)):
-                worker = executor.start()
-                active[worker] = task, 1
+                with deaf():  # an interrupt before it is listed would leave a process that nobody stops
+                    worker = executor.start()
+                    active[worker] = task, 1
                 worker.take(task.call, task.timeout)
             if not active:
                 return
@@ -126,7 +127,6 @@ def run_tasks(
                 if isinstance(result, Message):
                     heard(ended.key, result.content)
                     continue
-                del active[worker]
                 died = isinstance(result, TaskFailure) and result.status == "crash"
                 deaths[ended.key] += died
                 if died and deaths[ended.key] < lives:
@@ -136,6 +136,7 @@ def run_tasks(
                     worker.take(task.call, task.timeout)
                 else:
                     worker.stop()
+                    del active[worker]
                 if not died:
                     yield ended.key, result
                 elif deaths[ended.key] == lives:
