@@ -112,6 +112,8 @@ class Asked:
     def _is_counted(self, part: PartSpecification) -> bool:
         """Whether a number or `a` counts it, and no `the` takes up what was named before: `the left one`."""
         tokens, first = self.specification.tokens, min(part.claims[0].at)
+        if part.is_share:
+            return False
         count = next((min(claim.at) for claim in part.claims if claim.about == "count"), None)
         if count is not None:
             return "the" not in [token.given for token in tokens[max(count - 2, 0) : count]]

@@ -108,6 +108,10 @@ def _present_and_absent(specification: Specification) -> Iterator[_Fault]:
         placed = any(claim.about in ("place", "relation") for part in parts for claim in part.claims)
         if len(numbers) > 1 and not placed and 1 not in numbers and 0 not in numbers:
             yield " and ".join(f"{number} {noun}s" for number in sorted(numbers)), "two counts of one thing"
+        every = max((number for part in counted if (number := part.count) and not part.is_share), default=0)
+        for part in counted:
+            if part.is_share and every < (part.count or 0):
+                yield f"{part.count} of the {noun}s", f"there are only {every} {noun}s"
 
 
 def _larger_parts(specification: Specification) -> Iterator[_Fault]:

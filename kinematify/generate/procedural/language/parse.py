@@ -8,7 +8,6 @@ object.
 from __future__ import annotations
 
 import difflib
-import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -99,15 +98,6 @@ _STATES = (
 """Behind the name of an object they say how far it stands open."""
 
 
-_NUMBER = rf"\d+|{'|'.join(word for word, number in NUMBERS.items() if 0 < number < 100 and len(word) > 2)}"
-_SOME_OF = re.compile(
-    rf"\b(?P<all>{_NUMBER}) (?P<nouns>(?:[a-z]+ )??[a-z]+s),? (?:with )?(?P<some>{_NUMBER}) of (?:which|them)"
-    rf"(?: is| are| being)?(?: made)?(?: of| from| in)? "
-    rf"(?P<look>(?:(?:dark|light) )?(?:{'|'.join((*COLOR_WORDS, *MATERIAL_WORDS))}))\b",
-    re.IGNORECASE,
-)
-
-
 @dataclass
 class _Draft:
     """A part while it is read."""
@@ -135,7 +125,7 @@ def parse(
     Raises:
         InputError: It is empty, too long, no English, or names no kind of object that is known.
     """
-    tokens = tokens_of(_apart(sentence), ())
+    tokens = tokens_of(sentence, ())
     name = head_of(tokens, kinds, mechanisms)
     if not name:
         raise InputError(unknown_object(tokens, kinds))
@@ -148,27 +138,11 @@ def parse_any(sentence: str) -> Specification:
     Raises:
         InputError: It is empty, too long, or no English.
     """
-    tokens = tokens_of(_apart(sentence), ())
+    tokens = tokens_of(sentence, ())
     boundaries = (*_BEGINS_PART, *_PREPOSITIONS)
     end = next((k for k, token in enumerate(tokens) if k and token.given in boundaries), len(tokens))
     nouns = [k for k in range(end) if not may_follow(tokens, k)] or [max(end - 1, 0)]
     return _specified(sentence, tokens, (nouns[-1],), ())
-
-
-def _apart(sentence: str) -> str:
-    """`four castors, two of which are red` -> `four castors, the two first ones red`.
-
-    Raises:
-        InputError: More are said to look otherwise than there are.
-    """
-
-    def split(found: re.Match[str]) -> str:
-        every, some = (int(NUMBERS.get(found[k].lower(), 0) or found[k]) for k in ("all", "some"))
-        if some > every:
-            raise InputError(f"The text asks for {found['some']} of {found['all']} {found['nouns']}. Ask for fewer.")
-        return f"{every} {found['nouns']}, the {some} first ones {found['look']}"
-
-    return _SOME_OF.sub(split, sentence)
 
 
 def _specified(
@@ -356,6 +330,8 @@ class _Parser(Words):
     def _clause(self, k: int) -> int:
         """What begins at word k: another part, or what is said of the last one."""
         word = self.given(k)
+        if self._is_share(k):
+            return self._share(k)
         if word in ("without", "minus"):
             return self._part(k + 1, count=0)
         if word in _WITH:
@@ -441,6 +417,8 @@ class _Parser(Words):
 
     def _part(self, k: int, *, count: int | None = 1, of: _Draft | None = None) -> int:
         """A noun phrase that names a part; what has no noun is said of the part before."""
+        if self._is_share(k):
+            return self._share(k)
         part = _Draft(count=count, of=self.noun(of) if of is not None else "")
         end = self._noun_phrase(k, part)
         again = [at for at in range(k, end) if self.given(at) in ("one", "ones") or self.tokens[at].given in NUMBERS]
@@ -456,6 +434,23 @@ class _Parser(Words):
         else:
             self.current.claims += [claim for claim in part.claims if claim.about != "count"]
         return end
+
+    def _is_share(self, k: int) -> bool:
+        """Whether word k begins `two of which`, `one of them`."""
+        of_which = self.given(k + 1) == "of" and self.given(k + 2) in ("which", "them", "these", "those")
+        return of_which and bool(self.parts and self.tokens[k].number)
+
+    def _share(self, k: int) -> int:
+        """Some of the parts that were named last, the first ones; the word behind."""
+        every = self.parts[-1]
+        some = _Draft(nouns=list(every.nouns), count=int(self.tokens[k].number or 0.0), of=every.of)
+        self.current = self.subject = every
+        if some.count != every.count:
+            self.claim(some, "count", some.count, k)
+            self.claim(some, "place", "first", k, k + 1, k + 2)
+            self.parts.append(some)
+            self.current = self.subject = some
+        return k + 3
 
     def _noun_phrase(self, k: int, part: _Draft) -> int:
         """`two small red drawers`: count, looks, sizes and motions before the noun; the word behind."""

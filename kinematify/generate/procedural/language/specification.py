@@ -37,6 +37,11 @@ class PartSpecification:
     """Noun of the part that it belongs to, where that is said."""
 
     @property
+    def is_share(self) -> bool:
+        """Whether it is some of the parts that were named before: `two of which`."""
+        return any(claim.about == "place" and claim.value == "first" for claim in self.claims)
+
+    @property
     def absent(self) -> bool:
         """It is to be omitted: `without a handle`."""
         return self.count == 0
