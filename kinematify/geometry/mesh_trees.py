@@ -35,9 +35,8 @@ class DistanceTree:
     def nearest(self, points: FloatArray) -> tuple[FloatArray, IntArray, FloatArray]:
         """Unsigned distances (n,), faces (n,) and places on them (n, 3) that are nearest to points (n, 3)."""
         order = _along_curve(points)
-        squares, faces, places = self._tree.squared_distance(
-            self.vertices, self.faces, np.ascontiguousarray(points[order])
-        )
+        sorted_points = np.ascontiguousarray(points[order])
+        squares, faces, places = self._tree.squared_distance(self.vertices, self.faces, sorted_points)
         back = _inverse(order)
         return np.sqrt(np.maximum(squares, 0.0))[back], faces[back], places[back]
 

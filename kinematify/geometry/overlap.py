@@ -153,8 +153,8 @@ def _passed(body: Solid, other: Solid, T: FloatArray, hit: BoolArray, grace: flo
     last_free = np.maximum.accumulate(np.where(hit, 0, np.arange(len(T))))
     beyond = np.zeros(path.shape[:2])
     for sheets in (True, False):
-        met = body.meets(path[:-1].reshape(-1, 3), steps.reshape(-1, 3), sheets=sheets).reshape(steps.shape[:2])
-        met &= way > grace
+        met = hit[1:, None] & (way > grace)  # what was met before the last free pose does not count
+        met[met] = body.meets(path[:-1][met], steps[met], sheets=sheets)
         met[_pierced_at_rest(other, path, met, T[0])] = False
         if not met.any():
             continue
@@ -164,8 +164,8 @@ def _passed(body: Solid, other: Solid, T: FloatArray, hit: BoolArray, grace: flo
             through = crossings % 2 == 1
             beyond[through] = body.beside_sheets(path[through])
         else:
-            through = (crossings > 0) & (body.inside(path[0]) == 0.0)
-            through[through] = body.inside(path[through]) == 0.0
+            through = (crossings > 0) & ~body.contains(path[0])
+            through[through] = ~body.contains(path[through])
             beyond[through] = np.maximum(beyond[through], body.beside_closed(path[through]))
     return np.asarray(np.partition(beyond, -few, axis=1)[:, -few])
 
@@ -176,7 +176,7 @@ def _pierced_at_rest(other: Solid, path: FloatArray, met: BoolArray, T: FloatArr
     if not len(rows) or not len(other.shells.closed):
         return rows[:0], points[:0]
     at_rest = transformed(path[rows + 1, points], inverse(T[None])[0])
-    pierced = other.inside(at_rest) > 0.0
+    pierced = other.contains(at_rest)
     return rows[pierced], points[pierced]
 
 

@@ -84,14 +84,16 @@ class Solid:
 
     def inside(self, points: FloatArray) -> FloatArray:
         """Depth of points in the closed shells [m], 0 outside, body frame (n, 3) -> (n,)."""
-        depth = np.zeros(len(points))
-        if not len(self.shells.closed):
-            return depth
-        near = np.flatnonzero(all_three((points > self.low) & (points < self.high)))
-        near = near[self._is_inside(self._local(points[near]))]
+        depth, near = np.zeros(len(points)), np.flatnonzero(self.contains(points))
         if len(near):
             depth[near] = self._closed.nearest(self._local(points[near]))[0]
         return depth
+
+    def contains(self, points: FloatArray) -> BoolArray:
+        """Whether points are in the closed shells, body frame (n, 3) -> (n,)."""
+        found = all_three((points > self.low) & (points < self.high)) & bool(len(self.shells.closed))
+        found[found] = self._is_inside(self._local(points[found]))
+        return found
 
     def _is_inside(self, local: FloatArray) -> BoolArray:
         """Whether points are inside: two opposite rays both meet a face from behind first.

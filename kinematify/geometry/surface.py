@@ -265,9 +265,8 @@ class PartSurface:
         normals = self.surface_normals
         fan = self._corner_fans()
         weights = _corner_angles(vertices, faces).reshape(-1)
-        sums = np.zeros((fan.max() + 1, 3))
-        np.add.at(sums, fan, weights[:, None] * np.repeat(normals, 3, axis=0))
-        smooth = sums[fan]
+        weighted = weights[:, None] * np.repeat(normals, 3, axis=0)
+        smooth: FloatArray = np.stack([np.bincount(fan, weighted[:, k])[fan] for k in range(3)], axis=1)
         length = lengths_of(smooth)
         good = length > 1e-9
         smooth = np.where(good[:, None], smooth / np.maximum(length, 1e-300)[:, None], np.repeat(normals, 3, axis=0))

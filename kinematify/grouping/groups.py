@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.optimize import Bounds, LinearConstraint, milp
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.errors import AssemblyError, InputError
@@ -204,6 +203,8 @@ def select(candidates: Sequence[Candidate], likely: FloatArray, config: Grouping
     chosen = able[:1]
     if len(able) > 1:
         member = np.array([[piece in candidates[row] for row in able] for piece in set().union(*candidates)])
+        from scipy.optimize import Bounds, LinearConstraint, milp  # noqa: PLC0415  # only grouping needs it
+
         packing = LinearConstraint(member.astype(np.float64), ub=1.0)
         found = milp(least - likely[able], constraints=packing, integrality=1, bounds=Bounds(0.0, 1.0))
         chosen = [row for row, taken in zip(able, found.x, strict=True) if taken > 0.5]

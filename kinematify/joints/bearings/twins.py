@@ -370,10 +370,12 @@ def _starts(first: FloatArray, second: FloatArray) -> list[RigidMotion]:
 
 def matched(first: FloatArray, second: FloatArray, tree: cKDTree, motion: RigidMotion) -> tuple[RigidMotion, float]:
     """Match nearest points until they stay, mirrored or not as at the start; and their mean distance [m]."""
-    sign = np.sign(np.linalg.det(motion.turn))
+    sign, one, found = np.sign(np.linalg.det(motion.turn)), first.mean(axis=0), np.empty(0)
     for _ in range(_ROUNDS):
-        nearest = second[tree.query(motion.points(first))[1]]
-        one, other = first.mean(axis=0), nearest.mean(axis=0)
+        distances, index = tree.query(motion.points(first))
+        if np.array_equal(index, found):  # the same points give the same motion again
+            return motion, float(distances.mean())
+        found, nearest, other = index, second[index], second[index].mean(axis=0)
         left, _, right = np.linalg.svd((nearest - other).T @ (first - one))
         flip = np.array([1.0, 1.0, sign * np.sign(np.linalg.det(left @ right))])
         turn = (left * flip) @ right

@@ -179,11 +179,12 @@ class MeasuredHypotheses:
         if len(points) == 0 or len(parts) == 0:
             return result
         outside = points[~self.scene.cache.inside_any(parts, points)]  # what is in a solid at rest cannot enter it
-        poses = np.stack([self.moved(outside, sense * amounts) for _, _, amounts in self.steps])
+        moving = self.hypotheses.kinds != FIXED
+        poses = np.stack([self.moved(outside, sense * amounts)[moving] for _, _, amounts in self.steps])
         entered = self.scene.cache.inside_any(parts, poses.reshape(-1, 3)).reshape(poses.shape[:3])
         shares = entered.sum(axis=2) / len(points)
         for (side, k, _), share in zip(self.steps, shares, strict=True):
-            result[:, side, k] = share
+            result[moving, side, k] = share
         return result
 
     @cached_property
@@ -241,27 +242,14 @@ def contact_motion(m: MeasuredHypotheses) -> Values:
 
 def sliding_surface(m: MeasuredHypotheses) -> Values:
     """Share of the contact, and of the whole child, that slides along itself under the first motion."""
-    contact = m.scene.contact
-    everything = m.child
-    stride = max(1, len(everything.points) // 400)
+    contact, few, every = m.scene.contact, m.few_parent, slice(None, None, max(1, len(m.child.points) // 400))
     ones = np.ones(len(contact.parent_points)) / max(len(contact.parent_points), 1)
+    points, normals = m.child.points[every], m.child.normals[every]
     return {
         **_slips(m, "contact", contact.points, contact.normals, contact.weights),
         **_slips(m, "parent_contact", contact.parent_points, contact.parent_normals, ones),
-        **_slips(
-            m,
-            "child",
-            everything.points[::stride],
-            everything.normals[::stride],
-            np.ones(len(everything.points[::stride])),
-        ),
-        **_slips(
-            m,
-            "near",
-            m.parent.points[m.few_parent],
-            m.parent.normals[m.few_parent],
-            np.ones(len(m.few_parent)),
-        ),
+        **_slips(m, "child", points, normals, np.ones(len(points))),
+        **_slips(m, "near", m.parent.points[few], m.parent.normals[few], np.ones(len(few))),
     }
 
 
@@ -483,14 +471,18 @@ def symmetry(m: MeasuredHypotheses) -> Values:
     points = m.child.points[m.few[:_FEW]]
     reach = np.where(h.kinds == TURN, np.maximum(m.radii(points).max(axis=1), 0.02 * m.unit), m.unit)
 
-    def missed(angle_deg: float) -> FloatArray:
-        amounts = np.where(h.kinds == TURN, np.radians(angle_deg), np.where(h.kinds == SLIDE, 0.1 * m.unit, 0.0))
-        moved = m.moved(points, amounts)
-        gaps = scene.cache.distances(scene.child, moved.reshape(-1, 3)).reshape(len(h), -1)
-        return np.asarray(gaps.mean(axis=1) / reach)
+    turns = h.kinds == TURN
 
-    odd, half = missed(37.0), missed(180.0)
-    folds = np.min([missed(360.0 / k) for k in (3, 4, 5)], axis=0)
+    def missed(angle_deg: float, some: BoolArray) -> FloatArray:
+        amounts = np.where(turns, np.radians(angle_deg), np.where(h.kinds == SLIDE, 0.1 * m.unit, 0.0))
+        moved = m.moved(points, amounts)[some]
+        gaps = scene.cache.distances(scene.child, moved.reshape(-1, 3)).reshape(moved.shape[:2])
+        return np.asarray(gaps.mean(axis=1) / reach[some])
+
+    values = np.empty((5, len(h)))
+    values[:, turns] = [missed(angle, turns) for angle in (37.0, 180.0, 120.0, 90.0, 72.0)]
+    values[:, ~turns] = missed(0.0, ~turns)  # a slide is the same for every angle
+    odd, half, folds = values[0], values[1], values[2:].min(axis=0)
     everything = m.child.points[:: max(1, len(m.child.points) // 400)]
     return {
         "itself_odd": odd,
