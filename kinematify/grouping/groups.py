@@ -208,8 +208,7 @@ def select(candidates: Sequence[Candidate], likely: FloatArray, config: Grouping
         packing = LinearConstraint(member.astype(np.float64), ub=1.0)
         found = milp(least - likely[able], constraints=packing, integrality=1, bounds=Bounds(0.0, 1.0))
         chosen = [row for row, taken in zip(able, found.x, strict=True) if taken > 0.5]
-    taken = set[int]().union(*(candidates[row] for row in chosen))
-    rejected: list[int] = []
+    taken, rejected = set[int]().union(*(candidates[row] for row in chosen)), list[int]()
     for row in order.tolist():
         if taken.isdisjoint(candidates[row]):
             taken |= candidates[row]
