@@ -61,7 +61,7 @@ _MOVED = frozenset({*WAYS, *MOTIONS, *DONE, *GOING, *OPENNESS} - {"closed", "shu
 _TO_BOTH = tuple(
     tuple(words.split())
     for words in (
-        "to either side", "to each side", "to both sides", "on either side", "either way", "each way", "both ways",
+        "to either side", "to each side", "to both sides", "on either side", "either way", "each way",
         "in either direction", "in both directions", "in each direction", "left and right", "up and down",
     )
 )  # fmt: skip
