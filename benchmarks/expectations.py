@@ -46,6 +46,7 @@ SETS = {
     "heldout_10": "thirty more, committed after that and before they were tried",
     "heldout_11": "forty more, committed before the grammar or the library was opened in that session",
     "heldout_12": "forty more, written before the library was opened by somebody who worked on neither",
+    "heldout_13": "forty more, committed before the grammar or the library was opened in the session after that",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }

@@ -214,15 +214,6 @@ def write_study(report: Report[Record], folder: Path, name: str | None = None) -
     )
 
 
-def load_study_report(folder: Path, study: str) -> Report[Record]:
-    """Read what `write_study` has written.
-
-    Raises:
-        InputError: There is no report, or it is of another schema.
-    """
-    return load_report(folder / f"{file_stem(study)}.json", RECORDS)
-
-
 def file_stem(study: str) -> str:
     """Name of a study's files."""
     return study.replace("-", "_")

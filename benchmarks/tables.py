@@ -115,8 +115,9 @@ def _variant_sections(results: Sequence[JobResult]) -> list[list[str]]:
     if robots := kinds.get("robot"):
         sections += [_robot_table(robots), _without_gripper(robots)]
     if everyday := kinds.get("everyday"):
+        mean = _row("**mean**", everyday, paper=TABLE_I["everyday"])
         sections += [
-            _everyday_summary(everyday),
+            ["### Everyday objects", table(["", "joints", *(column.title for column in COLUMNS)], [mean])],
             _category_table(everyday),
             _object_table("Everyday objects, each", everyday),
         ]
@@ -183,11 +184,6 @@ def _without_gripper(results: Sequence[JobResult]) -> list[str]:
         table(["object", "joints", *(column.title for column in columns)], rows),
         note,
     ]
-
-
-def _everyday_summary(results: Sequence[JobResult]) -> list[str]:
-    rows = [_row("**mean**", results, paper=TABLE_I["everyday"])]
-    return ["### Everyday objects", table(["", "joints", *(column.title for column in COLUMNS)], rows)]
 
 
 def _category_table(results: Sequence[JobResult]) -> list[str]:

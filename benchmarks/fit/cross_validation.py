@@ -33,7 +33,7 @@ from kinematify.joints.choice.opening import opening_odds
 from kinematify.joints.choice.scorer import read_scorer
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -171,10 +171,7 @@ class RigidityRow:
 def judge_rigidity_left_out(examples: Sequence[Example]) -> dict[str, RigidityRow]:
     """What is fixed, by trees whose fit had nothing of the category; by set."""
     odds = np.zeros(len(examples))
-    folds = np.array(folds_of(examples))
-    for fold in sorted(set(folds.tolist())):
-        fitted = [example for example, at in zip(examples, folds, strict=True) if example.teaches and at != fold]
-        judged = np.flatnonzero(folds == fold).tolist()
+    for fitted, judged in _folds(examples):
         scorer = fit_rigidity(fitted, seeds=(0,), provenance={})
         odds[judged] = rigidity_odds(scorer, [examples[k] for k in judged])
     taken = 1.0 / (1.0 + np.exp(-odds)) > load_config().joints.confidence.fixed
@@ -216,11 +213,9 @@ def judge_opening_left_out(examples: Sequence[Example]) -> dict[str, OpeningRow]
     """Which way turns open, by trees whose fit had nothing of the category; by set."""
     turning = [example for example in examples if example.sides]
     right = np.zeros(len(turning))
-    folds = np.array(folds_of(turning))
-    for fold in sorted(set(folds.tolist())):
-        fitted = [example for example, at in zip(turning, folds, strict=True) if example.teaches and at != fold]
+    for fitted, judged in _folds(turning):
         scorer = fit_opening(fitted, seeds=(0,), provenance={})
-        for k in np.flatnonzero(folds == fold):
+        for k in judged:
             right[k] = opening_odds(scorer, turning[k].sides) > 0.0
     return {
         name: OpeningRow(turns=len(index), right=float(right[index].mean())) for name, index in sets_of(turning).items()
@@ -243,11 +238,8 @@ def judge_turning_left_out(examples: Sequence[Example]) -> dict[str, TurningRow]
     """What goes round, by trees whose fit had nothing of the category; by set. Links in series are apart."""
     turning = [example for example in examples if turns_known(example)]
     taken = np.zeros(len(turning), dtype=bool)
-    folds = np.array(folds_of(turning))
-    for fold in sorted(set(folds.tolist())):
-        fitted = [example for example, at in zip(turning, folds, strict=True) if example.teaches and at != fold]
+    for fitted, judged in _folds(turning):
         scorer = fit_turning(fitted, seeds=(0,), provenance={})
-        judged = np.flatnonzero(folds == fold)
         taken[judged] = scorer.sums(turns_of([turning[k] for k in judged], scorer.measurements)) > 0.0
     rounds = np.array([bool(example.is_continuous) for example in turning])
     return {
@@ -259,6 +251,14 @@ def judge_turning_left_out(examples: Sequence[Example]) -> dict[str, TurningRow]
         )
         for name, index in sets_of(turning).items()
     }
+
+
+def _folds(examples: Sequence[Example]) -> Iterator[tuple[list[Example], list[int]]]:
+    """Of every fold, what is fitted to and the indices of what is judged."""
+    folds = np.array(folds_of(examples))
+    for fold in sorted(set(folds.tolist())):
+        fitted = [example for example, at in zip(examples, folds, strict=True) if example.teaches and at != fold]
+        yield fitted, np.flatnonzero(folds == fold).tolist()
 
 
 def _share(taken: NDArray[np.bool_]) -> float | None:

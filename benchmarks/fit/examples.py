@@ -168,7 +168,7 @@ def examples_of(
                 alike=next((number for number, group in enumerate(alike) if edge in group), -1),
                 broken=broken,
                 sides={} if broken else _sides(weighed.scene, joints[0]),
-                is_continuous=_is_continuous(joints[0]),
+                is_continuous=joints[0].upper - joints[0].lower > _WHOLE_TURN if joints[0].kind.turns else None,
             )
         )
     return found
@@ -180,11 +180,6 @@ def _sides(scene: JointScene, joint: TrueJoint) -> Values:
     if opens == 0 or joint.kind is not JointType.REVOLUTE or scene.serial:
         return {}
     return measure_sides(scene, opens * joint.axis, joint.pivot)
-
-
-def _is_continuous(joint: TrueJoint) -> bool | None:
-    """See `Example.is_continuous`."""
-    return joint.upper - joint.lower > _WHOLE_TURN if joint.kind.turns else None
 
 
 def _rightness(

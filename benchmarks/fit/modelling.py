@@ -85,12 +85,8 @@ def _without_hardware(blueprint: Blueprint, solids: Solids, rng: np.random.Gener
 def _boxes(blueprint: Blueprint, solids: Solids, rng: np.random.Generator) -> Solids:
     """Every moving part is the box around it, as in quick models; it stands in whatever it stands in."""
     moving = {joint.child for joint in blueprint.joints}
-    return {name: _box_around(solid) if name in moving else solid for name, solid in solids.items()}
-
-
-def _box_around(solid: Manifold) -> Manifold:
-    bounds = solid.bounding_box()
-    return box(bounds[:3], bounds[3:])
+    bounds = {name: solid.bounding_box() for name, solid in solids.items()}
+    return {name: box(bounds[name][:3], bounds[name][3:]) if name in moving else solids[name] for name in solids}
 
 
 def _hulls(blueprint: Blueprint, solids: Solids, rng: np.random.Generator) -> Solids:

@@ -179,16 +179,12 @@ def fit_moving(examples: Sequence[PiecesExample], proposed: Sequence[_Proposed])
     """Fit which sets of pieces are a moving part: the IoU with one, where it is above a half."""
     used = [(item, of) for item, of in zip(examples, proposed, strict=True) if item.fits and of.candidates]
     columns = np.concatenate([of.columns for _, of in used]).astype(np.float32)
-    right = np.concatenate([_rightness(of.overlaps) for _, of in used])
+    best = np.concatenate([of.overlaps.max(axis=1, initial=0.0) for _, of in used])
+    right = np.where(best > _ENOUGH, best, 0.0)
     items = [item for item, _ in used]
     weights = _weights(items, [len(of.candidates) for _, of in used])
     boosters = boosted_logistic(columns, right, weights, _MOVES, seeds=_SEEDS, rounds=_MOVES_ROUNDS)
     return trees_alone(used[0][1].names, boosters, _provenance(items))
-
-
-def _rightness(overlaps: FloatArray) -> FloatArray:
-    best = overlaps.max(axis=1, initial=0.0)
-    return np.where(best > _ENOUGH, best, 0.0)
 
 
 def _weights(examples: Sequence[PiecesExample], rows: Sequence[int]) -> FloatArray:

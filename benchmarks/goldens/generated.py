@@ -22,11 +22,6 @@ _SEEDS = (None, 0, 1, 2)
 """None: the defaults."""
 _COMPOSITIONS = 300
 _ACTIONS = 50
-_PARSED = ("family", "values", "understood", "ignored", "unused", "requirements", "overall", "copies", "is_toy", "how")
-
-
-def _names(item: tuple[str, int | None]) -> str:
-    return f"{item[0]} {'defaults' if item[1] is None else item[1]}"
 
 
 def _values(blueprints: dict[str, Blueprint]) -> dict[str, Values]:
@@ -52,7 +47,7 @@ def family_values(item: tuple[str, tuple[int | None, ...]]) -> dict[str, Values]
     """Objects of one family."""
     name, seeds = item
     family = known_families()[name]
-    return _values({_names((name, seed)): build(family, {}, seed=seed) for seed in seeds})
+    return _values({f"{name} {'defaults' if seed is None else seed}": build(family, {}, seed=seed) for seed in seeds})
 
 
 def composition_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:

@@ -278,15 +278,11 @@ def _row(found: Report[Record], name: str, engine: str, records: Sequence[Record
         ENGINES[engine].title,
         found.summary["versions"][ENGINES[engine].package],
         found.header.date,
-        f"{sum(_works(one) for one in tried)} of {len(tried)}",
+        f"{sum(not one['findings'] and not one['unfinished'] for one in tried)} of {len(tried)}",
         f"{sum(one['right'] for one in tried):.0f} of {sum(one['joints'] for one in tried):.0f}",
         str(sum(record.get("blocked", 0) for record in records)),
         f"{sum(seen)} of {len(seen)}" if seen else "",
     )
-
-
-def _works(tried: Record) -> bool:
-    return not tried["findings"] and not tried["unfinished"]
 
 
 def _failing(records: Sequence[Record]) -> Iterator[str]:

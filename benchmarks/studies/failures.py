@@ -215,17 +215,13 @@ def report(found: Report[Record]) -> list[str]:
         (
             check,
             severity,
-            *(_rate(counts.get(what, 0), rates.joints[tier_of(check)].get(what, 0)) for what in CLASSES),
+            *(f"{counts.get(what, 0)} of {rates.joints[tier_of(check)].get(what, 0)}" for what in CLASSES),
             *(f"{rates.weight(check, Severity(severity), what):.2f}" for what in wrong),
         )
         for check, by_severity in rates.failures.items()
         for severity, counts in by_severity.items()
     ]
     return [explained(__doc__), table(("check", "finding", *CLASSES, *(f"weight, {what}" for what in wrong)), rows)]
-
-
-def _rate(failed: int, joints: int) -> str:
-    return f"{failed} of {joints}"
 
 
 STUDY = Study(title="How often failures occur", options=FailuresOptions, measure=measure, report=report)

@@ -262,13 +262,14 @@ def _in_drake(urdf: Path, robot: Robot) -> Iterator[Way]:
         plant.SetPositions(context, values)
         wished = plant.get_desired_state_input_port(instance)
         worst, steps, stride = 0.0, round(_SECONDS / _STEP), 5
+        ends = {link for loop in robot.loops for link in loop.links}
         for step in range(0, steps, stride):
             aim, speed = chain.aims(driver, rest, end, step / steps)
             leads = chain.mechanism.leads_at(plant.GetPositions(context)[places][chain.columns])
             weight = leads.T @ -plant.CalcGravityGeneralizedForces(context)[dofs]
             wished.FixValue(context, [*(aim + weight / stiffness), *speed])
             simulator.AdvanceTo((step + stride) * _STEP)
-            poses = {name: plant.GetBodyByName(name).EvalPoseInWorld(context).GetAsMatrix4() for name in _ends(robot)}
+            poses = {name: plant.GetBodyByName(name).EvalPoseInWorld(context).GetAsMatrix4() for name in ends}
             worst = max(worst, largest_gap(robot, poses))
         made = (float(plant.GetJointByName(driver).GetOnePosition(context)) - rest) / (end - rest)
         yield Way(pins=plant.num_constraints() - sum(joint.mimic is not None for joint in robot.joints),
@@ -289,10 +290,6 @@ def _largest_inertia(plant: Any, chain: _Chain, driver: str, way: FloatArray) ->
         leads, inertia = chain.mechanism.leads_at(leaders), plant.CalcMassMatrix(context)
         most = np.maximum(most, np.diag(leads.T @ inertia[np.ix_(dofs, dofs)] @ leads))
     return most
-
-
-def _ends(robot: Robot) -> set[str]:
-    return {link for loop in robot.loops for link in loop.links}
 
 
 def largest_gap(robot: Robot, poses: Mapping[str, FloatArray]) -> float:

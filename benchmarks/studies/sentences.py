@@ -108,14 +108,12 @@ def report(found: Report[Record]) -> list[str]:
     ]
     for name, group in groups.items():
         shown = [record for record in group if record["came"] != RIGHT or name != "written"]
-        lines = [(record["text"], record["came"], _first(record["why"])) for record in shown]
+        lines = [
+            (record["text"], record["came"], record["why"].split(". ", maxsplit=1)[0].replace("|", "\\|"))
+            for record in shown
+        ]
         blocks += [f"## {SETS[name].capitalize()}", table(("sentence", "came out", "why"), lines) or "All right."]
     return blocks
-
-
-def _first(said: str) -> str:
-    """The first sentence of a message, fit for a cell."""
-    return said.split(". ", maxsplit=1)[0].replace("|", "\\|")
 
 
 def faults(found: Report[Record]) -> list[str]:

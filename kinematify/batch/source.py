@@ -6,13 +6,19 @@ import hashlib
 import posixpath
 import re
 import shutil
+import tempfile
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from kinematify.assembly.load import PART_SUFFIXES
-from kinematify.errors import EnvironmentFault, InputError
+from kinematify.errors import EnvironmentFault, InputError, KinematifyError
+from kinematify.robot.mesh_file import read_meshes
+from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,6 +31,12 @@ _NAMING = {
 }
 """How files name others that belong to them."""
 _SUFFIXES = (*PART_SUFFIXES, ".urdf", ".zip")
+_SCENES = (*GLTF_SUFFIXES, *CAD_SUFFIXES, ".dae", ".3mf")
+"""Formats with a node or an object for each part."""
+_OPENED = 12
+"""Files of a folder that are opened to tell parts from objects."""
+_TELLING, _COMMON = 4, 0.5
+"""From so many files, with this mean share of the smaller of two boxes in the other, each is an object."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,10 +50,10 @@ class Source:
 
 
 def find_sources(patterns: Sequence[str], *, besides: str | None = None) -> tuple[Source, ...]:
-    """Return what the patterns match, by place.
+    """Return what the patterns match, by place; of a folder of objects, each of these.
 
-    An object is named after its path below the part of the pattern that has no wildcard: ``kitchen-oven`` for
-    ``assets/kitchen/oven.glb`` of ``assets/**/*.glb``. Names that would be equal end with a hash of the place.
+    An object is named after its path below the folder, or the part of the pattern that has no wildcard:
+    ``kitchen-oven`` for ``assets/kitchen/oven.glb``. Names that would be equal end with a hash of the place.
 
     Args:
         patterns: Paths or URLs; ``*`` is any name and ``**`` any folders.
@@ -54,18 +66,59 @@ def find_sources(patterns: Sequence[str], *, besides: str | None = None) -> tupl
     names: dict[str, str] = {}
     for pattern in patterns:
         fs, path = filesystem(pattern)
-        found = [place for place in fs.glob(path) if besides is None or not _below(absolute(fs, place), besides)]
-        if not found:
+        objects = [(place, one) for place in fs.glob(path) for one in _objects(fs, place) or [place]]
+        objects = [pair for pair in objects if besides is None or not _below(absolute(fs, pair[1]), besides)]
+        if not objects:
             raise InputError(
                 f"{pattern} matches no file and no folder. Give paths, or patterns in quotes such as 'assets/**/*.glb'."
             )
-        root = _root(path)
-        names.update({absolute(fs, place): _name(posixpath.relpath(place, root)) for place in found})
+        for place, one in objects:
+            root = _root(path) if _MAGIC.search(path) or one == place else place
+            names[absolute(fs, one)] = _name(posixpath.relpath(one, root))
     times = Counter(names.values())
     return tuple(
         Source(name=name if times[name] == 1 else f"{name}-{_short_hash(place)}", place=place)
         for place, name in sorted(names.items())
     )
+
+
+def _objects(fs: Any, place: str) -> list[str]:
+    """Paths of the objects of a place: itself if it is a file or a folder of parts, else what its folder holds.
+
+    Of a folder, the URDFs are the objects; else its meshes and archives, unless the meshes are parts of one object, and
+    those of its folders.
+    """
+    if not fs.isdir(place):
+        return [place]
+    entries = sorted(entry for entry in fs.ls(place, detail=False) if not posixpath.basename(entry).startswith("."))
+    files = [entry for entry in entries if PurePosixPath(entry).suffix.lower() in _SUFFIXES and fs.isfile(entry)]
+    if urdfs := [file for file in files if file.lower().endswith(".urdf")]:
+        return urdfs
+    meshes = [file for file in files if not file.lower().endswith(".zip")]
+    if len(meshes) > 1 and not _are_objects(fs, meshes):
+        return [place]
+    return files + [one for entry in entries if fs.isdir(entry) for one in _objects(fs, entry)]
+
+
+def _are_objects(fs: Any, files: Sequence[str]) -> bool:
+    """Whether mesh files are objects, not parts of one: each has several nodes, or they stand in each other."""
+    counts, boxes = [], []
+    with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
+        for k in np.unique(np.linspace(0, len(files) - 1, _OPENED).astype(int)).tolist():
+            with suppress(KinematifyError, OSError):  # what cannot be read says nothing
+                meshes = read_meshes(fetched(absolute(fs, files[k]), Path(folder, str(k))))
+                counts.append(len(meshes))
+                boxes.append([f(np.concatenate([m.vertices for m in meshes]), axis=0) for f in (np.min, np.max)])
+    if counts and min(counts) > 1 and all(PurePosixPath(file).suffix.lower() in _SCENES for file in files):
+        return True
+    if len(boxes) < _TELLING:
+        return False
+    low, high = np.array(boxes).swapaxes(0, 1)
+    high += 1e-3 * np.linalg.norm(high.max(axis=0) - low.min(axis=0))  # flat ones have a volume too
+    common = np.clip(np.minimum(high[:, None], high) - np.maximum(low[:, None], low), 0.0, None).prod(axis=2)
+    sizes = (high - low).prod(axis=1)
+    shares = common / np.minimum(sizes[:, None], sizes)
+    return bool(shares[np.triu_indices(len(boxes), k=1)].mean() > _COMMON)
 
 
 def filesystem(place: str) -> tuple[Any, str]:

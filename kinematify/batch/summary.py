@@ -24,16 +24,8 @@ if TYPE_CHECKING:
 PAGE_FILE = "index.html"
 STEP_HEADINGS = ("step", "objects", "mean [s]", "95 % within [s]", "most [s]", "share")
 _OBJECT_HEADINGS = (
-    "picture",
-    "object",
-    "result",
-    "reason",
-    "joints",
-    "parts",
-    "faces",
-    "seconds",
-    "memory [MB]",
-    "files",
+    *("picture", "object", "result", "reason"),
+    *("joints", "parts", "faces", "seconds", "memory [MB]", "files"),
 )
 
 
@@ -53,17 +45,11 @@ def step_rows(records: Sequence[ObjectRecord]) -> list[tuple[str, ...]]:
         for step, value in record.step_seconds.items():
             seconds.setdefault(step, []).append(value)
     total = sum(map(sum, seconds.values())) or 1.0
-    return [
-        (
-            step,
-            str(len(values)),
-            f"{fmean(values):.2f}",
-            f"{sorted(values)[math.ceil(0.95 * len(values)) - 1]:.2f}",
-            f"{max(values):.2f}",
-            f"{sum(values) / total:.0%}",
-        )
-        for step, values in seconds.items()
-    ]
+    rows = []
+    for step, values in seconds.items():
+        of_times = (fmean(values), sorted(values)[math.ceil(0.95 * len(values)) - 1], max(values))
+        rows.append((step, str(len(values)), *(f"{time:.2f}" for time in of_times), f"{sum(values) / total:.0%}"))
+    return rows
 
 
 def as_page(records: Sequence[ObjectRecord]) -> str:
@@ -101,13 +87,8 @@ def write_page(out: str) -> str:
 def _row(record: ObjectRecord) -> tuple[str, ...]:
     folder = f"{OBJECTS}/{quote(record.object)}"
     written, checked = record.status == "ok", record.verdict is not None
-    numbers = (
-        record.joints,
-        record.parts,
-        record.faces,
-        round(record.seconds, 1),
-        record.peak_mb and round(record.peak_mb),
-    )
+    memory = record.peak_mb and round(record.peak_mb)
+    numbers = (record.joints, record.parts, record.faces, round(record.seconds, 1), memory)
     name = text(record.object)
     files = {"folder": "", "JSON report": REPORT_FILE if checked else None}
     links = [f'<a href="{folder}/{file}">{words}</a>' for words, file in files.items() if file is not None]

@@ -82,7 +82,7 @@ _SHOWN = 10
 @click.option("--seed", type=int, help="Seed of everything random, instead of the configuration's.")
 @json_option
 def command(**values: Any) -> int:
-    """Convert every INPUT, a path, pattern or URL, each as `kinematify infer` takes it, into a model of its own.
+    """Convert every INPUT (path, pattern, URL, folder of assets), as `kinematify infer` takes it, into its own model.
 
     OUT gets objects/NAME/ for each, manifest.jsonl with a line for each that has ended (status, verdict, time, memory,
     error, hashes), and index.html. An object that crashes, hangs or cannot be read is recorded, and the run goes on.

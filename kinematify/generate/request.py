@@ -19,16 +19,17 @@ from kinematify.generate.procedural.language.sizes import OVERALL
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from kinematify.assembly.part import Part
     from kinematify.generate.composer.compose import Composition, MechanismSpec
-    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
     from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.parameter import Value
     from kinematify.robot.arrays import FloatArray
 
 _SCALES = 3.0  # to so many times the usual size and as much smaller, walls and gaps stay those of such an object
+_HELD, _LARGE_SCALES = 0.5, 1.5  # tools are of very different sizes [m]; furniture and vehicles are not
 _GAP = 0.05  # between several [m]
 _TOY_LENGTH, _TOY_SCALE = 0.4, 0.2  # longest side [m], and at most so much smaller than usual
 _BESIDE = 0.3  # between what stands side by side [m]
@@ -55,6 +56,8 @@ class Request:
     """Names of parts, and how far these alone are open: see `opened`."""
     overall: tuple[str, float] | None = None
     """A size of the whole [m] that it is scaled to."""
+    may_scale: bool = False
+    """No size was asked for: it may be larger where a part is to slide farther."""
     copies: int = 1
     """How many, side by side."""
     other: Request | None = None
@@ -70,7 +73,7 @@ class Request:
         Raises:
             InputError: A value is out of its bounds.
         """
-        blueprint = self._single(seed)
+        blueprint = self._large_enough(seed)
         for names, material, color in self.looks:
             blueprint = looking(blueprint, names, material, color)
         for names, how, much in self.opened:
@@ -83,6 +86,32 @@ class Request:
             longest = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0).max())
             blueprint = blueprint.scaled(min(max(_TOY_LENGTH / longest, _TOY_SCALE), 1.0))
         return blueprint if self.other is None else _JOINED[self.how](blueprint, self.other.build(seed=seed))
+
+    def _large_enough(self, seed: int | None) -> Blueprint:
+        """Build an object whose slides can go as far as `opened` asks, if one is found.
+
+        The side along which a part slides grows if nothing was asked of it, else the whole.
+        """
+        made = self._single(seed)
+        for names, how, much in self.opened:
+            slides = [joint for joint in made.joints if joint.child in names and not joint.kind.turns]
+            for request in (self, *self._larger(made, slides[0], much)) if how == "range" and slides else ():
+                with suppress(InputError):
+                    larger = made if request is self else request._single(seed)
+                    opened(larger, names, how, much)
+                    return larger
+        return made
+
+    def _larger(self, made: Blueprint, joint: BlueprintJoint, much: float) -> Iterator[Request]:
+        """Requests for larger objects: so much deeper, deeper by that share, larger by that share."""
+        there, side = joint.upper - joint.lower, OVERALL[int(np.argmax(np.abs(joint.axis)))]
+        now = made.parameters.get(side)
+        if isinstance(now, float) and side not in self.values:
+            for size in (now + 1.05 * (much - there), 1.05 * now * much / there):
+                yield replace(self, values={**self.values, side: size})
+        whole = np.ptp(_closed(made).assembly.bounds, axis=0)
+        if self.may_scale and much < (_SCALES if whole.max() < _HELD else _LARGE_SCALES) * there:
+            yield replace(self, overall=(OVERALL[0], 1.001 * float(whole[0]) * much / there))
 
     def _single(self, seed: int | None) -> Blueprint:
         if self.composition is not None:

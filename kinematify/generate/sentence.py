@@ -367,7 +367,15 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
     compared = compare(specification, made, nouns)
     added = tuple(item for part in compared.absent if (item := mechanism_for(part)) is not None)
     if added or compared.looks or compared.opened:
-        request = replace(request, added=added, looks=compared.looks, opened=compared.opened)
+        claims = [claim for part in (specification.whole, *specification.parts) for claim in part.claims]
+        sized = any(item.about == "size" or (item.about, item.words[:4]) == ("range", "from") for item in claims)
+        request = replace(
+            request,
+            added=added,
+            looks=compared.looks,
+            opened=compared.opened,
+            may_scale=not (sized or request.is_toy or request.overall),
+        )
         made = request.build()
     return _Plan(
         specification=specification,

@@ -16,6 +16,7 @@ import pytest
 import trimesh
 
 from benchmarks.studies.batch import Killed, killed_run, workers_of
+from kinematify.batch.source import find_sources
 from kinematify.cli.app import run
 from tests.batch.assets import kill, manifest_lines, wait_for, write_assets, write_knob
 
@@ -126,6 +127,36 @@ def test_equal_names_stay_apart(tmp_path: Path) -> None:
     names = sorted(by_object(tmp_path / "out"))
     assert [name.rpartition("-")[0] for name in names] == ["knob", "knob"]
     assert sorted(path.name for path in (tmp_path / "out" / "objects").iterdir()) == names
+
+
+def write_boxes(folder: Path, boxes: list[tuple[tuple[float, float, float], tuple[float, float, float]]]) -> None:
+    """A file for each box, given by size and centre."""
+    folder.mkdir(parents=True)
+    for number, (size, centre) in enumerate(boxes):
+        placed = trimesh.transformations.translation_matrix(centre)
+        trimesh.creation.box(size, placed).export(folder / f"box_{number}.stl")
+
+
+def test_a_folder_of_objects_is_told_from_one_of_parts(tmp_path: Path) -> None:
+    def found(*patterns: Path, besides: Path | None = None) -> list[str]:
+        return [source.name for source in find_sources(list(map(str, patterns)), besides=besides and str(besides))]
+
+    drawers = [((0.4, 0.5, 0.19), (0.0, 0.0, 0.1 + 0.2 * k)) for k in range(4)]
+    write_boxes(tmp_path / "chest", [((0.5, 0.5, 0.9), (0.0, 0.0, 0.45)), *drawers])
+    assert found(tmp_path / "chest") == ["chest"], "drawers stand in the carcass, and not in each other"
+    sizes = [(0.5, 0.4, 0.3), (0.1, 0.1, 0.1), (1.0, 0.4, 2.0), (0.3, 0.6, 0.0)]
+    write_boxes(tmp_path / "assets" / "boxes", [(size, (0.0, 0.0, 0.5 * size[2])) for size in sizes])
+    (tmp_path / "assets" / "boxes" / "broken.stl").write_bytes(b"solid")
+    assert found(tmp_path / "assets" / "boxes") == ["box_0", "box_1", "box_2", "box_3", "broken"]
+    write_assets(tmp_path / "assets" / "knobs", 2)
+    knobs = ["knobs-knob_0", "knobs-knob_1"]
+    assert found(tmp_path / "assets") == [*(f"boxes-box_{k}" for k in range(4)), "boxes-broken", *knobs], "with nodes"
+    assert found(tmp_path / "assets", besides=tmp_path / "assets" / "boxes") == knobs
+    assert found(tmp_path / "*")[-1] == "chest", "a pattern names objects of a folder alike"
+    (tmp_path / "chest" / "model.urdf").write_text("<robot/>")
+    assert found(tmp_path / "chest") == ["model"]
+    write_boxes(tmp_path / "two", [((0.4, 0.4, 0.4), (0.0, 0.0, 0.2)), ((0.3, 0.3, 0.3), (0.0, 0.0, 0.2))])
+    assert found(tmp_path / "two") == ["two"], "two boxes may be a drawer in its carcass"
 
 
 def test_shares_are_disjoint_and_complete(tmp_path: Path) -> None:

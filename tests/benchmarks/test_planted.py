@@ -21,10 +21,11 @@ from benchmarks.planted import (
     true_mechanism,
 )
 from benchmarks.studies.refine import mistakes
-from benchmarks.study import load_study_report
+from benchmarks.study import RECORDS
 from kinematify.assembly.erase import erase
 from kinematify.cli.app import run
 from kinematify.config import load_config
+from kinematify.evaluation.record import load_report
 from kinematify.pipeline.infer import infer
 from kinematify.pipeline.record import write_inference
 from kinematify.robot.read import read_robot
@@ -82,7 +83,7 @@ def test_bench_counts_what_refinement_finds_and_repairs(
     words = ["bench", "refine", "--data", "models", "--objects", "*", "--faults", f"{PIVOT},{SIGN}", "--jobs", "1"]
     assert run([*words, "--inferred", "*", "-o", "out"]) == 0
     capsys.readouterr()
-    records = load_study_report(tmp_path / "out", "refine").records
+    records = load_report(tmp_path / "out" / "refine.json", RECORDS).records
     assert [record["fault"] for record in records] == ["nothing", PIVOT, SIGN, "as inferred"]
     assert [record["wrong"] for record in records] == [0, 1, 1, 0]
     assert [record["found"] for record in records] == [0, 1, 1, 0]

@@ -8,11 +8,18 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.studies.published import ExpertVerdict, ExpertVerdicts, load_judged
-from benchmarks.study import file_stem, load_study, load_study_report, study_names
+from benchmarks.studies.published import (
+    PACKAGE_OBJECTS,
+    ExpertVerdict,
+    ExpertVerdicts,
+    kind_of,
+    load_judged,
+    package_models,
+)
+from benchmarks.study import RECORDS, file_stem, load_study, study_names
 from benchmarks.tables import benchmark_blocks
 from kinematify.cli.app import run
-from kinematify.errors import InputError
+from kinematify.errors import EnvironmentFault, InputError
 from kinematify.evaluation.record import document, load_report, write_report
 from kinematify.evaluation.run import RESULTS
 from kinematify.validation.checks import CHECKS
@@ -24,7 +31,7 @@ REPORTS = ROOT / "results"
 @pytest.mark.parametrize("name", [name for name in study_names() if (REPORTS / f"{file_stem(name)}.json").is_file()])
 def test_tables_say_what_their_records_say(name: str) -> None:
     """Whoever changes a study remakes its tables with --tables."""
-    report = load_study_report(REPORTS, name)
+    report = load_report(REPORTS / f"{file_stem(name)}.json", RECORDS)
     study = load_study(name)
     picture = [f"![{study.title}]({file_stem(name)}.png)"] if study.plot is not None else []
     text = document(report.header, study.title, [*study.report(report), *picture])
@@ -99,12 +106,34 @@ def test_an_unknown_study_is_refused_with_the_known_ones() -> None:
         load_study("alchemy")
 
 
+def test_objects_of_packages_are_read_in_the_version_that_was_judged(tmp_path: Path) -> None:
+    def names() -> list[str]:
+        return [model.name for model in package_models(tmp_path)]
+
+    for package, version, path in PACKAGE_OBJECTS:
+        folder = tmp_path / f"{package.replace('-', '_')}-{version}.dist-info"
+        folder.mkdir(exist_ok=True)
+        (folder / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {package}\nVersion: {version}\n")
+        assert not path.endswith(".urdf")
+    assert "pyflyt/ball_and_string" in names()
+    (folder / "METADATA").write_text("Metadata-Version: 2.1\nName: pyflyt\nVersion: 0.1\n")
+    with pytest.raises(EnvironmentFault, match="pip install --no-deps"):
+        names()
+
+
+def test_objects_that_changed_the_command_are_counted_apart() -> None:
+    judged = load_judged()
+    assert kind_of(judged, {"source": "everyday2", "model": "everyday2/audibot"}) == ("objects", "yes")
+    assert kind_of(judged, {"source": "PyPI packages", "model": "genesis-world/mobility"}) == ("objects", "no")
+    assert kind_of(judged, {"source": "pybullet_data", "model": "r2d2"}) == ("robots", "yes")
+
+
 def test_the_first_judgement_that_fits_a_finding_counts() -> None:
     entries = [
         ExpertVerdict(model="arm", check="KV31*", where="el*", verdict="right", reason="seen"),
         ExpertVerdict(model="*", check="KV312", verdict="wrong", reason="not seen"),
     ]
-    judged = ExpertVerdicts(judged=entries)
+    judged = ExpertVerdicts(judged=entries, seen={})
     finding = {"check": "KV312", "joint": "elbow", "link": None, "pair": None}
     assert judged.of("arm", finding) is entries[0]
     assert judged.of("arm", {**finding, "joint": None, "pair": ["base", "elbow"]}) is entries[0]

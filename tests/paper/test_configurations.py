@@ -10,13 +10,14 @@ import torch
 import trimesh
 
 from benchmarks.paper_configurations import with_types
-from benchmarks.study import load_study_report
+from benchmarks.study import RECORDS
 from kinematify.assembly.part import Assembly, Part
 from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
 from kinematify.errors import InputError
 from kinematify.evaluation.metrics import Prediction
+from kinematify.evaluation.record import load_report
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.paper.cavl import _bounded
@@ -78,7 +79,7 @@ def test_bench_tells_the_cost_of_the_true_joint_beside_that_of_the_chosen_one(
     words = ["bench", "paper", "--sets", "everyday", "--everyday", "*", "--poses", "rest", "--jobs", "1", "-o", "out"]
     assert run(words) == 0
     capsys.readouterr()
-    records = load_study_report(tmp_path / "out", "paper").records
+    records = load_report(tmp_path / "out" / "paper.json", RECORDS).records
     trees = {row["rules"]: row["ted"] for row in records if row["part"] == "trees"}
     assert trees["paper-base"] == trees["paper-open"] == 0, "two parts and a base leave one tree"
     joints = {row["objective"]: row for row in records if row["part"] == "joints"}

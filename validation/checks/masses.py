@@ -26,8 +26,8 @@ def missing_masses(result: OpenCheck, physics: Physics) -> None:
     """Of the links that fixed joints hold together, at least one has an <inertial>. Where no body of the file has one,
     that is one finding.
 
-    Why it matters: Without it PyBullet takes 1 kg, MuJoCo the mass of the hull, Pinocchio nothing: no two engines
-    move the model alike.
+    Why it matters: Without it PyBullet takes 1 kg, MuJoCo what its collision geometry weighs, Pinocchio nothing: no two
+    engines move the model alike.
 
     Remedy: Add an <inertial> to the link; 100 to 1000 kg/m3 times its volume is a start.
     """
@@ -38,7 +38,7 @@ def missing_masses(result: OpenCheck, physics: Physics) -> None:
     if len(without) == len(moving) and len(moving) > 1:
         result.find(
             f"None of the {len(moving)} bodies that move has an <inertial>: PyBullet gives each link 1 kg, "
-            "MuJoCo the mass of its hull, Pinocchio none.",
+            "MuJoCo what its collision geometry weighs, Pinocchio none.",
             "Add an <inertial> to every link; 100 to 1000 kg/m3 times the volume is a start.",
             link=without[0].called,
             value=len(without),

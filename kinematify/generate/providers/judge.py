@@ -7,17 +7,18 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from manifold3d import Manifold, Mesh
 
+from kinematify.generate.procedural.clearance import DEEP, depth_of, moving_with, solid_of
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping
+
+    from manifold3d import Manifold
 
     from kinematify.assembly.part import Part
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
 
-_DEEP = 0.002  # [m] parts may be so deep in each other
 _APART = 0.002  # [m] a fixed part may be so far from what carries it
 _TORN = 0.002  # [m] a pin may come apart so far
 _SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)  # of a joint's range
@@ -31,15 +32,8 @@ def drawn_findings(blueprint: Blueprint) -> list[str]:
     Parts that overlap by more than 2 mm at zero or along the motion of one joint, fixed parts that touch nothing,
     loops that come apart.
     """
-    solids = {part.name: _solid(part) for part in blueprint.parts}
+    solids = {part.name: solid_of(part) for part in blueprint.parts}
     return [*_loose(blueprint, solids), *_overlaps(blueprint, solids), *_torn_loops(blueprint)][:_MOST]
-
-
-def _solid(part: Part) -> Manifold:
-    # Corners that two faces share stand twice in a mesh with sharp edges.
-    mesh = Mesh(np.asarray(part.vertices, dtype=np.float32), np.asarray(part.faces, dtype=np.uint32))
-    mesh.merge()
-    return Manifold(mesh)
 
 
 def _loose(blueprint: Blueprint, solids: Mapping[str, Manifold]) -> Iterable[str]:
@@ -58,29 +52,28 @@ def _loose(blueprint: Blueprint, solids: Mapping[str, Manifold]) -> Iterable[str
 def _overlaps(blueprint: Blueprint, solids: Mapping[str, Manifold]) -> Iterable[str]:
     reported = {(min(pair), max(pair)) for pair in _fixed_together(blueprint)}
     for one, other in combinations(sorted(solids), 2):
-        deep = 0.0 if (one, other) in reported else _depth(solids[one], solids[other])
-        if deep > _DEEP:
+        deep = 0.0 if (one, other) in reported else depth_of(solids[one], solids[other])
+        if deep > DEEP:
             reported.add((one, other))
             yield (
                 f'The parts "{one}" and "{other}" are {_millimetres(deep)} deep in each other where they are drawn. '
                 'Make room with "subtract", or move one of them ("xyz").'
             )
-    carried = {joint.child: _carried(joint.child, blueprint.joints) for joint in blueprint.joints}
     for joint in blueprint.joints:
         if joint.kind is JointType.FIXED or joint.mimic is not None:
             continue
         for share in _SHARES:
-            moving = carried[joint.child] | _followers(joint.child, blueprint.joints, carried)
+            moving = moving_with(joint.child, blueprint.joints)
             values = {joint.child: _value(joint, share)}
             moved = blueprint.moved(values)
-            where = {part.name: _solid(part) for part in moved.parts if part.name in moving}
+            where = {part.name: solid_of(part) for part in moved.parts if part.name in moving}
             for name, solid in where.items():
                 for other in set(solids) - moving:
                     pair = (min(name, other), max(name, other))
                     if pair in reported:
                         continue
-                    deep = _depth(solid, solids[other])
-                    if deep > _DEEP:
+                    deep = depth_of(solid, solids[other])
+                    if deep > DEEP:
                         reported.add(pair)
                         value = values[joint.child]
                         at = f"{value:.2g} {'rad' if joint.kind.turns else 'm'}"
@@ -100,37 +93,10 @@ def _fixed_together(blueprint: Blueprint) -> Iterable[tuple[str, str]]:
     return ((one, other) for one, other in combinations(group, 2) if group[one] == group[other])
 
 
-def _carried(name: str, joints: Sequence[BlueprintJoint]) -> set[str]:
-    found = [name]
-    for part in found:  # grows while it is walked
-        found += [joint.child for joint in joints if joint.parent == part]
-    return set(found)
-
-
-def _followers(name: str, joints: Sequence[BlueprintJoint], carried: Mapping[str, set[str]]) -> set[str]:
-    followers = [joint.child for joint in joints if joint.mimic is not None and joint.mimic.joint == name]
-    return {part for follower in followers for part in carried[follower]}
-
-
 def _value(joint: BlueprintJoint, share: float) -> float:
     lower = joint.lower if math.isfinite(joint.lower) else 0.0
     upper = joint.upper if math.isfinite(joint.upper) else _TURN
     return lower + share * (upper - lower)
-
-
-def _depth(one: Manifold, other: Manifold) -> float:
-    """How deep two solids are in each other: the least extent of what they share [m]."""
-    shared = one ^ other
-    if shared.is_empty():
-        return 0.0
-    return max(_least_extent(piece) for piece in shared.decompose())
-
-
-def _least_extent(piece: Manifold) -> float:
-    box = np.array(piece.bounding_box()).reshape(2, 3)
-    area = piece.surface_area()
-    # A thin shell about a pin has a large box: its thickness is its volume by half its surface.
-    return min(float((box[1] - box[0]).min()), 2.0 * piece.volume() / area if area else 0.0)
 
 
 def _torn_loops(blueprint: Blueprint) -> Iterable[str]:

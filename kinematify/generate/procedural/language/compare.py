@@ -39,7 +39,7 @@ _OF_ANY_OBJECT = frozenset({
     "corner", "interior", "outside", "wall", "floor", "ceiling", "table", "ground", "it", "place", "height", "size",
     "other", "same", "axis", "hinge", "joint", "rim", "pair", "set", "window", "desk", "centre", "center", "position",
     "row", "column",
-    "grid", "line", "stack", "half", "way", "direction", "degree",
+    "grid", "line", "stack", "half", "way", "direction",
 })  # fmt: skip
 """What every object has, and what it may stand on or hang from."""
 _ON_EACH = ("handle", "knob", "pull", "grip")
@@ -100,7 +100,7 @@ class Comparison:
     """Parts that look otherwise than asked for: their names, and the material or the colour, the other one empty."""
     opened: tuple[tuple[tuple[str, ...], str, float], ...]
     """Parts that are not so far open as is asked for: their names; ``share``, ``angle`` [rad] or ``distance`` [m], and
-    how much. ``range``: that they go further than asked for, and how far they may [rad or m]."""
+    how much. ``range``: that they go another way than asked for, and how long it is [rad or m]."""
 
 
 @dataclass(kw_only=True)
@@ -190,7 +190,7 @@ class _Compared:
             if claim.about not in ("there", "count"):
                 wrong = self._whole_keeps(claim)
                 if wrong is not None and claim.about == "range":
-                    self._to_be_limited(claim, self.made.joints if len(self.made.joints) == 1 else ())
+                    self._to_be_limited(claim, self._meant_by_whole(claim))
                 self._judge(claim, wrong)
         groups: dict[str, list[PartSpecification]] = defaultdict(list)
         for part in self.specification.parts:
@@ -292,11 +292,26 @@ class _Compared:
             self._to_be_limited(claim, self._joints_of(parts))
 
     def _to_be_limited(self, claim: Claim, joints: Sequence[BlueprintJoint]) -> None:
-        """Take up joints that go further than is asked for; to go further than they are built for is none's to ask."""
+        """Take up joints that go less far than is asked for, or farther."""
         how, much = claim.value
-        names = tuple(j.child for j in joints if j.kind.turns is (how == "angle") and j.upper - j.lower > much)
+        names = tuple(joint.child for joint in joints if joint.kind.turns is (how == "angle"))
         if names:
             self.opened.append((names, "range", much))
+
+    def _meant_by_whole(self, claim: Claim) -> list[BlueprintJoint]:
+        """Joints that a range of the whole is said of: those that move as it says, if their parts have one name."""
+        said = [item.value for item in self.specification.whole.claims if item.about == "moves"]
+        ways = [item.value for item in self.specification.whole.claims if item.about == "way" and item.value in WAYS]
+        found = [
+            joint
+            for joint in self.made.joints
+            if joint.kind.turns is (claim.value[0] == "angle")
+            and joint.mimic is None
+            and all(moves_so(self.made, joint, how) for how in said)
+            and (joint.kind.turns or all(goes(self.closed, joint, way) for way in ways if math.isfinite(joint.upper)))
+        ]
+        found = [joint for joint in found if math.isfinite(joint.upper)] or found
+        return found if len({stem_of(joint.child) for joint in found}) == 1 else []
 
     def _miss(self, words: str, at: Iterable[int], reason: str) -> None:
         """Take up what was measured and is not as it was asked for."""
@@ -509,7 +524,7 @@ class _Compared:
         there = [joint.upper - joint.lower for joint in joints if joint.kind.turns is (how == "angle")]
         if any(math.isclose(way, much, rel_tol=_SIZE) for way in there):
             return None
-        far = max(there, default=0.0)
+        far = max(filter(math.isfinite, there), default=0.0)
         return f"it goes {math.degrees(far):.0f} degrees" if how == "angle" else f"it goes {far:.2g} m"
 
     def _opened(self, joints: Sequence[BlueprintJoint], asked: tuple[str, float]) -> str | None:

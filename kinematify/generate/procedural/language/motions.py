@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _VERBS = {
     "slides": "slide extend retract", "turns": "turn rotate swivel pivot twist",
     "swings": "hinge swing oscillate", "tilts": "tilt recline tip", "flips": "flip", "spins": "spin revolve",
-    "folds": "fold collapse unfold", "moves": "move adjust", "rises": "lift raise rise", "sinks": "lower drop",
+    "folds": "fold collapse unfold", "moves": "move adjust travel", "rises": "lift raise rise", "sinks": "lower drop",
 }  # fmt: skip
 """How a part may move -> verbs that say so."""
 _DOUBLED = ("flip", "tip", "spin", "swivel", "drop")

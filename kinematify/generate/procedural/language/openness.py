@@ -18,7 +18,7 @@ PULLED = ("pulled", "swung", "slid", "pull")
 """With or without `out` they are as good as opened."""
 NOT_A_STATE = ("shelf", "shelves", "compartment", "compartments", "front", "field", "top")
 """An open shelf is no state."""
-_TO = ("by", "to", "at", "about", "up", "an", "angle", "of")
+_TO = ("by", "to", "at", "about", "up", "an", "angle", "of", "through", "over")
 
 
 def share_at(words: Words, k: int) -> tuple[float, int] | None:

@@ -54,6 +54,18 @@ _BARE = frozenset(word for word in MOTIONS if not word.endswith(("s", "ing", "ed
 _GOES = ("go", "goes", "opens", "come", "comes")
 _ANYHOW = ("away", "aside", "open", "over")
 """Behind a particle they say no direction: a swing-away arm."""
+_ANGLES = ("degree", "degrees", "deg")
+_BY = ("by", "through", "over")
+_MOVED = frozenset({*WAYS, *MOTIONS, *DONE, *GOING, *OPENNESS} - {"closed", "shut"})
+"""Words behind which they say how far."""
+_TO_BOTH = tuple(
+    tuple(words.split())
+    for words in (
+        "to either side", "to each side", "to both sides", "on either side", "either way", "each way",
+        "in either direction", "in both directions", "in each direction", "left and right", "up and down",
+    )
+)  # fmt: skip
+"""Behind how far something goes: it goes so far twice."""
 _PRONOUNS = ("it", "them", "these", "those")
 _DROPPED = ("up", "down")
 """Behind a part at the end of a statement they say that it is open there."""
@@ -399,7 +411,13 @@ class _Parser(Words):
                 return False
             if word in ("one", "ones"):
                 return True
-            if word in WAYS or word in PLACES or word in _DETERMINERS or self._is_adjective(word) or word in UNITS:
+            if (
+                word in WAYS
+                or word in PLACES
+                or word in _DETERMINERS
+                or self._is_adjective(word)
+                or word in (*UNITS, *_ANGLES)
+            ):
                 continue
             if self.tokens[at].number is None and not any(word in words for words in DIMENSIONS.values()):
                 return word not in MOTIONS or self._noun_behind(at)
@@ -538,6 +556,7 @@ class _Parser(Words):
         if self.given(k) == "from":
             first = measured_at(self, k + 1)
             at = first[2] if first else k + 2
+            at += self.given(at) in _DROPPED  # from 65 cm up to 1.3 m
         high = measured_at(self, at + 1) if self.given(at) == "to" else None
         if high is None or high[0] == "share" or self.given(k) not in ("from", "up"):
             return 0
@@ -604,6 +623,9 @@ class _Parser(Words):
             return 0
         metres, end = length
         behind, before = (_dimension(self.given(at)) for at in (end, k - 2))
+        if self._says(end, ("to", "the")) and self.given(end + 2) in WAYS:  # which slides 1.2 m to the left
+            self.claim(part, "range", ("distance", metres), *range(k, end))
+            return end - k
         if behind:
             self.claim(part, "size", (behind, metres), *range(k, end + 1))
             return end + 1 - k
@@ -648,21 +670,29 @@ class _Parser(Words):
         while self.given(end) in ("to", "the", "on", "at", "towards", "sideways"):
             end += 1
         way = self.given(end).removesuffix("s")
-        first = end + (way in WAYS)
-        far = measured_at(self, first) if end == k + 1 else None
-        if far and far[0] != "share" and not _dimension(self.given(far[2])):  # `goes up 3 m`
-            self.claim(subject, "range", far[:2], *range(first, far[2]))
-        else:
-            far = None
+        far = self._far(end + 1 if way in WAYS else k + 1)
         if way in WAYS and not (way == "up" and self.given(end + 1) == "to"):
             both = self.given(end + 1) == "and" and self.given(end + 2).removesuffix("s") in WAYS
             if word in ("hinged", "hinges", "hinge"):
                 self.claim(subject, "hinge", way, k, end)
             else:
                 self.claim(subject, "way", way, k, end, *((end + 2,) if both else ()))
-            return far[2] if far else end + (3 if both else 1)
+            return far or end + (3 if both else 1)
         self.claim(subject, "moves", moves or "moves", k)
-        return far[2] if far else k + 1
+        return far or k + 1
+
+    def _far(self, k: int) -> int:
+        """`3 m`, `by 90 degrees`, `through 45 degrees to either side`, of the subject; the word behind it, or 0."""
+        amount = None if (self.given(k - 1), self.given(k)) == ("up", "to") else amount_at(self, k)
+        if amount is None or amount[0] == "share" or _dimension(self.given(amount[2])):
+            return 0
+        how, much, end = amount
+        both = next((words for words in _TO_BOTH if self._says(end, words)), ())
+        self.claim(self.subject, "range", (how, 2.0 * much if both else much), *range(k, end + len(both)))
+        return end + len(both)
+
+    def _says(self, k: int, words: Sequence[str]) -> bool:
+        return tuple(self.given(k + n) for n in range(len(words))) == tuple(words)
 
     def _preposition(self, k: int) -> int:
         """`on the left side`, `under the bed`, `of glass`, `on four casters`."""
@@ -675,6 +705,8 @@ class _Parser(Words):
             at += 1
         if taken := self._range(k):
             return k + taken
+        if self.given(k) in _BY and self.given(k - 1) in _MOVED and (end := self._far(k)):
+            return end
         word = self.given(at)
         sided = self.given(at + 1) in ("side", "hand", "end", "edge")
         if word in PLACES and (sided or not self._noun_behind(at)) and self.given(k) in _AT:

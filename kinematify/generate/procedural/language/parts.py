@@ -66,14 +66,14 @@ def looking(blueprint: Blueprint, names: Sequence[str], material: str, color: st
 def opened(blueprint: Blueprint, names: Sequence[str], how: str, much: float) -> Blueprint:
     """Return an object with the joints of some parts open by a ``share``, an ``angle`` [rad] or a ``distance`` [m].
 
-    By a ``range`` they are limited to so much [rad or m] from their lower limit.
+    By a ``range`` their ways are so long [rad or m]: from their lower limit, or evenly about the middle where the joint
+    is symmetric now. They go farther than before only where nothing is in the way; see `may_go`.
 
     Raises:
         InputError: One of them goes less far.
     """
     if how == "range":
-        joints = [replace(j, upper=j.lower + much) if j.child in names else j for j in blueprint.joints]
-        return replace(blueprint, joints=tuple(joints))
+        return _ranged(blueprint, names, much)
     values = {}
     for name in names:
         joint = blueprint.joint_above[name]
@@ -85,3 +85,26 @@ def opened(blueprint: Blueprint, names: Sequence[str], how: str, much: float) ->
             raise InputError(f"The joint of {name} does not open so far.")
         values[name] = value - joint.value
     return blueprint.moved(values)
+
+
+def _ranged(blueprint: Blueprint, names: Sequence[str], much: float) -> Blueprint:
+    """Return an object with the ranges of some joints so long [rad or m].
+
+    Raises:
+        InputError: Something is in the way of one of them, or it would leave its guide.
+    """
+    from kinematify.generate.procedural.clearance import may_go  # noqa: PLC0415 - with solids
+
+    joints = list(blueprint.joints)
+    for k, joint in enumerate(joints):
+        if joint.child not in names:
+            continue
+        is_open = not math.isfinite(joint.upper - joint.lower)
+        lower = 0.0 if is_open else joint.lower
+        if math.isclose(joint.lower, -joint.upper):
+            lower = -0.5 * much
+        if not is_open and much > joint.upper - joint.lower and not may_go(blueprint, joint.child, lower, lower + much):
+            raise InputError(f"The joint of {joint.child} does not go so far.")
+        kind = JointType.REVOLUTE if joint.kind is JointType.CONTINUOUS else joint.kind
+        joints[k] = replace(joint, kind=kind, lower=lower, upper=lower + much)
+    return replace(blueprint, joints=tuple(joints))

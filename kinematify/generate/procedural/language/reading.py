@@ -34,6 +34,8 @@ class ParseState(Words):
     """What such an object cannot have."""
     named: frozenset[int] = frozenset()
     """Where the family is named; a choice may be part of its name."""
+    ranges: frozenset[int] = frozenset()
+    """Words that say how far something moves, which are no size."""
     counted: set[int] = field(default_factory=set)
     """Nouns that were counted; a choice may say their kind, as in `two cross handles`."""
     overall: tuple[str, float] | None = None

@@ -160,7 +160,7 @@ def read_bare_length(reading: ParseState) -> None:
     """`6 inch pliers`, `a fridge, 180 cm`: of what has one length or diameter, or one side that is clearly longest."""
     name = next((name for name in ("length", "diameter") if reading.parameter(name) is not None), None)
     for k in range(len(reading.tokens)):
-        length = length_at(reading, k) if k not in reading.used else None
+        length = length_at(reading, k) if k not in reading.used | reading.ranges else None
         if length is None:
             continue
         metres, end = length

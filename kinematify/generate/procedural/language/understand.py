@@ -84,8 +84,13 @@ def understand(specification: Specification, family: Family) -> Understanding:
     """
     vocabulary = vocabulary_of(family)
     tokens = tokens_of(specification.text, vocabulary)
+    ranges = [item for part in specification.all_parts() for item in part.claims if item.about == "range"]
     reading = ParseState(
-        tokens=tokens, family=family, used=set(specification.name), named=frozenset(specification.name)
+        tokens=tokens,
+        family=family,
+        used=set(specification.name),
+        named=frozenset(specification.name),
+        ranges=frozenset(k for item in ranges for k in item.at),
     )
     counting = (read_sizes, read_overall, read_grids, read_counts, read_counted_name)
     for step in (*counting, _double, _choices, _parts_it_has, read_bare_length):
