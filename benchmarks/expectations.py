@@ -60,7 +60,7 @@ _CALLED = {
     "caster": ("castor", "caster", "swivel_wheel"), "door": ("door", "leaf", "sliding_door"),
     "globe": ("ball",), "handle": ("handle", "lever"), "lid": ("lid", "screen"), "needle": ("gauge", "needle"),
     "flap": ("flap", "flap_door", "tilting_flap", "compartment"), "seat": ("seat", "swing"),
-    "switch": ("rocker", "switch", "lever"), "tailgate": ("flap", "tailgate"),
+    "switch": ("rocker", "switch", "lever"), "tailgate": ("flap", "tailgate"), "wheel": ("wheel", "tyre"),
 }  # fmt: skip
 """How a reader calls what the models call otherwise."""
 _HANDLES = ("handle", "knob")

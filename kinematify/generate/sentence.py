@@ -19,6 +19,7 @@ from kinematify.generate.procedural.language.parse import (
     HAVING,
     MATERIAL_WORDS,
     NOT_DONE,
+    PLACES,
     parse,
     unknown_object,
 )
@@ -366,12 +367,14 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
     nouns = {" ".join(words): names for words, names in part_nouns(family, made).items()}
     compared = compare(specification, made, nouns)
     added = tuple(item for part in compared.absent if (item := mechanism_for(part)) is not None)
+    if added:  # they have looks and ranges, too
+        request = replace(request, added=added)
+        compared = compare(specification, request.build(), nouns)
     if added or compared.looks or compared.opened:
         claims = [claim for part in (specification.whole, *specification.parts) for claim in part.claims]
         sized = any(item.about == "size" or (item.about, item.words[:4]) == ("range", "from") for item in claims)
         request = replace(
             request,
-            added=added,
             looks=compared.looks,
             opened=compared.opened,
             may_scale=not (sized or request.is_toy or request.overall),
@@ -447,7 +450,7 @@ def _missing(plan: _Plan, blueprint: Blueprint) -> tuple[str, ...]:
     taken = {*specification.name, *plan.used} - {k for item in plan.dropped for k in item.at}
     found = [item for item in plan.dropped if not item.at or not item.at <= compared.held]
     for item in compared.missing:
-        if not item.is_sure and all(k in taken or _says_nothing(specification, k) for k in item.at):
+        if not item.is_sure and all(k in taken or _names_nothing(specification, k) for k in item.at):
             continue
         within = [other for other in found if other.at and other.at < item.at]
         if any(other.at & item.at for other in found if other not in within):
@@ -463,6 +466,11 @@ def _missing(plan: _Plan, blueprint: Blueprint) -> tuple[str, ...]:
         found.append(Missing(words=" ".join(tokens[k].given for k in phrase), at=frozenset(phrase)))
     found.sort(key=lambda item: min(item.at, default=0))
     return tuple(dict.fromkeys(map(str, found)))
+
+
+def _names_nothing(specification: Specification, k: int) -> bool:
+    """Whether a word says nothing, not even a place: `on the inside`."""
+    return _says_nothing(specification, k) and specification.tokens[k].given not in PLACES
 
 
 def _says_nothing(specification: Specification, k: int) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import combinations
 
 import numpy as np
@@ -206,6 +207,51 @@ def test_some_of_several_may_look_otherwise(part: str) -> None:
     made = from_text(f"a dresser with six drawers, {part}").build()
     colors = [item.color for item in made.parts if item.name.startswith("drawer")]
     assert (len(colors), colors.count(COLORS["red"])) == (6, 2)
+
+
+@pytest.mark.parametrize(
+    ("part", "red"),
+    [
+        ("the middle one red", {2}),
+        ("the second one from the top red", {2}),
+        ("the third one is red", {3}),
+        ("all but one red", {1, 2}),
+        ("one red and two white", {1}),
+        ("the top two red", {1, 2}),
+    ],
+)
+def test_one_of_several_is_found_by_its_place(part: str, red: set[int]) -> None:
+    made = from_text(f"a cabinet with three drawers, {part}").made()
+    assert not made.not_built
+    colors = {item.name: item.color for item in made.blueprint.parts}
+    assert {k for k in (1, 2, 3) if colors[f"drawer_{k}"] == COLORS["red"]} == red
+
+
+def test_a_castor_is_one_with_its_wheel() -> None:
+    made = from_text("an office chair on five castors, two of which are red").build()
+    red = [part.name for part in made.parts if part.color == COLORS["red"]]
+    assert sorted(red) == ["castor_1", "castor_2", "wheel_1", "wheel_2"]
+
+
+def test_a_range_of_both_ways_is_limited_on_both_sides() -> None:
+    made = from_text("a metronome whose pendulum swings 20 degrees either way").made()
+    joint = made.blueprint.joint_above["pendulum"]
+    assert not made.not_built
+    assert (joint.lower, joint.upper) == (pytest.approx(-math.radians(20)), pytest.approx(math.radians(20)))
+
+
+@pytest.mark.parametrize(
+    ("sentence", "listed"),
+    [
+        ("a cart with three wheels at the front and one at the back", "at the front (2 built)"),
+        ("a cabinet with two doors on a red wall", "red"),
+        ("a cupboard with one door in front of three drawers", "in front of three drawers (elsewhere)"),
+        ("a metal toolbox with two trays that swing out", "swing (prismatic)"),
+        ("a cabinet whose lowest drawer is lockable", "lockable (no lock)"),
+    ],
+)
+def test_what_is_otherwise_than_it_was_said_is_listed(sentence: str, listed: str) -> None:
+    assert listed in "; ".join(from_text(sentence).made().not_built)
 
 
 def test_more_than_there_are_cannot_look_otherwise() -> None:

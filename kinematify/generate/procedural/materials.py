@@ -81,10 +81,12 @@ class Substance:
     """Its own colour shows the grain of wood."""
 
 
+_WOODS = (
+    *("wood", "wooden", "timber", "mdf", "plywood", "beech", "birch", "maple", "teak", "mahogany", "bamboo", "elm"),
+)
+"""Kinds of wood within a fifth of its density."""
 MATERIALS = {
-    "wood": Substance(
-        density=650.0, color=(0.72, 0.53, 0.34), words=("wood", "wooden", "timber", "mdf"), roughness=0.7, grain=True
-    ),
+    "wood": Substance(density=650.0, color=(0.72, 0.53, 0.34), words=_WOODS, roughness=0.7, grain=True),
     "oak": Substance(density=710.0, color=(0.76, 0.60, 0.39), words=("oak", "oaken"), roughness=0.7, grain=True),
     "pine": Substance(density=510.0, color=(0.86, 0.71, 0.48), words=("pine",), roughness=0.7, grain=True),
     "walnut": Substance(density=640.0, color=(0.36, 0.24, 0.16), words=("walnut",), roughness=0.7, grain=True),

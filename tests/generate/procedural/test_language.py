@@ -23,8 +23,8 @@ from tests.sentences import said_of
 
 EXACT_SHARE = 0.9
 KNOWN_WRONG = {
-    "heldout_2": 1, "heldout_5": 1, "heldout_6": 1, "heldout_7": 2, "heldout_9": 2, "heldout_12": 5,
-    "heldout_13": 7, "composed": 1,
+    "heldout_2": 1, "heldout_5": 1, "heldout_6": 1, "heldout_7": 2, "heldout_9": 2, "heldout_12": 1,
+    "heldout_13": 4, "composed": 1,
 }  # fmt: skip
 """Sentences of each list that build something else without a word; they only decrease. The aim is none."""
 
@@ -158,6 +158,9 @@ def test_what_holds_anyway_is_not_listed(text):
         ("a cabinet 80 cm high with a door 2 m high", "the cabinet is 80 cm high"),
         ("a fridge 20 cm high and 3 m tall", "two sizes for the height"),
         ("a closed laptop, half open", "two states"),
+        ("a door whose hinge is on its left edge and which is hinged on the right", "one hinge"),
+        ("a cart on four echoes", "no object has that"),
+        ("a chair made of laughter", "solid"),
     ],
 )
 def test_contradictions_are_refused_in_three_lines_with_a_sentence_that_works(text, words):

@@ -60,12 +60,14 @@ _MOVING = frozenset({
     "sash", "knob",
 })  # fmt: skip
 """Parts that move wherever they are."""
+_MIDDLE = ("middle", "center", "centre", "central")
 _LOOKS = ("color", "material")
 _MEASURED = (
     "size", "moves", "way", "range", "hinge", "place", "relation", "color", "material", "open", "like", "count"
 )  # fmt: skip
 """What is said of a part that is there, and can be measured of it."""
 _ABOVE = {"above": 1, "over": 1, "below": -1, "under": -1, "beneath": -1, "underneath": -1}
+_BEFORE = {"in front of": -1, "behind": 1}
 _AXES = {"width": (0, 1), "length": (0, 1, 2), "depth": (1, 0), "height": (2,), "diameter": (0, 1, 2), "": (0, 1, 2)}
 
 
@@ -221,6 +223,9 @@ class _Compared:
         placed = all(any(claim.about == "place" for claim in part.claims) for part in parts)
         apart = len(parts) > 1 and (new or placed)
         asked = (sum(numbers) if apart else max(numbers)) if numbers else None
+        every, _ = self.parts_called(parts[0].noun)
+        if placed and len(numbers) == len(parts) > 1 and sum(numbers) in self._numbers(parts[0].noun, every):
+            self._check_places(parts, every)
         for part in sorted(parts, key=_is_one):
             found, known = self.parts_called(part.noun)
             owners = [item for item in self.specification.parts if item.noun == part.of]
@@ -234,6 +239,8 @@ class _Compared:
                 before = len(self.missing)
                 self._check_number(part, found, {asked, -1, asked if apart else part.count}, alone=len(parts) == 1)
                 chosen = self._individuals(part, found, parts, new=new)
+                if part.count == 1 < len(found) == len(chosen) and known < len(part.noun.split()) and len(parts) > 1:
+                    chosen = []  # which of them is not known: the hour hand of three hands
                 self._check_claims(part, found, chosen, parts)
                 all_meant = len(chosen) == len(found) and part.count in (None, len(found))
                 if known and len(self.missing) == before and all_meant:
@@ -248,7 +255,12 @@ class _Compared:
             return
         at = frozenset(k for claim in part.claims for k in claim.at)
         words = " ".join(self.specification.tokens[k].given for k in sorted(at))
-        self.missing.append(Missing(words=words, at=at, is_sure=moved))
+        reason = (
+            ""
+            if any(lemma(self.specification.tokens[k].given) == part.noun.split()[-1] for k in at)
+            else f"no {part.noun}"
+        )
+        self.missing.append(Missing(words=words, at=at, reason=reason, is_sure=moved))
         self.absent.append(part)
 
     def _individuals(
@@ -263,7 +275,34 @@ class _Compared:
             return [found[k]]
         how = [claim.value for claim in part.claims if claim.about == "moves"]
         so = [item for item in found if any(moves_so(self.made, j, m) for j in self._joints_of([item]) for m in how)]
-        return so if part.count is not None and len(so) == part.count < len(found) else _chosen(found, part)
+        if part.count is not None and len(so) == part.count < len(found):
+            return so
+        names = {item.name for item in found}
+        own = [item for item in found if not self._carriers(item.name) & names]  # a castor carries its wheel
+        before = [other for other in parts[:k] if other.is_share and part.is_share]
+        taken = sum(other.count or 0 for other in before)
+        chosen = {item.name for item in _chosen(own[taken:] if part.is_share else own, part)}
+        return [item for item in found if (self._carriers(item.name) | {item.name}) & chosen]
+
+    def _carriers(self, name: str) -> set[str]:
+        """What carries a part, up to the root."""
+        found: set[str] = set()
+        while (joint := self.made.joint_above.get(name)) is not None:
+            name = joint.parent
+            found.add(name)
+        return found
+
+    def _check_places(self, parts: Sequence[PartSpecification], found: Sequence[Part]) -> None:
+        """Check how many are at each of several places: three wheels at the front and one at the back."""
+        closed = {part.name: part.bounds.mean(axis=0) for part in self.closed.parts}
+        own = [closed[item.name] for item in found if not self._carriers(item.name) & {part.name for part in found}]
+        for part in parts if own else ():
+            place = next(claim for claim in part.claims if claim.about == "place")
+            toward = np.array(_PLACES.get(place.value, (0, 0, 0)))
+            along = np.array(own) @ toward
+            there = int(np.sum(along > (along.max() + along.min()) / 2.0 + _EDGE))
+            if toward.any() and np.ptp(along) > _EDGE and there != part.count:
+                self._miss(f"{part.count} {part.noun} {place.words}", (*part.claims[0].at, *place.at), f"{there} built")
 
     def _check_claims(
         self, part: PartSpecification, found: Sequence[Part], chosen: list[Part], parts: Sequence[PartSpecification]
@@ -606,13 +645,15 @@ class _Compared:
         if not others:
             own = noun.split()[-1] in self.specification.kind.split()
             return None if own or noun.split()[-1] in _OF_ANY_OBJECT else f"no {noun}"
-        if preposition == "each":
-            return None if len(chosen) >= len(others) else f"{len(chosen)} built"
+        if preposition == "each" and len(chosen) < len(others):
+            return f"{len(chosen)} built"
         if preposition in _ABOVE:
             sign = _ABOVE[preposition]
             heights = [[sign * float(part.bounds.mean(axis=0)[2]) for part in group] for group in (chosen, others)]
             return None if min(heights[0]) > max(heights[1]) else f"not {preposition} it"
-        return None
+        pairs = ((one, other) for one in chosen for other in others)
+        is_there = preposition not in _BEFORE or any(_is_before(*pair, _BEFORE[preposition]) for pair in pairs)
+        return None if is_there else "elsewhere"
 
 
 def compare(
@@ -644,6 +685,13 @@ def _covers(name: str, own: Sequence[str]) -> bool:
     return any(f"_{stem_of(name)}".endswith(f"_{word}") and word not in own for word in _COVERS)
 
 
+def _is_before(one: Part, other: Part, sign: int) -> bool:
+    """Whether a part is in front of another one (sign -1) or behind it (1), and not beside it."""
+    (low, high), (other_low, other_high) = one.bounds, other.bounds
+    across = np.minimum(high, other_high) - np.maximum(low, other_low)
+    return bool(across[0] > 0.0 and across[2] > 0.0 and sign * (low + high - other_low - other_high)[1] > 0.0)
+
+
 def _ends_with(name: str, word: str) -> bool:
     return any(f"_{stem}".endswith(f"_{word}") for stem in (stem_of(name), lemma(stem_of(name))))
 
@@ -661,10 +709,20 @@ def _chosen(found: Sequence[Part], part: PartSpecification) -> list[Part]:
     said = [claim.value for claim in part.claims if claim.about == "place"]
     found = [item for item in found if set(said) & set(item.name.split("_"))] or found
     places = [_PLACES[place] for place in said if place in _PLACES]
-    if not places or part.count is None or part.count >= len(found):
+    central = bool(set(_MIDDLE) & set(said))
+    ordinal = next((place.split(" ") for place in said if place[0].isdigit()), None)
+    if not (places or central or ordinal) or part.count is None or part.count >= len(found):
         return list(found)
     middles = np.array([item.bounds.mean(axis=0) for item in found])
     spread = np.where(np.ptp(middles, axis=0) > _EDGE, np.ptp(middles, axis=0), 1.0)
+    if ordinal:  # counted from the top, or from the left where they stand side by side
+        stacked = np.ptp(middles, axis=0)[2] > np.ptp(middles, axis=0)[0]
+        toward = _PLACES.get(ordinal[1], (0, 0, 1) if stacked else (-1, 0, 0))
+        order = np.argsort(-(middles @ np.array(toward, dtype=np.float64)), kind="stable")
+        return [found[order[int(ordinal[0]) - 1]]] if int(ordinal[0]) <= len(found) else list(found)
+    if central:
+        aside = np.linalg.norm((middles - (middles.max(axis=0) + middles.min(axis=0)) / 2.0) / spread, axis=1)
+        return [found[k] for k in np.argsort(aside, kind="stable")[: part.count]]
     reach = (middles / spread) @ np.sum(places, axis=0, dtype=np.float64)
     return [found[k] for k in np.argsort(-reach, kind="stable")[: part.count]]
 

@@ -24,8 +24,16 @@ _NO_OBJECT_TEXT = """
 """
 _NO_OBJECT = frozenset(_NO_OBJECT_TEXT.split())
 """What no rigid object is or does."""
-_NO_SOLID_TEXT = "water air smoke light fog steam fire sound music love time nothing milk gas"
-_NO_SOLID = frozenset(_NO_SOLID_TEXT.split())
+_NO_THING_TEXT = """
+    monday tuesday wednesday thursday friday saturday sunday january february april june july august september october
+    november december yesterday tomorrow eternity infinity echo dream thought idea opinion joy sorrow anger happiness
+    sadness laughter silence hope fear freedom justice truth luck wisdom patience courage envy regret imagination
+    nostalgia gossip rumour rumor love hate soul conscience consciousness democracy philosophy
+"""
+_NO_THING = frozenset(_NO_THING_TEXT.split())
+"""What is no thing at all, so that nothing consists of it or has it."""
+_NO_SOLID_TEXT = "water air smoke light fog steam fire sound music time nothing milk gas"
+_NO_SOLID = frozenset(_NO_SOLID_TEXT.split()) | _NO_THING
 """What no part can be made of."""
 _MADE = (("made", "of"), ("out", "of"), ("made", "from"))
 _SHAPES = ("round", "circular", "square", "triangular", "hexagonal", "spherical", "cubic", "circle")
@@ -55,6 +63,7 @@ def refuse_contradictions(specification: Specification) -> None:
 def _faults(specification: Specification) -> Iterator[_Fault]:
     for part in specification.all_parts():
         yield from _two_values(part)
+        yield from _two_places(part)
     yield from _present_and_absent(specification)
     yield from _larger_parts(specification)
     words = [token.given for token in specification.tokens]
@@ -63,6 +72,8 @@ def _faults(specification: Specification) -> Iterator[_Fault]:
             yield word, "no object with links and joints is or does that"
         if word in _NO_SOLID and tuple(words[max(k - 2, 0) : k]) in _MADE:
             yield f"made of {word}", "parts are solid"
+        elif {lemma(word), word.removesuffix("es")} & _NO_THING and specification.tokens[k - 1].number is not None:
+            yield f"{words[k - 1]} {word}", "no object has that"
     for k in range(1, len(words) - 2):
         broken = words[k : k + 3] == ["and", "a", "half"] and specification.tokens[k - 1].number is not None
         if broken and words[k + 3 : k + 4] and lemma(words[k + 3]) not in UNITS:
@@ -90,6 +101,13 @@ def _two_values(part: PartSpecification) -> Iterator[_Fault]:
         if other != value and (claim.about != "open" or 0.0 in (other, value)):
             of = f" for the {name}" if name else ""
             yield f"{before.words}, {claim.words}", f"two {_ONE_OF[claim.about]}{of} of one {part.noun}"
+
+
+def _two_places(part: PartSpecification) -> Iterator[_Fault]:
+    """A hinge that is on one side, and hinged on the other."""
+    sides = {claim.value: claim for claim in part.claims if claim.about in ("place", "hinge")}
+    if part.noun == "hinge" and part.count == 1 and {"left", "right"} <= sides.keys():
+        yield f"{sides['left'].words}, {sides['right'].words}", "one hinge is on one side"
 
 
 def _present_and_absent(specification: Specification) -> Iterator[_Fault]:

@@ -69,6 +69,8 @@ _TO_BOTH = tuple(
 _PRONOUNS = ("it", "them", "these", "those")
 _DROPPED = ("up", "down")
 """Behind a part at the end of a statement they say that it is open there."""
+_HELD = ("propped", "held", "standing", "left", "wedged")
+"""Before a state they say nothing more."""
 _BACK = ("lowered", "retracted", "collapsed")
 """Behind a share they say how far something is back at its lower limit."""
 _DETERMINERS = (
@@ -79,6 +81,7 @@ PLACES = (
     "inside", "first",
     "outside", "center", "centre", "corner", "end", "uppermost", "lowest", "outer", "inner", "central", "underneath",
 )  # fmt: skip
+_ORDINALS = ("second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
 LEVELS = {
     "underneath": "bottom", "below": "bottom", "beneath": "bottom", "under": "bottom", "above": "top", "over": "top",
     "overhead": "top",
@@ -86,6 +89,8 @@ LEVELS = {
 """Places that are said without a noun behind them: `with a drawer below`."""
 MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word in material.words}
 _UNDER_WHOLE = ("wheel", "caster", "castor", "leg", "foot", "roller", "runner", "base", "stand", "track", "skid")
+_PIECES = ("half", "part", "piece", "section", "leaf")
+"""What is in two of them is two."""
 _GROUPS = ("row", "column", "stack", "grid", "pair", "set", "bank", "line")
 """What is counted behind them is counted in each."""
 _ADJUSTABLE = ("adjustable", "variable", "changeable")
@@ -361,6 +366,8 @@ class _Parser(Words):
 
     def _joined(self, k: int) -> int:
         """What stands behind `and` or a comma: another part, or what is said of the object."""
+        if self._is_share(k + 1):
+            return self._share(k + 1)
         if self.given(k) == "," and self._is_about_whole(k + 1):
             self.current = self.subject = self.whole
             return k + 1
@@ -395,7 +402,7 @@ class _Parser(Words):
         """Whether a noun phrase begins at word k, and no verb phrase: `and tilts`, `and can be folded`."""
         word = self.given(k)
         if word in _BEING or not word or self.tokens[k].is_sign or word in _BEGINS_PART or word in _PREPOSITIONS:
-            return word in ("each", "all", "both") and self.given(k + 1) not in _BEGINS_PART
+            return word in ("each", "all", "both") and self._begins_noun(k + 1)
         if length_at(self, k) and not self._noun_behind(k):
             return False
         verb = word in MOTIONS or word in DONE or word in GOING or word in OPENNESS
@@ -409,8 +416,8 @@ class _Parser(Words):
             ends = word in _BEGINS_PART or word in _PREPOSITIONS or word in _BEING or word in _GOES
             if ends or self.tokens[at].is_sign:
                 return False
-            if word in ("one", "ones"):
-                return True
+            if word in ("one", "ones", "degrees"):  # swings 20 degrees either way
+                return word != "degrees"
             if (
                 word in WAYS
                 or word in PLACES
@@ -454,21 +461,44 @@ class _Parser(Words):
         return end
 
     def _is_share(self, k: int) -> bool:
-        """Whether word k begins `two of which`, `one of them`."""
-        of_which = self.given(k + 1) == "of" and self.given(k + 2) in ("which", "them", "these", "those")
-        return of_which and bool(self.parts and self.tokens[k].number)
+        """Whether word k begins `two of which`, `half of them`, `all but one`, `one of glass`, `two red`."""
+        counted = [part for part in self.parts if (part.count or 0) > 1]
+        return bool(counted) and self._shared(k)[0] > 0
+
+    def _shared(self, k: int) -> tuple[int, int]:
+        """How many of those that were named last are meant at word k, and the word behind; none: 0."""
+        every = next((part.count or 0 for part in reversed(self.parts) if (part.count or 0) > 1), 0)
+        number = self.tokens[k].number if k < len(self.tokens) and self.given(k) not in ARTICLES else None
+        if (self.given(k), self.given(k + 1)) == ("all", "but") and k + 2 < len(self.tokens):
+            return every - int(self.tokens[k + 2].number or every), k + 3
+        if self.given(k) == "half" and every % 2 == 0:
+            number = every // 2
+        if number is None:
+            return 0, k
+        if self.given(k + 1) == "of" and self.given(k + 2) in ("which", "them", "these", "those"):
+            return int(number), k + 3
+        at = k + 1
+        while self.given(at) in ("of", "in", "made", "is", "are", "painted"):
+            at += 1
+        look = _Draft()
+        behind = at + self._look_or_size(at, look)
+        ends = self.given(behind) in ("", "and", ",", ".", ";")
+        is_look = any(claim.about in ("color", "material") for claim in look.claims)
+        return (int(number), k + 1) if is_look and ends and self.given(k) != "half" else (0, k)
 
     def _share(self, k: int) -> int:
-        """Some of the parts that were named last, the first ones; the word behind."""
-        every = self.parts[-1]
-        some = _Draft(nouns=list(every.nouns), count=int(self.tokens[k].number or 0.0), of=every.of)
+        """Some of the parts that were named last, the first ones that are not in another share; the word behind."""
+        count, end = self._shared(k)
+        every = next(part for part in reversed(self.parts) if (part.count or 0) > 1)
+        every = next(part for part in self.parts if part.nouns == every.nouns and part.of == every.of)
+        some = _Draft(nouns=list(every.nouns), count=count, of=every.of)
         self.current = self.subject = every
         if some.count != every.count:
             self.claim(some, "count", some.count, k)
-            self.claim(some, "place", "first", k, k + 1, k + 2)
+            self.claim(some, "place", "first", *range(k, end))
             self.parts.append(some)
             self.current = self.subject = some
-        return k + 3
+        return end
 
     def _noun_phrase(self, k: int, part: _Draft) -> int:
         """`two small red drawers`: count, looks, sizes and motions before the noun; the word behind."""
@@ -482,7 +512,9 @@ class _Parser(Words):
             if ends and not (part is self.whole and k < self.name[0]):
                 break
             named = bool(part.nouns) or self.given(k - 1) in ("one", "ones")
-            if named and (word in _BEING or word in PULLED or self._verb_at(k) or word in WAYS or word in PLACES):
+            if named and (
+                word in _BEING or word in (*PULLED, *_HELD) or self._verb_at(k) or word in WAYS or word in PLACES
+            ):
                 break
             taken = self._open(k, part) or self._look_or_size(k, part) or self._described(k, part)
             if word in ("every", "each", "either") and part is not self.whole:
@@ -512,11 +544,12 @@ class _Parser(Words):
         word, behind = self.given(k), self.given(k + 1)
         if self.tokens[k].number is not None:
             return self._counted(k, part)
-        placed = part is not self.whole and (self._noun_behind(k) or behind in ("one", "ones"))
+        some = behind in NUMBERS and behind not in ARTICLES
+        placed = part is not self.whole and (self._noun_behind(k) or behind in ("one", "ones") or some)
+        if taken := (self._ordinal(k, part) if placed else 0) or self._adjustable(k, part):
+            return taken
         if word in PLACES and placed:
             self.claim(part, "place", word, k)
-        elif taken := self._adjustable(k, part):
-            return taken
         elif word in PARTICLES and behind in WAYS and (part is not self.whole or k < self.name[0]):
             self.claim(part, "way", behind, k, k + 1)
             return 2
@@ -531,14 +564,29 @@ class _Parser(Words):
             return 0
         return 1
 
+    def _ordinal(self, k: int, part: _Draft) -> int:
+        """`the second one from the top`; how many words."""
+        word, behind = self.given(k), self.given(k + 1)
+        if word not in _ORDINALS or self.given(k - 1) != "the" or behind == "hand":  # of a clock
+            return 0
+        end = k + 1 + (behind in ("one", "ones"))
+        side = self.given(end + 2) if (self.given(end), self.given(end + 1)) == ("from", "the") else ""
+        at = range(k, end + 3) if side in PLACES else range(k, end)
+        self.claim(part, "place", f"{_ORDINALS.index(word) + 2} {side if side in PLACES else ''}", *at)
+        return len(at)
+
     def _open(self, k: int, part: _Draft) -> int:
         """`half open`, `ajar`, `opened by 30 degrees`, `pulled out 20 cm`, `open 30 %`; how many words."""
         before = measured_at(self, k)
         at = before[2] if before else k
         while before and self.given(at) in ("of", "the", "way"):
             at += 1
+        while self.given(at) in _HELD and self.given(at + 1) in OPENNESS:
+            at += 1
         word = self.given(at)
+        turned = part is not self.whole and word in DONE and self.given(at - 1) != "be" and amount_at(self, at + 1)
         raised = before is not None and before[0] == "share" and word in DONE and not self._noun_behind(at)
+        raised = raised or bool(turned and turned[0] != "share")
         if not (raised or word in (*OPENNESS, *PULLED)) or self.given(at + 1) in NOT_A_STATE:
             return 0
         how, much = before[:2] if before else ("share", OPENNESS.get(word, 1.0))
@@ -677,6 +725,8 @@ class _Parser(Words):
                 self.claim(subject, "hinge", way, k, end)
             else:
                 self.claim(subject, "way", way, k, end, *((end + 2,) if both else ()))
+                if moves in ("slides", "swings"):  # a tray that swings out does not slide
+                    self.claim(subject, "moves", moves, k)
             return far or end + (3 if both else 1)
         self.claim(subject, "moves", moves or "moves", k)
         return far or k + 1
@@ -688,8 +738,13 @@ class _Parser(Words):
             return 0
         how, much, end = amount
         both = next((words for words in _TO_BOTH if self._says(end, words)), ())
-        self.claim(self.subject, "range", (how, 2.0 * much if both else much), *range(k, end + len(both)))
-        return end + len(both)
+        much, end = (2.0 * much, end + len(both)) if both else (much, end)
+        way, back = self.given(end).removesuffix("s"), measured_at(self, end + 2)
+        if back and back[0] == how and self.given(end + 1) == "and" and way in WAYS:  # 30 degrees left and 20 right
+            other = self.given(back[2]).removesuffix("s")
+            much, end = (much + back[1], back[2] + 1) if other in WAYS and other != way else (much, end)
+        self.claim(self.subject, "range", (how, much), *range(k, end))
+        return end
 
     def _says(self, k: int, words: Sequence[str]) -> bool:
         return tuple(self.given(k + n) for n in range(len(words))) == tuple(words)
@@ -709,13 +764,15 @@ class _Parser(Words):
             return end
         word = self.given(at)
         sided = self.given(at + 1) in ("side", "hand", "end", "edge")
-        if word in PLACES and (sided or not self._noun_behind(at)) and self.given(k) in _AT:
+        of_other = self.given(at + 1) == "of" and word == "front" and self.given(k) == "in"
+        if word in PLACES and not of_other and (sided or not self._noun_behind(at)) and self.given(k) in _AT:
             self.claim(self.current, "place", word, *range(k, at + 1))
             return at + (2 if sided else 1)
         if word in MATERIAL_WORDS and self.given(k) in ("of", "in", "from"):
             return k + 1
         target = _Draft()
-        end = self._noun_phrase(k + 1, target)
+        in_front = tuple(self.given(at) for at in range(k, k + 3)) == ("in", "front", "of")
+        end = self._noun_phrase(k + (3 if in_front else 1), target)
         back = self.given(k) in LEVELS and self.given(k + 1) in _PRONOUNS
         if back and self.current in self.parts[1:]:
             target.nouns = self.parts[self.parts.index(self.current) - 1].nouns  # what was named before
@@ -724,11 +781,18 @@ class _Parser(Words):
             self.parts.append(target)
             self.current = self.subject = target
         elif target.nouns:
-            how = "each" if self.given(k + 1) in ("each", "every") else self.given(k)
-            self.claim(self.current, "relation", (how, noun), *range(k, end))
-            counted = any(claim.about == "count" for claim in target.claims)
+            how = "each" if self.given(k + 1) in ("each", "every") else "in front of" if in_front else self.given(k)
+            counted = next((claim for claim in target.claims if claim.about == "count"), None)
+            if noun in _PIECES and counted and how in ("in", "into") and self.current is not self.whole:
+                self.current.count = target.count  # a lid in two halves
+                self.claim(self.current, "count", target.count, *counted.at, *target.nouns)
+                return max(end, k + 1)
             in_grid = k > 0 and self.tokens[k - 1].number is not None  # three by two drawers
-            if counted and not in_grid and noun.split()[-1] not in PLACES and lemma(self.given(k - 1)) not in _GROUPS:
+            looks = {k for claim in target.claims if claim.about in ("color", "material", "size") for k in claim.at}
+            apart = bool(counted or looks) and not in_grid and noun.split()[-1] not in PLACES
+            apart = apart and not {lemma(self.given(k - 1)), noun} & set(_GROUPS)
+            self.claim(self.current, "relation", (how, noun), *(at for at in range(k, end) if at not in looks))
+            if apart:
                 self.parts.append(target)
         else:
             self.current.claims += target.claims
