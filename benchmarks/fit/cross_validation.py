@@ -28,7 +28,7 @@ from benchmarks.fit.trees import (
     write_scorer,
 )
 from kinematify.config import load_config
-from kinematify.joints.choice.judge import Posterior, agreed, lead_of
+from kinematify.joints.choice.judge import Posterior, agreed
 from kinematify.joints.choice.opening import opening_odds
 from kinematify.joints.choice.scorer import read_scorer
 
@@ -279,7 +279,7 @@ def judgement_of(example: Example, probabilities: FloatArray) -> Posterior:
         by_cues=by_cues,
         support=example.measured["rules_score"],
         size=example.size,
-        lead=lead_of(example.hypotheses.sources[by_cues], _confidence()),
+        lead=_confidence().cues_lead,
     )
 
 

@@ -238,8 +238,6 @@ class ConfidenceConfig(StageConfig):
     # with less, furniture that the cues were written for loses; with more, all else (results/choice.md)
     cues_lead: float = 1.0
     """Log odds that what the weighted cues would choose keeps over the fitted probabilities."""
-    fold_lead: float = 2.0  # a plate folded in the middle is a rocker, which few fitted objects are
-    """The same where they choose the fold of a rocker."""
     # omitted, 8 of 629 real parts that move are taken for fixed, and 221 of 480 that do not (results/choice.md)
     fixed: float = 0.82
     """How likely a part must be fixed to be taken for it."""

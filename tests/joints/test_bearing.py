@@ -34,6 +34,7 @@ from tests.known import known_object, posed, turning
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
+    from kinematify.config import BearingConfig
     from kinematify.joints.bearings.evidence import Sides
     from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
     from tests.known import KnownJoint, KnownObject
@@ -47,11 +48,11 @@ WITH_BEARINGS = (
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def fitted(known: KnownObject) -> dict[tuple[int, int], EdgeBearing]:
+def fitted(known: KnownObject, config: BearingConfig = BEARING) -> dict[tuple[int, int], EdgeBearing]:
     assembly = known.assembly
     surfaces = part_surfaces(assembly, config=CONFIG.surface)
     graph = build_contact_graph(assembly, surfaces, config=CONFIG.contact, seed=0)
-    return fit_bearings(assembly, surfaces, graph, config=BEARING, seed=0)
+    return fit_bearings(assembly, surfaces, graph, config=config, seed=0)
 
 
 @cache
@@ -393,6 +394,19 @@ def test_permuting_the_parts_permutes_the_bearings(name: str) -> None:
         sorted(line.score for item in each.values() for line in item.lines) for each in (found, bearings_of(name))
     )
     np.testing.assert_allclose(here, there, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["knob", "gimbal"])
+def test_what_is_drawn_as_for_rough_parts_does_not_depend_on_their_order(name: str) -> None:
+    config = BEARING.model_copy(update={"directed_pairs": BEARING.rough_directed_pairs})
+    known = BUILDERS[name]()
+    last = len(known.parts) - 1
+    found, permuted = fitted(known, config), fitted(replace(known, parts=known.parts[::-1]), config)
+    for (a, b), bearing in found.items():
+        there = permuted[last - b, last - a]
+        for line, other in zip(bearing.lines, there.lines, strict=True):
+            assert abs(line.axis @ other.axis) == pytest.approx(1.0, abs=1e-9)
+            assert [line.score, line.surface_a] == pytest.approx([other.score, other.surface_b], abs=1e-9)
 
 
 def test_the_same_seed_gives_the_same_lines() -> None:

@@ -16,7 +16,7 @@ import numpy as np
 
 from kinematify.geometry.surface import distinct_directions
 from kinematify.joints.bearings.evidence import contact_centroid, contact_sides, thin, whole_side
-from kinematify.joints.bearings.line import NO_LINES, Line, Lines, join
+from kinematify.joints.bearings.line import NO_LINES, Line, Lines, join, lines_of
 from kinematify.joints.bearings.refine import refine_line, refine_lines
 from kinematify.joints.bearings.scores import (
     BearingLine,
@@ -35,14 +35,15 @@ from kinematify.robot.vectors import crossed, lengths_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import Assembly
+    from kinematify.assembly.part import Assembly, Part
     from kinematify.config import BearingConfig
-    from kinematify.contact.graph import ContactEdge, ContactGraph
+    from kinematify.contact.graph import ContactEdge, ContactGraph, Pair
     from kinematify.geometry.surface import PartSurface
     from kinematify.joints.bearings.evidence import BearingSide, Generators, Sides
     from kinematify.robot.arrays import BoolArray, FloatArray
 
 
+_ALIKE = 1e-6  # areas that differ by less than this share are the same
 _EXACTLY = 0.1  # [deg] lines that were proposed along a direction
 
 
@@ -106,22 +107,30 @@ def _fitted(
     config: BearingConfig,
     seed: int,
 ) -> EdgeBearing:
-    # One generator for each part: what is drawn of it depends neither on its number nor on the other part.
+    # One generator for each part, the larger one first: what is drawn depends on the number of neither.
     draws = np.random.default_rng(seed), np.random.default_rng(seed)
+    pair, exchanged = (edge.a, edge.b), _is_larger(surfaces[edge.b].part, surfaces[edge.a].part)
+    pair, sides = (pair[::-1], sides[::-1]) if exchanged else (pair, sides)
     centroid = contact_centroid(sides)
-    directions = _directions(surfaces, edge) if config.directed_pairs else np.empty((0, 3))
+    directions = _directions(surfaces, pair) if config.directed_pairs else np.empty((0, 3))
     proposals = propose_lines(sides, centroid, directions, diagonal=diagonal, config=config, draws=draws)
     lines = _rank(sides, proposals, centroid, directions, diagonal=diagonal, config=config)
     if not lines or lines[0].score < config.turned_score:
-        turned = _turned_lines(surfaces, edge, centroid, config, draws)
+        turned = _turned_lines(surfaces, pair, centroid, config, draws)
         lines = sorted([*lines, *turned], key=lambda line: -line.score)
     return EdgeBearing(
         a=edge.a,
         b=edge.b,
         centroid=read_only(centroid, np.float64),
-        lines=tuple(lines),
+        lines=tuple(line.exchanged if exchanged else line for line in lines),
         rail=fit_rail(sides, config.rail, draws),
     )
+
+
+def _is_larger(one: Part, other: Part) -> bool:
+    """Whether a part has more surface than another one, or where they are alike lies higher."""
+    alike = abs(one.area - other.area) <= _ALIKE * other.area
+    return bool(one.centroid[2] > other.centroid[2]) if alike else one.area > other.area
 
 
 def score_line(
@@ -133,9 +142,9 @@ def score_line(
     return scored_line(sides, line, contact_centroid(sides), diagonal, config)
 
 
-def _directions(surfaces: Sequence[PartSurface], edge: ContactEdge) -> FloatArray:
+def _directions(surfaces: Sequence[PartSurface], pair: Pair) -> FloatArray:
     """Along which either part is built, shape (k, 3)."""
-    return distinct_directions(np.concatenate([surfaces[part].main_directions for part in (edge.a, edge.b)]))
+    return distinct_directions(np.concatenate([surfaces[part].main_directions for part in pair]))
 
 
 def _rank(
@@ -159,22 +168,15 @@ def _rank(
         axes[index], points[index] = refined.axes, refined.points
     rough = scored_lines(few, Lines(axes=axes, points=points), centroid, diagonal, config)
     starts = best_distinct(rough, diagonal, config)
-    free = refine_lines(sides, _lines([start.line for start in starts]), tolerances[-2:], config)
+    free = refine_lines(sides, lines_of([start.line for start in starts]), tolerances[-2:], config)
     final = scored_lines(sides, free, centroid, diagonal, config)
     along = {k: _along(start.line, directions, config.directed_angle) for k, start in enumerate(starts)}
     straight = {k: line for k, line in along.items() if line is not None}
-    held = refine_lines(sides, _lines(list(straight.values())), tolerances[-2:], config, turning=False)
+    held = refine_lines(sides, lines_of(list(straight.values())), tolerances[-2:], config, turning=False)
     for k, line in zip(straight, scored_lines(sides, held, centroid, diagonal, config), strict=True):
         if line.score * config.directed_bonus > final[k].score:
             final[k] = line
     return best_distinct(final, diagonal, config)
-
-
-def _lines(lines: Sequence[Line]) -> Lines:
-    return Lines(
-        axes=np.array([line.axis for line in lines]).reshape(-1, 3),
-        points=np.array([line.point for line in lines]).reshape(-1, 3),
-    )
 
 
 def _along(line: Line, directions: FloatArray, angle: float) -> Line | None:
@@ -195,7 +197,7 @@ def _tolerances(config: BearingConfig) -> FloatArray:
 
 def _turned_lines(
     surfaces: Sequence[PartSurface],
-    edge: ContactEdge,
+    pair: Pair,
     centroid: FloatArray,
     config: BearingConfig,
     draws: Generators,
@@ -206,7 +208,7 @@ def _turned_lines(
     at its end is round about the wrong line.
     """
     lines = []
-    for own, shares, rng in ((edge.a, (1.0, 0.0), draws[0]), (edge.b, (0.0, 1.0), draws[1])):
+    for own, shares, rng in ((pair[0], (1.0, 0.0), draws[0]), (pair[1], (0.0, 1.0), draws[1])):
         side = whole_side(surfaces[own], config.turned_samples)
         line = _own_axis(side, config, rng)
         if line is None:

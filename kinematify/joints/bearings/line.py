@@ -88,4 +88,12 @@ def join(parts: Sequence[Lines]) -> Lines:
     )
 
 
+def lines_of(lines: Sequence[Line]) -> Lines:
+    """Lines in two arrays, in their order."""
+    return Lines(
+        axes=np.array([line.axis for line in lines]).reshape(-1, 3),
+        points=np.array([line.point for line in lines]).reshape(-1, 3),
+    )
+
+
 NO_LINES = Lines(axes=np.empty((0, 3)), points=np.empty((0, 3)))

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.bearings.line import Line, Lines
+from kinematify.joints.bearings.line import Line, Lines, lines_of
 from kinematify.robot.arrays import read_only
 from kinematify.robot.vectors import crossed, lengths_of
 
@@ -232,6 +232,13 @@ class BearingLine:
         return Line(axis=self.axis, point=self.pivot)
 
     @property
+    def exchanged(self) -> BearingLine:
+        """The same line with its support on either part exchanged."""
+        return replace(
+            self, surface_a=self.surface_b, surface_b=self.surface_a, circles_a=self.circles_b, circles_b=self.circles_a
+        )
+
+    @property
     def surface(self) -> float:
         """Geometric mean of the revolution support of both parts (F of feasibility.md section 4)."""
         return float(np.sqrt(self.surface_a * self.surface_b))
@@ -288,9 +295,6 @@ def scored_lines(
 def best_distinct(lines: list[BearingLine], diagonal: float, config: BearingConfig) -> list[BearingLine]:
     """The best lines, best first, without those that nearly repeat a better one."""
     ordered = sorted(lines, key=lambda line: -line.score)
-    where = Lines(
-        axes=np.array([line.axis for line in ordered]).reshape(-1, 3),
-        points=np.array([line.pivot for line in ordered]).reshape(-1, 3),
-    )
+    where = lines_of([line.line for line in ordered])
     kept = where.distinct(config.keep, angle=config.apart_angle, distance=config.apart * diagonal)
     return [ordered[index] for index in kept]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import combinations, permutations, product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -150,8 +150,6 @@ class _Shapes:
         """Motions from one part onto a congruent one, the closest first; none from a part onto itself."""
         if first == second:
             return []
-        if first > second:
-            return [motion.inverse for motion in self.motions(second, first)]
         if (first, second) not in self._motions:
             clouds = self.cloud(first), self.cloud(second)
             tolerance = self._config.tolerance * min(self.size(first), self.size(second))
@@ -178,11 +176,16 @@ class _Twin:
 def _twins_of(
     pair: Pair, group: Sequence[Pair], voters: Mapping[Pair, _Voter], labels: IntArray, shapes: _Shapes
 ) -> list[_Twin]:
-    """The contacts of a group that a motion of congruent parts lays upon this one."""
-    place = group.index(pair)
-    following = [*group[place + 1 :], *group[:place]]
+    """The contacts of a group that a motion of congruent parts lays upon this one: the nearest are asked."""
+    here = voters[pair]
+
+    def nearness(other: Pair) -> tuple[float, ...]:
+        # Rounded, so that the clearest of equally near ones is asked, whatever the order of the parts.
+        apart = float(np.linalg.norm(voters[other].centroid - here.centroid)) / shapes.size(pair[0])
+        return round(apart, 3), -round(_best_score(voters[other].bearing), 6), float(voters[other].centroid[2])
+
     twins = []
-    for other in following[: shapes.most]:
+    for other in sorted((other for other in group if other != pair), key=nearness)[: shapes.most]:
         found = _best_motion(pair, other, voters, labels, shapes)
         if found is not None:
             twins.append(_Twin(voter=voters[other], motion=found[0], swapped=found[1]))
@@ -273,27 +276,13 @@ def _carried(line: BearingLine, motion: RigidMotion, centroid: FloatArray) -> Be
 def _opinion(twin: _Twin, line: Line) -> BearingLine:
     there = Line(axis=twin.motion.directions(line.axis), point=twin.motion.points(line.point))
     said = twin.voter.opinion(there)
-    if not twin.swapped:
-        return said
-    return replace(
-        said,
-        surface_a=said.surface_b,
-        surface_b=said.surface_a,
-        circles_a=said.circles_b,
-        circles_b=said.circles_a,
-    )
+    return said.exchanged if twin.swapped else said
 
 
 def _mean(mine: BearingLine, others: Sequence[BearingLine]) -> BearingLine:
-    everyone = [mine, *others]
-    return replace(
-        mine,
-        score=float(np.mean([line.score for line in everyone])),
-        surface_a=float(np.mean([line.surface_a for line in everyone])),
-        surface_b=float(np.mean([line.surface_b for line in everyone])),
-        circles_a=float(np.mean([line.circles_a for line in everyone])),
-        circles_b=float(np.mean([line.circles_b for line in everyone])),
-    )
+    everyone, names = [mine, *others], ("score", "surface_a", "surface_b", "circles_a", "circles_b")
+    means: dict[str, Any] = {name: float(np.mean([getattr(line, name) for line in everyone])) for name in names}
+    return replace(mine, **means)
 
 
 def same_line(one: BearingLine, other: BearingLine, diagonal: float, config: BearingConfig) -> bool:

@@ -184,13 +184,8 @@ def judge(weighed: ScoredHypotheses, config: ConfidenceConfig) -> Posterior:
         by_cues=by_cues,
         support=measured["rules_score"],
         size=weighed.scene.frame.diagonal,
-        lead=lead_of(hypotheses.sources[by_cues], config),
+        lead=config.cues_lead,
     )
-
-
-def lead_of(source: str, config: ConfidenceConfig) -> float:
-    """Log odds that what cues would choose keeps, by what proposed it."""
-    return config.fold_lead if source == "fold" else config.cues_lead
 
 
 def hypotheses_of(weighed: ScoredHypotheses) -> Hypotheses:
