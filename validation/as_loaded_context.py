@@ -104,9 +104,8 @@ class AsLoadedContext:
     def loading(self) -> RawEngineModel | Unloadable:
         """The file in the engine, or what the engine says against it."""
         try:
-            loaded = load_file(
-                self.engine, self.request.urdf, self.mechanism.links[self._root], self.request.package_dirs
-            )
+            root = self.mechanism.links[int(np.flatnonzero(self.mechanism.body_of_link == 0)[0])]
+            loaded = load_file(self.engine, self.request.urdf, root, self.request.package_dirs)
         except Unloadable as error:
             return error
         known = set(loaded.joints) <= set(self.mechanism.joints)
@@ -116,10 +115,6 @@ class AsLoadedContext:
     def floats(self) -> bool:
         """Whether the file has a floating or planar joint."""
         return any(joint.declared_kind in FREE_KINDS for joint in self.robot.joints)
-
-    @property
-    def _root(self) -> int:
-        return int(np.flatnonzero(self.mechanism.body_of_link == 0)[0])
 
     @property
     def loaded(self) -> RawEngineModel:

@@ -25,7 +25,7 @@ from kinematify.robot.vectors import all_three, crossed, lengths_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
     Motions = tuple[FloatArray, FloatArray]
     """Rotations (n, 3, 3) and translations (n, 3)."""
@@ -395,11 +395,6 @@ class _Path:
             found += [(item, resting[index]) for index in close[meet].tolist()]
         return found[::-1]
 
-    def _box_steps(self, moving: _Polytope, resting: _Polytope) -> BoolArray:
-        """Whether the boxes of two pieces come nearer than the clearance, for every step, shape (n,)."""
-        low, high = self._boxes(moving)
-        return all_three((low <= resting.high + self._clearance) & (high >= resting.low - self._clearance))
-
     def _boxes(self, piece: _Polytope) -> tuple[FloatArray, FloatArray]:
         """Lower and upper corners of boxes around what moves, for every step, shape (n, 3) each; arcs included."""
         if piece not in self._boxed:
@@ -421,7 +416,9 @@ class _Path:
 
     def meets(self, moving: _Polytope, resting: _Polytope, clearance: float) -> IntArray:
         """Steps in which no plane keeps two pieces apart by a clearance that is at most that of the sweep."""
-        near = np.flatnonzero(self._box_steps(moving, resting))
+        low, high = self._boxes(moving)
+        boxes = (low <= resting.high + self._clearance) & (high >= resting.low - self._clearance)
+        near = np.flatnonzero(all_three(boxes))
         if not len(near):
             return near
         ends = slice(near[0], near[-1] + 2)

@@ -135,8 +135,7 @@ def _reach_into(body: Solid, other: Solid, T: FloatArray) -> FloatArray:
     depth = np.zeros(len(T))
     if len(body.shells.closed):
         for rows in _pieces(len(T), len(other.points)):
-            points = _posed(other.points, T[rows])
-            depth[rows] = body.inside(points.reshape(-1, 3)).reshape(points.shape[:2]).max(axis=1)
+            depth[rows] = body.deepest(_posed(other.points, T[rows]))
     return depth
 
 

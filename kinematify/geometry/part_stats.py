@@ -74,7 +74,9 @@ def part_stats(part: Part) -> PartStats:
     floor = _VOLUME_FLOOR * max(part.diagonal, 1e-9) ** 3
     hull_volume, flat_bottom, flat_top = _hull_measures(part)
     hull_volume = max(hull_volume, floor)
-    enclosed = abs(_signed_volume(part)) if _is_closed(part) else hull_volume
+    a, b, c = (part.vertices[part.faces[:, k]] - part.centroid for k in range(3))
+    by_divergence = abs(float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6))
+    enclosed = by_divergence if _is_closed(part) else hull_volume
     return PartStats(
         centroid=part.centroid,
         volume=max(enclosed, floor),
@@ -128,9 +130,3 @@ def _is_closed(part: Part) -> bool:
     codes = edges[:, 0] * (len(part.vertices) + 1) + edges[:, 1]
     back = edges[:, 1] * (len(part.vertices) + 1) + edges[:, 0]
     return len(codes) > 0 and bool(np.array_equal(np.sort(codes), np.sort(back)))
-
-
-def _signed_volume(part: Part) -> float:
-    """Volume by the divergence theorem [m^3]; the sign follows the winding."""
-    a, b, c = (part.vertices[part.faces[:, k]] - part.centroid for k in range(3))
-    return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)

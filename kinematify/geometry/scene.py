@@ -87,7 +87,9 @@ class Scene:
     @cached_property
     def size(self) -> float:
         """Diagonal of the model's box at rest [m]."""
-        return float(np.linalg.norm(np.ptp(self._corners_at_rest().reshape(-1, 3), axis=0)))
+        placed = zip(self.bodies, self.at_rest, strict=True)
+        corners = np.concatenate([transformed(box_corners(body.solid), T) for body, T in placed])
+        return float(np.linalg.norm(np.ptp(corners, axis=0)))
 
     @cached_property
     def at_rest(self) -> FloatArray:
@@ -184,11 +186,6 @@ class Scene:
             for index, above in enumerate(self._above)
             if above is not None
         ]
-
-    def _corners_at_rest(self) -> FloatArray:
-        return np.stack(
-            [transformed(box_corners(body.solid), T) for body, T in zip(self.bodies, self.at_rest, strict=True)]
-        )
 
 
 def judged_shapes(link: Link) -> tuple[Shape, ...]:

@@ -82,32 +82,41 @@ class Solid:
         """FCL tree, centred at `middle`, in units of `unit`."""
         return collision_tree(self._local(self.shells.vertices) / self._unit, self.shells.faces)
 
-    def inside(self, points: FloatArray) -> FloatArray:
-        """Depth of points in the closed shells [m], 0 outside, body frame (n, 3) -> (n,)."""
-        depth, near = np.zeros(len(points)), np.flatnonzero(self.contains(points))
-        if len(near):
-            depth[near] = self._closed.nearest(self._local(points[near]))[0]
-        return depth
+    def deepest(self, points: FloatArray) -> FloatArray:
+        """Largest depth of each set of points in the closed shells [m], body frame (n, p, 3) -> (n,).
+
+        The winding number is asked for only where a doubtful point would be the deepest one.
+        """
+        flat, depth = points.reshape(-1, 3), np.zeros(points.shape[:2])
+        sure, doubtful = self._by_rays(flat)
+        within = np.flatnonzero(sure | doubtful)
+        if len(within):
+            claimed = self._closed.nearest(self._local(flat[within]))[0]
+            depth.flat[within] = np.where(sure[within], claimed, 0.0)
+            decides = doubtful[within] & (claimed > depth.max(axis=1)[within // points.shape[1]])
+            if decides.any():
+                depth.flat[within[decides]] = np.where(self._is_wound(flat[within[decides]]), claimed[decides], 0.0)
+        return np.asarray(depth.max(axis=1))
 
     def contains(self, points: FloatArray) -> BoolArray:
         """Whether points are in the closed shells, body frame (n, 3) -> (n,)."""
-        found = all_three((points > self.low) & (points < self.high)) & bool(len(self.shells.closed))
-        found[found] = self._is_inside(self._local(points[found]))
+        found, doubtful = self._by_rays(points)
+        if doubtful.any():
+            found[doubtful] = self._is_wound(points[doubtful])
         return found
 
-    def _is_inside(self, local: FloatArray) -> BoolArray:
-        """Whether points are inside: two opposite rays both meet a face from behind first.
+    def _by_rays(self, points: FloatArray) -> tuple[BoolArray, BoolArray]:
+        """Where two opposite rays both meet a face from behind first, as inside, and where they disagree."""
+        first, second = np.zeros((2, len(points)), dtype=bool)
+        near = np.flatnonzero(all_three((points > self.low) & (points < self.high)) & bool(len(self.shells.closed)))
+        if len(near):
+            local = self._local(points[near])
+            first[near], second[near] = (self._meets_from_behind(local, along) for along in (_ASKEW, -_ASKEW))
+        return first & second, first ^ second
 
-        Where the rays disagree, as in shells that overlap, the winding number decides; it is slow.
-        """
-        if not len(local):
-            return np.zeros(0, dtype=bool)
-        first, second = (self._meets_from_behind(local, along) for along in (_ASKEW, -_ASKEW))
-        inside = first & second
-        doubtful = np.flatnonzero(first ^ second)
-        if len(doubtful):
-            inside[doubtful] = np.abs(self._winding.numbers(local[doubtful])) > 0.5
-        return inside
+    def _is_wound(self, points: FloatArray) -> BoolArray:
+        """Whether points are inside by the winding number, which is slow; rays disagree in shells that overlap."""
+        return np.asarray(np.abs(self._winding.numbers(self._local(points))) > 0.5)
 
     def _meets_from_behind(self, local: FloatArray, along: FloatArray) -> BoolArray:
         hits = self._closed_rays.first_hits(local, np.broadcast_to(along, local.shape))

@@ -248,6 +248,7 @@ def test_a_range_of_both_ways_is_limited_on_both_sides() -> None:
         ("a cupboard with one door in front of three drawers", "in front of three drawers (elsewhere)"),
         ("a metal toolbox with two trays that swing out", "swing (prismatic)"),
         ("a cabinet whose lowest drawer is lockable", "lockable (no lock)"),
+        ("a box with a lid hinged at the front", "hinged front (hinged on another side)"),
     ],
 )
 def test_what_is_otherwise_than_it_was_said_is_listed(sentence: str, listed: str) -> None:

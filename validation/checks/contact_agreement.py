@@ -76,7 +76,8 @@ def contacts_differ(result: OpenCheck, left: EngineResults) -> None:
     ]
     exact = [] if left.exact is None else _views(left, left.exact, None)
     none = np.zeros(len(left.rows.links))
-    reach = _reach(left) if exact and views else none
+    # convex pieces of links reach so far beyond the surface [m], which the exact geometry does not
+    reach = np.array([left.prepared.link_by_name[name].gap for name in left.rows.links]) if exact and views else none
     found = [item for sees, misses in permutations(views, 2) for item in _unseen(left, sees, misses, none)]
     for true in exact:
         for view in views:
@@ -105,11 +106,6 @@ def _views(left: EngineResults, poses: EnginePoses, engine: str | None) -> list[
         overlaps[row, int(bodies[index, 0]), int(bodies[index, 1])] = overlap
     title = "the exact geometry" if engine is None else ENGINES[engine].title
     return [_View(engine=engine, title=title, overlaps=overlaps)]
-
-
-def _reach(left: EngineResults) -> FloatArray:
-    """How far the convex pieces of each link reach beyond its surface, which the exact geometry does not [m]."""
-    return np.array([left.prepared.link_by_name[name].gap for name in left.rows.links])
 
 
 def _unseen(left: EngineResults, sees: _View, misses: _View, slack: FloatArray) -> list[_Disagreement]:

@@ -17,7 +17,6 @@ from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.geometry.formatting import BARELY, SLIMMER
 
 if TYPE_CHECKING:
-    from kinematify.robot.mechanism import Travel
     from kinematify.simulation.drive import Driven
     from kinematify.validation.check import OpenCheck
     from kinematify.validation.engine_context import EngineContext
@@ -203,7 +202,7 @@ def _find_blocked(result: OpenCheck, context: EngineContext, driven: Driven) -> 
     index = _blocking_pair(context, driven)
     if index is None:
         result.find(
-            f"{stops} without contact, at a force of {driven.force:.3g} {_force_unit(travel)}.",
+            f"{stops} without contact, at a force of {driven.force:.3g} {'N m' if travel.turns else 'N'}.",
             "Check damping, friction and inertia of the joint, and the limits of joints that follow it.",
             severity=Severity.WARNING,
             blame=Blame.PHYSICS,
@@ -321,7 +320,3 @@ def _find_penetration(result: OpenCheck, context: EngineContext, pair: int, exce
         limit=context.drives.sweep.tolerance,
         unit="m",
     )
-
-
-def _force_unit(travel: Travel) -> str:
-    return "N m" if travel.turns else "N"

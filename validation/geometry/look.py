@@ -343,7 +343,7 @@ class JointMotion:
         if not len(fixed.shells.closed):
             return False
         points = moving.points @ T[:, :3, :3].transpose(0, 2, 1) + T[:, None, :3, 3]
-        within = fixed.inside(points.reshape(-1, 3)).reshape(points.shape[:2]) > 0.0
+        within = fixed.deepest(points.reshape(-1, 1, 3)).reshape(points.shape[:2]) > 0.0
         always, ever = within.all(axis=0), within.any(axis=0)
         return bool(always.any() and always.sum() >= _ALIKE * ever.sum())
 

@@ -66,7 +66,8 @@ def with_causes(results: Sequence[CheckResult], robot: Robot | None) -> tuple[Ch
     for root in findings:
         if id(root) not in above:
             followers = [item for item in findings if roots[id(item)] is root and item.suppressed is None]
-            final[id(root)] = replace(root, severity=_worst([root, *followers]))
+            worst = min((item.severity for item in (root, *followers)), key=_ORDER.index)
+            final[id(root)] = replace(root, severity=worst)
     for finding in findings:
         if id(finding) in above:
             cause = final[id(roots[id(finding)])]
@@ -85,10 +86,6 @@ def _cause(finding: Finding, findings: Sequence[Finding], subjects: _Subjects) -
     ]
     fits = [item for item in fits if item.severity is not Severity.NOTE or finding.severity is Severity.NOTE]
     return min(fits, key=lambda item: _ORDER.index(item.severity), default=None)
-
-
-def _worst(findings: Sequence[Finding]) -> Severity:
-    return min((item.severity for item in findings), key=_ORDER.index)
 
 
 class _Subjects:

@@ -183,7 +183,8 @@ def _take_counts(reading: ParseState, parameter: Parameter, counts: list[_Count]
     places = [_place(reading, c.where.stop) or _place_before(reading, c.where.start) for c in numbered]
     apart = len(numbered) > 1 and all(places) and len(set(places)) == len(places)
     # `a glass door and a steel door` are two.
-    apart = apart or (len(numbered) > 1 and all(reading.text(count.counting[0]) in ARTICLES for count in numbered))
+    articles = all(count.counting and reading.text(count.counting[0]) in ARTICLES for count in numbered)
+    apart = apart or (len(numbered) > 1 and articles)
     totals = [_total(reading, count) for count in numbered]
     if apart:
         total = sum(totals)

@@ -89,6 +89,8 @@ LEVELS = {
 """Places that are said without a noun behind them: `with a drawer below`."""
 MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word in material.words}
 _UNDER_WHOLE = ("wheel", "caster", "castor", "leg", "foot", "roller", "runner", "base", "stand", "track", "skid")
+_HINGES = ("front", "rear", "top", "bottom")
+"""Where something is hinged that is no way to go."""
 _PIECES = ("half", "part", "piece", "section", "leaf")
 """What is in two of them is two."""
 _GROUPS = ("row", "column", "stack", "grid", "pair", "set", "bank", "line")
@@ -719,6 +721,9 @@ class _Parser(Words):
             end += 1
         way = self.given(end).removesuffix("s")
         far = self._far(end + 1 if way in WAYS else k + 1)
+        if word in ("hinged", "hinges", "hinge") and self.given(end) in _HINGES:
+            self.claim(subject, "hinge", self.given(end), k, end)
+            return end + 1
         if way in WAYS and not (way == "up" and self.given(end + 1) == "to"):
             both = self.given(end + 1) == "and" and self.given(end + 2).removesuffix("s") in WAYS
             if word in ("hinged", "hinges", "hinge"):

@@ -52,6 +52,7 @@ _OPEN = {"share": "open", "angle": "open_angle", "distance": "open_distance"}
 _HANDLES = ("handle", "knob", "pull", "grip")
 """Words for handles, which are no parts of their own."""
 _SIZE = 0.02  # of a size, by which it may be off
+_LESS = 0.95  # so much smaller, a size makes another object
 _ABSURD = 4.0  # times out of its range, something is no such object
 
 
@@ -253,20 +254,23 @@ def _built_so_that_it_matters(reading: ParseState, parameter: Parameter, made: B
 
 
 def _matters(reading: ParseState, parameter: Parameter, values: Mapping[str, Value], made: Blueprint) -> bool:
-    """Whether another value of a parameter would make another object."""
+    """Whether another value of a parameter would make another object: any other choice, one of the next numbers."""
     value = values[parameter.name]
     if isinstance(value, str):
         others: list[Value] = [choice for choice in parameter.choices if choice != value]
     else:
         low, high = parameter.bounds or (value, value)
-        others = [type(value)(end) for end in (value - 1, value + 1, low, high) if low <= end <= high and end != value]
-    for other in others:
-        try:
-            if _shape(build(reading.family, {**values, parameter.name: other})) != _shape(made):
-                return True
-        except InputError:
-            return True
-    return not others
+        near = (value - 1, value + 1) if isinstance(value, int) else (_LESS * value, value / _LESS)
+        others = [end for end in near if low <= end <= high]
+        others += [type(value)(end) for end in (low, high) if end != value and len(others) < len(near)]
+    return not others or any(_differs(reading, {**values, parameter.name: other}, made) for other in others)
+
+
+def _differs(reading: ParseState, values: Mapping[str, Value], made: Blueprint) -> bool:
+    try:
+        return _shape(build(reading.family, values)) != _shape(made)
+    except InputError:
+        return True
 
 
 def _shape(made: Blueprint) -> tuple[object, ...]:
