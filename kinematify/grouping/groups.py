@@ -18,7 +18,7 @@ from kinematify.robot.appearance import joined
 from kinematify.robot.exact_faces import joined_faces
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
     from pathlib import Path
 
     from kinematify.config import GroupingConfig
@@ -52,6 +52,11 @@ class Grouping:
     """In the order of the parts."""
     rejected: tuple[Group, ...] = ()
     """The likeliest sets of pieces that were not taken for moving parts, the likeliest first."""
+    doubtful: tuple[tuple[int, IntArray], ...] = ()
+    """Groups with a piece of the body that may be of them: index of the group, and of this piece, with what rides on
+    it, in `pieces`."""
+    pieces: Assembly | None = None
+    """What was grouped, where there are doubtful pieces."""
 
     @property
     def messages(self) -> tuple[str, ...]:
@@ -132,12 +137,12 @@ def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeigh
     if len(kept) < 2:
         raise one_part(assembly)
     weights = weights or shipped_weights()
-    candidates, odds, pairs = judged([parts[k] for k in kept], weights)
+    candidates, odds, pairs, of_pairs = judged([parts[k] for k in kept], weights)
     node = node_of_pieces([assembly.original_names.get(parts[k].name, "") for k in kept], pairs)
     if node is not None:
         node_of_part = node[np.searchsorted(kept, owner)]
         nodes = joined_pieces(assembly, [np.flatnonzero(node_of_part == k) for k in np.unique(node)])
-        sets, of_nodes, _ = judged(nodes.parts, weights)
+        sets, of_nodes, *_ = judged(nodes.parts, weights)
         best = dict(zip(candidates, odds, strict=True))
         for members, value in zip(sets, of_nodes + _WHOLE_NODES, strict=True):
             pieces = frozenset(np.flatnonzero(np.isin(node, list(members))).tolist())
@@ -157,9 +162,12 @@ def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeigh
         indices, moves = indices[1:], moves[1:]
     if len(indices) < 2:
         raise one_part(assembly)
+    doubtful = {} if node is not None else _doubtful(label[kept], pairs, of_pairs)
     return Grouping(
         assembly=joined_pieces(assembly, indices),
         groups=tuple(_group(assembly, index, chance) for index, chance in zip(indices, moves, strict=True)),
+        doubtful=tuple((k + 1, np.flatnonzero(owner == kept[piece])) for k, piece in doubtful.items()),
+        pieces=assembly if doubtful else None,
         rejected=tuple(
             _group(assembly, kept[sorted(candidates[row])], round(float(likely[row]), 3))
             for row in rejected
@@ -168,16 +176,69 @@ def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeigh
     )
 
 
-def judged(parts: Sequence[Part], weights: PieceWeights) -> tuple[list[Candidate], FloatArray, IntArray]:
-    """Sets of pieces that may be a moving part, the log odds of each, shape (c,), and neighbours, shape (m, 2)."""
+def _doubtful(label: IntArray, pairs: IntArray, odds: FloatArray) -> dict[int, int]:
+    """The piece of the body that is likeliest one with each chosen set, where that is likelier than not; by the set.
+
+    Args:
+        label: Number of the set of every piece, -1 for the body, shape (n,).
+        pairs: Neighbours, shape (m, 2).
+        odds: Log odds that they are rigidly one, shape (m,).
+    """
+    found: dict[int, int] = {}
+    for row in np.argsort(-odds, kind="stable").tolist():
+        piece, other = sorted(pairs[row].tolist(), key=lambda k: int(label[k]))
+        own = int(label[other])
+        if odds[row] > 0.0 and label[piece] < 0 <= own and own not in found and piece not in found.values():
+            found[own] = piece
+    return {} if len(found) == int((label < 0).sum()) else found
+
+
+def completed(grouping: Grouping, chosen: Collection[int]) -> Grouping:
+    """The grouping in which some groups have their doubtful pieces, which the body loses.
+
+    Args:
+        grouping: Groups in the order of their parts, the body first.
+        chosen: Indices of these groups.
+    """
+    if grouping.pieces is None or not chosen:
+        return grouping
+    index = {name: k for k, name in enumerate(grouping.pieces.names)}
+    label = np.empty(len(index), dtype=np.int64)
+    for number, group in enumerate(grouping.groups):
+        label[[index[name] for name in group.pieces]] = number
+    for number, more in grouping.doubtful:
+        if number in chosen:
+            label[more] = number
+    indices = [np.flatnonzero(label == number) for number in range(len(grouping.groups))]
+    moves = [group.moves for group in grouping.groups]
+    joined = {grouping.pieces.names[k] for number, more in grouping.doubtful if number in chosen for k in more}
+    return replace(
+        grouping,
+        rejected=tuple(group for group in grouping.rejected if joined.isdisjoint(group.pieces)),
+        assembly=joined_pieces(grouping.pieces, indices),
+        groups=tuple(_group(grouping.pieces, own, chance) for own, chance in zip(indices, moves, strict=True)),
+    )
+
+
+def sureness(joints: Sequence[JointEstimate], config: GroupingConfig) -> dict[int, float]:
+    """Confidence of the joints that move and that are not likelier fixed, by child."""
+    return {
+        joint.child: joint.confidence
+        for joint in joints
+        if joint.kind is not JointType.FIXED and joint.evidence.get("probability_fixed", 0.0) <= config.fixed
+    }
+
+
+def judged(parts: Sequence[Part], weights: PieceWeights) -> tuple[list[Candidate], FloatArray, IntArray, FloatArray]:
+    """Sets of pieces that may be a moving part, their log odds, shape (c,); neighbours, shape (m, 2), and theirs."""
     measured = measure_pieces(parts)
     odds = odds_of(weights.pairs, measured.columns, measured.names)
     candidates = propose(measured, odds)
     if not candidates:
-        return [], np.empty(0), measured.pairs
+        return [], np.empty(0), measured.pairs, odds
     areas = np.array([part.area for part in parts])
     columns, names = measure_candidates(measured, odds, areas, candidates)
-    return candidates, odds_of(weights.moving, columns, names), measured.pairs
+    return candidates, odds_of(weights.moving, columns, names), measured.pairs, odds
 
 
 def odds_of(scorer: Scorer, columns: FloatArray, names: tuple[str, ...]) -> FloatArray:

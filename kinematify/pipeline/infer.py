@@ -18,7 +18,7 @@ from kinematify.contact.build import build_contact_graph
 from kinematify.contact.seams import find_cuts, joined, rigid_pieces
 from kinematify.errors import InputError
 from kinematify.geometry.surface import part_surfaces
-from kinematify.grouping.groups import Grouping, fixed_merged, group_pieces, unsure
+from kinematify.grouping.groups import Grouping, completed, fixed_merged, group_pieces, sureness, unsure
 from kinematify.joints.bearings.fit import fit_bearings
 from kinematify.pipeline.heading import heading_of, turned, with_heading
 from kinematify.pipeline.inference import Inference
@@ -98,6 +98,8 @@ def infer(
             assembly = group_pieces(assembly, config.grouping)
     if isinstance(assembly, Grouping):
         found = infer(assembly.assembly, config=config, base=base, graph=graph, progress=progress)
+        if base is None and graph is None:
+            assembly, found = _with_doubtful_pieces(assembly, found, config, progress)
         merged = fixed_merged(assembly, found.joints, config.grouping)
         if merged is not assembly and (base is None or base in merged.assembly.names):
             return infer(merged, config=config, base=base, progress=progress)
@@ -142,3 +144,23 @@ def infer(
         peak_mb=peak_mb(),
         warnings=warnings_of(assembly, graph, bearings, trees, joints, config=config),
     )
+
+
+def _with_doubtful_pieces(
+    grouping: Grouping, found: Inference, config: Config, progress: Progress | None
+) -> tuple[Grouping, Inference]:
+    """Groups whose joints are surer with their doubtful pieces have them, if all joints together are surer then."""
+    everything = [number for number, _ in grouping.doubtful]
+    if not everything:
+        return grouping, found
+    before = sureness(found.joints, config.grouping)
+    fuller = infer(completed(grouping, everything).assembly, config=config, progress=progress)
+    after = sureness(fuller.joints, config.grouping)
+    chosen = [number for number in everything if after.get(number, 0.0) > before.get(number, 0.0)]
+    if not chosen:
+        return grouping, found
+    tried = completed(grouping, chosen)
+    if chosen != everything:
+        fuller = infer(tried.assembly, config=config, progress=progress)
+    better = sum(sureness(fuller.joints, config.grouping).values()) > sum(before.values())
+    return (tried, fuller) if better else (grouping, found)

@@ -11,12 +11,24 @@ import pytest
 import trimesh
 
 from kinematify.assembly.load import load_assembly
+from kinematify.assembly.part import Assembly, Part
 from kinematify.assembly.pieces import connected_sheets
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
 from kinematify.grouping.candidates import node_of_pieces
-from kinematify.grouping.groups import Group, Grouping, fixed_merged, group_pieces, joined_pieces, read_groups, unsure
+from kinematify.grouping.groups import (
+    Group,
+    Grouping,
+    completed,
+    fixed_merged,
+    group_pieces,
+    joined_pieces,
+    read_groups,
+    sureness,
+    unsure,
+)
 from kinematify.joints.candidate import JointEstimate, JointType
+from kinematify.pipeline.infer import infer
 from kinematify.robot.mesh_file import RawMesh
 from tests.one_mesh import box, write_bin_with_lid
 
@@ -81,6 +93,39 @@ def test_a_group_whose_joint_says_fixed_is_merged_into_its_parent_unless_a_user_
     assert unsure(merged, [*doubtful, joints[0]], config) == ()
     stated = replace(merged, groups=tuple(replace(group, moves=None) for group in merged.groups))
     assert unsure(stated, doubtful, config) == (), "a user stated them"
+
+
+def test_a_front_that_was_left_in_the_body_joins_its_drawer_because_the_joint_is_surer() -> None:
+    boards = {
+        "bottom": ((0.4, 0.5, 0.02), (0, 0, 0.01)),
+        "top": ((0.4, 0.5, 0.02), (0, 0, 0.19)),
+        "left": ((0.02, 0.5, 0.16), (-0.19, 0, 0.1)),
+        "right": ((0.02, 0.5, 0.16), (0.19, 0, 0.1)),
+        "back": ((0.36, 0.02, 0.16), (0, 0.24, 0.1)),
+        "front": ((0.36, 0.02, 0.156), (0, -0.245, 0.1)),
+        "tray": ((0.35, 0.45, 0.01), (0, -0.01, 0.03)),
+        "tray_left": ((0.01, 0.45, 0.1), (-0.17, -0.01, 0.085)),
+        "tray_right": ((0.01, 0.45, 0.1), (0.17, -0.01, 0.085)),
+    }
+    meshes = {name: box(*placed) for name, placed in boards.items()}
+    parts = tuple(Part(name=name, vertices=mesh.vertices, faces=mesh.faces) for name, mesh in meshes.items())
+    pieces, names = Assembly(parts=parts, source="drawer", segmented=False), tuple(boards)
+    grouping = Grouping(
+        assembly=joined_pieces(pieces, [np.arange(6), np.arange(6, 9)]),
+        groups=(Group(name="bottom", pieces=names[:6]), Group(name="tray", pieces=names[6:], moves=0.6)),
+        rejected=(Group(name="front", pieces=("front",), moves=0.4),),
+        doubtful=((1, np.array([5])),),
+        pieces=pieces,
+    )
+    found = infer(grouping)
+    assert found.grouping is not None
+    assert [set(group.pieces) for group in found.grouping.groups] == [set(names[:5]), set(names[5:])]
+    assert found.grouping.rejected == (), "it is in a part now"
+    assert [joint.kind for joint in found.joints] == [JointType.PRISMATIC]
+    joint, config = found.joints[0], load_config().grouping
+    assert sureness([joint], config) == {1: joint.confidence}
+    assert sureness([replace(joint, evidence={"probability_fixed": 0.9})], config) == {}
+    assert completed(grouping, []) is grouping
 
 
 def test_nodes_that_hang_together_are_evidence_and_name_the_parts(bin_with_lid: Path, tmp_path: Path) -> None:
