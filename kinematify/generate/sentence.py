@@ -116,9 +116,10 @@ class _Plan:
         return {} if self.others else compare(self.specification, blueprint, self.nouns).names
 
     @cached_property
-    def fault(self) -> int:
-        """Words that are not built."""
-        return sum(len(words.split("(")[0].split()) for words in self.missing(self.blueprint))
+    def fault(self) -> tuple[int, int]:
+        """Words that are not built, and mechanisms that such an object has not by itself."""
+        missing = self.missing(self.blueprint)
+        return sum(len(words.split("(")[0].split()) for words in missing), len(self.request.added)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,7 +145,7 @@ class Sentence:
                 for plan in _plans(specification):
                     if best is None or plan.fault < best.fault:
                         best = plan
-                    if best.fault == 0:
+                    if best.fault == (0, 0):
                         return best
             except InputError as error:
                 reason = reason or error
@@ -284,9 +285,17 @@ def _scenes(text: str, harmless: tuple[str, ...]) -> Iterator[Specification]:
         return
     for pattern, how in ((_ON_TOP, "carrying"), (_ON, "on"), (_AND, "beside")):
         found = pattern.search(text)
-        if found is not None:
+        if found is not None and not _names_a_part(found["other"]):
             pair = ("other", "one") if how == "carrying" else ("one", "other")
             yield from _joined(found[pair[0]], how, found[pair[1]], harmless)
+
+
+def _names_a_part(text: str) -> bool:
+    """Whether `the door` is that of what was named before, and no object of its own."""
+    from kinematify.generate.composer.sentence import nouns_of_mechanisms  # noqa: PLC0415 - with the library
+
+    words = text.lower().rstrip(" .!").split()
+    return words[0] in ("the", "its") and lemma(words[-1]) in nouns_of_mechanisms()
 
 
 def _joined(one: str, how: str, other: str, harmless: tuple[str, ...]) -> Iterator[Specification]:

@@ -273,3 +273,24 @@ def test_a_count_without_a_description_is_refused() -> None:
 
 def test_a_colour_that_is_asked_for_is_that_of_the_base() -> None:
     assert from_text("a blue tractor").build().parts[0].color == COLORS["blue"]
+
+
+@pytest.mark.parametrize(
+    ("sentence", "what", "carriers"),
+    [
+        ("a wardrobe with two doors and a mirror on the left door", "mirror", {"door_0"}),
+        ("a locker with three doors and vents in each door", "vent", {"door_1", "door_2", "door_3"}),
+        ("a fridge with a nameplate on the door", "nameplate", {"door_1"}),
+    ],
+)
+def test_what_a_kind_has_not_is_put_on_the_part_that_is_named(sentence: str, what: str, carriers: set[str]) -> None:
+    made = from_text(sentence).made(seed=0)
+    assert made.not_built == ()
+    plates = [joint for joint in made.blueprint.joints if joint.child.startswith(what)]
+    assert {joint.parent for joint in plates} == carriers
+    for plate in plates:  # it goes with its carrier, and nothing is in its way
+        far = made.blueprint.moved({plate.parent: made.blueprint.joint_above[plate.parent].upper})
+        solids = {part.name: solid_of(part) for part in far.parts}
+        assert (
+            max((solids[plate.child] ^ other).volume() for name, other in solids.items() if name != plate.child) < 1e-9
+        )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import islice, product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,8 @@ from kinematify.errors import InputError
 from kinematify.generate.composer.bodies import BODY
 from kinematify.generate.composer.place import Placement
 from kinematify.generate.composer.side import FACING, columns
+from kinematify.generate.procedural.clearance import carried_by, depth_of, moving_with, solid_of
+from kinematify.generate.procedural.language.words import lemma, stem_of
 from kinematify.generate.procedural.pieces.fronts import Bay, Fitting
 from kinematify.generate.procedural.solids import box
 from kinematify.generate.procedural.workshop import Workshop
@@ -19,6 +22,7 @@ from kinematify.generate.procedural.workshop import Workshop
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kinematify.assembly.part import Part
     from kinematify.generate.composer.compose import MechanismSpec
     from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.robot.arrays import FloatArray
@@ -26,25 +30,52 @@ if TYPE_CHECKING:
 _SCALES = (1.0, 0.7, 0.5)
 """Of the mechanism, from usual to small."""
 _CELL = 1.3  # sides of a place, in those that the mechanism needs at least
-_MARGIN, _THICK = 1.15, 0.015  # of the plate about its places; thickness [m]
+_MARGIN, _THICK, _THIN = 1.15, 0.015, 0.003  # of the plate about its places; thickness, where nothing moves [m]
 _LEVEL = 1e-3  # of a surface [m]
 _GAP = 5e-4  # between the surface and the plate [m]
+_MOST_PLACES = 12  # that are tried
 _GRID = 13  # places along either side of the object at which it is looked for
 _SAMPLES, _STEPS = 5, 5  # points of a plate along either side; poses of a joint
 _QUARTER = 0.5 * math.pi
 
 
 def attached(blueprint: Blueprint, wanted: MechanismSpec, *, clearance: float = 0.001) -> Blueprint:
-    """Return an object with mechanisms on a plate that is fixed to its base link.
+    """Return an object with mechanisms on a plate that is fixed to its base link, or to the part that carries them.
 
     Args:
         blueprint: Closed.
-        wanted: What, how many, and on which side; its usual one if none is said.
+        wanted: What, how many, on which part, and on which side; its usual one if none is said.
         clearance: Gap between parts that move past each other [m].
 
     Raises:
-        InputError: No side has a level, free place of its size.
+        InputError: There is no such part, or no side of it has a level, free place of its size.
     """
+    for k, carrier in enumerate(_carriers(blueprint, wanted)):
+        blueprint = _on_part(blueprint, carrier, wanted, clearance, f"_{k + 1}" if k else "")
+    return blueprint
+
+
+def _carriers(blueprint: Blueprint, wanted: MechanismSpec) -> list[Part]:
+    """The parts that mechanisms stand on: the base link, each of a name, or the one at the place that is said.
+
+    Raises:
+        InputError: None is called so, or the place says none of them.
+    """
+    words = wanted.carrier.split()
+    if not words:
+        return [blueprint.parts[0]]
+    noun = lemma(words[-1])
+    found = [part for part in blueprint.parts if f"_{stem_of(part.name)}".endswith(f"_{noun}")]
+    side = next((word for word in words if word in FACING), "")
+    if side and found:
+        outward = -np.array(FACING[side], dtype=np.float64)[1]
+        found = [max(found, key=lambda part: float(part.bounds.mean(axis=0) @ outward))]
+    if not found or (len(found) > 1 and not {"each", "every", "both", "all"} & set(words)):
+        raise InputError(f"There is no one {noun} for a {wanted.title}.")
+    return found
+
+
+def _on_part(blueprint: Blueprint, carrier: Part, wanted: MechanismSpec, clearance: float, number: str) -> Blueprint:
     kind = wanted.mechanism
     if kind.arranged != "grid" or (wanted.side and wanted.side not in kind.sides):
         raise InputError(f"There is no place for a {wanted.title} there.")
@@ -53,26 +84,43 @@ def attached(blueprint: Blueprint, wanted: MechanismSpec, *, clearance: float = 
         plate = plate.scaled(scale) if scale < 1.0 else plate
         size = np.ptp(plate.parts[0].bounds, axis=0)[[0, 2]]
         for side in (wanted.side,) if wanted.side else kind.sides:
-            for middle in _places(blueprint, side, size):
+            for middle in islice(_places(blueprint, carrier, side, size), _MOST_PLACES):
                 turn = np.array(FACING[side], dtype=np.float64).T
                 place = np.eye(4)
                 place[:3, :3], place[:3, 3] = turn, turn @ (middle - np.array([0.0, _GAP, 0.0]))
-                made = blueprint.carrying(replace(plate, family=f"{wanted.stem}_plate"), blueprint.root, place)
-                plain = {part.name: f"{wanted.stem}_plate_{part.name}" for part in plate.parts[1:]}
-                free = {part.name for part in blueprint.parts}
-                return made.renamed({new: old for old, new in plain.items() if old not in free})
+                name = f"{wanted.stem}{number}{'_plate' if kind.moves else ''}"
+                made = blueprint.carrying(replace(plate, family=name), carrier.name, place)
+                if _stays_clear(made, carrier.name, name):
+                    plain = {part.name: f"{name}_{part.name}" for part in plate.parts[1:]}
+                    free = {part.name for part in blueprint.parts}
+                    return made.renamed({new: old for old, new in plain.items() if old not in free})
     raise InputError(f"There is no level, free place for a {wanted.title}.")
+
+
+def _stays_clear(made: Blueprint, carrier: str, plate: str) -> bool:
+    """Whether a plate is not in what carries it, a handle say, and meets nothing while that moves."""
+    joint = made.joint_above.get(carrier)
+    is_fixed = joint is None or not math.isfinite(joint.upper - joint.lower)
+    for value in [0.0] if joint is None or is_fixed else np.linspace(joint.lower, joint.upper, _STEPS):
+        parts = made.moved({carrier: float(value)}).parts
+        others = {part.name for part in parts} - (carried_by(plate, made.joints) if is_fixed else set())
+        others -= set() if is_fixed else moving_with(carrier, made.joints) - {carrier}
+        solids = {part.name: solid_of(part) for part in parts if part.name in {plate, *others}}
+        if any(depth_of(solids[plate], solids[name]) > _GAP for name in others):
+            return False
+    return True
 
 
 def _plate(wanted: MechanismSpec, clearance: float) -> Blueprint:
     """A plate with mechanisms side by side, its back in the plane y = 0."""
     side = _CELL * max(wanted.mechanism.least)
     width = side * wanted.count
+    thick = _THICK if wanted.mechanism.moves else _THIN
     half_width, half_height = 0.5 * _MARGIN * width, 0.5 * _MARGIN * side
     workshop = Workshop(f"{wanted.stem}_plate", material="plastic", color="dark grey")
-    workshop.body(BODY, box((-half_width, -_THICK, -half_height), (half_width, 0.0, half_height)))
-    area = Bay(left=-0.5 * width, right=0.5 * width, bottom=-0.5 * side, top=0.5 * side, depth=_THICK, wall=_THICK)
-    surface = np.column_stack([np.eye(3), (0.0, -_THICK, 0.0)])
+    workshop.body(BODY, box((-half_width, -thick, -half_height), (half_width, 0.0, half_height)))
+    area = Bay(left=-0.5 * width, right=0.5 * width, bottom=-0.5 * side, top=0.5 * side, depth=thick, wall=thick)
+    surface = np.column_stack([np.eye(3), (0.0, -thick, 0.0)])
     for k, bay in enumerate(columns(area, wanted.count)):
         wanted.mechanism.build(
             Placement(
@@ -89,33 +137,41 @@ def _plate(wanted: MechanismSpec, clearance: float) -> Blueprint:
     return workshop.finish(f"{wanted.stem}_plate", {}, style="clean", clearance=clearance, rng=rng)
 
 
-def _places(blueprint: Blueprint, side: str, size: FloatArray) -> Iterator[FloatArray]:
-    """Find level places of the base link that nothing goes before, the most central first.
+def _places(blueprint: Blueprint, carrier: Part, side: str, size: FloatArray) -> Iterator[FloatArray]:
+    """Find level places of a part that nothing goes before, the most central first.
 
     Yields:
         Their middles in the frame of a side, shape (3,): to the right, into the object, and up [m].
     """
     turn = np.array(FACING[side], dtype=np.float64)
-    base = blueprint.parts[0]
-    corners = (base.vertices @ turn.T)[base.faces]
+    corners = (carrier.vertices @ turn.T)[carrier.faces]
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
-    others = [bounds @ turn.T for bounds in _swept(blueprint)]
+    is_base = carrier is blueprint.parts[0]
+    others = [bounds @ turn.T for bounds in _swept(blueprint, carrier)]
+    deepest = float(high[1] if is_base else low[1])
     at = [np.linspace(low[k] + 0.5 * size[j], high[k] - 0.5 * size[j], _GRID) for j, k in enumerate((0, 2))]
     if (high[[0, 2]] - low[[0, 2]] < size).any():
         return
     centre = 0.5 * (low + high)[[0, 2]]
     middles = sorted(((x, z) for x in at[0] for z in at[1]), key=lambda place: float(np.hypot(*(place - centre))))
-    shares = np.linspace(-0.5, 0.5, _SAMPLES)
+    shares = sorted(np.linspace(-0.5, 0.5, _SAMPLES), key=abs, reverse=True)  # corners tell soonest
     for x, z in middles:
-        if any(_before(box_, np.array([x, z]), size, high[1]) for box_ in others):
+        if any(_before(box_, np.array([x, z]), size, deepest) for box_ in others):
             continue
-        depths = [_depth(corners, x + a * size[0], z + b * size[1]) for a in shares for b in shares]
-        if np.isfinite(depths).all() and np.ptp(depths) < _LEVEL:
+        depths: list[float] = []
+        for a, b in product(shares, shares):
+            depths.append(_depth(corners, x + a * size[0], z + b * size[1]))
+            if not max(depths) - min(depths) < _LEVEL:  # nor is it where nothing is
+                break
+        else:
             yield np.array([x, min(depths), z])
 
 
-def _swept(blueprint: Blueprint) -> list[FloatArray]:
-    """Bounds of the moving parts in some poses, shape (2, 3) each."""
+def _swept(blueprint: Blueprint, carrier: Part) -> list[FloatArray]:
+    """Bounds of the parts that a part does not carry, shape (2, 3) each: of those that move, in some poses."""
+    own = carried_by(carrier.name, blueprint.joints)
+    if carrier is not blueprint.parts[0]:
+        return [part.bounds for part in blueprint.parts if part.name not in own]
     found = []
     for share in np.linspace(0.0, 1.0, _STEPS):
         values = {

@@ -64,6 +64,8 @@ class MechanismSpec:
     """``left`` or ``right``, of a door."""
     members: int = 0
     """Blades and the like of each; 0: as usual."""
+    carrier: str = ""
+    """What carries it, as it is called: ``each door``, ``the left door``; the body if empty."""
     material: str | None = None
     color: str | None = None
 

@@ -173,6 +173,32 @@ def _plate(place: Placement, material: str, color: str | None = None) -> None:
     place.workshop.add(BODY, *place.workshop.painted(plate, material=material, color=color))
 
 
+def _dome(place: Placement, material: str, color: str | None = None) -> None:
+    """Half a ball on the surface; it belongs to the body."""
+    radius = min(0.5 * place.radius, 0.02)
+    dome = ball(radius, place.middle) - box((-9.0, 1e-3, -9.0), (9.0, 9.0, 9.0))
+    place.workshop.add(BODY, *place.workshop.painted(dome, material=material, color=color))
+
+
+def _vent(place: Placement) -> None:
+    """A plate with slots; it belongs to the body."""
+    x, _, z = place.middle
+    wide, high = 0.45 * place.area.width, 0.45 * place.area.height
+    slots = [box((x - 0.8 * wide, -0.1, z + k * high - 0.08 * high), (x + 0.8 * wide, 0.1, z + k * high + 0.08 * high))
+             for k in (-0.6, -0.2, 0.2, 0.6)]  # fmt: skip
+    plate = box((x - wide, -0.004, z - high), (x + wide, 1e-3, z + high)) - union(*slots)
+    place.workshop.add(BODY, *place.workshop.painted(plate, material="plastic", color="dark grey"))
+
+
+def _basket(place: Placement) -> None:
+    """An open box before the surface; it belongs to the body."""
+    area, wall = place.area, 0.004
+    deep = min(0.8 * area.width, 0.25)
+    low, high = (area.left, -deep, area.bottom), (area.right, 1e-3, area.top)
+    inner = box((area.left + wall, wall - deep, area.bottom + wall), (area.right - wall, -wall, 9.0))
+    place.workshop.add(BODY, *place.workshop.painted(box(low, high) - inner, material="metal"))
+
+
 def _mirror(place: Placement) -> None:
     """A plate that stands at the rear edge; it belongs to the body."""
     area, half = place.area, 0.35 * place.area.width
@@ -502,6 +528,8 @@ class MechanismKind:
     """What it has several of, which may be counted: the blades of a rotor."""
     halves: bool = False
     """On the left or the right is said of the half of a side that it covers."""
+    on_parts: Callable[[Placement], None] | None = None
+    """How it is built on a door, a lid or the like, where that is otherwise."""
 
 
 _BUILDERS: Mapping[str, Callable[[Placement], None]] = {
@@ -509,6 +537,7 @@ _BUILDERS: Mapping[str, Callable[[Placement], None]] = {
         build.__name__.removeprefix("_").removeprefix("add_"): build
         for build in (
             _door, _drawer, _flap, _lid, _shutter, _sash, _trunk, _ladder, _vise, _rail, _mirror, _shelf, _round_lid,
+            _vent, _basket,
             _compartment, _knob, _button, _slider, _latch, _flag, _seat, _desktop, _screen, _lever, _crank, _hand_wheel,
             _needle, _wheel, _caster, _rotor, _turntable, _telescope, _bail, _arm, _push_handle, add_cantilever_tray,
             add_scissor_lift, add_gripper, add_hook, add_pedal, add_leg,
@@ -517,13 +546,16 @@ _BUILDERS: Mapping[str, Callable[[Placement], None]] = {
     "display": partial(_plate, material="plastic", color="dark grey"),
     "window": partial(_plate, material="mirror"),
     "lock": partial(_plate, material="metal"),
+    "light": partial(_dome, material="glass", color="orange"),
+    "bell": partial(_dome, material="metal"),
 }  # fmt: skip
 
 
 def _kind(said: Mapping[str, Any]) -> MechanismKind:
     listed = {name: phrases(said[name]) for name in ("words", "members") if name in said}
     pairs = {name: tuple(said[name]) for name in ("sides", "least") if name in said}
-    return MechanismKind(**{**said, **listed, **pairs, "build": _BUILDERS[said["build"]]})
+    built = {name: _BUILDERS[said[name]] for name in ("build", "on_parts") if name in said}
+    return MechanismKind(**{**said, **listed, **pairs, **built})
 
 
 MECHANISMS = tuple(_kind(said) for said in read_table(Path(__file__).with_name("mechanisms.yaml")))

@@ -27,6 +27,7 @@ _FLANKS = ("left", "right")
 _ENDS = ("front", "back", "rear")
 """Sides that are said before a noun; a left door is the left one of two."""
 _AXES = {"width": 0, "length": 0, "depth": 1, "height": 2}
+_UPRIGHT = ("front", "top", "right", "left", "back")
 _HANDLES = ("handle", "handles", "pull", "grip")
 MOST_COPIES = 12
 """Side by side."""
@@ -338,20 +339,23 @@ def _mechanisms() -> Mapping[tuple[str, ...], MechanismKind]:
 
 
 def mechanism_for(part: PartSpecification) -> MechanismSpec | None:
-    """The mechanism that a part asks for, which an object has not; none if it belongs to another part."""
-    words, said = part.noun.split(), {claim.about: claim.value for claim in part.claims}
-    kinds = (_mechanisms().get(tuple(words[k:])) for k in range(len(words)))
-    kind = next((kind for kind in kinds if kind is not None and kind.arranged == "grid"), None)
-    related = [claim.value[1] for claim in part.claims if claim.about == "relation"]
-    if kind is None or part.of or part.absent or (related and related[0].split()[-1] not in _SIDES):
+    """The mechanism that a part asks for, which an object has not."""
+    words, said = part.noun.split(), {claim.about: claim for claim in part.claims}
+    named = [(kind, words[k:]) for k in range(len(words)) if (kind := _mechanisms().get(tuple(words[k:])))]
+    kind, words = next((item for item in named if item[0].arranged == "grid" or item[0].on_parts), (None, words))
+    carrier = f"each {part.of}" if part.of else ""
+    if "relation" in said and said["relation"].value[1].split()[-1] not in _SIDES:
+        carrier = " ".join(_SIDES.get(word, word) for word in said["relation"].words.split())
+    if kind is None or part.absent or (kind.arranged != "grid" and not carrier) or (part.of and kind.moves):
         return None
     return MechanismSpec(
-        mechanism=kind,
-        said=words[-1],
-        count=min(part.count or _several(kind), _MOST_MEMBERS),
-        side=_SIDES.get(said.get("place", ""), ""),
-        material=said.get("material"),
-        color=said.get("color"),
+        mechanism=replace(kind, build=kind.on_parts, arranged="grid", sides=_UPRIGHT) if kind.on_parts else kind,
+        said=" ".join(words),
+        count=min(part.count or (1 if carrier else _several(kind)), _MOST_MEMBERS),
+        side=_SIDES.get(said["place"].value, "") if "place" in said else "",
+        carrier=carrier,
+        material=said["material"].value if "material" in said else None,
+        color=said["color"].value if "color" in said else None,
     )
 
 

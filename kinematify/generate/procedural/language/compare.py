@@ -693,7 +693,9 @@ def _is_before(one: Part, other: Part, sign: int) -> bool:
 
 
 def _ends_with(name: str, word: str) -> bool:
-    return any(f"_{stem}".endswith(f"_{word}") for stem in (stem_of(name), lemma(stem_of(name))))
+    """Whether a name ends with a word; ``drawer_0_top`` is the top one of some drawers, and no top."""
+    stems = [stem for stem in (stem_of(name), lemma(stem_of(name))) if f"_{stem}".endswith(f"_{word}")]
+    return any(word not in _PLACES or not stem.removesuffix(f"_{word}")[-1:].isdigit() for stem in stems)
 
 
 def _said(part: PartSpecification) -> str:

@@ -36,7 +36,8 @@ def _said_of(*ends: str) -> dict[str, str]:
 
 MOTIONS = {
     **{verb + end: moves for moves, verbs in _VERBS.items() for verb in verbs.split() for end in ("", "s")},
-    **_said_of("ing", "able", "ible"), "telescopic": "slides", "extendable": "slides", "hinged": "swings",
+    **_said_of("ing", "able", "ible"), "hinged": "swings",
+    **dict.fromkeys(("telescopic", "extendable"), "slides"),
     "telescoping": "slides", "rolls": "slides", "roll": "slides", "foldaway": "folds", "rotary": "turns",
     "revolving": "turns", "movable": "moves", "moving": "moves",
 }  # fmt: skip

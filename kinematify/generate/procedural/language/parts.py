@@ -103,7 +103,8 @@ def _ranged(blueprint: Blueprint, names: Sequence[str], much: float) -> Blueprin
         lower = 0.0 if is_open else joint.lower
         if math.isclose(joint.lower, -joint.upper):
             lower = -0.5 * much
-        if not is_open and much > joint.upper - joint.lower and not may_go(blueprint, joint.child, lower, lower + much):
+        farther = not is_open and much > joint.upper - joint.lower
+        if much <= 0.0 or (farther and not may_go(blueprint, joint.child, lower, lower + much)):
             raise InputError(f"The joint of {joint.child} does not go so far.")
         kind = JointType.REVOLUTE if joint.kind is JointType.CONTINUOUS else joint.kind
         joints[k] = replace(joint, kind=kind, lower=lower, upper=lower + much)
