@@ -262,7 +262,7 @@ class Workshop:
             self._rest[joint.child] = rest * joint.upper
 
     def open_by(self, far: Mapping[JointType, float], *, title: str) -> None:
-        """Let what stands open stand open by an angle or a distance, and all else closed.
+        """Let what stands open stand open by an angle or a distance, and all else closed; a door's handle rests.
 
         Args:
             far: Kind of joint -> how far [rad or m]; joints that go less far go to their end.
@@ -272,6 +272,8 @@ class Workshop:
             InputError: No joint that opens goes so far.
         """
         opening = [joint for joint in self._joints if self._rest.get(joint.child)]
+        turned = {joint.child for joint in opening if joint.kind is JointType.REVOLUTE}
+        opening = [item for item in opening if not (item.kind is JointType.REVOLUTE and item.parent in turned)]
         for kind, way in far.items():
             reach = max((joint.upper for joint in opening if joint.kind is kind), default=0.0)
             if way > reach + 1e-9:

@@ -76,3 +76,12 @@ def test_a_slide_stays_in_its_guide() -> None:
     joint = next(joint for joint in made.joints if joint.child.startswith("drawer"))
     assert may_go(made, joint.child, joint.lower, 1.02 * joint.upper)
     assert not may_go(made, joint.child, joint.lower, 2.0 * joint.upper)
+
+
+@pytest.mark.parametrize("sentence", ["a gate open by 40 degrees", "a door with a lever handle, open by 40 degrees"])
+def test_the_leaf_stands_open_and_not_its_handle(sentence: str) -> None:
+    made = from_text(sentence).made()
+    assert made.not_built == ()
+    above = made.blueprint.joint_above
+    assert above["leaf_1"].value == pytest.approx(math.radians(40))
+    assert above["handle_1"].value == 0.0

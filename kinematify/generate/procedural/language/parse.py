@@ -388,7 +388,8 @@ class _Parser(Words):
         while end < len(self.tokens) and self.given(end) not in (*_BEGINS_PART, "."):
             end += 1
         words = [self.given(i) for i in range(k, end)]
-        plain = [w for w in words if not self._is_adjective(w) and w not in UNITS and lemma(w) not in UNITS]
+        units = (*UNITS, *_ANGLES)
+        plain = [w for w in words if not self._is_adjective(w) and w not in units and lemma(w) not in units]
         plain = [w for w in plain if w not in STOP_WORDS and not w[:1].isdigit() and w not in NUMBERS]
         sizes = {word for names in DIMENSIONS.values() for word in names}
         if self.given(k) in ARTICLES and any(self._is_mirror(i) for i in range(k, end)):
