@@ -117,9 +117,9 @@ class _Plan:
 
     @cached_property
     def fault(self) -> tuple[int, int]:
-        """Words that are not built, and mechanisms that such an object has not by itself."""
-        missing = self.missing(self.blueprint)
-        return sum(len(words.split("(")[0].split()) for words in missing), len(self.request.added)
+        """Words that are not built; where none is left, mechanisms that such an object has not by itself."""
+        words = sum(len(item.split("(")[0].split()) for item in self.missing(self.blueprint))
+        return words, 0 if words else len(self.request.added)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -375,7 +375,9 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
     made = request.build()
     nouns = {" ".join(words): names for words, names in part_nouns(family, made).items()}
     compared = compare(specification, made, nouns)
-    added = tuple(item for part in compared.absent if (item := mechanism_for(part)) is not None)
+    chosen = set(made.parameters.values())  # knobs of drawers are there, and no parts
+    absent = [part for part in compared.absent if part.noun.split()[-1] not in chosen]
+    added = tuple(item for part in absent if (item := mechanism_for(part)) is not None)
     if added:  # they have looks and ranges, too
         request = replace(request, added=added)
         compared = compare(specification, request.build(), nouns)

@@ -102,7 +102,7 @@ class Comparison:
     """Parts that look otherwise than asked for: their names, and the material or the colour, the other one empty."""
     opened: tuple[tuple[tuple[str, ...], str, float], ...]
     """Parts that are not so far open as is asked for: their names; ``share``, ``angle`` [rad] or ``distance`` [m], and
-    how much. ``range``: that they go another way than asked for, and how long it is [rad or m]."""
+    how much. ``range``: that they have another range than is asked for, and how long it is [rad or m]."""
 
 
 @dataclass(kw_only=True)
