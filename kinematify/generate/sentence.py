@@ -61,7 +61,7 @@ _AND = re.compile(
     re.IGNORECASE,
 )
 _TOY = re.compile(r"\b(?:toy|model|miniature|dolls?(?:'s)?)\s+", re.IGNORECASE)
-_DRAWS, _NEXT_DRAW = 20, 1_000_003
+_DRAWS, _NEXT_DRAW, _FEW = 20, 1_000_003, 2  # an object with so few kinds of mechanism put on it is still that object
 _MANNERS = frozenset({*MOTIONS, *GOING, *KINDS, *STOP_WORDS, *MATERIAL_WORDS, *COLOR_WORDS, *SIZE_WORDS})
 """Words of a name without which it names an object of the same kind."""
 _SEVERAL = 400  # characters at most that may name several objects
@@ -117,9 +117,9 @@ class _Plan:
 
     @cached_property
     def fault(self) -> tuple[int, int]:
-        """Words that are not built; where none is left, mechanisms that such an object has not by itself."""
+        """Words that are not built; where none is left, mechanisms that are put on it beyond the usual few."""
         words = sum(len(item.split("(")[0].split()) for item in self.missing(self.blueprint))
-        return words, 0 if words else len(self.request.added)
+        return words, 0 if words else max(len(self.request.added) - _FEW, 0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -376,8 +376,8 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
     nouns = {" ".join(words): names for words, names in part_nouns(family, made).items()}
     compared = compare(specification, made, nouns)
     chosen = set(made.parameters.values())  # knobs of drawers are there, and no parts
-    absent = [part for part in compared.absent if part.noun.split()[-1] not in chosen]
-    added = tuple(item for part in absent if (item := mechanism_for(part)) is not None)
+    lacking = [part for part in compared.absent if part.noun.split()[-1] not in chosen]
+    added = tuple(filter(None, map(mechanism_for, lacking)))
     if added:  # they have looks and ranges, too
         request = replace(request, added=added)
         compared = compare(specification, request.build(), nouns)

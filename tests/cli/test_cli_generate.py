@@ -182,7 +182,7 @@ def test_the_categories_and_their_parameters_are_listed(capsys):
         (["--category", "cabinet", "--set", "drawer=2"], "Did you mean drawers"),
         (["--category", "cabinet", "--set", "drawers=500"], "from 0 to 40"),
         (["--category", "cabinet", "--set", "drawers"], "KEY=VALUE"),
-        (["--strict", "--text", "a cabinet with a vent"], "Not built: vent"),
+        (["--strict", "--text", "a cabinet with a projector"], "Not built: projector"),
         (["--text", "a cabinet", "--category", "cabinet"], "either --text, --category or --blueprint"),
         (["a tool box"], 'kinematify generate --text "a tool box"'),
         ([], "either --text, --category or --blueprint"),
@@ -196,11 +196,11 @@ def test_bad_requests_end_with_status_two_and_a_reason(arguments, reason, tmp_pa
 
 def test_what_is_not_built_is_listed_last_and_in_the_files(tmp_path, capsys):
     out = tmp_path / "out"
-    command = ["generate", "--text", "a cabinet with two doors and a vent", "-o", str(out)]
+    command = ["generate", "--text", "a cabinet with two doors and a projector", "-o", str(out)]
     assert run([*command, "--no-validation", "--no-preview"]) == 1
-    assert capsys.readouterr().out.splitlines()[-1] == "Not built: vent"
+    assert capsys.readouterr().out.splitlines()[-1] == "Not built: projector"
     facts = json.loads((out / "source.json").read_text())
-    assert facts["not_built"] == ["vent"]
+    assert facts["not_built"] == ["projector"]
     assert facts["understood"]["kind"] == "cabinet"
 
 

@@ -76,7 +76,7 @@ def test_a_mechanism_that_the_object_lacks_is_put_on_a_free_side():
     assert parts["knob"].color == COLORS["red"]
     body = parts[made.blueprint.root].bounds
     assert np.abs(parts["knob_plate"].bounds[:, None] - body[None]).min() < 0.002  # flush with one of its sides
-    assert said_of("a dishwasher with a bell") == "bell"
+    assert said_of("a dishwasher with a projector") == "projector"
 
 
 def test_one_part_may_look_otherwise_than_its_siblings():
