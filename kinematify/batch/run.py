@@ -88,8 +88,15 @@ class BatchRequest:
             "asked": [sorted(self.steps), sorted(self.formats), sorted(self.engines), self.reading],
             "kinematify": __version__,
         }
-        same = {name: getattr(self, name) for name in ("steps", "formats", "config", "settings", "engines", "reading")}
-        return Conversion(**same, hash=hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest())
+        return Conversion(
+            steps=self.steps,
+            formats=self.formats,
+            config=self.config,
+            settings=self.settings,
+            engines=self.engines,
+            reading=self.reading,
+            hash=hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest(),
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -61,7 +61,8 @@ _AND = re.compile(
     re.IGNORECASE,
 )
 _TOY = re.compile(r"\b(?:toy|model|miniature|dolls?(?:'s)?)\s+", re.IGNORECASE)
-_DRAWS, _NEXT_DRAW, _FEW = 20, 1_000_003, 2  # an object with so few kinds of mechanism put on it is still that object
+_DRAWS, _NEXT_DRAW = 20, 1_000_003
+_FEW = 2  # kinds of mechanism that are put on an object before a plain body with all of them is as good
 _MANNERS = frozenset({*MOTIONS, *GOING, *KINDS, *STOP_WORDS, *MATERIAL_WORDS, *COLOR_WORDS, *SIZE_WORDS})
 """Words of a name without which it names an object of the same kind."""
 _SEVERAL = 400  # characters at most that may name several objects

@@ -281,6 +281,7 @@ def test_a_colour_that_is_asked_for_is_that_of_the_base() -> None:
         ("a wardrobe with two doors and a mirror on the left door", "mirror", {"door_0"}),
         ("a locker with three doors and vents in each door", "vent", {"door_1", "door_2", "door_3"}),
         ("a fridge with a nameplate on the door", "nameplate", {"door_1"}),
+        ("a cabinet with two doors, each with a window", "window", {"door_1", "door_2"}),
     ],
 )
 def test_what_a_kind_has_not_is_put_on_the_part_that_is_named(sentence: str, what: str, carriers: set[str]) -> None:

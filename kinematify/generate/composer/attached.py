@@ -13,7 +13,7 @@ from kinematify.errors import InputError
 from kinematify.generate.composer.bodies import BODY
 from kinematify.generate.composer.place import Placement
 from kinematify.generate.composer.side import FACING, columns
-from kinematify.generate.procedural.clearance import carried_by, depth_of, moving_with, solid_of
+from kinematify.generate.procedural.clearance import carried_by, depth_of, solid_of
 from kinematify.generate.procedural.language.words import lemma, stem_of
 from kinematify.generate.procedural.pieces.fronts import Bay, Fitting
 from kinematify.generate.procedural.solids import box
@@ -98,15 +98,12 @@ def _on_part(blueprint: Blueprint, carrier: Part, wanted: MechanismSpec, clearan
 
 
 def _stays_clear(made: Blueprint, carrier: str, plate: str) -> bool:
-    """Whether a plate is not in what carries it, a handle say, and meets nothing while that moves."""
-    joint = made.joint_above.get(carrier)
-    is_fixed = joint is None or not math.isfinite(joint.upper - joint.lower)
-    for value in [0.0] if joint is None or is_fixed else np.linspace(joint.lower, joint.upper, _STEPS):
-        parts = made.moved({carrier: float(value)}).parts
-        others = {part.name for part in parts} - (carried_by(plate, made.joints) if is_fixed else set())
-        others -= set() if is_fixed else moving_with(carrier, made.joints) - {carrier}
-        solids = {part.name: solid_of(part) for part in parts if part.name in {plate, *others}}
-        if any(depth_of(solids[plate], solids[name]) > _GAP for name in others):
+    """Whether a plate is not in what carries it or in a handle there, and meets nothing while its carrier moves."""
+    own, joint = carried_by(plate, made.joints), made.joint_above.get(carrier)
+    moves = joint is not None and math.isfinite(joint.upper - joint.lower)
+    for value in np.linspace(joint.lower, joint.upper, _STEPS) if joint is not None and moves else [0.0]:
+        solids = {part.name: solid_of(part) for part in made.moved({carrier: float(value)}).parts}
+        if any(depth_of(solids[plate], solids[name]) > _GAP for name in solids.keys() - own):
             return False
     return True
 

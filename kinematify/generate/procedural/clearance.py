@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Part
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
 
-DEEP = 0.002  # [m] parts may be so deep in each other
+DEEP, _NOISE = 0.002, 1e-5  # [m] parts may be so deep in each other; of a depth from one pose to another
 _STEP_TURN, _STEPS = math.radians(4.0), 12  # between poses that are looked at; of a slide, so many poses
 _NEAR, _LOOSE = 0.02, 0.005  # of a slide's diagonal: so near is its guide, and so much farther it may be
 _LEFT = 0.15  # of its range, that it has to spare
@@ -77,10 +77,11 @@ def may_go(blueprint: Blueprint, name: str, lower: float, upper: float) -> bool:
     still = {part.name: solid_of(part) for part in blueprint.parts if part.name not in moving}
     within = [joint.lower, 0.5 * (joint.lower + joint.upper), joint.upper]
     now = [_moving_solids(blueprint, name, value, moving) for value in within]
-    allowed = {pair: max(DEEP, *(_pair_depth(solids, still, pair) for solids in now)) for pair in _pairs(moving, still)}
+    pairs = [(one, other) for one in sorted(moving) for other in sorted(still)]
+    allowed = {pair: max(DEEP, *(_pair_depth(solids, still, pair) for solids in now)) for pair in pairs}
     for value in _beyond(joint, lower, upper):
         there = _moving_solids(blueprint, name, value, moving)
-        if any(_pair_depth(there, still, pair) > deep + 1e-5 for pair, deep in allowed.items()):
+        if any(_pair_depth(there, still, pair) > deep + _NOISE for pair, deep in allowed.items()):
             return False
     if joint.kind.turns:
         return True
@@ -96,19 +97,14 @@ def may_go(blueprint: Blueprint, name: str, lower: float, upper: float) -> bool:
 
 def _beyond(joint: BlueprintJoint, lower: float, upper: float) -> Iterator[float]:
     """Values outside the present range, as far as the new limits [rad or m]."""
-    for end, limit in ((lower, joint.lower), (upper, joint.upper)):
-        if (end < limit) if end == lower else (end > limit):
-            steps = math.ceil(abs(end - limit) / _STEP_TURN) if joint.kind.turns else _STEPS
-            yield from np.linspace(limit, end, steps + 1)[1:]
+    for limit, end in ((joint.lower, min(lower, joint.lower)), (joint.upper, max(upper, joint.upper))):
+        steps = math.ceil(abs(end - limit) / _STEP_TURN) if joint.kind.turns else _STEPS
+        yield from np.linspace(limit, end, steps + 1)[1:] if end != limit else ()
 
 
 def _moving_solids(blueprint: Blueprint, name: str, value: float, moving: Collection[str]) -> dict[str, Manifold]:
     parts = blueprint.moved({name: value}).parts
     return {part.name: solid_of(part) for part in parts if part.name in moving}
-
-
-def _pairs(moving: Collection[str], still: Collection[str]) -> list[tuple[str, str]]:
-    return [(one, other) for one in sorted(moving) for other in sorted(still)]
 
 
 def _pair_depth(moving: Mapping[str, Manifold], still: Mapping[str, Manifold], pair: tuple[str, str]) -> float:

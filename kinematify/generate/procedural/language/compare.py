@@ -250,16 +250,13 @@ class _Compared:
 
     def _not_there(self, part: PartSpecification) -> None:
         moved = any(claim.about in ("moves", "way", "hinge") for claim in part.claims)
-        if part.noun.split()[-1] in _OF_ANY_OBJECT and not moved:
+        if part.noun.split()[-1] in _OF_ANY_OBJECT - {"window"} and not moved:
             self._account_for_modifiers(part, part.claims[0], 1)
             return
         at = frozenset(k for claim in part.claims for k in claim.at)
         words = " ".join(self.specification.tokens[k].given for k in sorted(at))
-        reason = (
-            ""
-            if any(lemma(self.specification.tokens[k].given) == part.noun.split()[-1] for k in at)
-            else f"no {part.noun}"
-        )
+        is_named = any(lemma(self.specification.tokens[k].given) == part.noun.split()[-1] for k in at)
+        reason = "" if is_named else f"no {part.noun}"
         self.missing.append(Missing(words=words, at=at, reason=reason, is_sure=moved))
         self.absent.append(part)
 

@@ -392,6 +392,8 @@ class _Parser(Words):
         plain = [w for w in words if not self._is_adjective(w) and w not in units and lemma(w) not in units]
         plain = [w for w in plain if w not in STOP_WORDS and not w[:1].isdigit() and w not in NUMBERS]
         sizes = {word for names in DIMENSIONS.values() for word in names}
+        if self.given(k) in ("each", "both", "all"):
+            return False
         if self.given(k) in ARTICLES and any(self._is_mirror(i) for i in range(k, end)):
             return False
         return bool(words) and not [w for w in plain if w not in sizes and w not in ("x", "by", "half", "made")]
