@@ -192,9 +192,7 @@ def command(
         return _run(ProvidedGeneration(asked, place, not no_preview, not no_validation, collision), force, json_to)
     _refuse_without_source(images, program, time_limit, budget, rounds, record, replay, resend)
     if (text is not None) + (category is not None) + (blueprint is not None) != 1:
-        raise click.UsageError(
-            "Give one of a sentence, --category and --blueprint (or --corpus, or --list to show all categories)."
-        )
+        raise click.UsageError("Give one of a sentence, --category and --blueprint (or --corpus, or --list for all).")
     if blueprint is not None and (settings or seed is not None):
         raise click.UsageError("--set and --seed have no effect on a --blueprint. Remove them.")
     if settings and text is not None:
