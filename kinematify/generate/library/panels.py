@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.library.shapes import X, Y, Z, beam, box, cylinder, sphere
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.generate.library.builder import ObjectBuilder
-    from kinematify.generate.library.shapes import Point
+    from kinematify.generate.procedural.solids import Point
     from kinematify.robot.arrays import FloatArray
 
 
@@ -110,17 +110,19 @@ def pull(d: ObjectBuilder, on: str, at: Point, out: FloatArray, along: FloatArra
     half, top = 0.5 * length * along, at + high * out
     kind = d.pick("rail", "rail", "rod", "lip", "stub", "knob")
     if kind == "rail":
-        shapes = [d.pick(beam(thick, thick, top - half, top + half, out), cylinder(thick / 2, top - half, top + half))]
+        shapes = [
+            d.pick(beam(thick, thick, top - half, top + half, out), d.cylinder(thick / 2, top - half, top + half))
+        ]
         shapes += [beam(0.8 * thick, 0.8 * thick, at + s * half, top + s * half, along) for s in (-0.9, 0.9)]
     elif kind == "rod":
         level = at + (thick / 2 + d.pick(0.0, d.style.gap, -0.2 * thick)) * out
-        shapes = [cylinder(thick / 2, level - half, level + half)]
+        shapes = [d.cylinder(thick / 2, level - half, level + half)]
     elif kind == "lip":
         shapes = [beam(0.3 * thick, high, at + high / 2 * out - half, at + high / 2 * out + half, out)]
     elif kind == "stub":
         shapes = [beam(2.0 * thick, high, at + high / 2 * out - half / 4, at + high / 2 * out + half / 4, out)]
     else:
-        shapes = [cylinder(0.7 * thick, at, top), sphere(1.2 * thick, top)]
+        shapes = [d.cylinder(0.7 * thick, at, top), ball(1.2 * thick, top)]
     if d.style.grips == "apart":
         d.fix(d.part(f"{on}_handle", *shapes, material="metal"), on)
     else:
@@ -180,7 +182,7 @@ def slab(
         pull(d, name, at, out, along if upright else across, room)
         if d.maybe(0.15):  # one on either side
             pull_back = middle - 0.85 * half * hinge - 0.5 * thick * out
-            d.part(name, cylinder(0.02 * wide, pull_back, pull_back - 0.05 * wide * out))
+            d.part(name, d.cylinder(0.02 * wide, pull_back, pull_back - 0.05 * wide * out))
     pivot = middle + half * hinge + (d.style.line - 0.5) * thick * out
     d.hinge(name, parent, np.cross(out, hinge), pivot, reach, -back)
 
@@ -295,14 +297,14 @@ def rack(d: ObjectBuilder, name: str, parent: str, lower: Point, upper: Point, *
         levels = [a[2] + wire] if kind == "wires" else [a[2] + wire, b[2] - wire]
         for z in levels:
             for y in (a[1] + wire, b[1] - wire):
-                d.part(name, cylinder(wire, (a[0], y, z), (b[0], y, z)), material="metal")
+                d.part(name, d.cylinder(wire, (a[0], y, z), (b[0], y, z)), material="metal")
             for x in (a[0] + wire, b[0] - wire):
-                d.part(name, cylinder(wire, (x, a[1], z), (x, b[1], z)))
+                d.part(name, d.cylinder(wire, (x, a[1], z), (x, b[1], z)))
         for x in np.linspace(a[0] + wire, b[0] - wire, d.count(5, 12)):
-            d.part(name, cylinder(wire, (x, a[1], levels[0]), (x, b[1], levels[0])))
+            d.part(name, d.cylinder(wire, (x, a[1], levels[0]), (x, b[1], levels[0])))
             if kind == "basket":
-                d.part(name, cylinder(wire, (x, a[1] + wire, levels[0]), (x, a[1] + wire, levels[1])))
-                d.part(name, cylinder(wire, (x, b[1] - wire, levels[0]), (x, b[1] - wire, levels[1])))
+                d.part(name, d.cylinder(wire, (x, a[1] + wire, levels[0]), (x, a[1] + wire, levels[1])))
+                d.part(name, d.cylinder(wire, (x, b[1] - wire, levels[0]), (x, b[1] - wire, levels[1])))
     if d.style.hollow and d.maybe(0.6):
         under = a[2] - max(play, 0.0)
         for x, s in ((low[0], 1.0), (high[0], -1.0)):
