@@ -52,18 +52,18 @@ $(STAMP):
 
 demo: setup
 	@echo "A sentence: $$SENTENCE"
-	@$(IN_VENV) kinematify generate --text "$$SENTENCE" -o out/cabinet --infer --force
+	@$(IN_VENV) kinematify generate "$$SENTENCE" -o out/cabinet --infer --force
 	@echo
 	@echo "Look at  out/cabinet/preview.png       the cabinet at rest, and with every joint moved"
 	@echo "    and  out/cabinet/validation.html   what was checked, in three engines, and what to do about each finding"
 	@echo "    and  out/cabinet/model.urdf        what a simulator loads"
-	@echo "Now try  $(VENV)/bin/kinematify generate --text \"a quadruped with 3 joints per leg\" --seed 7 -o out/dog"
+	@echo "Now try  $(VENV)/bin/kinematify generate \"a quadruped with 3 joints per leg\" --seed 7 -o out/dog"
 	@echo "    and  $(VENV)/bin/kinematify generate --list"
 	@echo "    and  $(VENV)/bin/kinematify infer YOUR_FOLDER_OF_PARTS -o out/yours"
 	@echo "    and  $(VENV)/bin/kinematify validate YOUR_ROBOT.urdf"
 
 pictures: setup
-	$(IN_VENV) kinematify generate --text "$$SENTENCE" -o out/cabinet --force --no-validation
+	$(IN_VENV) kinematify generate "$$SENTENCE" -o out/cabinet --force --no-validation
 	cp out/cabinet/preview.png docs/demo.png
 	$(IN_VENV) tools.draw_gallery docs
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from statistics import fmean, median
 from typing import TYPE_CHECKING
 
-from benchmarks.degrade_tables import degradation_sections, degraded
 from benchmarks.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
+from kinematify.evaluation.job import CLEAN
 from kinematify.evaluation.metrics import CLOSE_ANGLE
 from kinematify.evaluation.record import grouped, number, table
 from kinematify.evaluation.summary import Summary, motion_rates, summarise, summarise_types
@@ -100,7 +100,8 @@ def benchmark_blocks(report: Report[JobResult], baseline: Report[JobResult] | No
     variants = grouped(report.records, by=lambda result: result.variant)
     for variant, results in variants.items():
         sections.append([f"## Configuration: {variant}"])
-        sections += degradation_sections(results) if degraded(results) else _variant_sections(results)
+        degraded = any(result.input != CLEAN for result in results)
+        sections += _degradation_sections(results) if degraded else _variant_sections(results)
     if len(variants) > 1:
         sections.append(_ablation(variants))
     if baseline is not None:
@@ -133,6 +134,23 @@ def _variant_sections(results: Sequence[JobResult]) -> list[list[str]]:
         _stage_table(results),
         _joint_errors(results),
     ]
+
+
+def _degradation_sections(results: Sequence[JobResult]) -> list[list[str]]:
+    """Every kind of input beside the clean one, then each with all objects, and the wrong joints."""
+    groups = grouped(results, by=lambda result: f"{result.kind}, {result.input}")
+    rows = [[*_row(name, group), _cuts_fixed(group)] for name, group in groups.items()]
+    overview = ["### Kinds of input", table(["input", "joints", *_plain_titles(), "cuts fixed"], rows)]
+    return [overview, *(section for name, group in groups.items() for section in _input_sections(name, group))]
+
+
+def _input_sections(name: str, results: Sequence[JobResult]) -> list[list[str]]:
+    return [_object_table(name, results), _joint_errors(results)]
+
+
+def _cuts_fixed(results: Iterable[JobResult]) -> str:
+    fixed, cuts = (sum(counts) for counts in zip(*((run.cuts_mended, run.cuts) for run in results), strict=True))
+    return f"{fixed} of {cuts}" if cuts else "-"
 
 
 def _motion_table(results: Sequence[JobResult]) -> list[str]:

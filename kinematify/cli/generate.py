@@ -28,20 +28,20 @@ _WIDTH = 100
     "generate",
     short_help="A sentence or a photo -> a model; sentences work offline.",
     epilog=examples(
-        'kinematify generate --text "a kitchen cabinet with two doors above three drawers, 80 cm wide" -o out/cabinet',
+        'kinematify generate "a kitchen cabinet with two doors above three drawers, 80 cm wide" -o out/cabinet',
         "kinematify generate --category cabinet --set doors=2 --set drawers=3 --set handle=knob -o out/c2",
-        'kinematify generate --text "a chest of drawers, half open" --seed 7 -o out/chest',
+        'kinematify generate "a chest of drawers, half open" --seed 7 -o out/chest',
         "kinematify generate --blueprint toolbox.yaml -o out/toolbox",
         "kinematify generate --list",
         "kinematify generate --list --category cabinet",
         "kinematify generate --corpus 100 --seed 1 -o corpus",
         "kinematify generate --image robot.jpg --source rodin --budget 2 -o out/robot",
-        'kinematify generate --text "a cantilever toolbox" --source llm --budget 60000 -o out/box',
+        'kinematify generate "a cantilever toolbox" --source llm --budget 60000 -o out/box',
         "kinematify generate --image chair.png --source command --command 'partcrafter {image} {out}' -o out/chair",
     ),
 )
-@click.argument("words", nargs=-1, metavar="")
-@click.option("--text", metavar="SENTENCE", help="What to build, in English.")
+@click.argument("words", nargs=-1, metavar="[SENTENCE]")
+@click.option("--text", metavar="SENTENCE", help="What to build, in English: the same as SENTENCE.")
 @click.option(
     "--category",
     metavar="NAME",
@@ -153,8 +153,9 @@ def command(
     model (llm) writes a blueprint; the command builds it and sends the findings of the validation back. The job is
     saved beside OUT (OUT.job): the same command resumes it, and no step is paid for twice.
     """
-    if words:
-        raise click.UsageError(f'A sentence follows --text: kinematify generate --text "{" ".join(words)}" -o FOLDER.')
+    if words and text is not None:
+        raise click.UsageError(f'The sentence is given twice: "{" ".join(words)}" and --text "{text}". Remove one.')
+    text = " ".join(words) or text
     if listing:
         _list(category, json_to)
         return 0
@@ -191,9 +192,7 @@ def command(
         return _run(ProvidedGeneration(asked, place, not no_preview, not no_validation, collision), force, json_to)
     _refuse_without_source(images, program, time_limit, budget, rounds, record, replay, resend)
     if (text is not None) + (category is not None) + (blueprint is not None) != 1:
-        raise click.UsageError(
-            "Give either --text, --category or --blueprint (or --corpus, or --list to show all categories)."
-        )
+        raise click.UsageError("Give one of a sentence, --category and --blueprint (or --corpus, or --list for all).")
     if blueprint is not None and (settings or seed is not None):
         raise click.UsageError("--set and --seed have no effect on a --blueprint. Remove them.")
     if settings and text is not None:

@@ -233,7 +233,7 @@ class RailsConfig(StageConfig):
 
 
 class ConfidenceConfig(StageConfig):
-    """How likely a joint is right (`results/choice.md`, `kinematify bench calibration`)."""
+    """How likely a joint is right (`results/choice.md`)."""
 
     # with less, furniture that the cues were written for loses; with more, all else (results/choice.md)
     cues_lead: float = 1.0

@@ -115,9 +115,9 @@ class RayScene:
         Returns:
             Normals in the world frame, shape (n, 3), on the front side of the faces.
         """
-        distinct, inverse = np.unique(face, return_inverse=True)
-        corners = self._corner_normals(distinct, float(np.cos(angle)))
-        normals = np.einsum("nk,nkd->nd", barycentric, corners[inverse.reshape(-1)])
+        seen = np.bincount(face, minlength=len(self.faces)) > 0
+        corners = self._corner_normals(np.flatnonzero(seen), float(np.cos(angle)))
+        normals = np.einsum("nk,nkd->nd", barycentric, corners[(np.cumsum(seen) - 1)[face]])
         return _unit(normals)
 
     def _corner_normals(self, faces: IntArray, cosine: float) -> FloatArray:

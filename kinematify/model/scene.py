@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -283,33 +284,30 @@ def _tube(path: FloatArray, radii: FloatArray) -> Mesh:
     """A tube of changing radius along a path (n, 3) with flat ends."""
     tangents = np.gradient(path, axis=0)
     # Where a point is doubled (a step in radius) the neighbours still give a direction.
-    lengths = np.linalg.norm(tangents, axis=1, keepdims=True)
-    tangents = tangents / np.maximum(lengths, 1e-300)
+    tangents /= np.maximum(np.linalg.norm(tangents, axis=1, keepdims=True), 1e-300)
     turns = np.linspace(0.0, 2.0 * np.pi, _SEGMENTS, endpoint=False)
-    rings = []
+    sides = np.empty_like(path)
     side, _ = _perpendiculars(tangents[0])
-    for point, tangent, radius in zip(path, tangents, radii, strict=True):
+    for index, tangent in enumerate(tangents):
         side = side - (side @ tangent) * tangent  # carried along the path, so that rings do not twist
-        side = side / np.linalg.norm(side)
-        across = np.cross(tangent, side)
-        rings.append(point + radius * (np.cos(turns)[:, None] * side + np.sin(turns)[:, None] * across))
-    vertices = np.concatenate([*rings, path[:1], path[-1:]])
+        sides[index] = side = side / np.sqrt(side @ side)
+    across = np.cross(tangents, sides)
+    circles = np.cos(turns)[:, None] * sides[:, None] + np.sin(turns)[:, None] * across[:, None]
+    rings = path[:, None] + radii[:, None, None] * circles
+    vertices = np.concatenate([rings.reshape(-1, 3), path[:1], path[-1:]])
     return vertices, _tube_faces(len(path))
 
 
+@cache
 def _tube_faces(count: int) -> IntArray:
     ring = np.arange(_SEGMENTS)
     following = (ring + 1) % _SEGMENTS
-    faces = []
-    for index in range(count - 1):
-        low, high = index * _SEGMENTS, (index + 1) * _SEGMENTS
-        faces.append(np.stack([low + ring, low + following, high + following], axis=1))
-        faces.append(np.stack([low + ring, high + following, high + ring], axis=1))
-    last = (count - 1) * _SEGMENTS
-    first_center, last_center = count * _SEGMENTS, count * _SEGMENTS + 1
-    faces.append(np.stack([following, ring, np.full(_SEGMENTS, first_center)], axis=1))
-    faces.append(np.stack([last + ring, last + following, np.full(_SEGMENTS, last_center)], axis=1))
-    return np.concatenate(faces)
+    low = _SEGMENTS * np.arange(count - 1)[:, None] + ring
+    beside, high = low - ring + following, low + _SEGMENTS
+    sides = np.stack([low, beside, beside + _SEGMENTS, low, beside + _SEGMENTS, high], axis=2).reshape(-1, 3)
+    foot = np.stack([following, ring, np.full(_SEGMENTS, count * _SEGMENTS)], axis=1)
+    head = foot[:, [1, 0, 2]] + [(count - 1) * _SEGMENTS, (count - 1) * _SEGMENTS, 1]
+    return np.concatenate([sides, foot, head])
 
 
 def _perpendiculars(axis: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from PIL import Image
-from scipy.ndimage import gaussian_filter, map_coordinates
+from scipy.ndimage import binary_dilation, gaussian_filter, map_coordinates
 
 from kinematify.geometry.rays import RayScene
 from kinematify.robot.appearance import linear_of, srgb_of
@@ -32,9 +32,10 @@ _SKY, _LAMP, _GLOSS = 0.80, 0.46, 0.07  # shares of the light; above 1 in all, s
 _UNDERSIDE = 0.58  # light of the sky on faces that look down, relative to those that look up
 _LAMP_IN_DARK = 0.35  # share of the lamp that reaches where the sky does not
 _DEPTH_STEP = 0.004  # of the scene's size: a larger step in depth from pixel to pixel is an edge
+_COLOR_STEP = 0.02  # of sRGB, a step of 5 in 255: a smaller one is not seen as a jagged edge
 _PANES = 6  # a pane of glass has two surfaces
 _BEHIND = 1e-5  # of the scene's size: where a ray goes on behind a surface
-_SPARSE = 2  # rays to the sky start at every second pixel of every second row
+_SPARSE = 2  # rays to the sky and to arrows start at every second pixel of every second row
 _BLOCK = 4096  # pixels with several rays at a time: what NumPy allocates for them stays in the cache
 _RIM = 0.9  # opacity of the white rim of an arrow: it stands out of its own colour and of the dark
 _OUTLINE_DIRECTIONS = 240
@@ -72,6 +73,11 @@ class PictureScene:
         return RayScene([(mesh.vertices, mesh.faces) for mesh in self.meshes])
 
     @cached_property
+    def glyphs_alone(self) -> PictureScene | None:
+        """What is drawn over the meshes as a scene of its own, if there is any."""
+        return PictureScene(meshes=self.glyphs) if self.glyphs else None
+
+    @cached_property
     def outline(self) -> FloatArray:
         """Extreme points in many directions, glyphs included, shape (n, 3): enough to fit a camera, and few."""
         index = np.arange(_OUTLINE_DIRECTIONS)
@@ -86,10 +92,11 @@ class PictureScene:
         extremes: FloatArray = points[np.unique((directions @ points.T).argmax(axis=1))]
         return extremes
 
-    def mesh_of_pixel(self, camera: Camera) -> IntArray:
-        """Index of the mesh that each pixel shows, -1 for none, shape (height, width)."""
-        hits = self.rays.first_hits(*camera.rays(_pixel_centers(camera)))
-        return hits.mesh.reshape(camera.height, camera.width)
+    def mesh_of_pixel(self, camera: Camera, every: int = 1) -> IntArray:
+        """Index of the mesh that each pixel shows, or one of `every` per row and column; -1 for none, shape (h, w)."""
+        rows, columns = range(0, camera.height, every), range(0, camera.width, every)
+        hits = self.rays.first_hits(*camera.rays(_pixel_centers(rows, columns)))
+        return hits.mesh.reshape(len(rows), len(columns))
 
     def visible_pixels(self, camera: Camera) -> IntArray:
         """Count the pixels that show each mesh, shape (len(meshes),)."""
@@ -151,25 +158,27 @@ class _Painter:
         self.rays, self.meshes = scene.rays, scene.meshes
         self.first_faces = np.cumsum([0, *(len(mesh.faces) for mesh in scene.meshes)])
         halo = config.glyph_halo * self.rays.size
-        self.glyphs = RayScene([(mesh.vertices, mesh.faces) for mesh in scene.glyphs]) if scene.glyphs else None
+        self.glyphs = scene.glyphs_alone.rays if scene.glyphs_alone else None
         self.halo = RayScene([_swollen(mesh, halo) for mesh in scene.glyphs]) if scene.glyphs else None
         self.shades = np.array([mesh.shade for mesh in scene.meshes])
         self.colors = linear_of(np.array([mesh.color for mesh in scene.meshes]))
         self.glyph_colors = linear_of(np.array([mesh.color for mesh in scene.glyphs]).reshape(-1, 3))
         self.camera, self.config = camera, config
         self.shape = (camera.height, camera.width)
-        self.sky = SkyLight(self.rays, config)
-        self.floor = FloorShadow(self.rays, config)
+        self.sky = SkyLight(self.rays, config.openness_rays, config.openness_reach)
+        self.floor = FloorShadow(self.rays, config.floor_cells)
 
     def paint(self) -> Image.Image:
         """Cast one ray per pixel, then more where one is not enough."""
-        view = self._view(_pixel_centers(self.camera))
+        view = self._view(_pixel_centers(*map(range, self.shape)))
         sparse = self._sparse_light(view)
         image = self._colors(view, self._light(view, np.arange(len(view.pixels)), sparse))
-        rough = np.flatnonzero(self._edges(view) | self._near_glyphs(view))
-        for start in range(0, len(rough), _BLOCK):
-            block = rough[start : start + _BLOCK]
-            image[block] = self._subsampled(block, view, sparse)
+        near = self._near_glyphs(view)
+        for rough, has_glyphs in ((self._edges(view, image) & ~near, False), (near, True)):
+            chosen = np.flatnonzero(rough)
+            for start in range(0, len(chosen), _BLOCK):
+                block = chosen[start : start + _BLOCK]
+                image[block] = self._subsampled(block, view, sparse, has_glyphs=has_glyphs)
         return Image.fromarray(np.round(srgb_of(image) * 255.0).astype(np.uint8).reshape(*self.shape, 3))
 
     def _view(self, pixels: FloatArray) -> _Viewpoint:
@@ -191,9 +200,11 @@ class _Painter:
 
         What is not opaque shows what is behind it, through `panes` surfaces at most.
         """
-        shadow = self.floor.seen(view.origins, view.directions, view.pixels, self.camera)
-        colors = linear_of(BACKGROUND) * (1.0 - _FLOOR_SHADOW * shadow)[:, None]
         met = view.hits.met
+        colors = np.empty(view.directions.shape)
+        origins = view.origins if view.origins.ndim == 1 else view.origins[~met]
+        shadow = self.floor.seen(origins, view.directions[~met], view.pixels[~met], self.camera)
+        colors[~met] = linear_of(BACKGROUND) * (1.0 - _FLOOR_SHADOW * shadow)[:, None]
         normal, sky = view.normals[met], light[met]
         upward = _UNDERSIDE + (1.0 - _UNDERSIDE) * 0.5 * (1.0 + normal[:, 2])
         lamp = np.clip(normal @ self._lamp, 0.0, 1.0)
@@ -244,16 +255,19 @@ class _Painter:
         lamp = -0.62 * right - 0.75 * down - forward
         return np.asarray(lamp / np.linalg.norm(lamp), dtype=np.float64)
 
-    def _edges(self, view: _Viewpoint) -> BoolArray:
-        """Pixels whose neighbours show another surface, shape (h * w,)."""
+    def _edges(self, view: _Viewpoint, image: FloatArray) -> BoolArray:
+        """Pixels whose neighbours show another surface that looks otherwise in the image, shape (h * w,)."""
         mesh = view.hits.mesh.reshape(self.shape)
         normal = view.normals.reshape(*self.shape, 3)
         depth = np.where(view.hits.met, view.hits.distance, 0.0).reshape(self.shape)
         edge = np.zeros(self.shape, dtype=bool)
+        colors = image.reshape(*self.shape, 3)
         for first, second in ((np.s_[:, 1:], np.s_[:, :-1]), (np.s_[1:], np.s_[:-1])):
             bend = np.einsum("ijk,ijk->ij", normal[first], normal[second]) < SAME_SURFACE_COSINE
             step = np.abs(depth[first] - depth[second]) > _DEPTH_STEP * self.rays.size
             differs = (mesh[first] != mesh[second]) | ((mesh[first] >= 0) & (bend | step))
+            steps = srgb_of(colors[first][differs]) - srgb_of(colors[second][differs])
+            differs[differs] = np.abs(steps).max(axis=1, initial=0.0) > _COLOR_STEP
             edge[first] |= differs
             edge[second] |= differs
         return edge.ravel()
@@ -261,17 +275,14 @@ class _Painter:
     def _near_glyphs(self, view: _Viewpoint) -> BoolArray:
         if self.halo is None:
             return np.zeros(len(view.pixels), dtype=bool)
-        met = self.halo.first_hits(view.origins, view.directions).met.reshape(self.shape)
-        for _ in range(2):
-            grown = met.copy()
-            grown[1:] |= met[:-1]
-            grown[:-1] |= met[1:]
-            grown[:, 1:] |= met[:, :-1]
-            grown[:, :-1] |= met[:, 1:]
-            met = grown
-        return met.ravel()
+        coarse = view.directions.reshape(*self.shape, 3)[::_SPARSE, ::_SPARSE]
+        met = self.halo.first_hits(view.origins, coarse.reshape(-1, 3)).met.reshape(coarse.shape[:2])
+        grown = binary_dilation(met, np.ones((3, 3), dtype=bool)).repeat(_SPARSE, axis=0).repeat(_SPARSE, axis=1)
+        return np.asarray(grown[: self.shape[0], : self.shape[1]].ravel(), dtype=bool)
 
-    def _subsampled(self, chosen: IntArray, coarse: _Viewpoint, sparse: _SparseLight) -> FloatArray:
+    def _subsampled(
+        self, chosen: IntArray, coarse: _Viewpoint, sparse: _SparseLight, *, has_glyphs: bool
+    ) -> FloatArray:
         """Mean linear colour of a turned grid of rays in each chosen pixel, shape (len(chosen), 3)."""
         side = self.config.subsamples
         across, down = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))
@@ -279,7 +290,7 @@ class _Painter:
         shares = np.stack([across + (down + 0.5) / side, down + (side - across - 0.5) / side], axis=1)
         fine = self._view((coarse.pixels[chosen][:, None] + shares / side - 0.5).reshape(-1, 2))
         light = self._light(fine, np.repeat(chosen, side * side), sparse)
-        colors = self._with_glyphs(self._colors(fine, light), fine)
+        colors = self._with_glyphs(self._colors(fine, light), fine) if has_glyphs else self._colors(fine, light)
         mean: FloatArray = colors.reshape(len(chosen), side * side, 3).mean(axis=1)
         return mean
 
@@ -302,10 +313,8 @@ class _Painter:
         row, column = np.divmod(pixel, self.shape[1])
         rows, columns = sparse.mesh.shape
         for down, right in ((0, 0), (0, 1), (1, 0), (1, 1), (0, -1), (-1, 0), (-1, 1), (1, -1), (-1, -1)):
-            near = (
-                np.clip(row[left] // _SPARSE + down, 0, rows - 1),
-                np.clip(column[left] // _SPARSE + right, 0, columns - 1),
-            )
+            near_row = np.clip(row[left] // _SPARSE + down, 0, rows - 1)
+            near = (near_row, np.clip(column[left] // _SPARSE + right, 0, columns - 1))
             cosine = np.einsum("ij,ij->i", view.normals[left], sparse.normals[near])
             alike = (view.hits.mesh[left] == sparse.mesh[near]) & (cosine > SAME_SURFACE_COSINE)
             light[left[alike]] = sparse.light[near][alike]
@@ -332,25 +341,23 @@ class _Painter:
 
 def _swollen(mesh: PosedMesh, distance: float) -> tuple[FloatArray, IntArray]:
     """A mesh whose surface lies farther out [m]."""
-    first, second, third = (mesh.vertices[mesh.faces[:, corner]] for corner in range(3))
-    across = np.cross(second - first, third - first)
+    corners = mesh.vertices[mesh.faces]
     normals = np.zeros(mesh.vertices.shape)
-    for corner in range(3):
-        np.add.at(normals, mesh.faces[:, corner], across)
+    np.add.at(normals, mesh.faces, np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, None])
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
     return mesh.vertices + distance * normals / np.maximum(lengths, 1e-300), mesh.faces
 
 
-def _pixel_centers(camera: Camera) -> FloatArray:
-    """Picture positions of all pixels, row by row, shape (h * w, 2)."""
-    x, y = np.meshgrid(np.arange(camera.width) + 0.5, np.arange(camera.height) + 0.5)
+def _pixel_centers(rows: range, columns: range) -> FloatArray:
+    """Picture positions of pixels, row by row, shape (len(rows) * len(columns), 2)."""
+    x, y = np.meshgrid(np.array(columns) + 0.5, np.array(rows) + 0.5)
     return np.column_stack([x.ravel(), y.ravel()])
 
 
 SAME_SURFACE_COSINE = 0.94
 """Places of one mesh whose normals differ less (20 deg) share light."""
 _TILE = 4  # places per side of the square over which light is averaged; each pixel of it has its own directions
-_FLOOR_RAYS = 64
+_FLOOR_RAYS = 16  # of each cell; a tile is averaged
 _FLOOR_REACH = 0.6  # of the scene's size
 _FLOOR_ROOM = 0.4  # of the scene's size: how far the map of the shadow reaches beyond the object
 _FLOOR_FADE = 0.5  # of the map's half width: the shadow fades to nothing over this distance
@@ -360,10 +367,9 @@ _BORDER = 60.0  # pixels over which the shadow fades towards the border of the p
 class SkyLight:
     """Rays to the sky, the same few directions at like places, so that even surfaces show no noise."""
 
-    def __init__(self, scene: RayScene, config: PreviewConfig) -> None:
-        self.scene = scene
-        self.rays = config.openness_rays
-        self.reach = config.openness_reach * scene.size
+    def __init__(self, scene: RayScene, rays: int, reach: float) -> None:
+        """`rays` at each place, as long as `reach` times the scene's size."""
+        self.scene, self.rays, self.reach = scene, rays, reach * scene.size
         ball = _even_directions(self.rays * _TILE**2)
         # Directions that follow each other on the spiral lie at one height: every set takes them from all heights.
         self.sets = ball.reshape(self.rays, _TILE**2, 3).transpose(1, 0, 2).astype(np.float32)
@@ -433,25 +439,19 @@ def _span(size: int, offset: int) -> slice:
 class FloorShadow:
     """A horizontal plane below the scene that shows nothing but the shadow on it."""
 
-    def __init__(self, scene: RayScene, config: PreviewConfig) -> None:
+    def __init__(self, scene: RayScene, cells: int) -> None:
         room = _FLOOR_ROOM * scene.size
         self.low = scene.bounds[0, :2] - room
-        self.step = (scene.bounds[1, :2] + room - self.low) / (config.floor_cells - 1)
+        self.step = (scene.bounds[1, :2] + room - self.low) / (cells - 1)
         # A little lower than the lowest point: an object that stands on the plane would hide its own shadow.
         self.height = scene.bounds[0, 2] - 2e-3 * scene.size
-        self.map = self._hidden_share(scene, config.floor_cells)
+        self.map = self._hidden_share(scene, cells)
 
     def _hidden_share(self, scene: RayScene, cells: int) -> FloatArray:
         """Share of the sky that the scene hides from each cell, fading to zero at the border, shape (cells, cells)."""
         x, y = np.meshgrid(*(self.low[k] + self.step[k] * np.arange(cells) for k in range(2)), indexing="ij")
-        points = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, self.height)])
-        towards = _even_directions(_FLOOR_RAYS)
-        towards[:, 2] += 1.0
-        towards /= np.linalg.norm(towards, axis=1, keepdims=True)
-        hidden = scene.occluded(
-            np.repeat(points, _FLOOR_RAYS, axis=0), np.tile(towards, (len(points), 1)), _FLOOR_REACH * scene.size
-        )
-        share = hidden.reshape(cells, cells, _FLOOR_RAYS).mean(axis=2)
+        points, up = np.stack([x, y, np.full_like(x, self.height)], axis=2), np.tile([0.0, 0.0, 1.0], (*x.shape, 1))
+        share = 1.0 - SkyLight(scene, _FLOOR_RAYS, _FLOOR_REACH).of_picture(points, up, np.zeros(x.shape, dtype=int))
         from_middle = np.linspace(-1.0, 1.0, cells)
         radius = np.hypot(from_middle[:, None], from_middle)
         faded: FloatArray = gaussian_filter(share, 1.0) * _smooth_step((1.0 - radius) / _FLOOR_FADE)

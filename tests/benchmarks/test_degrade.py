@@ -126,14 +126,16 @@ def test_every_kind_of_input_is_run_and_has_a_line_of_its_own(tmp_path: Path) ->
         ("hulls", "ok", 0, 0),
         ("cut-2", "ok", 1, 0),
     ]
-    rows = [
-        line
-        for line in "\n".join(benchmark_blocks(report)).splitlines()
-        if line.startswith(("| clean", "| gaps", "| cut-2"))
-    ]
-    assert [row.split(" | ")[-2] for row in rows] == ["-", "-", "0 of 1"]
-    mean = next(line for line in "\n".join(benchmark_blocks(report)).splitlines() if "hulls left out" in line)
-    assert mean.split(" | ")[-2] == "0 of 1"
+    lines = "\n".join(benchmark_blocks(report)).splitlines()
+    kind = report.records[0].kind
+    rows = {
+        name: line
+        for name in (CLEAN, "gaps", "hulls", "cut-2")
+        for line in lines
+        if line.startswith(f"| {kind}, {name} ")
+    }
+    assert [row.split(" | ")[-1].removesuffix(" |") for row in rows.values()] == ["-", "-", "-", "0 of 1"]
+    assert [line for line in lines if line.startswith("### ")][1::2] == [f"### {kind}, {name}" for name in rows]
 
 
 def test_unknown_faults_are_refused_with_the_known_ones() -> None:

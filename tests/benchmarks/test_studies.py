@@ -102,7 +102,7 @@ def test_wrong_words_end_with_2(
 
 
 def test_an_unknown_study_is_refused_with_the_known_ones() -> None:
-    with pytest.raises(InputError, match=r"There are .*batch, calibration, detection"):
+    with pytest.raises(InputError, match=r"There are .*as-loaded, batch, detection"):
         load_study("alchemy")
 
 

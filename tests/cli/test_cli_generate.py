@@ -183,15 +183,26 @@ def test_the_categories_and_their_parameters_are_listed(capsys):
         (["--category", "cabinet", "--set", "drawers=500"], "from 0 to 40"),
         (["--category", "cabinet", "--set", "drawers"], "KEY=VALUE"),
         (["--strict", "--text", "a cabinet with a projector"], "Not built: projector"),
-        (["--text", "a cabinet", "--category", "cabinet"], "either --text, --category or --blueprint"),
-        (["a tool box"], 'kinematify generate --text "a tool box"'),
-        ([], "either --text, --category or --blueprint"),
+        (["--text", "a cabinet", "--category", "cabinet"], "one of a sentence, --category and --blueprint"),
+        ([], "one of a sentence, --category and --blueprint"),
     ],
 )
 def test_bad_requests_end_with_status_two_and_a_reason(arguments, reason, tmp_path, capsys):
     assert run(["generate", *arguments, "-o", str(tmp_path / "out")]) == 2
     assert reason in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_a_sentence_needs_no_option(tmp_path, capsys):
+    plain = ["--no-validation", "--no-preview", "-o"]
+    assert run(["generate", "a", "garage", "door", *plain, str(tmp_path / "words")]) == 0
+    assert run(["generate", "--text", "a garage door", *plain, str(tmp_path / "option")]) == 0
+    files = [(tmp_path / folder / "model.urdf").read_bytes() for folder in ("words", "option")]
+    assert files[0] == files[1]
+    capsys.readouterr()
+    assert run(["generate", "a door", "--text", "a gate", *plain, str(tmp_path / "both")]) == 2
+    assert 'given twice: "a door" and --text "a gate"' in capsys.readouterr().err
+    assert not (tmp_path / "both").exists()
 
 
 def test_what_is_not_built_is_listed_last_and_in_the_files(tmp_path, capsys):

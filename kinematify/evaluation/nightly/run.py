@@ -293,7 +293,7 @@ def write_smoke_objects(folder: Path, sentences: Sequence[str]) -> None:
 
     Args:
         folder: Gets a folder per object.
-        sentences: As `kinematify generate --text` takes them.
+        sentences: As `kinematify generate` takes them.
 
     Raises:
         InputError: A sentence is not understood.
