@@ -13,9 +13,8 @@ from kinematify.cli.report_files import generated_files, report_on
 from kinematify.config import load_config
 from kinematify.errors import ExitStatus, InputError
 from kinematify.generate.sentence import Made, Sentence
-from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
+from kinematify.model.output import MODEL_FILE, PREVIEW_FILE, check_output, write_model_folder
 from kinematify.pipeline.generate import INFERRED_FOLDER, PARTS_FOLDER, write_blueprint, write_parts
-from kinematify.pipeline.record import PREVIEW_FILE, write_inference_files
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -113,6 +112,8 @@ class Generation:
 
             render_preview(self.model, folder / PREVIEW_FILE, config.preview)
         if self.inference is not None:
+            from kinematify.pipeline.record import write_inference_files
+
             (folder / INFERRED_FOLDER).mkdir()
             write_inference_files(self.inference, folder / INFERRED_FOLDER, preview=self.preview)
 

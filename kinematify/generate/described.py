@@ -24,16 +24,15 @@ from kinematify.generate.procedural.blueprint_file import (
     Vector,
 )
 from kinematify.generate.procedural.families import FAMILIES
-from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.family import Family, Values
 from kinematify.generate.procedural.parameter import Parameter, choice, number, parse_table, read_parameter
+from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from kinematify.generate.procedural.blueprint import BlueprintJoint
-    from kinematify.generate.procedural.family import Values
-    from kinematify.generate.procedural.workshop import Workshop
+    from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
     from kinematify.robot.arrays import FloatArray
 
 _FOLDER = Path(__file__).with_name("objects")
@@ -131,7 +130,7 @@ class ObjectDescription(Spoken, BlueprintDescription):
 
     def _build(self, values: Values, workshop: Workshop) -> None:
         counts = {word: values.count(f"{word}s") for word in self.counts}
-        looks = {part.name: part for part in self.parts}
+        looks = {part.name: (part.material, part.color if isinstance(part.color, str) else None) for part in self.parts}
         solids = {part.name: part.solid(counts) for part in self.parts}
         joints = {joint.child: joint.joint() for joint in self.joints}
         for copy in self.copies:
@@ -190,14 +189,16 @@ class SteppedDescription(Spoken):
         """What may be asked of it."""
         return tuple(read_parameter(name, said) for name, said in self.parameters.items())
 
-    def description(self, style: ModelingStyle, rng: np.random.Generator) -> dict[str, Any]:
-        """A blueprint of it with everything drawn, as a file holds one.
+    def draw(self, style: ModelingStyle, rng: np.random.Generator) -> Blueprint:
+        """The object with everything drawn.
 
         Raises:
             InputError: A step cannot be carried out with what was drawn.
         """
-        builder = ObjectBuilder(self.name, style, rng)
-        return carried_out(self.steps, builder, {item.name: _drawn(item, builder) for item in self.asked})
+        builder, workshop = ObjectBuilder(self.name, style, rng), Workshop(self.name, material="plastic")
+        usual = Values({"material": "", "color": "", "open": 0.0}, rng)
+        carried_out(self.steps, builder, {item.name: _drawn(item, builder) for item in self.asked}, usual, workshop)
+        return workshop.finish(self.name, {}, style="clean", clearance=style.gap, rng=rng)
 
     def _build(self, values: Values, workshop: Workshop) -> None:
         builder_of(self.name, self.title, lambda: self.steps, self.parameters)(values, workshop)

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 MODEL_FILE = "model.urdf"
+PREVIEW_FILE = "preview.png"
 RECORD_FILE = "inference.json"
 SOURCE_FILE = "source.json"
 """What an object of the generator was built with."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from kinematify import __version__
 from kinematify.grouping.groups import GROUPS_FILE
-from kinematify.model.output import MODEL_FILE, RECORD_FILE, write_model_folder
+from kinematify.model.output import MODEL_FILE, PREVIEW_FILE, RECORD_FILE, write_model_folder
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import MESH_FOLDER, write_model
 from kinematify.pipeline.inference import DOUBTFUL
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from kinematify.pipeline.inference import CutChain, Inference
 
 SCHEMA = 1
-PREVIEW_FILE = "preview.png"
 _PACKAGES = ("numpy", "scipy", "torch", "trimesh", "libigl", "python-fcl", "embreex")
 
 

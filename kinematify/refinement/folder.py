@@ -16,9 +16,9 @@ from kinematify.config import Config
 from kinematify.contact.tree import KinematicTree
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointCandidate, JointEstimate
-from kinematify.model.output import MODEL_FILE, RECORD_FILE, write_model_folder
+from kinematify.model.output import MODEL_FILE, PREVIEW_FILE, RECORD_FILE, write_model_folder
 from kinematify.model.urdf import MESH_FOLDER
-from kinematify.pipeline.record import PREVIEW_FILE, SCHEMA, file_hashes, write_inference_files
+from kinematify.pipeline.record import SCHEMA, file_hashes, write_inference_files
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_file import RawMesh
 from kinematify.robot.read import read_robot

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from pydantic import ValidationError
-
 from kinematify.errors import InputError
 from kinematify.generate.library.builder import CAREFUL, ObjectBuilder
 from kinematify.generate.library.steps import Step, run_steps
-from kinematify.generate.procedural.blueprint_file import BlueprintDescription, parents_first
+from kinematify.generate.procedural.blueprint_file import parents_first
 from kinematify.generate.procedural.solids import SEGMENTS
 
 if TYPE_CHECKING:
@@ -19,9 +17,8 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from kinematify.generate.procedural.blueprint import BlueprintJoint
-    from kinematify.generate.procedural.blueprint_file import PartDescription
     from kinematify.generate.procedural.family import Values
-    from kinematify.generate.procedural.workshop import Workshop
+    from kinematify.generate.procedural.workshop import Look, Workshop
 
 MODELING: dict[str, dict[str, Any]] = {
     "careful": {},
@@ -50,40 +47,40 @@ def builder_of(
         differs = MODELING[values.choice("modeling")] if values.has("modeling") else {"sides": SEGMENTS}
         style = replace(CAREFUL, **{"gap": values.number("clearance"), **differs})
         builder = ObjectBuilder(name, style, values.rng if values.drawn else None)
-        said = carried_out(steps(), builder, {key: values.value(key) for key in names})
-        try:
-            built = BlueprintDescription.model_validate(said)
-        except ValidationError as error:
-            reason = error.errors(include_url=False)[0]
-            raise InputError(
-                f"The {title} cannot be built so: {reason['msg']} at {'.'.join(map(str, reason['loc']))}."
-            ) from error
-        solids = {part.name: part.solid({}) for part in built.parts}
-        joints = [replace(joint.joint(), value=joint.value) for joint in built.joints]
-        put_together(solids, {part.name: part for part in built.parts}, joints, values, workshop)
-        for loop in built.loops:
-            workshop.closes(*loop.parts, loop.pivot)
+        carried_out(steps(), builder, {key: values.value(key) for key in names}, values, workshop)
 
     return build
 
 
-def carried_out(steps: Sequence[Step], builder: ObjectBuilder, values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what steps describe, as a blueprint file says it.
+def carried_out(
+    steps: Sequence[Step], builder: ObjectBuilder, given: Mapping[str, Any], values: Values, workshop: Workshop
+) -> None:
+    """Add to a workshop what steps draw.
+
+    Args:
+        steps: In this order.
+        builder: Takes what they draw.
+        given: What formulas may name.
+        values: As for `put_together`.
+        workshop: Where it is added.
 
     Raises:
         InputError: A step cannot be carried out; the message quotes it.
     """
-    switched = {name: value == "yes" if value in ("yes", "no") else value for name, value in values.items()}
+    switched = {name: value == "yes" if value in ("yes", "no") else value for name, value in given.items()}
     try:
         run_steps(steps, builder, switched)
+        solids = builder.solids()
     except ValueError as error:
         raise InputError(f"The object {builder.name} cannot be built: {error}.") from error
-    return builder.description()
+    put_together(solids, builder.looks, builder.joints, values, workshop)
+    for loop in builder.loops:
+        workshop.closes(*loop)
 
 
 def put_together(
     solids: Mapping[str, Manifold],
-    looks: Mapping[str, PartDescription],
+    looks: Mapping[str, Look],
     joints: Sequence[BlueprintJoint],
     values: Values,
     workshop: Workshop,
@@ -94,11 +91,9 @@ def put_together(
     """
     base = looks[next(iter(solids))]
     for name, solid in solids.items():
-        look = looks[name]
-        like_base = (look.material, look.color) == (base.material, base.color)
-        asked = (values.choice("material"), values.choice("color")) if like_base else ("", "")
-        color = look.color if isinstance(look.color, str) else None
-        workshop.body(name, solid, material=None if asked[0] else look.material, color=asked[1] or color)
+        material, color = looks[name]
+        asked = (values.choice("material"), values.choice("color")) if looks[name] == base else ("", "")
+        workshop.body(name, solid, material=None if asked[0] else material, color=asked[1] or color)
     for joint in parents_first(joints):
         share = joint.value / joint.upper if joint.value else 0.0
         workshop.hang(replace(joint, value=0.0), values.number("open") or share)

@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kinematify.generate.procedural import solids
+from kinematify.generate.procedural.blueprint import BlueprintJoint
+from kinematify.generate.procedural.solids import union
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import Mimic
+
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
-    from kinematify.generate.library.shapes import Point, Shape
+    from manifold3d import Manifold
 
-_ROUND = {"cylinder", "capsule", "cone", "tube", "torus", "lathe"}
+    from kinematify.generate.procedural.solids import Point
+    from kinematify.generate.procedural.workshop import Look
+
+_ROUND = (solids.cylinder, solids.cone, solids.tube, solids.torus, solids.rod, solids.lathe)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,15 +89,29 @@ CAREFUL = ModelingStyle(
 """Models so that everything moves freely."""
 
 
+@dataclass(kw_only=True)
+class _Drawn:
+    """A part; what is cut from it is cut from all its solids, whenever they were added."""
+
+    look: Look
+    solids: list[Manifold] = field(default_factory=list)
+    cuts: list[Manifold] = field(default_factory=list)
+
+
 class ObjectBuilder:
     """Collects parts and joints; world frame, z up, metres; front is -y unless a recipe has none."""
 
     def __init__(self, name: str, style: ModelingStyle, rng: np.random.Generator | None = None) -> None:
         """Begin an object."""
         self.name, self.style, self.rng = name, style, rng
-        self._parts: dict[str, dict[str, Any]] = {}
-        self._joints: list[dict[str, Any]] = []
-        self._loops: list[dict[str, Any]] = []
+        self._parts: dict[str, _Drawn] = {}
+        self.joints: list[BlueprintJoint] = []
+        """Each with the `value` at which it is shown."""
+        self.loops: list[tuple[str, str, Point]] = []
+        """Two parts, and a point on the pin that they share besides the joints of the tree [m]."""
+        self.rounds = {solid.__name__: partial(solid, segments=style.sides) for solid in _ROUND}
+        """What is round, with as many sides as this hand gives it."""
+        self.cylinder, self.cone, self.tube, self.torus, self.rod, _ = self.rounds.values()
 
     # ---- draws -----------------------------------------------------------------------------------------------------
 
@@ -112,33 +137,26 @@ class ObjectBuilder:
 
     # ---- parts -----------------------------------------------------------------------------------------------------
 
-    def part(self, name: str, *shapes: Shape, material: str = "plastic", color: str | None = None) -> str:
+    def part(self, name: str, *shapes: Manifold, material: str = "plastic", color: str | None = None) -> str:
         """Add a part, or shapes to a part that is there; returns its name."""
-        if name not in self._parts:
-            self._parts[name] = {"name": name, "shapes": [], "subtract": [], "material": material, "color": color}
-        self._parts[name]["shapes"] += [self._handmade(shape) for shape in shapes]
+        if any(shape.is_empty() for shape in shapes):
+            raise ValueError(f"a shape of {name} has no volume")
+        self._parts.setdefault(name, _Drawn(look=(material, color))).solids.extend(shapes)
         return name
 
-    def front(self, name: str, parent: str, *shapes: Shape, material: str | None = None) -> str:
+    def front(self, name: str, parent: str, *shapes: Manifold, material: str | None = None) -> str:
         """Add a part that looks like its parent, unless a material is given; returns its name."""
-        look = self._parts[parent]
-        if material or name in self._parts:
-            return self.part(name, *shapes, material=material or "")
-        return self.part(name, *shapes, material=look["material"], color=look["color"])
+        look = (material, None) if material else self._parts[parent].look
+        return self.part(name, *shapes, material=look[0], color=look[1])
 
-    def cut(self, name: str, *shapes: Shape) -> None:
+    def cut(self, name: str, *shapes: Manifold) -> None:
         """Take shapes away from a part."""
-        self._parts[name]["subtract"] += [self._handmade(shape) for shape in shapes]
+        self._parts[name].cuts.extend(shapes)
 
-    def bore(self, name: str, *shapes: Shape) -> None:
+    def bore(self, name: str, *shapes: Manifold) -> None:
         """Take shapes away where this hand makes holes."""
         if self.style.has_bore:
             self.cut(name, *shapes)
-
-    def _handmade(self, shape: Shape) -> Shape:
-        if shape["kind"] in _ROUND:
-            return {"sides": self.style.sides, **shape}
-        return shape
 
     # ---- joints ----------------------------------------------------------------------------------------------------
 
@@ -155,36 +173,35 @@ class ObjectBuilder:
         rest: float = 0.0,
     ) -> None:
         """Let a part turn within limits [rad]; `rest` is where it is unless it is drawn `ajar`, which it may be."""
-        self._join("revolute", child, parent, axis, pivot, lower, upper, ajar, rest)
+        self._join(JointType.REVOLUTE, child, parent, axis, pivot, lower, upper, ajar, rest)
 
     def spin(self, child: str, parent: str, axis: Point, pivot: Point) -> None:
         """Let a part turn without end."""
-        self._joints.append(
-            {"type": "continuous", "child": child, "parent": parent, "axis": list(axis), "pivot": list(pivot)}
-        )
+        self._hang(JointType.CONTINUOUS, child, parent, axis, pivot, -math.inf, math.inf)
 
     def slide(
         self, child: str, parent: str, axis: Point, upper: float, lower: float = 0.0, *, ajar: bool = True
     ) -> None:
         """Let a part slide within limits [m]."""
-        self._join("prismatic", child, parent, axis, (0.0, 0.0, 0.0), lower, upper, ajar)
+        self._join(JointType.PRISMATIC, child, parent, axis, (0.0, 0.0, 0.0), lower, upper, ajar)
 
     def fix(self, child: str, parent: str) -> None:
         """A part of its own that does not move."""
-        self._joints.append({"type": "fixed", "child": child, "parent": parent})
+        self._hang(JointType.FIXED, child, parent, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), 0.0, 0.0)
 
     def follow(self, child: str, leader: str, multiplier: float = 1.0) -> None:
         """Let the joint of a part follow that of another one."""
-        joint = next(joint for joint in self._joints if joint["child"] == child)
-        joint |= {"value": 0.0, "mimic": {"leader": leader, "multiplier": multiplier}}
+        place = [joint.child for joint in self.joints].index(child)
+        follows = Mimic(joint=leader, multiplier=multiplier, offset=0.0)
+        self.joints[place] = replace(self.joints[place], value=0.0, mimic=follows)
 
     def close(self, child: str, parent: str, pivot: Point) -> None:
         """Let two parts share a pin besides the joints of the tree."""
-        self._loops.append({"parts": [parent, child], "pivot": list(map(float, pivot))})
+        self.loops.append((parent, child, pivot))
 
     def _join(
         self,
-        kind: str,
+        kind: JointType,
         child: str,
         parent: str,
         axis: Point,
@@ -194,27 +211,52 @@ class ObjectBuilder:
         ajar: bool,
         rest: float = 0.0,
     ) -> None:
-        value = (
-            self.style.initial_opening * upper * self.draw(0.3, 1.0)
-            if ajar and self.style.initial_opening and self.maybe(0.7)
-            else rest
+        opens = ajar and self.style.initial_opening and self.maybe(0.7)
+        value = self.style.initial_opening * upper * self.draw(0.3, 1.0) if opens else rest
+        if not lower <= value <= upper or lower == upper:
+            raise ValueError(f"{child} would stand at {value:g} and move from {lower:g} to {upper:g}")
+        self._hang(kind, child, parent, axis, pivot, lower, upper, value)
+
+    def _hang(
+        self,
+        kind: JointType,
+        child: str,
+        parent: str,
+        axis: Point,
+        pivot: Point,
+        lower: float,
+        upper: float,
+        value: float = 0.0,
+    ) -> None:
+        joint = BlueprintJoint(
+            parent=parent,
+            child=child,
+            kind=kind,
+            axis=np.asarray(axis, dtype=np.float64),
+            pivot=np.asarray(pivot, dtype=np.float64),
+            lower=float(lower),
+            upper=float(upper),
+            value=float(value),
         )
-        placed = {"axis": list(map(float, axis)), "pivot": list(map(float, pivot))}
-        limits = {"lower": float(lower), "upper": float(upper), "value": value}
-        self._joints.append({"type": kind, "child": child, "parent": parent, **placed, **limits})
+        self.joints.append(joint)
 
     # ---- the whole -------------------------------------------------------------------------------------------------
 
-    def description(self) -> dict[str, Any]:
-        """The object as a blueprint file says it; what stands on nothing comes first."""
-        children = {joint["child"] for joint in self._joints}
-        return {
-            "name": self.name,
-            "category": self.name,
-            "parts": sorted(self._parts.values(), key=lambda part: part["name"] in children),
-            "joints": self._joints,
-            "loops": self._loops,
-        }
+    @property
+    def looks(self) -> Mapping[str, Look]:
+        """Of all parts."""
+        return {name: part.look for name, part in self._parts.items()}
+
+    def solids(self) -> Mapping[str, Manifold]:
+        """Return all parts; what stands on nothing comes first."""
+        children = {joint.child for joint in self.joints}
+        found = {}
+        for name in sorted(self._parts, key=children.__contains__):
+            part = self._parts[name]
+            found[name] = union(*part.solids) - union(*part.cuts) if part.cuts else union(*part.solids)
+            if found[name].is_empty():
+                raise ValueError(f"nothing is left of the part {name}")
+        return found
 
 
 def spread(count: int, low: float, high: float) -> Sequence[float]:

@@ -3,36 +3,26 @@
 from __future__ import annotations
 
 import math
-from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.generate.library.steps import ARITHMETIC, Step, StepRunner
-from kinematify.generate.procedural import layout, solids
+from kinematify.generate.library.steps import ARITHMETIC, SOLIDS, Step, StepRunner, public
+from kinematify.generate.procedural import layout
 from kinematify.generate.procedural.pieces import bearings, controls, fronts, jaws, leaves, limbs, tracks
 from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
-    from types import ModuleType
 
     from kinematify.generate.procedural.family import Values
 
 _PIECES = (bearings, controls, fronts, jaws, leaves, limbs, tracks)
 
 
-def _public(module: ModuleType) -> dict[str, Any]:
-    return {
-        name: item
-        for name, item in vars(module).items()
-        if isinstance(item, FunctionType | type) and item.__module__ == module.__name__ and not name.startswith("_")
-    }
-
-
-_FOUND: Mapping[str, Any] = {name: item for module in _PIECES for name, item in _public(module).items()}
+_FOUND: Mapping[str, Any] = {name: item for module in _PIECES for name, item in public(module).items()}
 _VERBS: Mapping[str, Callable[..., Any]] = {
     **{name: getattr(Workshop, name) for name in ("body", "add", "cut", "turns", "slides")},
     **{name.removeprefix("add_"): call for name, call in _FOUND.items() if name.startswith("add_")},
@@ -40,7 +30,7 @@ _VERBS: Mapping[str, Callable[..., Any]] = {
 }
 """What a step does to a workshop."""
 _NAMES: Mapping[str, Any] = {
-    **ARITHMETIC, **_FOUND, **_public(layout), **_public(solids),
+    **ARITHMETIC, **_FOUND, **public(layout), **SOLIDS,
     **{name: getattr(math, name) for name in ("sin", "cos", "tan", "hypot", "degrees", "copysign")},
     **{name: getattr(np, name) for name in ("diag", "zeros", "column_stack", "abs")},
     "FRONT": controls.FRONT, "TOP": controls.TOP, "STEM": bearings.STEM, "float": float,

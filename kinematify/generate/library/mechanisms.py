@@ -1,4 +1,4 @@
-"""What moves on an object, as the hand at work draws it: leaves, drawers, wheels, knobs, levers, rods.
+"""What moves on an object, as the hand at work draws it: wheels, knobs, levers, rods; leaves and drawers are panels.
 
 `out` is the direction in which a surface looks, a unit vector along an axis of the world.
 """
@@ -9,26 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.library.shapes import (
-    X,
-    Y,
-    Z,
-    beam,
-    block,
-    box,
-    cone,
-    cylinder,
-    rod,
-    sphere,
-    torus,
-    tube,
-)
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, rounded_block
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from manifold3d import Manifold
+
     from kinematify.generate.library.builder import ObjectBuilder
-    from kinematify.generate.library.shapes import Point, Shape
+    from kinematify.generate.procedural.solids import Point
     from kinematify.robot.arrays import FloatArray
 
 
@@ -46,11 +35,8 @@ def case(
     low, high = np.asarray(lower, dtype=np.float64), np.asarray(upper, dtype=np.float64)
     size = high - low
     thick = wall or 0.06 * float(size.min())
-    edge = 0.15 * thick
-    solid: Shape = box(low, high)
-    if d.style.rounded:
-        solid = {**solid, "kind": "rounded_box", "radius": edge}
-    d.part(name, solid, material=material)
+    whole = rounded_block(size, 0.15 * thick).translate(0.5 * (low + high)) if d.style.rounded else box(low, high)
+    d.part(name, whole, material=material)
     if d.style.hollow and opening is not None:
         out = np.asarray(opening)
         d.cut(name, box(low + thick + np.minimum(2 * out * thick, 0), high - thick + np.maximum(2 * out * thick, 0)))
@@ -63,120 +49,7 @@ def legs(d: ObjectBuilder, name: str, lower: Point, upper: Point, thick: float) 
     for x in (x0 + h, x1 - h):
         for y in (y0 + h, y1 - h):
             foot, top = (x, y, z0), (x, y, z1)
-            d.part(name, cylinder(h, foot, top) if d.style.sides > 12 else beam(thick, thick, foot, top))
-
-
-def grip(d: ObjectBuilder, on: str, at: Point, out: FloatArray, along: FloatArray, length: float) -> None:
-    """A handle on a part: a bar on posts, a block or a knob; apart or none where the hand makes it so."""
-    if d.style.grips == "none":
-        return
-    at = np.asarray(at, dtype=np.float64)
-    thick = 0.12 * length
-    kind = d.pick("bar", "block", "knob", "plate")
-    high = d.draw(1.5, 3.0) * thick
-    half = 0.5 * length * along
-    if kind == "bar":
-        top = at + high * out
-        shapes = [cylinder(0.5 * thick, top - half, top + half)]
-        shapes += [cylinder(0.4 * thick, at + s * 0.8 * half, top + s * 0.8 * half) for s in (-1.0, 1.0)]
-    elif kind == "block":
-        shapes = [beam(thick, high, at + 0.5 * high * out - half, at + 0.5 * high * out + half, out)]
-    elif kind == "knob":
-        shapes = [cylinder(0.6 * thick, at, at + high * out), sphere(thick, at + high * out)]
-    else:
-        across = np.cross(out, along)
-        shapes = [
-            beam(0.2 * thick, high, at + 0.5 * high * out - half, at + 0.5 * high * out + half, out),
-            beam(thick, 0.25 * thick, at + high * out - half, at + high * out + half, out),
-        ]
-        shapes[1]["xyz"] = np.add(shapes[1]["xyz"], 0.4 * thick * across).tolist()
-    if d.style.grips == "apart":
-        d.fix(d.part(f"{on}_grip", *shapes, material="metal"), on)
-    else:
-        d.part(on, *shapes)
-
-
-def leaf(
-    d: ObjectBuilder,
-    name: str,
-    parent: str,
-    lower: Point,
-    upper: Point,
-    *,
-    hinge: FloatArray,
-    out: FloatArray,
-    reach: float = 1.6,
-    handle: bool = True,
-    material: str | None = None,
-) -> None:
-    """A door, lid or flap: a plate between two corners, hinged at the edge that `hinge` points to, opening outward.
-
-    The plate may lie on a front or be let into it.
-    """
-    low, high = np.minimum(lower, upper), np.maximum(lower, upper)
-    along = np.abs(np.cross(hinge, out))
-    across = np.abs(np.asarray(hinge))
-    wide = float((high - low) @ across)
-    gap = d.gap(float(min(wide, (high - low) @ along)))
-    low, high = low + gap * (along + across) + gap * out, high - gap * (along + across) + gap * out
-    thick = float((high - low) @ np.abs(out))
-    d.front(name, parent, box(low, high), material=material)
-    middle = 0.5 * (low + high)
-    edge = middle + 0.5 * float((high - low) @ across) * hinge
-    pivot = edge + (d.style.line - 0.5) * thick * out
-    if d.style.barrels:
-        pivot = edge + (0.5 * thick) * out
-        radius = min(0.6 * thick, 0.03 * wide)
-        length = float((high - low) @ along)
-        for share in (-0.3, 0.3):
-            at = pivot + share * length * along
-            d.part(d.pick(name, name, parent), cylinder(radius, at - 0.06 * length * along, at + 0.06 * length * along))
-    if handle:
-        where = middle - 0.38 * wide * hinge + 0.5 * thick * out
-        grip(d, name, where, out, d.pick(along, along, across), min(0.25 * wide, 0.15))
-    d.hinge(name, parent, np.cross(out, hinge), pivot, reach)
-
-
-def drawer(
-    d: ObjectBuilder,
-    name: str,
-    parent: str,
-    lower: Point,
-    upper: Point,
-    *,
-    out: FloatArray,
-    travel: float = 0.75,
-    handle: bool = True,
-    material: str | None = None,
-) -> None:
-    """A drawer in the bay between two corners, which ends at the front; it comes out."""
-    low, high = np.minimum(lower, upper), np.maximum(lower, upper)
-    ahead, sides = np.abs(out), 1.0 - np.abs(out)
-    size = high - low
-    deep = float(size @ ahead)
-    least = float(size[sides > 0.5].min())
-    gap = d.gap(least)
-    d.bore(parent, box(low, high + 1e-3 * deep * out) if out.sum() > 0 else box(low + 1e-3 * deep * out, high))
-    middle = 0.5 * (low + high)
-    face = middle + 0.5 * deep * out
-    thick = min(0.03, 0.06 * deep)
-    reach = 0.5 * size * sides
-    lap = 0.02 * least * sides
-    front = face + (gap + thick) * out
-    d.front(name, parent, box(face + gap * out - reach - lap, front + reach + lap), material=material)
-    if d.style.drawer != "front":
-        back = middle - (0.5 * deep - gap) * out
-        half = reach - gap * sides
-        d.part(name, box(back - half, face + (gap + 0.5 * thick) * out + half))
-        if d.style.drawer == "tray":
-            wall = 0.06 * least
-            inner = half - wall * sides
-            d.cut(name, box(back + wall * out - inner, face - wall * out + inner + 2.0 * wall * Z))
-    if handle:
-        flat = np.array([1.0, 1.0, 0.0]) * sides
-        along = flat / max(float(np.linalg.norm(flat)), 1e-9)
-        grip(d, name, front, out, along, min(0.35 * float(size @ along), 0.2))
-    d.slide(name, parent, out, travel * deep)
+            d.part(name, d.cylinder(h, foot, top) if d.style.sides > 12 else beam(thick, thick, foot, top))
 
 
 def wheel(
@@ -195,16 +68,16 @@ def wheel(
     at = np.asarray(middle, dtype=np.float64)
     inner, outer = at - 0.5 * wide * out, at + 0.5 * wide * out
     if d.style.wheel == "disc":
-        d.part(name, cylinder(radius, inner, outer), material=material)
+        d.part(name, d.cylinder(radius, inner, outer), material=material)
     elif d.style.wheel == "tyre":
         wire = min(0.5 * wide, 0.3 * radius)
         d.part(
             name,
-            torus(radius - wire, wire, at, out),
-            cylinder(radius - wire, at - 0.3 * wide * out, at + 0.3 * wide * out),
+            d.torus(radius - wire, wire, at, out),
+            d.cylinder(radius - wire, at - 0.3 * wide * out, at + 0.3 * wide * out),
         )
     else:
-        d.part(name, tube(radius, 0.82 * radius, inner, outer), cylinder(0.22 * radius, inner, outer))
+        d.part(name, d.tube(radius, 0.82 * radius, inner, outer), d.cylinder(0.22 * radius, inner, outer))
         side = np.roll(out, 1)
         up = np.cross(out, side)
         for k in range(d.count(3, 6)):
@@ -216,9 +89,9 @@ def wheel(
                 ),
             )
     if axle > 0.0:
-        stub = cylinder(0.15 * radius, inner - (axle + 0.02 * radius) * out, inner if d.style.has_bore else at)
+        stub = d.cylinder(0.15 * radius, inner - (axle + 0.02 * radius) * out, inner if d.style.has_bore else at)
         if d.style.has_bore:
-            d.part(name, cylinder(0.15 * radius, inner - (axle - d.gap(radius)) * out, at))
+            d.part(name, d.cylinder(0.15 * radius, inner - (axle - d.gap(radius)) * out, at))
         else:
             d.part(d.pick(parent, name), stub)
     d.spin(name, parent, out, at)
@@ -244,26 +117,26 @@ def knob(
     side = np.roll(out, 1)
     if d.style.has_bore:
         deep = 0.6 * high
-        d.cut(parent, cylinder(0.3 * radius + 1.5 * gap, at - (deep + gap) * out, at + 0.05 * high * out))
-        d.part(name, cylinder(0.3 * radius, at - deep * out, top), material=material)
+        d.cut(parent, d.cylinder(0.3 * radius + 1.5 * gap, at - (deep + gap) * out, at + 0.05 * high * out))
+        d.part(name, d.cylinder(0.3 * radius, at - deep * out, top), material=material)
         foot = at + gap * out
     kind = d.style.knob
     if kind == "bar":
         d.part(
             name, beam(0.4 * radius, high, 0.5 * (foot + top) - radius * side, 0.5 * (foot + top) + radius * side, out)
         )
-        d.part(name, cylinder(0.55 * radius, foot, foot + 0.4 * (top - foot)))
+        d.part(name, d.cylinder(0.55 * radius, foot, foot + 0.4 * (top - foot)))
     elif kind == "ball":
-        d.part(name, cylinder(0.4 * radius, foot, top), sphere(0.8 * radius, top))
+        d.part(name, d.cylinder(0.4 * radius, foot, top), ball(0.8 * radius, top))
     elif kind == "star":
         arms = [np.cos(a) * side + np.sin(a) * np.cross(out, side) for a in np.arange(5) * 2 * np.pi / 5]
-        d.part(name, cylinder(0.5 * radius, foot, top))
+        d.part(name, d.cylinder(0.5 * radius, foot, top))
         d.part(
             name,
             *(beam(0.3 * radius, 0.6 * high, 0.5 * (foot + top), 0.5 * (foot + top) + radius * a, out) for a in arms),
         )
     else:
-        d.part(name, cylinder(radius, foot, top), material=material)
+        d.part(name, d.cylinder(radius, foot, top), material=material)
     if kind == "pointer":
         d.part(name, beam(0.12 * radius, 0.2 * high, top, top + 0.9 * radius * side, out))
     if reach is None:
@@ -290,8 +163,8 @@ def button(
     deep = 0.8 * high if d.style.has_bore else d.style.max_penetration * high
     low, high_end = at + (0.0 if deep else gap) * out - deep * out, at + high * out
     if is_round:
-        d.bore(parent, cylinder(0.5 * size[0] + 1.5 * gap, at - (deep + high) * out, at + 0.05 * high * out))
-        d.part(name, cylinder(0.5 * size[0], low, high_end), material=material)
+        d.bore(parent, d.cylinder(0.5 * size[0] + 1.5 * gap, at - (deep + high) * out, at + 0.05 * high * out))
+        d.part(name, d.cylinder(0.5 * size[0], low, high_end), material=material)
     else:
         wide, tall = _across(out, size)
         half = 0.5 * (wide + tall)
@@ -320,9 +193,11 @@ def lever(
     at, direction = np.asarray(at, dtype=np.float64), np.asarray(along, dtype=np.float64)
     thick = 0.12 * length
     level = at + d.draw(1.0, 2.0) * thick * out
-    d.part(name, d.pick(rod, cylinder)(0.5 * thick, level, level + length * direction), material=material)
-    d.part(name, cylinder(0.45 * thick, at + (d.gap(thick) - (2.0 * thick if d.style.has_bore else 0.0)) * out, level))
-    d.bore(parent, cylinder(0.45 * thick + 1.5 * d.gap(thick), at - 2.5 * thick * out, at + thick * out))
+    d.part(name, d.pick(d.rod, d.cylinder)(0.5 * thick, level, level + length * direction), material=material)
+    d.part(
+        name, d.cylinder(0.45 * thick, at + (d.gap(thick) - (2.0 * thick if d.style.has_bore else 0.0)) * out, level)
+    )
+    d.bore(parent, d.cylinder(0.45 * thick + 1.5 * d.gap(thick), at - 2.5 * thick * out, at + thick * out))
     d.hinge(name, parent, out, at, reach, lower)
 
 
@@ -360,17 +235,19 @@ def arm(
     half = 0.5 * thick * axis
     kind = d.pick("beam", "beam", "rod", "plate")
     if kind == "rod" and not d.style.has_bore:
-        d.part(name, rod(0.5 * thick, a, b), material=material)
+        d.part(name, d.rod(0.5 * thick, a, b), material=material)
     else:
         wide = thick if kind == "beam" else 1.4 * thick
         d.part(name, beam(wide, 0.9 * thick, a, b, axis), material=material)
-        d.part(name, *(cylinder(0.5 * wide, p - 0.45 * thick * axis, p + 0.45 * thick * axis) for p in (a, b)))
+        d.part(name, *(d.cylinder(0.5 * wide, p - 0.45 * thick * axis, p + 0.45 * thick * axis) for p in (a, b)))
     if d.style.has_bore:
         gap = d.gap(thick)
-        d.part(name, cylinder(0.2 * thick, a - 2.4 * half, a))
-        d.cut(parent, cylinder(0.2 * thick + 1.5 * gap, np.asarray(start) - 3.0 * half, np.asarray(start) + 3.0 * half))
+        d.part(name, d.cylinder(0.2 * thick, a - 2.4 * half, a))
+        d.cut(
+            parent, d.cylinder(0.2 * thick + 1.5 * gap, np.asarray(start) - 3.0 * half, np.asarray(start) + 3.0 * half)
+        )
     elif d.style.barrels:
-        d.part(d.pick(name, parent), cylinder(0.2 * thick, a - 2.5 * half, a + 1.5 * half))
+        d.part(d.pick(name, parent), d.cylinder(0.2 * thick, a - 2.5 * half, a + 1.5 * half))
     d.hinge(name, parent, axis, start, upper, lower)
 
 
@@ -397,8 +274,8 @@ def plunger(
         d.part(name, beam(2.0 * radius, 2.0 * radius, a, b), material=material)
         d.bore(parent, beam(2.0 * (radius + gap), 2.0 * (radius + gap), a, b - gap * out))
     else:
-        d.part(name, cylinder(radius, a, b), material=material)
-        d.bore(parent, cylinder(radius + 1.5 * gap, a, b - gap * out))
+        d.part(name, d.cylinder(radius, a, b), material=material)
+        d.bore(parent, d.cylinder(radius + 1.5 * gap, a, b - gap * out))
     d.slide(name, parent, out, travel)
 
 
@@ -418,10 +295,10 @@ def cap(
     at = np.asarray(at, dtype=np.float64)
     gap = d.gap(radius)
     top = at + high * out
-    d.part(parent, cylinder(0.8 * radius, at - 0.1 * high * out, at + 0.75 * high * out))
-    d.part(name, cylinder(radius, at + gap * out, top), material=material)
+    d.part(parent, d.cylinder(0.8 * radius, at - 0.1 * high * out, at + 0.75 * high * out))
+    d.part(name, d.cylinder(radius, at + gap * out, top), material=material)
     if d.style.has_bore:
-        d.cut(name, cylinder(0.8 * radius + 1.5 * gap, at - high * out, at + 0.8 * high * out + gap * out))
+        d.cut(name, d.cylinder(0.8 * radius + 1.5 * gap, at - high * out, at + 0.8 * high * out + gap * out))
     if turns:
         d.spin(name, parent, out, at)
     else:
@@ -445,9 +322,9 @@ def rotor(
     hub = 0.14 * radius
     gap = d.gap(hub)
     foot = at + (gap - d.style.max_penetration * hub) * out
-    d.part(name, cylinder(hub, foot, at + 1.6 * hub * out), material=material)
+    d.part(name, d.cylinder(hub, foot, at + 1.6 * hub * out), material=material)
     if d.maybe():
-        d.part(name, cone(hub, 0.2 * hub, at + 1.6 * hub * out, at + 2.6 * hub * out))
+        d.part(name, d.cone(hub, 0.2 * hub, at + 1.6 * hub * out, at + 2.6 * hub * out))
     side = np.roll(out, 1)
     tilt = d.draw(0.0, 0.5)
     for angle in np.arange(blades) * 2.0 * np.pi / blades:
@@ -469,18 +346,18 @@ def caster(d: ObjectBuilder, name: str, parent: str, top: Point, high: float) ->
     plate = at - 0.16 * high * Z
     d.part(
         fork,
-        cylinder(0.35 * radius, at - gap * Z, plate),
+        d.cylinder(0.35 * radius, at - gap * Z, plate),
         block(plate, (1.6 * radius, 1.8 * wide, 0.1 * high)),
         material="steel",
     )
     if d.style.has_bore:
-        d.cut(parent, cylinder(0.2 * radius + 1.5 * gap, at - 0.1 * high * Z, at + 0.32 * high * Z))
-        d.part(fork, cylinder(0.2 * radius, at - 0.1 * high * Z, at + 0.3 * high * Z))
+        d.cut(parent, d.cylinder(0.2 * radius + 1.5 * gap, at - 0.1 * high * Z, at + 0.32 * high * Z))
+        d.part(fork, d.cylinder(0.2 * radius, at - 0.1 * high * Z, at + 0.3 * high * Z))
     for side in (-1.0, 1.0):
         leg = axle + side * 0.8 * wide * Y
         d.part(fork, beam(0.5 * radius, 0.3 * wide, np.array([leg[0], leg[1], plate[2]]), leg - 0.3 * radius * Z, Y))
     d.spin(fork, parent, Z, at)
-    d.part(name, cylinder(radius, axle - 0.45 * wide * Y, axle + 0.45 * wide * Y), material="rubber")
+    d.part(name, d.cylinder(radius, axle - 0.45 * wide * Y, axle + 0.45 * wide * Y), material="rubber")
     d.spin(name, fork, Y, axle)
 
 
@@ -502,21 +379,21 @@ def crank(
     level = at + 0.35 * length * out
     gap = d.gap(thick)
     start = at - (0.3 * length if d.style.has_bore else -gap) * out
-    d.bore(parent, cylinder(0.5 * thick + 1.5 * gap, start - gap * out, at + 1e-3 * length * out))
+    d.bore(parent, d.cylinder(0.5 * thick + 1.5 * gap, start - gap * out, at + 1e-3 * length * out))
     d.part(
         name,
-        cylinder(0.5 * thick, start, level),
+        d.cylinder(0.5 * thick, start, level),
         beam(thick, 0.8 * thick, level - 0.6 * thick * along, level + length * along, out),
         material=material,
     )
     foot = level + 0.9 * length * along + (0.4 * thick + gap) * out
-    handle = cylinder(0.7 * thick, foot, foot + 0.5 * length * out)
+    handle = d.cylinder(0.7 * thick, foot, foot + 0.5 * length * out)
     if spins and d.maybe(0.4):
         d.part(f"{name}_grip", handle, material="wood")
         d.spin(f"{name}_grip", name, out, foot)
     else:
         low = foot - (0.4 * thick + gap) * out
-        d.part(name, cylinder(0.7 * thick, low, foot + 0.5 * length * out))
+        d.part(name, d.cylinder(0.7 * thick, low, foot + 0.5 * length * out))
     d.spin(name, parent, out, at)
 
 
@@ -539,21 +416,21 @@ def bail(
     along = (b - a) / float(np.linalg.norm(b - a))
     gap = d.gap(thick)
     a, b = a - (0.5 * thick + gap) * along, b + (0.5 * thick + gap) * along
-    shape = cylinder if d.style.sides > 12 else lambda r, p, q: beam(2 * r, 2 * r, p, q)
     r = 0.5 * thick
-    d.part(
-        name,
-        shape(r, a - 0.8 * thick * up, a + high * up),
-        shape(r, b - 0.8 * thick * up, b + high * up),
-        material=material,
-    )
-    d.part(name, shape(r, a + high * up - r * along, b + high * up + r * along))
+
+    def bar(start: FloatArray, end: FloatArray) -> Manifold:
+        return d.cylinder(r, start, end) if d.style.sides > 12 else beam(2 * r, 2 * r, start, end)
+
+    posts = [bar(foot - 0.8 * thick * up, foot + high * up) for foot in (a, b)]
+    d.part(name, *posts, bar(a + high * up - r * along, b + high * up + r * along), material=material)
     if d.style.has_bore:
         d.part(
-            name, cylinder(0.3 * thick, a, a + 1.5 * thick * along), cylinder(0.3 * thick, b, b - 1.5 * thick * along)
+            name,
+            d.cylinder(0.3 * thick, a, a + 1.5 * thick * along),
+            d.cylinder(0.3 * thick, b, b - 1.5 * thick * along),
         )
-        d.cut(parent, cylinder(0.3 * thick + 1.5 * gap, a, a + (1.5 * thick + gap) * along))
-        d.cut(parent, cylinder(0.3 * thick + 1.5 * gap, b, b - (1.5 * thick + gap) * along))
+        d.cut(parent, d.cylinder(0.3 * thick + 1.5 * gap, a, a + (1.5 * thick + gap) * along))
+        d.cut(parent, d.cylinder(0.3 * thick + 1.5 * gap, b, b - (1.5 * thick + gap) * along))
     d.hinge(name, parent, along, 0.5 * (a + b), upper, lower)
 
 
@@ -596,7 +473,7 @@ def pinned(
     d: ObjectBuilder,
     name: str,
     parent: str,
-    arms: Sequence[Sequence[Shape]],
+    arms: Sequence[Sequence[Manifold]],
     r: float,
     low: float,
     high: float,
@@ -606,10 +483,10 @@ def pinned(
     """Two arms that cross at the origin, and a pin about z in both: of one of them, of its own, or not drawn."""
     for arm_name, some in zip((parent, name), arms, strict=True):
         d.part(arm_name, *some, material="steel")
-    pin = cylinder(r, (0, 0, low), (0, 0, high))
+    pin = d.cylinder(r, (0, 0, low), (0, 0, high))
     kind = d.pick("merged", "apart", "none")
     if kind != "none":
-        d.bore(name, cylinder(r + 1.5 * d.gap(2 * r) + 1e-5, (0, 0, low - 1), (0, 0, high + 1)))
+        d.bore(name, d.cylinder(r + 1.5 * d.gap(2 * r) + 1e-5, (0, 0, low - 1), (0, 0, high + 1)))
         if kind == "merged":
             d.part(parent, pin)
         else:

@@ -1,4 +1,4 @@
-"""Plain slabs, frames, carcasses and trays, without hardware, as collections of meshes have them; the front is -y."""
+"""Leaves, drawers, frames, carcasses and trays, as the hand at work draws them; the front is -y where none is named."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.library.shapes import X, Y, Z, beam, box, cylinder, sphere
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.generate.library.builder import ObjectBuilder
-    from kinematify.generate.library.shapes import Point
+    from kinematify.generate.procedural.solids import Point
     from kinematify.robot.arrays import FloatArray
 
 
@@ -90,8 +90,8 @@ def carcass(
         d.part(name, box((x - wall / 2, y0, z0), (x + wall / 2, y1, z1)))
 
 
-def pull(d: ObjectBuilder, on: str, at: Point, out: FloatArray, along: FloatArray, room: float) -> None:
-    """A handle on a slab: a rail, a bare rod before it, a lip, a stub or a knob; apart or none as the hand has it.
+def grip(d: ObjectBuilder, on: str, at: Point, out: FloatArray, along: FloatArray, length: float) -> None:
+    """A handle on a part: a bar on posts, a bare rod, a block, a lip, a stub, a plate or a knob; apart or none.
 
     Args:
         d: The object.
@@ -99,35 +99,36 @@ def pull(d: ObjectBuilder, on: str, at: Point, out: FloatArray, along: FloatArra
         at: Its middle, on the surface [m].
         out: Where the surface looks.
         along: Its direction.
-        room: How long it may be [m].
+        length: How long it is [m].
     """
     if d.style.grips == "none":
         return
     at = np.asarray(at, dtype=np.float64)
-    length = d.pick(d.draw(0.1, 0.4), d.draw(0.5, 0.95)) * room
-    thick = min(max(0.06 * length, 0.012 * room), 0.03)
-    high = d.draw(1.2, 3.0) * thick
-    half, top = 0.5 * length * along, at + high * out
-    kind = d.pick("rail", "rail", "rod", "lip", "stub", "knob")
-    if kind == "rail":
-        shapes = [d.pick(beam(thick, thick, top - half, top + half, out), cylinder(thick / 2, top - half, top + half))]
-        shapes += [beam(0.8 * thick, 0.8 * thick, at + s * half, top + s * half, along) for s in (-0.9, 0.9)]
+    thick, half = min(0.12 * length, 0.03), 0.5 * length * along
+    kind = d.pick("bar", "bar", "block", "rod", "lip", "stub", "knob", "plate")
+    high = d.draw(1.5, 3.0) * thick
+    top = at + high * out
+    if kind == "bar":
+        shapes = [d.pick(d.cylinder(0.5 * thick, top - half, top + half), beam(thick, thick, top - half, top + half))]
+        shapes += [d.cylinder(0.4 * thick, at + s * 0.8 * half, top + s * 0.8 * half) for s in (-1.0, 1.0)]
     elif kind == "rod":
-        level = at + (thick / 2 + d.pick(0.0, d.style.gap, -0.2 * thick)) * out
-        shapes = [cylinder(thick / 2, level - half, level + half)]
-    elif kind == "lip":
-        shapes = [beam(0.3 * thick, high, at + high / 2 * out - half, at + high / 2 * out + half, out)]
-    elif kind == "stub":
-        shapes = [beam(2.0 * thick, high, at + high / 2 * out - half / 4, at + high / 2 * out + half / 4, out)]
+        level = at + (0.5 * thick + d.pick(0.0, d.style.gap, -0.2 * thick)) * out
+        shapes = [d.cylinder(0.5 * thick, level - half, level + half)]
+    elif kind == "knob":
+        shapes = [d.cylinder(0.6 * thick, at, top), ball(thick, top)]
     else:
-        shapes = [cylinder(0.7 * thick, at, top), sphere(1.2 * thick, top)]
+        wide, share = {"block": (1.0, 1.0), "lip": (0.3, 1.0), "stub": (2.0, 0.25), "plate": (0.2, 1.0)}[kind]
+        middle, edge = at + 0.5 * high * out, top + 0.4 * thick * np.cross(out, along)
+        shapes = [beam(wide * thick, high, middle - share * half, middle + share * half, out)]
+        if kind == "plate":
+            shapes.append(beam(thick, 0.25 * thick, edge - half, edge + half, out))
     if d.style.grips == "apart":
-        d.fix(d.part(f"{on}_handle", *shapes, material="metal"), on)
+        d.fix(d.part(f"{on}_grip", *shapes, material="metal"), on)
     else:
         d.part(on, *shapes)
 
 
-def slab(
+def leaf(
     d: ObjectBuilder,
     name: str,
     parent: str,
@@ -140,10 +141,10 @@ def slab(
     back: float = 0.0,
     inset: bool = False,
     handle: bool = True,
-    glazed: float = 0.25,
+    glazed: float = 0.0,
     material: str | None = None,
 ) -> None:
-    """A plain leaf between two corners that turns about an edge of its own.
+    """A door, lid or flap: a plate between two corners that turns about an edge of its own and opens outward.
 
     Args:
         d: The object.
@@ -157,31 +158,36 @@ def slab(
         back: How far it opens to the other side [rad].
         inset: It stands in its parent, not before it.
         handle: It may have one.
-        glazed: Share of the leaves that are a frame with a pane.
+        glazed: Share of the leaves that are a frame with a pane; of the others some have a panel. Zero: all are plain.
         material: Of the leaf; its parent's if None.
     """
     low, high = np.minimum(lower, upper), np.maximum(lower, upper)
     along, across = np.abs(np.cross(hinge, out)), np.abs(hinge)
     thick, wide, length = (float((high - low) @ axis) for axis in (np.abs(out), across, along))
     play = seam(d, min(wide, length), thick)
-    shrunk = (play if inset else d.gap(0.3 * wide)) * (along + across)
-    low, high = low + shrunk, high - shrunk
-    if not inset:
-        low, high = low + play * out, high + play * out
-    middle = 0.5 * (low + high)
+    shrunk = (play if inset else d.gap(min(wide, length))) * (along + across)
+    before = 0.0 if inset else play * out
+    low, high = low + shrunk + before, high - shrunk + before
+    kind = "pane" if glazed and d.maybe(glazed) else d.pick("plain", "plain", "panel") if glazed else "plain"
     d.front(name, parent, material=material)
-    _filled(d, name, low, high, out, "pane" if d.maybe(glazed) else d.pick("plain", "plain", "panel"))
+    _filled(d, name, low, high, out, kind)
     inward = 0.0 if d.style.has_bore else d.pick(0.0, 0.0, 0.0, d.draw(0.01, 0.05) * wide)
-    half = 0.5 * float((high - low) @ across) - inward
+    middle, half = 0.5 * (low + high), 0.5 * float((high - low) @ across) - inward
+    pivot = middle + half * hinge + ((0.5 if d.style.barrels else d.style.line - 0.5) * thick) * out
+    if d.style.barrels:
+        radius = min(0.6 * thick, 0.03 * wide)
+        for at in (pivot - 0.3 * length * along, pivot + 0.3 * length * along):
+            ends = at - 0.06 * length * along, at + 0.06 * length * along
+            d.part(d.pick(name, name, parent), d.cylinder(radius, *ends))
     if handle:
-        upright = d.maybe(0.8)  # most handles run along the hinge
-        at = middle - d.draw(0.75, 0.93) * half * hinge + 0.5 * thick * out
-        room = 0.5 * length if upright else 0.12 * wide
-        pull(d, name, at, out, along if upright else across, room)
+        lengthwise = d.maybe(0.8)  # most handles run along the hinge
+        room = 0.8 * length if lengthwise else 0.24 * wide
+        at = middle - d.draw(0.68, 0.86) * half * hinge + 0.5 * thick * out
+        size = min(room, d.pick(min(0.25 * wide, 0.15), d.draw(0.2, 0.9) * room))
+        grip(d, name, at, out, along if lengthwise else across, size)
         if d.maybe(0.15):  # one on either side
-            pull_back = middle - 0.85 * half * hinge - 0.5 * thick * out
-            d.part(name, cylinder(0.02 * wide, pull_back, pull_back - 0.05 * wide * out))
-    pivot = middle + half * hinge + (d.style.line - 0.5) * thick * out
+            behind = middle - 0.85 * half * hinge - 0.5 * thick * out
+            d.part(name, d.cylinder(0.02 * wide, behind, behind - 0.05 * wide * out))
     d.hinge(name, parent, np.cross(out, hinge), pivot, reach, -back)
 
 
@@ -223,17 +229,21 @@ def _filled(d: ObjectBuilder, name: str, low: FloatArray, high: FloatArray, out:
         d.part(name, glass)
 
 
-def box_drawer(
+def drawer(
     d: ObjectBuilder,
     name: str,
     parent: str,
     lower: Point,
     upper: Point,
     *,
-    lap: float = 0.0,
+    out: FloatArray = -Y,
+    travel: float = 0.75,
+    lap: float | None = None,
     front: float | None = None,
+    handle: bool = True,
+    material: str | None = None,
 ) -> None:
-    """A drawer in the bay between two corners, open at -y: a tray, a block or a front, before the bay or let into it.
+    """A tray, a block or a front in the bay between two corners, which ends at the front; it comes out.
 
     Args:
         d: The object.
@@ -241,39 +251,37 @@ def box_drawer(
         parent: What holds it.
         lower: A corner of the bay [m].
         upper: The other one [m].
-        lap: How far a front that stands before the bay covers its edges [m]; without, it is let in.
+        out: Where it comes out.
+        travel: How far, in depths of the bay.
+        lap: How far a front that stands before the bay covers its edges [m]; 0: it is let in, None: a little.
         front: Thickness of the front [m].
+        handle: It may have one.
+        material: Of the drawer; its parent's if None.
     """
     low, high = np.minimum(lower, upper), np.maximum(lower, upper)
-    size = high - low
-    plate = front or d.draw(0.012, 0.025)
-    play = seam(d, float(min(size[0], size[2])), plate)
-    sides = play * (X + Z)
-    y = low[1] - (plate + play if lap else 0.0)
-    cover = lap * (X + Z) if lap else -sides
-    a, b = low - cover, high + cover
-    a[1], b[1] = y, y + plate
-    d.front(name, parent, box(a, b))
-    body_low, body_high = low + sides, high - sides - max(play, 0.0) * Y
-    body_low[1] = y + 0.5 * plate
+    ahead, sides, size = np.abs(out), 1.0 - np.abs(out), high - low
+    deep, least = float(size @ ahead), float(size[sides > 0.5].min())
+    plate = front or min(0.03, 0.06 * deep)
+    play = seam(d, least, plate)
+    reach, lap = 0.5 * size * sides, 0.02 * least if lap is None else lap
+    middle = 0.5 * (low + high)
+    face = middle + 0.5 * deep * out
+    d.bore(parent, box(middle - 0.5 * deep * out - reach, face + 1e-3 * deep * out + reach))
+    behind = face + (play if lap else -plate) * out
+    cover = reach + (lap or -play) * sides
+    d.front(name, parent, box(behind - cover, behind + plate * out + cover), material=material)
     if d.style.drawer != "front":
-        wall = min(0.012, 0.08 * float(min(size[0], size[2])))
+        back, half = middle - (0.5 * deep - max(play, 0.0)) * out, reach - play * sides
+        d.part(name, box(back - half, behind + 0.5 * plate * out + half))
         if d.style.drawer == "tray":
-            top = body_high[2] - d.draw(0.0, 0.5) * size[2]
-            ends = body_high * (X + Y) + top * Z
-            d.part(name, box(body_low, body_high * (X + Y) + (body_low[2] + wall) * Z))
-            for axis in (X, Y):
-                d.part(name, box(body_low, ends - (body_high - body_low - wall) * axis))
-                d.part(name, box(body_low + (body_high - body_low - wall) * axis, ends))
-        else:
-            d.part(name, box(body_low, body_high))
-    if not d.style.hollow and d.style.has_bore and d.style.drawer != "front":
-        d.cut(parent, box(low - 1e-3 * Y, high))
-    at = 0.5 * (a + b)
-    at[1] = y
-    level = d.pick(0.0, 0.0, d.draw(0.2, 0.4)) * float(b[2] - a[2])
-    pull(d, name, at + level * Z, -Y, X, min(0.6 * float(size[0]), 4.0 * float(size[2])))
-    d.slide(name, parent, -Y, d.draw(0.5, 0.95) * float(high[1] - low[1]))
+            wall = 0.06 * least
+            inner = half - wall * sides
+            d.cut(name, box(back + wall * out - inner, behind - wall * out + inner + 2.0 * wall * Z))
+    if handle:
+        along = np.array([1.0, 1.0, 0.0]) * sides
+        along /= max(float(np.linalg.norm(along)), 1e-9)
+        grip(d, name, behind + plate * out, out, along, min(0.35 * float(size @ along), 0.2))
+    d.slide(name, parent, out, travel * deep)
 
 
 def rack(d: ObjectBuilder, name: str, parent: str, lower: Point, upper: Point, *, travel: float = 0.8) -> None:
@@ -295,14 +303,14 @@ def rack(d: ObjectBuilder, name: str, parent: str, lower: Point, upper: Point, *
         levels = [a[2] + wire] if kind == "wires" else [a[2] + wire, b[2] - wire]
         for z in levels:
             for y in (a[1] + wire, b[1] - wire):
-                d.part(name, cylinder(wire, (a[0], y, z), (b[0], y, z)), material="metal")
+                d.part(name, d.cylinder(wire, (a[0], y, z), (b[0], y, z)), material="metal")
             for x in (a[0] + wire, b[0] - wire):
-                d.part(name, cylinder(wire, (x, a[1], z), (x, b[1], z)))
+                d.part(name, d.cylinder(wire, (x, a[1], z), (x, b[1], z)))
         for x in np.linspace(a[0] + wire, b[0] - wire, d.count(5, 12)):
-            d.part(name, cylinder(wire, (x, a[1], levels[0]), (x, b[1], levels[0])))
+            d.part(name, d.cylinder(wire, (x, a[1], levels[0]), (x, b[1], levels[0])))
             if kind == "basket":
-                d.part(name, cylinder(wire, (x, a[1] + wire, levels[0]), (x, a[1] + wire, levels[1])))
-                d.part(name, cylinder(wire, (x, b[1] - wire, levels[0]), (x, b[1] - wire, levels[1])))
+                d.part(name, d.cylinder(wire, (x, a[1] + wire, levels[0]), (x, a[1] + wire, levels[1])))
+                d.part(name, d.cylinder(wire, (x, b[1] - wire, levels[0]), (x, b[1] - wire, levels[1])))
     if d.style.hollow and d.maybe(0.6):
         under = a[2] - max(play, 0.0)
         for x, s in ((low[0], 1.0), (high[0], -1.0)):

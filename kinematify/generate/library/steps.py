@@ -28,9 +28,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.generate.library import mechanisms, panels, shapes
+from kinematify.generate.library import mechanisms, panels
 from kinematify.generate.library.builder import ObjectBuilder, spread
 from kinematify.generate.library.expressions import compiled, evaluated, filled_in
+from kinematify.generate.procedural import solids
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -44,15 +45,16 @@ _TEXTS = ("parent", "material", "color", "leader", "child", "names", "palm")
 _CORE = ("part", "cut", "bore", "hinge", "spin", "slide", "fix", "follow", "close")
 
 
-def _public(module: Any) -> dict[str, Callable[..., Any]]:
+def public(module: Any) -> dict[str, Callable[..., Any]]:
+    """Functions and classes that a module offers, keyed by name."""
     return {
-        name: function
-        for name, function in vars(module).items()
-        if isinstance(function, FunctionType) and function.__module__ == module.__name__ and not name.startswith("_")
+        name: item
+        for name, item in vars(module).items()
+        if isinstance(item, FunctionType | type) and item.__module__ == module.__name__ and not name.startswith("_")
     }
 
 
-MECHANISMS = {name: call for name, call in (_public(mechanisms) | _public(panels)).items() if name != "seam"}
+MECHANISMS = {name: call for name, call in (public(mechanisms) | public(panels)).items() if name != "seam"}
 """Verbs that draw a part together with its joint, keyed by name."""
 
 
@@ -69,11 +71,12 @@ ARITHMETIC: Mapping[str, Any] = {
     **{name: getattr(math, name) for name in ("sqrt", "tan", "atan2", "asin", "acos", "radians")},
     **{name: getattr(np, name) for name in ("sin", "cos", "hypot", "sign", "cross", "linspace", "cumsum", "pi")},
     **{call.__name__: call for call in (abs, min, max, int, round, len, enumerate, sorted, zip, list, sum, bool)},
-    "X": shapes.X, "Y": shapes.Y, "Z": shapes.Z, "vector": vector, "array": np.array, "norm": np.linalg.norm,
+    "X": solids.X, "Y": solids.Y, "Z": solids.Z, "vector": vector, "array": np.array, "norm": np.linalg.norm,
     "arange": np.arange, "range": range, "spread": spread, "pairwise": pairwise,
 }  # fmt: skip
 """What formulas may name, besides parameters, what `let` computes, and shapes or solids."""
-_SHAPES = _public(shapes)
+SOLIDS = public(solids)
+"""Solids that formulas may name."""
 
 
 def checked_steps(steps: Sequence[Step]) -> Sequence[Step]:
@@ -115,7 +118,7 @@ def run_steps(steps: Sequence[Step], builder: ObjectBuilder, values: Mapping[str
     style = {f"style_{name}": value for name, value in vars(builder.style).items()}
     draws = {name: getattr(builder, name) for name in ("draw", "count", "maybe", "pick", "gap")}
     own = {"seam": lambda size, thick: panels.seam(builder, size, thick)}
-    given = {**_SHAPES, **style, **draws, **own, **values}
+    given = {**SOLIDS, **builder.rounds, **style, **draws, **own, **values}
     StepRunner(builder, _DRAWING).run(steps, {"__builtins__": {}, **ARITHMETIC, **given})
 
 

@@ -33,14 +33,14 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 import yaml
-from manifold3d import CrossSection, Manifold
+from manifold3d import Manifold
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from kinematify.assembly.part import Part
 from kinematify.errors import InputError
 from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint, BlueprintLoop
 from kinematify.generate.procedural.materials import COLORS, MATERIALS, of_one_material, surface_of
-from kinematify.generate.procedural.solids import SEGMENTS, ball, hull, union
+from kinematify.generate.procedural.solids import SEGMENTS, ball, hull, lathe, ring, rounded_block, section, union
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Mimic
 from kinematify.robot.transforms import rotation_about, rotation_from_rpy
@@ -116,19 +116,19 @@ class _Placed(_Described):
 
     def solid(self, counts: Mapping[str, int]) -> Manifold:
         """The primitive where it is, as often as `counts` say that are only named."""
-        solid = self.upright().transform(np.column_stack([rotation_from_rpy(np.array(self.rpy)), self.xyz]))
+        solid = self._upright().transform(np.column_stack([rotation_from_rpy(np.array(self.rpy)), self.xyz]))
         if self.repeated is not None:
             solid = union(*(solid.transform(placed) for placed in self.repeated.transforms(counts)))
         for axis in self.mirrored:
             solid += solid.mirror(MIRRORS[axis])
         return solid
 
-    def upright(self) -> Manifold:
+    def _upright(self) -> Manifold:
         """The primitive about the origin along its axis, if it has one."""
-        return self.made()
+        return self._made()
 
     @abstractmethod
-    def made(self) -> Manifold:
+    def _made(self) -> Manifold:
         """The primitive about the origin."""
 
 
@@ -140,9 +140,8 @@ class _Round(_Placed):
     sides: int = Field(SEGMENTS, ge=3, le=256)
     """Of the polygon that represents a circle."""
 
-    def upright(self) -> Manifold:
-        """See `_Placed`."""
-        return self.made().rotate({"x": (0.0, 90.0, 0.0), "y": (-90.0, 0.0, 0.0), "z": (0.0, 0.0, 0.0)}[self.axis])
+    def _upright(self) -> Manifold:
+        return self._made().rotate({"x": (0.0, 90.0, 0.0), "y": (-90.0, 0.0, 0.0), "z": (0.0, 0.0, 0.0)}[self.axis])
 
 
 class BoxShape(_Placed):
@@ -152,8 +151,7 @@ class BoxShape(_Placed):
     size: tuple[Length, Length, Length]
     """Along x, y and z [m]."""
 
-    def made(self) -> Manifold:
-        """See `_Placed`."""
+    def _made(self) -> Manifold:
         return Manifold.cube(self.size, True)
 
 
@@ -174,12 +172,8 @@ class RoundedBoxShape(_Placed):
             )
         return self
 
-    def made(self) -> Manifold:
-        """See `_Placed`."""
-        ball = Manifold.sphere(self.radius, 16)
-        inner = np.array(self.size) - 2.0 * self.radius
-        corners = 0.5 * inner * np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-        return Manifold.batch_hull([ball.translate(corner) for corner in corners])
+    def _made(self) -> Manifold:
+        return rounded_block(self.size, self.radius)
 
 
 class CylinderShape(_Round):
@@ -189,8 +183,7 @@ class CylinderShape(_Round):
     radius: Length
     length: Length
 
-    def made(self) -> Manifold:
-        """See `_Placed`."""
+    def _made(self) -> Manifold:
         return Manifold.cylinder(self.length, self.radius, self.radius, self.sides, True)
 
 
@@ -202,8 +195,7 @@ class CapsuleShape(_Round):
     length: Length
     """Of the cylinder between the ends [m]."""
 
-    def made(self) -> Manifold:
-        """See `_Placed`."""
+    def _made(self) -> Manifold:
         ball = Manifold.sphere(self.radius, self.sides)
         return Manifold.batch_hull([ball.translate((0, 0, sign * 0.5 * self.length)) for sign in (-1, 1)])
 
@@ -216,8 +208,7 @@ class RodShape(_Placed):
     ends: tuple[Vector, Vector]
     """Middles of the round ends [m]."""
 
-    def made(self) -> Manifold:
-        """See `_Placed`."""
+    def _made(self) -> Manifold:
         return hull(*(ball(self.radius, end) for end in self.ends))
 
 
@@ -227,8 +218,7 @@ class SphereShape(_Placed):
     kind: Literal["sphere"]
     radius: Length
 
-    def made(self) -> Manifold:
-        """See `_Placed`."""
+    def _made(self) -> Manifold:
         return Manifold.sphere(self.radius, 32)
 
 
@@ -241,8 +231,7 @@ class ConeShape(_Round):
     top_radius: float = Field(0.0, ge=0.0, le=LARGEST)
     length: Length
 
-    def made(self) -> Manifold:
-        """See `_Placed`."""
+    def _made(self) -> Manifold:
         return Manifold.cylinder(self.length, self.radius, self.top_radius, self.sides, True)
 
 
@@ -260,8 +249,7 @@ class TubeShape(_Round):
             raise ValueError(f"the inner radius {self.inner_radius:g} is not less than the radius {self.radius:g}")
         return self
 
-    def made(self) -> Manifold:
-        """See `_Placed`."""
+    def _made(self) -> Manifold:
         outer = Manifold.cylinder(self.length, self.radius, self.radius, self.sides, True)
         return outer - Manifold.cylinder(2.0 * self.length, self.inner_radius, self.inner_radius, self.sides, True)
 
@@ -280,9 +268,8 @@ class TorusShape(_Round):
             raise ValueError(f"the wire radius {self.wire_radius:g} is not less than the radius {self.radius:g}")
         return self
 
-    def made(self) -> Manifold:
-        """See `_Placed`."""
-        return Manifold.revolve(CrossSection.circle(self.wire_radius, 16).translate((self.radius, 0)), self.sides)
+    def _made(self) -> Manifold:
+        return ring(self.radius, self.wire_radius, segments=self.sides)
 
 
 class PrismShape(_Round):
@@ -293,9 +280,8 @@ class PrismShape(_Round):
     """Corners x, y [m]; either sense."""
     length: Length
 
-    def made(self) -> Manifold:
-        """See `_Placed`."""
-        return _section(self.outline).extrude(self.length).translate((0, 0, -0.5 * self.length))
+    def _made(self) -> Manifold:
+        return section(self.outline).extrude(self.length).translate((0, 0, -0.5 * self.length))
 
 
 class LatheShape(_Round):
@@ -312,9 +298,8 @@ class LatheShape(_Round):
             raise ValueError("a radius is negative")
         return outline
 
-    def made(self) -> Manifold:
-        """See `_Placed`."""
-        return Manifold.revolve(_section(self.outline), self.sides)
+    def _made(self) -> Manifold:
+        return lathe(self.outline, segments=self.sides)
 
 
 Primitive = Annotated[
@@ -339,8 +324,7 @@ class HullShape(_Placed):
     kind: Literal["hull"]
     shapes: tuple[Primitive, ...] = Field(min_length=1, max_length=50)
 
-    def made(self) -> Manifold:
-        """See `_Placed`."""
+    def _made(self) -> Manifold:
         return hull(*(shape.solid({}) for shape in self.shapes))
 
 
@@ -640,11 +624,6 @@ def parents_first(joints: Sequence[BlueprintJoint]) -> tuple[BlueprintJoint, ...
     for joint in found:  # grows while it is walked
         found.extend(by_parent.get(joint.child, []))
     return tuple(found)
-
-
-def _section(outline: Sequence[tuple[float, float]]) -> CrossSection:
-    section = CrossSection([np.array(outline)])
-    return section if section.area() > 0.0 else CrossSection([np.array(outline[::-1])])
 
 
 def _among(name: str, known: Sequence[str] | Mapping[str, object], what: str) -> str:

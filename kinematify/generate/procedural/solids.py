@@ -6,13 +6,14 @@ clearance: a shaft turns in it without touching at any angle.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from manifold3d import CrossSection, Manifold, OpType
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from kinematify.robot.arrays import FloatArray
 
@@ -22,6 +23,8 @@ SEGMENTS = 48
 Point: TypeAlias = "Sequence[float] | FloatArray"
 """x, y, z [m]."""
 
+X, Y, Z = np.eye(3)
+
 
 def off(point: Point, x: float, y: float, z: float) -> FloatArray:
     """Return the point moved by (x, y, z)."""
@@ -29,8 +32,29 @@ def off(point: Point, x: float, y: float, z: float) -> FloatArray:
 
 
 def box(lower: Point, upper: Point) -> Manifold:
-    """Return the box between two corners."""
-    return Manifold.cube(np.subtract(upper, lower)).translate(lower)
+    """Return the box between two corners, in any order."""
+    low = np.minimum(lower, upper)
+    return Manifold.cube(np.maximum(lower, upper) - low).translate(low)
+
+
+def block(middle: Point, size: Point) -> Manifold:
+    """Return the box of a size about a point."""
+    half = 0.5 * np.asarray(size)
+    return box(np.subtract(middle, half), np.add(middle, half))
+
+
+def beam(wide: float, high: float, start: Point, end: Point, side: Point = Z) -> Manifold:
+    """Return the box between two points; `high` is measured along `side` as far as that is across the beam."""
+    along = np.subtract(end, start, dtype=np.float64)
+    length = float(np.linalg.norm(along))
+    along /= length
+    up = np.asarray(side, dtype=np.float64) - along * float(along @ np.asarray(side))
+    if np.linalg.norm(up) < 1e-6:
+        up = np.eye(3)[np.argmin(np.abs(along))]
+        up = up - along * float(along @ up)
+    up /= np.linalg.norm(up)
+    frame = np.column_stack([along, np.cross(up, along), up, 0.5 * np.add(start, end)])
+    return Manifold.cube((length, wide, high), True).transform(frame)
 
 
 def rounded_box(lower: Point, upper: Point, radius: float) -> Manifold:
@@ -42,13 +66,33 @@ def rounded_box(lower: Point, upper: Point, radius: float) -> Manifold:
 
 def cylinder(radius: float, start: Point, end: Point, *, segments: int = SEGMENTS) -> Manifold:
     """Return the cylinder whose circular faces are centred at `start` and `end`."""
-    direction = np.subtract(end, start, dtype=np.float64)
-    length = float(np.linalg.norm(direction))
-    direction /= length
+    return cone(radius, radius, start, end, segments=segments)
+
+
+def cone(radius: float, top_radius: float, start: Point, end: Point, *, segments: int = SEGMENTS) -> Manifold:
+    """Return the cone, or what is left of one without its tip, between two points."""
+    length = float(np.linalg.norm(np.subtract(end, start, dtype=np.float64)))
+    return Manifold.cylinder(length, radius, top_radius, segments).transform(_upright(start, np.subtract(end, start)))
+
+
+def tube(radius: float, inner_radius: float, start: Point, end: Point, *, segments: int = SEGMENTS) -> Manifold:
+    """Return the cylinder with a bore between two points."""
+    beyond = 0.5 * np.subtract(end, start)
+    inner = cylinder(inner_radius, np.subtract(start, beyond), np.add(end, beyond), segments=segments)
+    return cylinder(radius, start, end, segments=segments) - inner
+
+
+def torus(radius: float, wire_radius: float, middle: Point, normal: Point, *, segments: int = SEGMENTS) -> Manifold:
+    """Return a ring of round wire."""
+    return ring(radius, wire_radius, segments=segments).transform(_upright(middle, normal))
+
+
+def _upright(origin: Point, towards: Point) -> FloatArray:
+    """Transform, shape (3, 4), that takes what stands on z = 0 to `origin`, where it looks in a direction."""
+    direction = np.asarray(towards, dtype=np.float64) / np.linalg.norm(towards)
     side = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
     side /= np.linalg.norm(side)
-    frame = np.column_stack([side, np.cross(direction, side), direction, np.asarray(start, dtype=np.float64)])
-    return Manifold.cylinder(length, radius, radius, segments).transform(frame)
+    return np.column_stack([side, np.cross(direction, side), direction, np.asarray(origin, dtype=np.float64)])
 
 
 def frustum(length: float, radius: float, top_radius: float) -> Manifold:
@@ -61,14 +105,47 @@ def bore(radius: float, clearance: float, start: Point, end: Point, *, segments:
     return cylinder((radius + clearance) / np.cos(np.pi / segments), start, end, segments=segments)
 
 
-def turned(outline: Sequence[tuple[float, float]], *, segments: int = SEGMENTS) -> Manifold:
-    """Return what a closed outline of radius and height, anticlockwise, sweeps about the z axis."""
-    return Manifold.revolve(CrossSection([np.array(outline)]), segments)
+def section(outline: Sequence[tuple[float, float]]) -> CrossSection:
+    """Return a polygon, whichever way round its corners are given."""
+    found = CrossSection([np.array(outline)])
+    return found if found.area() > 0.0 else CrossSection([np.array(outline[::-1])])
 
 
-def ring(radius: float, thick: float, degrees: float = 360.0, *, sides: int = 16) -> Manifold:
+def lathe(outline: Sequence[tuple[float, float]], foot: Point = (0, 0, 0), *, segments: int = SEGMENTS) -> Manifold:
+    """Return what a polygon of radius and height sweeps about the upright line through `foot`."""
+    return Manifold.revolve(section(outline), segments).translate(foot)
+
+
+def prism(outline: Sequence[tuple[float, float]], middle: Point, length: float, axis: str) -> Manifold:
+    """Return a polygon drawn out along ``x``, ``y`` or ``z``; its corners are (y, z), (x, z) or (x, y) [m]."""
+    x, y, z = {"x": (Y, Z, X), "y": (X, Z, -Y), "z": (X, Y, Z)}[axis]
+    return section(outline).extrude(length).transform(np.column_stack([x, y, z, np.asarray(middle) - 0.5 * length * z]))
+
+
+def ring(radius: float, thick: float, degrees: float = 360.0, *, sides: int = 16, segments: int = SEGMENTS) -> Manifold:
     """Return a wire of radius `thick` bent to an arc about the z axis, from the x axis on anticlockwise."""
-    return Manifold.revolve(CrossSection.circle(thick, sides).translate((radius, 0)), SEGMENTS, degrees)
+    return Manifold.revolve(CrossSection.circle(thick, sides).translate((radius, 0)), segments, degrees)
+
+
+def rounded_block(size: Point, radius: float) -> Manifold:
+    """Return the box of a size about the origin with all edges and corners rounded."""
+    corners = 0.5 * (np.asarray(size) - 2.0 * radius) * [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    return hull(*(ball(radius, corner, segments=16) for corner in corners))
+
+
+def strip(places: Sequence[Sequence[float]], low: float, high: float) -> list[Manifold]:
+    """Return a flat bar between two heights along `places`: x, y and half its width there [m], with round ends."""
+    discs = [cylinder(half, (x, y, low), (x, y, high)) for x, y, half in places]
+    return [hull(one, other) for one, other in pairwise(discs)]
+
+
+def scaled(size: float) -> Callable[[float, float, float], FloatArray]:
+    """Return a function that makes a point from coordinates in units of a size."""
+
+    def point(x: float, y: float, z: float) -> FloatArray:
+        return size * np.array([x, y, z], dtype=np.float64)
+
+    return point
 
 
 def rod(radius: float, start: Point, end: Point, *, segments: int = 32) -> Manifold:
