@@ -217,7 +217,7 @@ def _line_evidence(
 
 def _given(posterior: Posterior) -> BoolArray:
     """Which candidates are the declared joint, shape (h,)."""
-    return np.array(posterior.hypotheses.sources) == GIVEN
+    return np.asarray(np.array(posterior.hypotheses.sources) == GIVEN)
 
 
 def _known_directions(weighed: ScoredHypotheses) -> FloatArray:
