@@ -66,13 +66,12 @@ def test_no_shipped_file_repeats_the_defaults() -> None:
 
 @pytest.mark.parametrize("first", ["extends: default\n", ""], ids=["extends", "alone"])
 def test_a_file_states_only_what_differs(first: str, tmp_path: Path) -> None:
-    mine = load_config(written(tmp_path, first + "name: mine\njoints: {kind: {cap: 2.5, weights: {drawer: 9.0}}}\n"))
+    mine = load_config(written(tmp_path, first + "name: mine\njoints: {kind: {shaft: 0.5}}\n"))
     usual = load_config().joints.kind
     assert mine.name == "mine"
-    assert mine.joints.kind.cap == 2.5
-    assert mine.joints.kind.weights == {**usual.weights, "drawer": 9.0}
+    assert mine.joints.kind == usual.model_copy(update={"shaft": 0.5})
     assert mine.joints.limits == load_config().joints.limits
-    assert usual.weights["drawer"] != 9.0
+    assert usual.shaft != 0.5
 
 
 def test_files_extend_each_other(tmp_path: Path) -> None:
@@ -84,18 +83,16 @@ def test_files_extend_each_other(tmp_path: Path) -> None:
 
 
 def test_values_of_one_configuration_are_its_own() -> None:
-    load_config().joints.kind.weights.clear()
     load_config().cavl.travels.clear()
-    assert load_config().joints.kind.weights
     assert load_config().cavl.travels
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("joints: {kind: {cap: much}}", r"joints\.kind\.cap: .*valid number.* fields of kinematify\.config\.Config\."),
+        ("joints: {kind: {shaft: much}}", r"joints\.kind\.shaft: .*number.* fields of kinematify\.config\.Config\."),
         ("joints: {knid: {}}", r"joints\.knid: Extra inputs"),
-        ("joints: {kind: {cap: .nan}}", r"joints\.kind\.cap: .*finite"),
+        ("joints: {kind: {shaft: .nan}}", r"joints\.kind\.shaft: .*finite"),
         ("joints:", r"joints: Input should be"),
         ("extends: validation", "no configuration validation. Give one of default, evidence, fast, paper,"),
         ("extends: mine", "no configuration mine"),

@@ -275,19 +275,15 @@ class EvidenceSettings(StageConfig):
     """Axes of one model from which on they are several."""
     wrong_deg: float = 10.0  # half of what is worth finding
     """The same, beyond which it is an error if another joint is also clearly better [deg]."""
-    clearly_better: float = 1.0  # with an unexplained direction no true joint comes near
-    """Lead in the score from which another joint is clearly better."""
     # two of 139 true hinges are farther, of those moved by 20 % of the part two of three
     unknown_distance: float = 0.065
     """Distance to every line that the two bodies show, beyond which an axis is unexplained, fraction of the child's
     diagonal."""
     linkage_distance: float = 0.15  # axes of quadrupeds without bearings in their meshes reach 0.14
     """The same in linkages, whose bearings are often missing in the meshes."""
-    better: float = 0.3  # 7 of 118 true joints of furniture trail by more, all by over 0.6; the rest by at most 0.06
-    """Lead in the score from which another hinge is worth a warning, outside linkages."""
-    better_slide: float = 0.55  # two true drawers of 47 trail by 0.35 and 0.52, nine of ten wrong directions by 0.65
-    """The same for another direction of sliding."""
-    linkage_better: float = 1.5  # without a bearing in the meshes, 0.5 to 3.5 behind is common
+    better: float = 1.5  # 1 of 76 true joints of furniture trails by more, of wrong ones none by less
+    """Lead in log probability from which another joint of the same type is clearly better, outside linkages."""
+    linkage_better: float = 3.0  # without a bearing in the meshes, 2 behind is common
     """The same in linkages, together with `bearing_lead` or with `blocked`."""
     bearing_score: float = 0.02  # lines beside the true one reach 0.01
     """Score of a bearing line below which it is chance."""

@@ -12,7 +12,7 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.generate.sentence import from_text
-from kinematify.joints.choice.kind import Siblings, decide_kind
+from kinematify.joints.choice.kind import WEIGHTS, Siblings, decide_kind
 from kinematify.joints.hypotheses.panels import rank_turns
 from kinematify.joints.hypotheses.slides import rank_slides
 from kinematify.joints.measure.scene import joint_scene, part_frames
@@ -161,8 +161,8 @@ def test_evidence_moves_the_odds_the_stated_way() -> None:
     alone = decide_kind(scene, Siblings(count=1, gripping=False, overlapping=False), turns, slides, CONFIG.joints)
     paired = decide_kind(scene, Siblings(count=2, gripping=False, overlapping=True), turns, slides, CONFIG.joints)
     assert alone.kind is JointType.REVOLUTE
-    assert paired.odds == pytest.approx(alone.odds + CONFIG.joints.kind.weights["sliding_pair"])
-    assert set(alone.cues) == set(CONFIG.joints.kind.weights)
+    assert paired.odds == pytest.approx(alone.odds + WEIGHTS["sliding_pair"])
+    assert set(alone.cues) == set(WEIGHTS)
 
 
 @pytest.mark.parametrize(("depth", "slides"), [(0.2, True), (0.03, False)])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kinematify.generate.procedural.solids import box, cylinder
-from kinematify.joints.hypotheses.panels import RankedTurns, propose_lines, rank_turns
+from kinematify.joints.hypotheses.panels import BEARING_BONUS, CAP, WEIGHTS, RankedTurns, propose_lines, rank_turns
 from tests.joints.joint_scenes import CONFIG, infer_joints, scene_of
 from tests.known import KnownObject, known_object, turning
 from tests.objects import BUILDERS
@@ -115,10 +115,9 @@ def test_no_cue_exceeds_the_cap() -> None:
     known = BUILDERS["edge_door"]()
     scene = scene_of(known, known.joints[0].child)
     ranked = rank_turns(scene, CONFIG.joints)
-    weights, cap = CONFIG.joints.panels.weights, CONFIG.joints.panels.cap
-    assert set(ranked.cues) == set(weights)
-    total = sum(np.clip(weights[name] * value, -cap, cap) for name, value in ranked.cues.items())
-    bonus = CONFIG.joints.panels.bearing_bonus * np.array([source == "bearing" for source in ranked.lines.sources])
+    assert set(ranked.cues) == set(WEIGHTS)
+    total = sum(np.clip(WEIGHTS[name] * value, -CAP, CAP) for name, value in ranked.cues.items())
+    bonus = BEARING_BONUS * np.array([source == "bearing" for source in ranked.lines.sources])
     np.testing.assert_allclose(ranked.scores, total + bonus * scene.has_bearing, atol=1e-9)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.joints.hypotheses.slides import rank_slides
+from kinematify.joints.hypotheses.slides import WEIGHTS, rank_slides
 from tests.joints.joint_scenes import CONFIG, scene_of
 from tests.objects import BUILDERS, with_yaw
 
@@ -26,7 +26,7 @@ def test_candidates_are_distinct_directions() -> None:
     ranked = rank_slides(scene_of(known, "drawer"), np.array([[1.0, 0.0, 0.0]]), CONFIG.joints)
     cosines = np.abs(ranked.axes @ ranked.axes.T) - np.eye(len(ranked.axes))
     assert cosines.max() < np.cos(np.radians(CONFIG.joints.slides.distinct_deg))
-    assert set(ranked.cues) == set(CONFIG.joints.slides.weights)
+    assert set(ranked.cues) == set(WEIGHTS)
     assert list(ranked.scores) == sorted(ranked.scores, reverse=True)
 
 

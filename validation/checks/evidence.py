@@ -129,8 +129,8 @@ def hangs_elsewhere(result: OpenCheck, case: JointCase) -> None:
 def unknown_direction(result: OpenCheck, case: JointCase) -> None:
     """The axis lies within evidence.unknown_deg of a direction that the two bodies show: axes of round surfaces and
     circular edges on both sides of the contact, edges and faces of either body, guides, the normal and the long
-    side of the contact. Beyond evidence.wrong_deg it is an error where another joint also explains the contact
-    better by evidence.clearly_better. It needs no ground truth: people build along what they build.
+    side of the contact. Beyond evidence.wrong_deg it is an error where another joint is also likelier by
+    evidence.better. It needs no ground truth: people build along what they build.
 
     Why it matters: A hinge that is turned by some degrees lets a door scrape and lift, and no engine complains.
 
@@ -139,7 +139,7 @@ def unknown_direction(result: OpenCheck, case: JointCase) -> None:
     if not case.unexplained:
         return
     line, settings = case.measures.line, case.settings
-    certain = line.angle > settings.wrong_deg and line.deficit > settings.clearly_better and case.measures.alone
+    certain = line.angle > settings.wrong_deg and line.deficit > settings.better and case.measures.alone
     _doubt(
         result,
         case,
@@ -194,11 +194,11 @@ def unknown_place(result: OpenCheck, case: JointCase) -> None:
     feedback=FeedbackRow.LINE,
 )
 def another_fits(result: OpenCheck, case: JointCase) -> None:
-    """The declared joint is scored beside all candidates of its type by the cues of the inference (room, contact near
-    the axis, bearings, handles, margins). A lead of evidence.better (evidence.better_slide for slides) is a
-    warning, unless both bodies are round about the declared line itself. In linkages, whose bearings are often not
-    modelled, it takes a lead of evidence.linkage_better with a bearing on both bodies about another line
-    (evidence.bearing_lead) or a range of which the parent blocks evidence.blocked.
+    """The fitted choice of the inference judges the declared joint beside all candidates of its type, by geometry
+    alone. A lead of evidence.better in log probability is a warning, unless both bodies are round about the declared
+    line itself. In linkages, whose bearings are often not modelled, it takes a lead of evidence.linkage_better with a
+    bearing on both bodies about another line (evidence.bearing_lead) or a range of which the parent blocks
+    evidence.blocked.
 
     Why it matters: A door on the wrong edge, or a knob about the wrong line, moves plausibly in an engine and
     wrongly.
@@ -212,7 +212,7 @@ def another_fits(result: OpenCheck, case: JointCase) -> None:
         result,
         case,
         f"Another joint of the same type explains the contact of {case.child} and {case.parent} clearly "
-        f"better: its score leads by {deficit:.2g}.",
+        f"better: it is {min(np.exp(deficit), 1e4):.0f} times as likely to be right.",
         case.instead,
         value=deficit,
         limit=case.usual_deficit,
@@ -228,9 +228,9 @@ def another_fits(result: OpenCheck, case: JointCase) -> None:
 )
 def other_type(result: OpenCheck, case: JointCase) -> None:
     """Shape and room of the part do not speak for the other type of joint: plates hinge, boxes in a cavity slide,
-    round parts with a bearing turn, small caps are pressed. Log odds above evidence.type_odds are a warning; a
-    slide of a linkage must also have a bearing, a better direction (evidence.better_slide) or a parent in the way
-    (evidence.blocked), and a continuous joint is taken as meant.
+    round parts with a bearing turn, small caps are pressed. Log odds of the fitted choice above evidence.type_odds
+    are a warning; a slide of a linkage must also have a bearing, a better direction (evidence.better) or a parent in
+    the way (evidence.blocked), and a continuous joint is taken as meant.
 
     Why it matters: A drawer that turns and a door that slides are useless for training, and nothing else reports
     them.
@@ -242,12 +242,11 @@ def other_type(result: OpenCheck, case: JointCase) -> None:
     if not case.judged_alone or odds <= settings.type_odds or not _type_open(case):
         return
     declared, other = ("slide", "turn") if measures.slides else ("turn", "slide")
-    cues = {name: value for name, value in measures.weighed.decision.cues.items() if value > 0.0}
     _doubt(
         result,
         case,
         f"{case.child} is declared to {declared} on {case.parent}, but its shape and room speak for a part "
-        f"that {other}s (log odds {odds:.1f}; {', '.join(cues) or 'no cue for either'}).",
+        f"that {other}s (log odds {odds:.1f}).",
         f"Check the type: written as {'revolute' if measures.slides else 'prismatic'} it would fit. "
         "The report names the joint that fits best.",
         value=odds,
@@ -266,7 +265,7 @@ def _type_open(case: JointCase) -> bool:
         return False
     if not case.linkage or not case.measures.slides:
         return True
-    better = case.measures.line.deficit > case.settings.better_slide
+    better = case.measures.line.deficit > case.settings.better
     return better or case.measures.weighed.scene.has_bearing or case.blocked > case.settings.blocked
 
 

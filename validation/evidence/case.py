@@ -191,9 +191,7 @@ class JointCase:
     @property
     def usual_deficit(self) -> float:
         """By how much another joint may score better."""
-        if self.linkage:
-            return self.settings.linkage_better
-        return self.settings.better_slide if self.measures.slides else self.settings.better
+        return self.settings.linkage_better if self.linkage else self.settings.better
 
     @property
     def _supported(self) -> bool:
@@ -287,10 +285,9 @@ def better_joint(measures: JointMeasures, doubts: Collection[str]) -> Alternativ
     if "KV345" not in doubts:
         kind = JointType.PRISMATIC if measures.slides else JointType.REVOLUTE
         return Alternative(kind=kind, axis=line.best_axis, pivot=line.best_pivot, score=line.deficit)
-    turns, slides, score = measures.weighed.turns.proposed, measures.weighed.slides.proposed, measures.odds_against
-    if measures.slides:
-        return Alternative(kind=JointType.REVOLUTE, axis=turns.lines.axes[0], pivot=turns.lines.pivots[0], score=score)
-    return Alternative(kind=JointType.PRISMATIC, axis=slides.axes[0], pivot=measures.anchor, score=score)
+    best, found = measures.best_other, measures.posterior.hypotheses
+    kind, score = measures.posterior.kind(best), measures.odds_against
+    return Alternative(kind=kind, axis=found.axes[best], pivot=found.pivots[best], score=score)
 
 
 def summary_of(robot: Robot, case: JointCase, doubts: Collection[str]) -> JointSummary:

@@ -1,7 +1,7 @@
 """What the contact geometry says of every declared joint, in figures; `judge` decides what they mean.
 
-Candidates are those that the inference would weigh (`joints.decide.weigh_joints`); the declared joint stands among
-them, and its parent among all bodies that the child touches.
+Candidates are those that the inference would weigh, and its fitted choice judges them, without names; the declared
+joint stands among them, and its parent among all bodies that the child touches.
 """
 
 from __future__ import annotations
@@ -13,7 +13,9 @@ import numpy as np
 
 from kinematify.joints.bearings.line import Line
 from kinematify.joints.choice.decide import weigh_joints
+from kinematify.joints.choice.judge import judge
 from kinematify.joints.hypotheses.panels import GIVEN
+from kinematify.joints.measure.measurements import SLIDE, TURN
 from kinematify.joints.measure.scene import part_frames
 from kinematify.joints.measure.workspace import PartCache
 from kinematify.robot.joint_type import JointType
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.truth import TrueJoint
     from kinematify.config import JointsConfig
     from kinematify.config.validation import EvidenceSettings
+    from kinematify.joints.choice.judge import Posterior
     from kinematify.joints.choice.kind import ScoredHypotheses
     from kinematify.robot.arrays import FloatArray
     from kinematify.validation.evidence.bodies import Bodies, Pair
@@ -62,7 +65,7 @@ class LineEvidence:
     """Smallest distance to a known line along nearly the same direction, fraction of the child's diagonal; inf if there
     is none."""
     deficit: float
-    """Score of the best candidate of the declared type less that of the declared joint; 0 if it is the best."""
+    """Score (`Posterior.scores`) of the best candidate of its type less that of the declared joint; 0 if it is best."""
     best_axis: FloatArray
     """Of the best candidate of the declared type, shape (3,)."""
     best_pivot: FloatArray
@@ -99,8 +102,8 @@ class JointMeasures:
     parent: ParentEvidence
     line: LineEvidence
     room: RoomEvidence
-    odds_against: float
-    """Log odds of the other type against the declared one."""
+    posterior: Posterior
+    """How likely each candidate is."""
     bearing: float
     """Score of the best bearing line of the contact; 0 without one."""
     own_bearing: float
@@ -113,10 +116,15 @@ class JointMeasures:
         return self.joint.kind is JointType.PRISMATIC
 
     @property
-    def anchor(self) -> FloatArray:
-        """Where a slide's axis is drawn: the centroid of the contact, else the part's centre, world frame [m], (3,)."""
-        scene = self.weighed.scene
-        return scene.contact.centroid if len(scene.contact.points) else scene.centre
+    def odds_against(self) -> float:
+        """Log odds of the other type against the declared one."""
+        return -self.posterior.odds_prismatic if self.slides else self.posterior.odds_prismatic
+
+    @property
+    def best_other(self) -> int:
+        """Position of the best candidate of the other type."""
+        others = (self.posterior.hypotheses.kinds == (TURN if self.slides else SLIDE)) & ~_given(self.posterior)
+        return int(np.argmax(np.where(others, self.posterior.scores, -np.inf)))
 
     @property
     def alone(self) -> bool:
@@ -138,20 +146,20 @@ def measure_joints(
     config = bodies.config.joints
     cache = PartCache(bodies.assembly, bodies.graph, samples=config.samples, seed=seed)
     frames = part_frames(cache, bodies.tree, config)
+    geometry_alone = config.confidence.model_copy(update={"cues_lead": 0.0, "name_weight": 0.0})
     for joint in bodies.truth.joints if joints is None else joints:
         edge = (joint.parent, joint.child)
         pair = _pair(*edge)
         line = Line(axis=joint.axis, point=joint.pivot)
         bearing = bodies.bearings.get(pair)
         weighed = weigh_joints(cache, bodies.tree, frames, edge, bearing, config=config, given=(line,))
-        best = bearing.lines[0].score if bearing is not None and bearing.lines else 0.0
-        odds = weighed.decision.odds
+        best, posterior = bearing.lines[0].score if bearing and bearing.lines else 0.0, judge(weighed, geometry_alone)
         yield JointMeasures(
             joint=joint,
             parent=_parent_evidence(bodies, joint),
-            line=_line_evidence(weighed, joint, settings),
+            line=_line_evidence(weighed, posterior, joint, settings),
             room=_room_evidence(weighed, joint, config),
-            odds_against=-odds if joint.kind is JointType.PRISMATIC else odds,
+            posterior=posterior,
             bearing=best,
             own_bearing=bodies.score_line(pair, line).score if best > settings.bearing_score else 0.0,
             weighed=weighed,
@@ -185,13 +193,16 @@ def _pair(first: int, second: int) -> Pair:
     return min(first, second), max(first, second)
 
 
-def _line_evidence(weighed: ScoredHypotheses, joint: TrueJoint, settings: EvidenceSettings) -> LineEvidence:
-    turns = joint.kind is not JointType.PRISMATIC
+def _line_evidence(
+    weighed: ScoredHypotheses, posterior: Posterior, joint: TrueJoint, settings: EvidenceSettings
+) -> LineEvidence:
+    turns, every = joint.kind is not JointType.PRISMATIC, posterior.hypotheses
     angle = 0.0 if _is_ball(weighed) else float(_angles(joint.axis, _known_directions(weighed)).min())
-    axes, pivots, scores, given = _candidates(weighed, turns)
+    of_type = every.kinds == (TURN if turns else SLIDE)
+    axes, pivots, given = every.axes[of_type], every.pivots[of_type], _given(posterior)[of_type]
+    scores = posterior.scores[of_type]
     aligned = _angles(joint.axis, axes) < settings.same_deg
-    away = lengths_of(crossed(pivots - joint.pivot, joint.axis)) / weighed.scene.frame.diagonal
-    away = away if turns else np.zeros(len(away))
+    away = turns * lengths_of(crossed(pivots - joint.pivot, joint.axis)) / weighed.scene.frame.diagonal
     same = aligned & (away < settings.same_distance)
     own = max(float(scores[given].max()), float(scores[same].max(initial=-np.inf)))
     best = int(np.argmax(np.where(given, -np.inf, scores)))
@@ -204,16 +215,9 @@ def _line_evidence(weighed: ScoredHypotheses, joint: TrueJoint, settings: Eviden
     )
 
 
-def _candidates(weighed: ScoredHypotheses, turns: bool) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
-    """Axes (c, 3), pivots (c, 3), scores (c,) and whether each was given (c,), of one type."""
-    if turns:
-        ranked = weighed.turns
-        given = np.array(ranked.lines.sources) == GIVEN
-        return ranked.lines.axes, ranked.lines.pivots, ranked.scores, given
-    contact = weighed.scene.contact
-    anchor = contact.centroid if len(contact.points) else weighed.scene.centre
-    slides = weighed.slides
-    return slides.axes, np.tile(anchor, (len(slides.axes), 1)), slides.scores, np.array(slides.sources) == GIVEN
+def _given(posterior: Posterior) -> BoolArray:
+    """Which candidates are the declared joint, shape (h,)."""
+    return np.asarray(np.array(posterior.hypotheses.sources) == GIVEN)
 
 
 def _known_directions(weighed: ScoredHypotheses) -> FloatArray:

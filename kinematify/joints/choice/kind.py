@@ -27,6 +27,18 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
 
 
+WEIGHTS = {
+    "drawer": 3.0, "box_pulled": 1.0, "box_inside": 1.5, "blocked_turn": 2.0, "carriage": 2.5, "telescope": 3.0,
+    "guided": 3.0, "panel": -2.0, "tray": 3.0, "turntable": -2.0, "bearing": -1.5, "mechanism": -1.5, "button": 1.6,
+    "round_small": -1.5, "flat_cap": 0.5, "round_lid": 2.5, "on_moving_part": -1.0, "capped": 3.0, "latch": -2.5,
+    "keyed": 3.0, "retained": -2.5, "row": 2.4, "edge_contact": -2.0, "rocker": -2.5, "pedal": -2.5, "wheel": -3.0,
+    "gripper": 3.0, "rail": 3.0, "sliding_pair": 3.0,
+}  # fmt: skip
+"""Of each cue of the type, positive for sliding; their sum is a column of the fit, which was made with these."""
+BIAS, CAP = -0.8, 3.0
+"""Log odds of sliding without any cue, and the most that one says."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Siblings:
     """Congruent parts on the same parent."""
@@ -98,8 +110,7 @@ def decide_kind(
         cues[round_thing] *= 1.0 - max(cues["keyed"], cues["telescope"])  # what is round but keyed is guided
     plunger = scene.smallness * _plunger(scene, slides, config)
     cues["button"], cues["round_small"] = max(cues["button"], plunger), cues["round_small"] * (1.0 - plunger)
-    weights, cap = config.kind.weights, config.kind.cap
-    odds = config.kind.bias + sum(float(np.clip(weights[k] * v, -cap, cap)) for k, v in cues.items())
+    odds = BIAS + sum(float(np.clip(WEIGHTS[k] * v, -CAP, CAP)) for k, v in cues.items())
     if not is_cap(scene) and _stuck(scene, turns, slides, config):
         return KindDecision(kind=JointType.FIXED, odds=odds, cues=cues)
     kind = JointType.PRISMATIC if odds > 0 else JointType.REVOLUTE

@@ -35,6 +35,20 @@ GIVEN = "given"
 """Source of candidates that were not proposed but given."""
 
 
+WEIGHTS = {
+    "free": 1.0, "crossed": -0.5, "outside": 0.5, "separation": -5.0, "axis_to_parent": -4.0, "contact_share": 0.4,
+    "contact_radius": -0.5, "ajar_contact": 1.5, "handle_distance": 0.9, "handle_parallel": 0.6,
+    "margin_difference": 1.0, "margin_here": -1.0, "door_vertical": 0.4, "door_tall": 0.2, "hinge_above": -0.3,
+    "hinge_below": 0.0, "lid_rise": 1.0, "lid_behind": 1.0, "pedal": 1.0, "lid_backrest": 1.0, "thin_along": -0.7,
+    "length_along": 0.15, "half_way": -0.3, "centre_line": -0.7, "contact_line": -0.2, "clusters": 0.8,
+    "weak_bearing": -0.3, "mechanism_bearing": 2.0, "compact_radius": -1.0, "round": 2.0, "square": 0.5,
+    "rolling": 1.5, "small_normal": 0.6,
+}  # fmt: skip
+"""Of each cue of a turn, lengths in diagonals. Their sum is a column of the fit, which was made with these."""
+CAP, BEARING_BONUS = 1.5, 4.0
+"""Most that one cue says, and what a bearing that passes the gate adds."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CandidateLines:
     """Candidate axes of one joint."""
@@ -106,10 +120,9 @@ def rank_turns(scene: JointScene, config: JointsConfig, given: Sequence[Line] = 
         **_gravity_cues(scene, lines, with_parent),
     }
     cues |= _shape_cues(scene, lines, near=1.0 - cues["contact_radius"])
-    weights, cap = config.panels.weights, config.panels.cap
-    scores = np.sum([np.clip(weights[name] * value, -cap, cap) for name, value in cues.items()], axis=0)
+    scores = np.sum([np.clip(WEIGHTS[name] * value, -CAP, CAP) for name, value in cues.items()], axis=0)
     telling = "bearing" if scene.has_bearing else "fold"
-    scores = scores + config.panels.bearing_bonus * np.array([source == telling for source in lines.sources])
+    scores = scores + BEARING_BONUS * np.array([source == telling for source in lines.sources])
     ranked = RankedTurns(
         lines=lines,
         scores=scores,

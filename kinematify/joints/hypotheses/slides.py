@@ -21,6 +21,16 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 
+WEIGHTS = {
+    "travel_parent": 1.0, "travel_all": 0.3, "one_way": 0.6, "flush": 0.6, "crossed": -0.5, "thin_large": -0.4,
+    "horizontal": 0.5, "along_bearing": 1.5, "along_rail": 2.5, "lift_off": 1.0, "cap": 2.5, "small_way": 1.0,
+    "thin_small": 0.7, "normal_small": 0.7, "twin": 2.5,
+}  # fmt: skip
+"""Of each cue of a slide, lengths in diagonals; as those of turns."""
+CAP = 2.5
+"""Most that one cue says."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RankedSlides:
     """Candidate directions with their scores, best first."""
@@ -70,8 +80,7 @@ def rank_slides(
         **_shape_cues(scene, axes, twins, with_parent, config),
         "small_way": _small_way(scene, points, axes, config),
     }
-    weights, cap = config.slides.weights, config.slides.cap
-    scores = np.sum([np.clip(weights[name] * value, -cap, cap) for name, value in cues.items()], axis=0)
+    scores = np.sum([np.clip(WEIGHTS[name] * value, -CAP, CAP) for name, value in cues.items()], axis=0)
     ranked = RankedSlides(
         axes=axes,
         sources=sources,
