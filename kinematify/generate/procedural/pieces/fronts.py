@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.pieces.bearings import ALONG_X, at, barrel
+from kinematify.generate.procedural.pieces.leaves import Field
 from kinematify.generate.procedural.solids import ball, box, cylinder, off, rod, tray, union
 
 if TYPE_CHECKING:
@@ -61,27 +62,13 @@ _BARREL = (0.004, 0.06)  # radius and length of a barrel hinge [m]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bay:
+class Bay(Field):
     """One field of a front, its outer border in the plane y = 0 of the carcass's front."""
 
-    left: float
-    right: float
-    bottom: float
-    top: float
     depth: float
     """Of the body behind it [m]."""
     wall: float
     """Thickness of the body's walls and of the panel [m]."""
-
-    @property
-    def width(self) -> float:
-        """[m]."""
-        return self.right - self.left
-
-    @property
-    def height(self) -> float:
-        """[m]."""
-        return self.top - self.bottom
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,20 +91,12 @@ def carcass(width: float, height: float, depth: float, openings: Sequence[Bay]) 
 
 def room(opening: Bay) -> Manifold:
     """Return what to take away from a solid body to make the room behind an opening."""
-    inset = 0.5 * opening.wall
-    return box(
-        (opening.left + inset, -opening.wall, opening.bottom + inset),
-        (opening.right - inset, opening.depth - opening.wall, opening.top - inset),
-    )
+    return opening.box(-opening.wall, opening.depth - opening.wall, inset=0.5 * opening.wall)
 
 
 def panel(opening: Bay, clearance: float) -> Manifold:
     """Return the board that covers an opening from outside."""
-    gap = 0.5 * (clearance + _REVEAL)
-    return box(
-        (opening.left + gap, -clearance - opening.wall, opening.bottom + gap),
-        (opening.right - gap, -clearance, opening.top - gap),
-    )
+    return opening.box(-clearance - opening.wall, -clearance, inset=0.5 * (clearance + _REVEAL))
 
 
 def add_drawer(workshop: Workshop, name: str, parent: str, opening: Bay, fitting: Fitting) -> None:
@@ -132,7 +111,7 @@ def add_drawer(workshop: Workshop, name: str, parent: str, opening: Bay, fitting
     )
     workshop.add(parent, *_kickers(opening, rim + clearance, edge + wall))
     front = -clearance - opening.wall
-    middle = (0.5 * (opening.left + opening.right), front, 0.5 * (opening.bottom + opening.top))
+    middle = (opening.middle[0], front, opening.middle[1])
     solids = workshop.as_handle(*handle_solids(fitting.grip, middle, along="x", length=min(0.16, 0.5 * opening.width)))
     workshop.body(name, panel(opening, clearance), inner, *solids)
     travel = 0.8 * (opening.depth - opening.wall)
@@ -184,7 +163,7 @@ def add_door(
     at_hinge = opening.left if side == "left" else opening.right
     front, back = -clearance - opening.wall, -clearance
     free = at_hinge + sign * (opening.width - 0.05)
-    level = 0.5 * (opening.bottom + opening.top)
+    level = opening.middle[1]
     length = min(0.2, 0.4 * opening.height)
     grip = handle_solids(fitting.grip, (free, front, level), along="z", length=length)
     solids = [panel(opening, clearance), *workshop.as_handle(*grip)]
@@ -222,7 +201,7 @@ def add_flap(workshop: Workshop, name: str, parent: str, opening: Bay, fitting: 
     """Add a door that falls open about a horizontal line at its lower edge; `hinge` as for `add_door`."""
     clearance = fitting.clearance
     front, back = -clearance - opening.wall, -clearance
-    middle = 0.5 * (opening.left + opening.right)
+    middle = opening.middle[0]
     grip = (middle, front, opening.top - min(0.05, 0.15 * opening.height))
     bar = handle_solids(fitting.grip, grip, along="x", length=0.7 * opening.width)
     solids = [panel(opening, clearance), *workshop.as_handle(*bar)]

@@ -51,6 +51,16 @@ class Field:
         return box(lower, (self.right - inset, end, self.top - inset))
 
     @property
+    def width(self) -> float:
+        """[m]."""
+        return self.right - self.left
+
+    @property
+    def height(self) -> float:
+        """[m]."""
+        return self.top - self.bottom
+
+    @property
     def middle(self) -> tuple[float, float]:
         """X and z."""
         return 0.5 * (self.left + self.right), 0.5 * (self.bottom + self.top)
@@ -144,8 +154,7 @@ def _canonical(field: Field, hinge: Hinge) -> tuple[FloatArray, float, float]:
     """Transform, shape (3, 4), from where the hinge runs along z at x = 0 with the leaf on +x; span and length."""
     into = np.array(_TOWARDS[hinge.edge], dtype=np.float64)
     upright = hinge.edge in ("left", "right")
-    width, height = field.right - field.left, field.top - field.bottom
-    span, length = (width, height) if upright else (height, width)
+    span, length = (field.width, field.height) if upright else (field.height, field.width)
     x, z = field.middle
     along = (0, 0, 1) if upright else (1, 0, 0)
     origin = np.array([x, 0.0, z]) - 0.5 * span * into
