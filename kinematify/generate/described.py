@@ -30,7 +30,7 @@ from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
     from kinematify.robot.arrays import FloatArray
@@ -95,11 +95,53 @@ class Spoken(BaseModel):
         )
 
 
-class ObjectDescription(Spoken, BlueprintDescription):
-    """A blueprint that sentences may ask for; its first part is the base link."""
+class _Counted(Spoken):
+    """How a blueprint is asked for."""
 
+    category: Name
     counts: dict[str, dict[str, Any]] = Field({})
     """Word for what repeats -> how often it may; named where a shape or a copy is repeated."""
+
+    def as_family(self, material: str, build: Callable[[Values, Workshop], None]) -> Family:
+        """The object as a family that leaves nothing to choose but its counts and what every family does."""
+        return Family(
+            name=self.category,
+            title=self.title,
+            words=self.words,
+            parameters=self.own + tuple(_repeated(word, said) for word, said in self.counts.items()),
+            material=material,
+            part_words=self.part_words,
+            motions=self.motions,
+            holds_already=self.holds_already,
+            build=build,
+        )
+
+
+class WrittenObject(_Counted):
+    """An object whose blueprint is only read once it is built, since it is most of a file."""
+
+    name: Name
+    text: str
+    """Of its file."""
+
+    @cached_property
+    def described(self) -> ObjectDescription:
+        """What the file says."""
+        return ObjectDescription.model_validate(parse_table(self.text))
+
+    def family(self) -> Family:
+        """See `ObjectDescription`."""
+        material = re.search(r"\nparts:\n- name: .*\n  material: (\w+)", self.text)
+        return self.as_family(material[1] if material else "plastic", self._build)
+
+    def _build(self, values: Values, workshop: Workshop) -> None:
+        self.described.build(values, workshop)
+
+
+class ObjectDescription(_Counted, BlueprintDescription):
+    """A blueprint that sentences may ask for; its first part is the base link."""
+
+    category: Name = "described"
     copies: tuple[CopyDescription, ...] = ()
     """In this order; a later one may take up what an earlier one made."""
 
@@ -115,20 +157,11 @@ class ObjectDescription(Spoken, BlueprintDescription):
         return self
 
     def family(self) -> Family:
-        """The object as a family that leaves nothing to choose but its counts and what every family does."""
-        return Family(
-            name=self.category,
-            title=self.title,
-            words=self.words,
-            parameters=self.own + tuple(_repeated(word, said) for word, said in self.counts.items()),
-            material=self.parts[0].material,
-            part_words=self.part_words,
-            motions=self.motions,
-            holds_already=self.holds_already,
-            build=self._build,
-        )
+        """The object as a family."""
+        return self.as_family(self.parts[0].material, self.build)
 
-    def _build(self, values: Values, workshop: Workshop) -> None:
+    def build(self, values: Values, workshop: Workshop) -> None:
+        """Add the object to a workshop."""
         counts = {word: values.count(f"{word}s") for word in self.counts}
         looks = {part.name: (part.material, part.color) for part in self.parts}
         solids = {part.name: part.solid(counts) for part in self.parts}
@@ -247,14 +280,14 @@ def _joint_elsewhere(joint: BlueprintJoint, names: Mapping[str, str], transform:
 
 
 @cache
-def library() -> Mapping[str, ObjectDescription | SteppedDescription]:
+def library() -> Mapping[str, WrittenObject | SteppedDescription]:
     """Every object that a file describes, keyed by name: one blueprint a file, or a mapping of objects in steps."""
-    found: dict[str, ObjectDescription | SteppedDescription] = {}
+    found: dict[str, WrittenObject | SteppedDescription] = {}
     for file in sorted(_FOLDER.glob("*.yaml")):
         text = file.read_text(encoding="utf-8")
         if "\nparts:\n" in text:
-            described = ObjectDescription.model_validate(parse_table(text))
-            found[described.category] = described
+            written = WrittenObject.model_validate({**parse_table(text.partition("\nparts:\n")[0]), "text": text})
+            found[written.category] = written
         else:
             found |= {item.name: item for item in _in_steps(text, file.stem)}
     return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.parameter import Parameter, Value
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Family:
     """A kind of object that can be built."""
 
@@ -114,8 +115,13 @@ def build(family: Family, given: Mapping[str, Value], *, seed: int | None = None
     Raises:
         InputError: A parameter is unknown or out of its bounds; the message names the nearest or the bounds.
     """
+    return _built(family, tuple(given.items()), seed, name)
+
+
+@lru_cache(maxsize=8)  # a sentence asks for the same object several times while it is compared with it
+def _built(family: Family, given: tuple[tuple[str, Value], ...], seed: int | None, name: str) -> Blueprint:
     rng = np.random.default_rng(seed)
-    asked = {key: checked(family, key, value) for key, value in given.items()}
+    asked = {key: checked(family, key, value) for key, value in given}
     values = {p.name: _drawn(p, rng) if seed is not None and p.drawn else p.default for p in family.all_parameters}
     values.update(asked)
     workshop = Workshop(
