@@ -130,7 +130,7 @@ class ObjectDescription(Spoken, BlueprintDescription):
 
     def _build(self, values: Values, workshop: Workshop) -> None:
         counts = {word: values.count(f"{word}s") for word in self.counts}
-        looks = {part.name: (part.material, part.color if isinstance(part.color, str) else None) for part in self.parts}
+        looks = {part.name: (part.material, part.color) for part in self.parts}
         solids = {part.name: part.solid(counts) for part in self.parts}
         joints = {joint.child: joint.joint() for joint in self.joints}
         for copy in self.copies:

@@ -85,7 +85,7 @@ def put_together(
     values: Values,
     workshop: Workshop,
 ) -> None:
-    """Add parts and joints to a workshop; a joint whose `value` is not zero stands there unless it is to be open.
+    """Add parts and joints to a workshop; joints stand at their `value` unless they are to be open.
 
     The base link takes the material and the colour that are asked for, and so does what looks like it.
     """
@@ -95,5 +95,4 @@ def put_together(
         asked = (values.choice("material"), values.choice("color")) if looks[name] == base else ("", "")
         workshop.body(name, solid, material=None if asked[0] else material, color=asked[1] or color)
     for joint in parents_first(joints):
-        share = joint.value / joint.upper if joint.value else 0.0
-        workshop.hang(replace(joint, value=0.0), values.number("open") or share)
+        workshop.hang(joint, values.number("open"))

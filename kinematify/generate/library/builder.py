@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from manifold3d import Manifold
 
+    from kinematify.generate.procedural.materials import RGB
     from kinematify.generate.procedural.solids import Point
     from kinematify.generate.procedural.workshop import Look
 
@@ -137,7 +138,7 @@ class ObjectBuilder:
 
     # ---- parts -----------------------------------------------------------------------------------------------------
 
-    def part(self, name: str, *shapes: Manifold, material: str = "plastic", color: str | None = None) -> str:
+    def part(self, name: str, *shapes: Manifold, material: str = "plastic", color: str | RGB | None = None) -> str:
         """Add a part, or shapes to a part that is there; returns its name."""
         if any(shape.is_empty() for shape in shapes):
             raise ValueError(f"a shape of {name} has no volume")

@@ -36,11 +36,11 @@ import yaml
 from manifold3d import Manifold
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
-from kinematify.assembly.part import Part
 from kinematify.errors import InputError
-from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint, BlueprintLoop
-from kinematify.generate.procedural.materials import COLORS, MATERIALS, of_one_material, surface_of
+from kinematify.generate.procedural.blueprint import BlueprintJoint
+from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.generate.procedural.solids import SEGMENTS, ball, hull, lathe, ring, rounded_block, section, union
+from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Mimic
 from kinematify.robot.transforms import rotation_about, rotation_from_rpy
@@ -48,6 +48,7 @@ from kinematify.robot.transforms import rotation_about, rotation_from_rpy
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.materials import RGB
     from kinematify.robot.arrays import FloatArray
 
@@ -371,27 +372,6 @@ class PartDescription(_Described):
         solid = union(*(shape.solid(counts) for shape in self.shapes))
         return solid - union(*(shape.solid(counts) for shape in self.subtract)) if self.subtract else solid
 
-    def part(self) -> Part:
-        """The part as a closed mesh.
-
-        Raises:
-            InputError: Nothing is left of it.
-        """
-        mesh = self.solid({}).to_mesh64()
-        if len(mesh.tri_verts) == 0:
-            raise InputError(
-                f"Nothing is left of the part {self.name}. Give it shapes with a volume, and subtract less."
-            )
-        vertices, faces = mesh.vert_properties[:, :3], mesh.tri_verts.astype(np.int64)
-        return Part(
-            name=self.name,
-            vertices=vertices,
-            faces=faces,
-            color=surface_of(self.material, self.color).color[:3],
-            appearance=of_one_material(surface_of(self.material, self.color), vertices, faces),
-            density=MATERIALS[self.material].density,
-        )
-
 
 class MimicDescription(_Described):
     """value = multiplier * value of the leading joint."""
@@ -443,7 +423,7 @@ class JointDescription(_Described):
         return self
 
     def joint(self) -> BlueprintJoint:
-        """The joint at zero."""
+        """The joint with the value at which it is shown."""
         free = math.inf if self.type == "continuous" else 0.0
         return BlueprintJoint(
             parent=self.parent,
@@ -453,6 +433,7 @@ class JointDescription(_Described):
             pivot=np.array(self.pivot),
             lower=-free if self.lower is None else self.lower,
             upper=free if self.upper is None else self.upper,
+            value=self.value,
             mimic=None
             if self.mimic is None
             else Mimic(joint=self.mimic.leader, multiplier=self.mimic.multiplier, offset=0.0),
@@ -549,24 +530,21 @@ def described_blueprint(values: Mapping[str, Any], *, source: str = "blueprint")
     """
     try:
         described = BlueprintDescription.model_validate(values)
-        parts = {part.name: part.part() for part in described.parts}
     except ValidationError as error:
         raise InputError(f"The {source} cannot be built: {_problems(error)}.") from error
-    except InputError as error:
-        raise InputError(f"The {source} cannot be built. {error}") from error
-    joints = parents_first([joint.joint() for joint in described.joints])
-    root = next(name for name in parts if name not in {joint.child for joint in joints})
-    blueprint = Blueprint(
-        name=described.name,
-        family=described.category,
-        parts=(parts.pop(root), *parts.values()),
-        joints=joints,
-        loops=tuple(
-            BlueprintLoop(one=loop.parts[0], other=loop.parts[1], pivot=np.array(loop.pivot))
-            for loop in described.loops
-        ),
-    )
-    return blueprint.moved({joint.child: joint.value for joint in described.joints if not joint.mimic})
+    workshop = Workshop(described.category, material="plastic")
+    carried = {joint.child for joint in described.joints}
+    for part in sorted(described.parts, key=lambda part: part.name in carried):
+        solid = part.solid({})
+        if solid.is_empty():
+            reason = f"Nothing is left of the part {part.name}. Give it shapes with a volume, and subtract less."
+            raise InputError(f"The {source} cannot be built. {reason}")
+        workshop.body(part.name, solid, material=part.material, color=part.color)
+    for joint in parents_first([joint.joint() for joint in described.joints]):
+        workshop.hang(joint)
+    for loop in described.loops:
+        workshop.closes(*loop.parts, loop.pivot)
+    return workshop.finish(described.name, {}, style="clean", clearance=0.0, rng=np.random.default_rng(0))
 
 
 def read_blueprint(path: Path) -> Blueprint:

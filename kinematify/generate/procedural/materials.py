@@ -179,8 +179,3 @@ def of_one_material(material: Material, vertices: FloatArray, faces: IntArray) -
         material_of_face=np.zeros(len(faces), dtype=np.int64),
         uv=None if material.texture is None else grain_coordinates(vertices, faces),
     )
-
-
-def color_of(material: str, color: str | None) -> RGB:
-    """Return the named colour, or the material's own."""
-    return MATERIALS[material].color if color is None else COLORS[color]

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from copy import copy
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from kinematify.assembly.part import Part
 from kinematify.errors import InputError
 from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint, BlueprintLoop
-from kinematify.generate.procedural.materials import MATERIALS, color_of, grain_coordinates, surface_of
+from kinematify.generate.procedural.materials import MATERIALS, grain_coordinates, surface_of
 from kinematify.generate.procedural.solids import union
 from kinematify.robot.appearance import Appearance
 from kinematify.robot.joint_type import JointType
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
     from manifold3d import Manifold
 
+    from kinematify.generate.procedural.materials import RGB
     from kinematify.generate.procedural.solids import Point
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Mimic
@@ -86,7 +88,7 @@ def _bumps(points: FloatArray, waves: tuple[FloatArray, FloatArray, FloatArray])
     return field / max(float(np.linalg.norm(field, axis=1).max()), 1e-12)
 
 
-Look = tuple[str, str | None]
+Look: TypeAlias = "tuple[str, str | RGB | None]"
 """Material, and colour where it is not the material's own."""
 _UNMOVED = np.eye(3, 4)
 _MOVING = {JointType.REVOLUTE: "hinges", JointType.PRISMATIC: "slides"}
@@ -147,7 +149,7 @@ class Workshop:
         """Height of a point in the object [m]."""
         return float(self._point(point)[2])
 
-    def body(self, name: str, *solids: Manifold, material: str | None = None, color: str | None = None) -> str:
+    def body(self, name: str, *solids: Manifold, material: str | None = None, color: str | RGB | None = None) -> str:
         """Add a rigid part made of solids that overlap or touch; returns its name."""
         if name in self._solids:
             raise ValueError(f"The family {self._family} makes two bodies named {name}.")
@@ -156,7 +158,7 @@ class Workshop:
         self._looks[name] = material or self._material, color or (None if material else self._color)
         return name
 
-    def painted(self, *solids: Manifold, material: str, color: str | None = None) -> Sequence[Manifold]:
+    def painted(self, *solids: Manifold, material: str, color: str | RGB | None = None) -> Sequence[Manifold]:
         """Let solids look other than the body that they become part of; returns them."""
         for solid in solids:
             self._painted.update(dict.fromkeys(solid.to_mesh64().run_original_id, (material, color)))
@@ -256,10 +258,16 @@ class Workshop:
         return np.asarray(axis if self._frame is None else self._frame[:, :3] @ axis)
 
     def hang(self, joint: BlueprintJoint, rest: float = 0.0) -> None:
-        """Hang a body on another one as a joint in the world frame says; `rest` as for `turns`."""
-        self._joints.append(joint)
-        if math.isfinite(joint.upper) and joint.mimic is None:
-            self._rest[joint.child] = rest * joint.upper
+        """Hang a body on another one as a joint in the world frame says.
+
+        Args:
+            joint: It is shown at its `value`, unless it is to stand open.
+            rest: As for `turns`.
+        """
+        self._joints.append(replace(joint, value=0.0))
+        if joint.mimic is None:
+            opened = rest * joint.upper if math.isfinite(joint.upper) else 0.0
+            self._rest[joint.child] = opened or joint.value
 
     def open_by(self, far: Mapping[JointType, float], *, title: str) -> None:
         """Let what stands open stand open by an angle or a distance, and all else closed; a door's handle rests.
@@ -318,7 +326,7 @@ class Workshop:
             name=name,
             vertices=vertices,
             faces=faces,
-            color=color_of(material, color),
+            color=surface_of(material, color).color[:3],
             appearance=Appearance(
                 materials=materials,
                 material_of_face=np.repeat([kinds.index(look) for look in looks], runs),
