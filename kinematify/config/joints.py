@@ -131,6 +131,8 @@ class LimitsConfig(StageConfig):
     """A slide that is free farther one way by this fraction of the diagonal has an open side."""
     button: float = 0.7  # of what stands out: a cap is not pressed in whole
     """Travel of a button as a fraction of what stands out of the surface around it."""
+    pressed_share: float = 0.3  # chosen on two of three sources, the third gains: results/choice.md
+    """Share of a button's points that have met something where it is stopped."""
     stopped_deg: float = 10.0  # arms in mid-range turn by 45 and more
     """A turning joint that goes no farther than this the one way stands at its stop [deg]."""
     unmet_deg: float = 90.0  # everyday2 asks for 90, Infinigen and Articraft for 45; what is too small blocks
@@ -235,11 +237,9 @@ class RailsConfig(StageConfig):
 class ConfidenceConfig(StageConfig):
     """How likely a joint is right (`results/choice.md`)."""
 
-    # with less, furniture that the cues were written for loses; with more, all else (results/choice.md)
-    cues_lead: float = 1.0
+    cues_lead: float = 1.0  # with less, furniture that the cues were written for loses; with more, all else
     """Log odds that what the weighted cues would choose keeps over the fitted probabilities."""
-    # omitted, 8 of 629 real parts that move are taken for fixed, and 221 of 480 that do not (results/choice.md)
-    fixed: float = 0.82
+    fixed: float = 0.82  # omitted, 8 of 629 parts that move are taken for fixed, and 221 of 480 that do not
     """How likely a part must be fixed to be taken for it."""
     name_weight: float = 3.5  # "drawer", "wheel" and "foot" weigh this much; anonymous names nothing
     """Log odds that a part's name adds to the kind of joint that it speaks of."""

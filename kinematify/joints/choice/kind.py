@@ -35,8 +35,7 @@ WEIGHTS = {
     "gripper": 3.0, "rail": 3.0, "sliding_pair": 3.0,
 }  # fmt: skip
 """Of each cue of the type, positive for sliding; their sum is a column of the fit, which was made with these."""
-BIAS, CAP = -0.8, 3.0
-"""Log odds of sliding without any cue, and the most that one says."""
+BIAS, CAP = -0.8, 3.0  # log odds of sliding without any cue, and the most that one says
 
 
 @dataclass(frozen=True, kw_only=True)

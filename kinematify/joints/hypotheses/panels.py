@@ -45,8 +45,7 @@ WEIGHTS = {
     "rolling": 1.5, "small_normal": 0.6,
 }  # fmt: skip
 """Of each cue of a turn, lengths in diagonals. Their sum is a column of the fit, which was made with these."""
-CAP, BEARING_BONUS = 1.5, 4.0
-"""Most that one cue says, and what a bearing that passes the gate adds."""
+CAP, BEARING_BONUS = 1.5, 4.0  # the most that one cue says, and what a bearing that passes the gate adds
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

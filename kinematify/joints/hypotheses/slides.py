@@ -27,8 +27,7 @@ WEIGHTS = {
     "thin_small": 0.7, "normal_small": 0.7, "twin": 2.5,
 }  # fmt: skip
 """Of each cue of a slide, lengths in diagonals; as those of turns."""
-CAP = 2.5
-"""Most that one cue says."""
+CAP = 2.5  # the most that one cue says
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

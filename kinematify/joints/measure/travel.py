@@ -174,18 +174,22 @@ def slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> Ra
     limited = np.array([way.motion for way in guided])
     sign = _slide_sign(scene, axis, limited if _in_linkage(scene) else free, config)
     ways, guided = (ways, guided) if sign > 0 else (ways[::-1], guided[::-1])
-    ahead, back = guided if runs else _ends(scene, sign * axis, ways, length, config)
+    way = sign * axis
+    if runs:
+        ahead, back = guided
+    elif (scene.smallness > 0.5 and not _is_small_lid(scene)) or (scene.has_bearing and _outwards(scene, way) < 0.0):
+        # It overlaps the pocket that it is in: a few of its points say nothing of the floor.
+        floor = free_ways(scene, swept, obstacles, config.limits.pressed_share)[0 if sign > 0 else 1]
+        ahead, back = min(floor, _press(scene, way, length, config)), AS_GIVEN
+    else:
+        ahead, back = _ends(scene, way, ways, length, config)
     ahead = max(ahead, End(config.limits.least_slide * scene.diagonal, "the least travel that is kept"))
     return Range(kind=JointType.PRISMATIC, sign=sign, back=back, ahead=ahead, free=ways)
 
 
 def _ends(scene: JointScene, direction: FloatArray, free: Ways, length: float, config: JointsConfig) -> Ways:
-    """Ends of a button, drawer or lid that opens along a direction, ahead and back; `free` likewise."""
+    """Ends of a drawer or lid that opens along a direction, ahead and back; `free` likewise."""
     forward, backward = free
-    if (scene.smallness > 0.5 and not _is_small_lid(scene)) or (
-        scene.has_bearing and _outwards(scene, direction) < 0.0
-    ):
-        return _press(scene, direction, forward, length, config), AS_GIVEN
     ajar = min(backward, End(_standing_out(scene, direction), "flush with the body"))
     ajar = ajar if ajar.motion > config.limits.ajar * length else AS_GIVEN
     if is_cap(scene):  # its shrunk skirt sweeps into the rim
@@ -230,8 +234,8 @@ def _standing_out(scene: JointScene, direction: FloatArray) -> float:
     return max(float(np.quantile(own, 0.98) - body.max()), 0.0)
 
 
-def _press(scene: JointScene, direction: FloatArray, free: End, length: float, config: JointsConfig) -> End:
-    """Travel of a button pressed along a direction: what stands out of its surroundings, or until it is stopped."""
+def _press(scene: JointScene, direction: FloatArray, length: float, config: JointsConfig) -> End:
+    """Travel of a button pressed along a direction that nothing stops: what stands out of its surroundings."""
     own = scene.cache.samples(scene.child).points
     body = scene.cache.samples(scene.parent).points
     centre = 0.5 * (own.min(axis=0) + own.max(axis=0))
@@ -242,8 +246,7 @@ def _press(scene: JointScene, direction: FloatArray, free: End, length: float, c
         visible = min(length, max(float((around @ direction).min() - (own @ direction).min()), 0.0))
     # A stem behind the cap is no travel: what is flush is pressed by a share of its length or width.
     whole = min(length, wide)
-    reach = End(config.limits.button * (visible if visible > 0.1 * whole else whole), USUAL)
-    return min(free, reach) if free.motion > 0.2 * reach.motion else reach
+    return End(config.limits.button * (visible if visible > 0.1 * whole else whole), USUAL)
 
 
 def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray, config: JointsConfig) -> float:
