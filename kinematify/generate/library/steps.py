@@ -5,8 +5,8 @@ A step is a mapping with one verb: `part`, `cut` and `bore` draw shapes; `hinge`
 and choose; `define` makes a function of steps that `give` a value, and `call` uses one. `as` names what a verb returns.
 Values are formulas; names of parts and materials are texts with formulas in braces.
 
-Steps can also carve: then formulas hold solids instead of shapes, and the verbs are `body`, `add`, `cut`, `turns`,
-`slides`, `within` a frame, and the pieces in `kinematify.generate.procedural.pieces`.
+Steps can also carve, which takes effect at once: then the verbs are `body`, `add`, `cut`, `turns`, `slides`, `within` a
+frame, and the pieces in `kinematify.generate.procedural.pieces`. Formulas name the same solids in both.
 
 ```yaml
 steps:
