@@ -12,6 +12,7 @@ import numpy as np
 from kinematify.errors import InputError
 from kinematify.generate.composer.attached import attached
 from kinematify.generate.composer.compose import compose
+from kinematify.generate.composer.recount import recounted
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.parts import looking, opened
@@ -50,6 +51,8 @@ class Request:
     """Of mechanisms on a body, where no family builds it."""
     added: tuple[MechanismSpec, ...] = ()
     """Mechanisms that such an object has not, and that are put on it where there is a place."""
+    counts: tuple[tuple[tuple[str, ...], int], ...] = ()
+    """Names of parts, and how many there are to be instead, where there is a place for them."""
     looks: tuple[tuple[tuple[str, ...], str, str], ...] = ()
     """Names of parts, and the material or the colour of these alone."""
     opened: tuple[tuple[tuple[str, ...], str, float], ...] = ()
@@ -115,10 +118,14 @@ class Request:
 
     def _single(self, seed: int | None) -> Blueprint:
         if self.composition is not None:
-            return compose(self.composition, seed=seed, may_stand_still=bool(self.how))
-        made = build(known_families()[self.family], self.values, seed=seed)
+            made = compose(self.composition, seed=seed, may_stand_still=bool(self.how))
+        else:
+            made = build(known_families()[self.family], self.values, seed=seed)
         if self.overall is not None:
             made = _scaled_to(made, *self.overall)
+        for names, count in self.counts:
+            with suppress(InputError):  # as above
+                made = recounted(made, [name for name in names if name in made.joint_above], count)
         for item in self.added:
             with suppress(InputError):  # as above
                 made = attached(made, item)

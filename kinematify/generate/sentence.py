@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from kinematify.generate.composer.bodies import BodyKind
     from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.family import Family
-    from kinematify.generate.procedural.language.compare import Missing
+    from kinematify.generate.procedural.language.compare import Comparison, Missing
     from kinematify.generate.procedural.language.specification import Specification
     from kinematify.generate.request import Request
 
@@ -378,11 +378,12 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
     compared = compare(specification, made, nouns)
     chosen = set(made.parameters.values())  # knobs of drawers are there, and no parts
     lacking = [part for part in compared.absent if part.noun.split()[-1] not in chosen]
-    added = tuple(filter(None, map(mechanism_for, lacking)))
-    if added:  # they have looks and ranges, too
-        request = replace(request, added=added)
-        compared = compare(specification, request.build(), nouns)
-    if added or compared.looks or compared.opened:
+    added = tuple(filter(None, (mechanism_for(part, specification.owner_of(part)) for part in lacking)))
+    if added or compared.counts:  # they have looks and ranges, too
+        request = _recounted(replace(request, added=added), compared, specification, nouns)
+        made = request.build()
+        compared = compare(specification, made, nouns)
+    if request.added or compared.looks or compared.opened:
         claims = [claim for part in (specification.whole, *specification.parts) for claim in part.claims]
         sized = any(item.about == "size" or (item.about, item.words[:4]) == ("range", "from") for item in claims)
         request = replace(
@@ -402,6 +403,21 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
     )
 
 
+def _recounted(
+    request: Request, compared: Comparison, specification: Specification, nouns: Mapping[str, tuple[str, ...]]
+) -> Request:
+    """A request with as many parts as are asked for, where less is missing then."""
+    from kinematify.generate.procedural.language.compare import compare  # noqa: PLC0415 - with numpy
+
+    least = len(compared.missing)
+    for item in compared.counts:
+        other = replace(request, counts=(*request.counts, item))
+        missing = len(compare(specification, other.build(), nouns).missing)
+        if missing < least:
+            request, least = other, missing
+    return request
+
+
 def _composed_plan(specification: Specification, body: BodyKind, alone: bool) -> _Plan:
     from kinematify.generate.composer.sentence import asked_composition  # noqa: PLC0415 - with solids
     from kinematify.generate.procedural.language.compare import compare  # noqa: PLC0415
@@ -412,6 +428,7 @@ def _composed_plan(specification: Specification, body: BodyKind, alone: bool) ->
         family=composition.title.replace(" ", "_"),
         values={},
         composition=composition,
+        added=tuple(asked.added),
         copies=composition.copies,
         is_toy=specification.is_toy,
         how="" if alone else "in a scene",
@@ -419,6 +436,10 @@ def _composed_plan(specification: Specification, body: BodyKind, alone: bool) ->
     nouns = {word: (item.stem,) for item in composition.wanted for word in item.mechanism.words}
     made = request.build()
     compared = compare(specification, made, nouns)
+    if compared.counts:
+        request = _recounted(request, compared, specification, nouns)
+        made = request.build()
+        compared = compare(specification, made, nouns)
     if compared.looks or compared.opened:
         request = replace(request, looks=compared.looks, opened=compared.opened)
         made = request.build()

@@ -247,8 +247,12 @@ def test_a_range_of_both_ways_is_limited_on_both_sides() -> None:
         ("a cabinet with two doors on a red wall", "red"),
         ("a cupboard with one door in front of three drawers", "in front of three drawers (elsewhere)"),
         ("a metal toolbox with two trays that swing out", "swing (prismatic)"),
-        ("a cabinet whose lowest drawer is lockable", "lockable (no lock)"),
         ("a box with a lid hinged at the front", "hinged front (hinged on another side)"),
+        ("a cart with four wheels, two of them swivel", "swivel (continuous)"),
+        ("a filing cabinet with three drawers and four casters inside it", "inside it (elsewhere)"),
+        ("a cabinet with two doors and a fan inside", "inside (elsewhere)"),
+        ("a cabinet with four drawers of different sizes", "of different sizes"),
+        ("a whiteboard on four wheels between the hinges", "between the hinges (no hinge)"),
     ],
 )
 def test_what_is_otherwise_than_it_was_said_is_listed(sentence: str, listed: str) -> None:
@@ -282,6 +286,8 @@ def test_a_colour_that_is_asked_for_is_that_of_the_base() -> None:
         ("a locker with three doors and vents in each door", "vent", {"door_1", "door_2", "door_3"}),
         ("a fridge with a nameplate on the door", "nameplate", {"door_1"}),
         ("a cabinet with two doors, each with a window", "window", {"door_1", "door_2"}),
+        ("a tool chest with two drawers, all with locks", "lock", {"drawer_1", "drawer_2"}),
+        ("a cabinet with three drawers, of which the lowest is lockable", "lock", {"drawer_3"}),
     ],
 )
 def test_what_a_kind_has_not_is_put_on_the_part_that_is_named(sentence: str, what: str, carriers: set[str]) -> None:

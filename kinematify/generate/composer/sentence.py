@@ -23,10 +23,13 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.language.specification import PartSpecification, Specification
 
 _SIDES = {side: side for side in FACING} | {"rear": "back", "underside": "bottom", "upper": "top", "lower": "bottom"}
+_SIDES |= {"uppermost": "top", "lowest": "bottom"}
 _FLANKS = ("left", "right")
 _ENDS = ("front", "back", "rear")
 """Sides that are said before a noun; a left door is the left one of two."""
 _AXES = {"width": 0, "length": 0, "depth": 1, "height": 2}
+_ATTACHED = ("grid", "axles", "corners")
+"""How mechanisms are arranged that any object may get."""
 _UPRIGHT = ("front", "top", "right", "left", "back")
 _HANDLES = ("handle", "handles", "pull", "grip")
 MOST_COPIES = 12
@@ -52,6 +55,8 @@ class Asked:
     """Words that were taken up, and that no comparison sees."""
     dropped: list[Missing] = field(default_factory=list)
     """What has no place on the body."""
+    added: list[MechanismSpec] = field(default_factory=list)
+    """What goes on other parts: a lock on each drawer."""
     places: dict[int, tuple[int, ...]] = field(default_factory=dict)
     """Words of what is wanted, by the id of it."""
 
@@ -70,6 +75,9 @@ class Asked:
             kind = _mechanisms().get(words)
             if any(item.mechanism is kind for item in self.wanted):
                 return  # it was named
+        if part.of and (on_part := mechanism_for(part, self.specification.owner_of(part))):
+            self.added.append(on_part)
+            return
         look = (_first(part, "material"), _first(part, "color"))
         plain_handles = part.noun in _HANDLES and not any(claim.about == "count" for claim in part.claims)
         if plain_handles and (part.count is None or part.of):
@@ -338,15 +346,19 @@ def _mechanisms() -> Mapping[tuple[str, ...], MechanismKind]:
     return {_words_of(word): mechanism for mechanism in MECHANISMS for word in mechanism.words}
 
 
-def mechanism_for(part: PartSpecification) -> MechanismSpec | None:
-    """The mechanism that a part asks for, which an object has not."""
+def mechanism_for(part: PartSpecification, owner: PartSpecification | None) -> MechanismSpec | None:
+    """The mechanism that a part asks for, which an object has not; the one part that is to have it says its place."""
     words, said = part.noun.split(), {claim.about: claim for claim in part.claims}
     named = [(kind, words[k:]) for k in range(len(words)) if (kind := _mechanisms().get(tuple(words[k:])))]
-    kind, words = next((item for item in named if item[0].arranged == "grid" or item[0].on_parts), (None, words))
+    kind, words = next((item for item in named if item[0].arranged in _ATTACHED or item[0].on_parts), (None, words))
     carrier = f"each {part.of}" if part.of else ""
+    place = _first(owner, "place") if owner is not None and owner.count == 1 else None
+    if place:
+        carrier = f"the {_SIDES.get(place, place)} {part.of}"
     if "relation" in said and said["relation"].value[1].split()[-1] not in _SIDES:
         carrier = " ".join(_SIDES.get(word, word) for word in said["relation"].words.split())
-    if kind is None or part.absent or (kind.arranged != "grid" and not carrier) or (part.of and kind.moves):
+    on_carrier_alone = kind is not None and kind.arranged not in _ATTACHED
+    if kind is None or part.absent or (on_carrier_alone and not carrier):
         return None
     return MechanismSpec(
         mechanism=replace(kind, build=kind.on_parts, arranged="grid", sides=_UPRIGHT) if kind.on_parts else kind,

@@ -145,6 +145,16 @@ class Blueprint:
         loops = tuple(replace(loop, pivot=factor * loop.pivot) for loop in self.loops)
         return replace(self, parts=parts, joints=tuple(joint(item) for item in self.joints), loops=loops)
 
+    def lifted(self, height: float) -> Blueprint:
+        """Return the object so much higher [m]."""
+        up = np.array([0.0, 0.0, height])
+        return replace(
+            self,
+            parts=tuple(replace(part, vertices=part.vertices + up) for part in self.parts),
+            joints=tuple(replace(joint, pivot=joint.pivot + up) for joint in self.joints),
+            loops=tuple(replace(loop, pivot=loop.pivot + up) for loop in self.loops),
+        )
+
     def renamed(self, names: Mapping[str, str]) -> Blueprint:
         """Return the object with some of its parts called otherwise, by their names."""
 

@@ -11,6 +11,7 @@ from benchmarks.expectations import SETS, broken_expectations, load_sentences
 from benchmarks.studies.sentences import RIGHT, WRONG, outcome
 from kinematify.errors import InputError
 from kinematify.generate.described import known_families
+from kinematify.generate.procedural.clearance import depth_of, solid_of
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.parse import head_of
@@ -77,6 +78,27 @@ def test_a_mechanism_that_the_object_lacks_is_put_on_a_free_side():
     body = parts[made.blueprint.root].bounds
     assert np.abs(parts["knob_plate"].bounds[:, None] - body[None]).min() < 0.002  # flush with one of its sides
     assert said_of("a dishwasher with a projector") == "projector"
+
+
+@pytest.mark.parametrize(
+    ("sentence", "part", "kind", "number"),
+    [
+        ("a pepper mill with a button on the side", "button", JointType.PRISMATIC, 1),  # on a pad, since it is round
+        ("a cabinet with two doors, each with a dial", "dial", JointType.REVOLUTE, 2),
+        ("a barbecue with two wheels", "wheel", JointType.CONTINUOUS, 2),  # on a board below it
+    ],
+)
+def test_a_mechanism_finds_a_place_where_no_side_is_level(
+    sentence: str, part: str, kind: JointType, number: int
+) -> None:
+    made = from_text(sentence).made()
+    joints = [joint for joint in made.blueprint.joints if joint.child.startswith(part) and joint.kind is kind]
+    assert (made.not_built, len(joints)) == ((), number)
+    parts = {item.name: solid_of(item) for item in made.blueprint.parts}
+    fixed = {joint.child: joint.parent for joint in made.blueprint.joints if joint.kind is JointType.FIXED}
+    for one, other in fixed.items():
+        assert depth_of(parts[one], parts[other]) < 1e-3
+        assert parts[one].min_gap(parts[other], 0.1) < 0.01
 
 
 def test_one_part_may_look_otherwise_than_its_siblings():
@@ -154,6 +176,15 @@ def test_what_holds_anyway_is_not_listed(text):
         ("a cabinet with two doors that are never there", "never"),
         ("a box made of water", "solid"),
         ("a round square table", "exclude each other"),
+        ("a transparent opaque door", "exclude each other"),
+        ("a cabinet whose left door is on the right", "exclude each other"),
+        ("a window made of darkness", "parts are solid"),
+        ("a box inside itself", "'inside itself'"),
+        ("a desk with a drawer larger than the desk", "larger than all of it"),
+        ("a door that has a flap that opens by 400 degrees", "less than once"),
+        ("a cabinet 40 cm deep with a drawer pulled out by 3 m", "40 cm deep"),
+        ("a chest of drawers with no drawers", "it asks for a drawer, too"),
+        ("a car with four wheels, all five of them blue", "there are only 4 wheels"),
         ("a box with a lid without a lid", "no lid"),
         ("a cabinet 80 cm high with a door 2 m high", "the cabinet is 80 cm high"),
         ("a fridge 20 cm high and 3 m tall", "two sizes for the height"),

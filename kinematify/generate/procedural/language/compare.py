@@ -11,6 +11,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.language.motions import WAYS, goes, moves_so, turns_about_itself
+from kinematify.generate.procedural.language.places import (
+    PLACES,
+    chosen_by_place,
+    mirrored,
+    number_there,
+    touch,
+    wrong_place,
+    wrong_relation,
+)
 from kinematify.generate.procedural.language.words import ARTICLES, PURPOSES, lemma, stem_of
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.robot.joint_type import JointType
@@ -23,7 +32,6 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.language.specification import Claim, PartSpecification, Specification
 
 _SIZE = 0.02  # of a size, by which it may be off
-_EDGE = 1e-3  # [m] within which something is as far out as another thing
 _SYNONYMS = (
     {"door", "leaf", "gate"}, {"lid", "cover", "top", "cap", "flap"}, {"knob", "dial"}, {"wheel", "tyre", "tire"},
     {"caster", "castor", "swivel_wheel", "wheel"}, {"arm", "link", "boom"}, {"drawer", "tray"},
@@ -42,32 +50,29 @@ _OF_ANY_OBJECT = frozenset({
     "grid", "line", "stack", "half", "way", "direction",
 })  # fmt: skip
 """What every object has, and what it may stand on or hang from."""
+_NOT_OF_IT = ("hinge", "joint", "rim", "window", "desk", "table", "row", "column", "grid", "line", "stack", "size")
+"""Of these, what an object has only if it is built: something is between the hinges of two hinges alone."""
+_BESIDE_WHAT = ("between", "behind", "in front of", "inside", "through", "across", "around", "of")
 _ON_EACH = ("handle", "knob", "pull", "grip")
 """What a parameter gives to every door and drawer."""
+_CLOSING = ("door", "drawer", "lid", "flap", "hatch", "gate", "leaf", "sash", "shutter", "cover", "window")
+"""Parts that belong into an opening, so that there are no more than openings."""
 _COVERS = (
     "door", "drawer", "lid", "flap", "knob", "wheel", "caster", "handle", "button", "latch", "cover", "hatch", "switch",
     "dial", "key", "slider", "lock", "hook", "tray",
 )  # fmt: skip
 """Parts whose motion does not make the whole move so: a cabinet with a door does not turn."""
-_PLACES = {
-    "left": (-1, 0, 0), "right": (1, 0, 0), "top": (0, 0, 1), "upper": (0, 0, 1), "uppermost": (0, 0, 1),
-    "bottom": (0, 0, -1), "lower": (0, 0, -1), "lowest": (0, 0, -1), "underside": (0, 0, -1), "underneath": (0, 0, -1),
-    "front": (0, -1, 0), "back": (0, 1, 0), "rear": (0, 1, 0), "first": (0, 0, 0),
-}  # fmt: skip
 _MOVING = frozenset({
     "wheel", "caster", "castor", "door", "drawer", "lid", "flap", "pedal", "button", "lever", "crank", "gate", "dial",
     "tailgate", "switch", "hatch", "shutter", "propeller", "rotor", "roller", "gear", "turntable", "plunger", "slider",
     "sash", "knob",
 })  # fmt: skip
 """Parts that move wherever they are."""
-_MIDDLE = ("middle", "center", "centre", "central")
 _LOOKS = ("color", "material")
 _MEASURED = (
     "size", "moves", "way", "range", "hinge", "place", "relation", "color", "material", "open", "like", "count"
 )  # fmt: skip
 """What is said of a part that is there, and can be measured of it."""
-_ABOVE = {"above": 1, "over": 1, "below": -1, "under": -1, "beneath": -1, "underneath": -1}
-_BEFORE = {"in front of": -1, "behind": 1}
 _AXES = {"width": (0, 1), "length": (0, 1, 2), "depth": (1, 0), "height": (2,), "diameter": (0, 1, 2), "": (0, 1, 2)}
 
 
@@ -100,6 +105,8 @@ class Comparison:
     """Parts that are not there."""
     looks: tuple[tuple[tuple[str, ...], str, str], ...]
     """Parts that look otherwise than asked for: their names, and the material or the colour, the other one empty."""
+    counts: tuple[tuple[tuple[str, ...], int], ...]
+    """Moving parts of which another number is asked for: their names, and how many."""
     opened: tuple[tuple[tuple[str, ...], str, float], ...]
     """Parts that are not so far open as is asked for: their names; ``share``, ``angle`` [rad] or ``distance`` [m], and
     how much. ``range``: that they have another range than is asked for, and how long it is [rad or m]."""
@@ -118,6 +125,7 @@ class _Compared:
     names: dict[str, str] = field(default_factory=dict)
     absent: list[PartSpecification] = field(default_factory=list)
     looks: list[tuple[tuple[str, ...], str, str]] = field(default_factory=list)
+    counts: list[tuple[tuple[str, ...], int]] = field(default_factory=list)
     opened: list[tuple[tuple[str, ...], str, float]] = field(default_factory=list)
 
     # ---- parts by their nouns --------------------------------------------------------------------------------------
@@ -205,6 +213,7 @@ class _Compared:
             names=self.names,
             absent=tuple(self.absent),
             looks=tuple(self.looks),
+            counts=tuple(self.counts),
             opened=tuple(self.opened),
         )
 
@@ -230,13 +239,16 @@ class _Compared:
             found, known = self.parts_called(part.noun)
             owners = [item for item in self.specification.parts if item.noun == part.of]
             if not found and owners and part.noun in ("front", "face", "panel"):  # which looks as its owner does
-                found = _chosen(self.parts_called(part.of)[0], owners[0])
+                found = chosen_by_place(self.parts_called(part.of)[0], owners[0])
             number = len(found) if found else self.counted(part.noun)
             if part.absent:
                 self._absent(part, found, number)
             elif number:
                 self._account_for_modifiers(part, part.claims[0], known)
                 before = len(self.missing)
+                if part.of and not self._is_on_owners(part, found, number):
+                    self._not_there(part)
+                    continue
                 self._check_number(part, found, {asked, -1, asked if apart else part.count}, alone=len(parts) == 1)
                 chosen = self._individuals(part, found, parts, new=new)
                 if part.count == 1 < len(found) == len(chosen) and known < len(part.noun.split()) and len(parts) > 1:
@@ -247,6 +259,16 @@ class _Compared:
                     self._call(found, "_".join(part.noun.split()[-known:]), part.noun)
             elif not (part.of and self._all_have_it(part)):
                 self._not_there(part)
+
+    def _is_on_owners(self, part: PartSpecification, found: Sequence[Part], number: int) -> bool:
+        """Whether each of those that are to have a part has one: `three drawers, all with locks`."""
+        specified = self.specification.owner_of(part)
+        every = self.parts_called(part.of)[0] if specified else []
+        owners = chosen_by_place(every, specified) if specified and every else []
+        if not found:
+            return number < 0 or number >= len(owners) or part.noun in self.made.parameters.values()
+        carried = {name for item in found for name in (item.name, *self._carriers(item.name))}
+        return all(owner.name in carried or any(touch(owner, item) for item in found) for owner in owners)
 
     def _not_there(self, part: PartSpecification) -> None:
         moved = any(claim.about in ("moves", "way", "hinge") for claim in part.claims)
@@ -264,7 +286,7 @@ class _Compared:
         self, part: PartSpecification, found: Sequence[Part], parts: Sequence[PartSpecification], *, new: bool
     ) -> list[Part]:
         """Those that are meant; of `a glass door and a steel door` the first is the glass one."""
-        k, placed = parts.index(part), any(claim.value in _PLACES for claim in part.claims if claim.about == "place")
+        k, placed = parts.index(part), any(claim.value in PLACES for claim in part.claims if claim.about == "place")
         every = {item.name for other in parts for item in self.parts_called(other.noun)[0]}
         if new and found and k >= len(every):
             self._miss(_said(part), part.claims[0].at, f"{len(every)} built in all")
@@ -278,7 +300,7 @@ class _Compared:
         own = [item for item in found if not self._carriers(item.name) & names]  # a castor carries its wheel
         before = [other for other in parts[:k] if other.is_share and part.is_share]
         taken = sum(other.count or 0 for other in before)
-        chosen = {item.name for item in _chosen(own[taken:] if part.is_share else own, part)}
+        chosen = {item.name for item in chosen_by_place(own[taken:] if part.is_share else own, part)}
         return [item for item in found if (self._carriers(item.name) | {item.name}) & chosen]
 
     def _carriers(self, name: str) -> set[str]:
@@ -292,13 +314,11 @@ class _Compared:
     def _check_places(self, parts: Sequence[PartSpecification], found: Sequence[Part]) -> None:
         """Check how many are at each of several places: three wheels at the front and one at the back."""
         closed = {part.name: part.bounds.mean(axis=0) for part in self.closed.parts}
-        own = [closed[item.name] for item in found if not self._carriers(item.name) & {part.name for part in found}]
+        own = [item.name for item in found if not self._carriers(item.name) & {part.name for part in found}]
         for part in parts if own else ():
             place = next(claim for claim in part.claims if claim.about == "place")
-            toward = np.array(_PLACES.get(place.value, (0, 0, 0)))
-            along = np.array(own) @ toward
-            there = int(np.sum(along > (along.max() + along.min()) / 2.0 + _EDGE))
-            if toward.any() and np.ptp(along) > _EDGE and there != part.count:
+            there = number_there(closed, own, place.value)
+            if there not in (None, part.count):
                 self._miss(f"{part.count} {part.noun} {place.words}", (*part.claims[0].at, *place.at), f"{there} built")
 
     def _check_claims(
@@ -307,7 +327,7 @@ class _Compared:
         for claim in (claim for claim in part.claims[1:] if claim.about != "count"):
             meant = chosen
             if claim.about in _LOOKS and len(chosen) == len(found):  # but for those of which is said otherwise
-                ones = [_chosen(found, other) for other in parts if other is not part and _is_one(other)]
+                ones = [chosen_by_place(found, other) for other in parts if other is not part and _is_one(other)]
                 meant = [item for item in chosen if not any(item in one for one in ones)] or chosen
             wrong = self._part_keeps(part, claim, meant, found)
             if wrong is not None and meant:
@@ -365,6 +385,9 @@ class _Compared:
         elif said is not None:
             words, at = f"{said.words} {there.words}", frozenset((*said.at, there.at[-1]))
             self.missing.append(Missing(words=words, at=at, reason=built, is_sure=bool(found)))
+            closes = part.noun.split()[-1] in _CLOSING or self.counted(part.noun) is not None
+            if part.count and self._joints_of(found) and not closes:
+                self.counts.append((tuple(item.name for item in found), part.count))
         elif _on_sides(part) and len(found) == 1:
             self._miss(f"{there.words} on each side", there.at, built)
         elif part.count is None and len(found) == 1 and not self._several(part):
@@ -465,9 +488,11 @@ class _Compared:
             "size": lambda: self._sized(claim.value, chosen),
             "color": lambda: self._look_of(claim, chosen),
             "material": lambda: self._look_of(claim, chosen),
-            "place": lambda: None if self._is_on_other(part, claim) else self._placed(claim.value, chosen, found),
+            "place": lambda: (
+                None if self._is_on_other(part, claim) else wrong_place(self.closed, claim.value, chosen, found)
+            ),
             "relation": lambda: self._related(claim, part, chosen),
-            "like": lambda: self._mirrored(found),
+            "like": lambda: mirrored(self.closed, found),
             "does": lambda: "no such motion",
         }
         return judges[claim.about]() if claim.about in judges else None
@@ -552,7 +577,7 @@ class _Compared:
 
     def _hinged(self, joint: BlueprintJoint, side: str) -> str | None:
         middle = next(part for part in self.closed.parts if part.name == joint.child).bounds.mean(axis=0)
-        aside = (self.closed.joint_above[joint.child].pivot - middle) @ np.array(_PLACES.get(side, (0, 0, 0)))
+        aside = (self.closed.joint_above[joint.child].pivot - middle) @ np.array(PLACES.get(side, (0, 0, 0)))
         return None if aside > 0.0 else "hinged on another side"
 
     def _ranges(self, joints: Sequence[BlueprintJoint], asked: tuple[str, float]) -> str | None:
@@ -608,29 +633,19 @@ class _Compared:
         ]
         return [float(np.linalg.norm(one - other)) for k, one in enumerate(pins) for other in pins[:k]]
 
-    def _placed(self, place: str, chosen: Sequence[Part], found: Sequence[Part]) -> str | None:
-        toward = _PLACES.get(place)
-        if toward is None or len(chosen) < len(found):  # the left one was chosen by its place
+    def _placed(
+        self, part: PartSpecification, claim: Claim, chosen: Sequence[Part], found: Sequence[Part]
+    ) -> str | None:
+        if self._is_on_other(part, claim):
             return None
-        closed = {part.name: part for part in self.closed.parts}
-        middle = self.closed.parts[0].bounds.mean(axis=0)
-        aside = [float((closed[part.name].bounds.mean(axis=0) - middle) @ np.array(toward)) for part in chosen]
-        return None if max(aside) > -_EDGE else "elsewhere"
+        called = all(_ends_with(item.name, part.noun.split()[-1]) for item in found)  # no fingers of a gripper
+        return wrong_place(self.closed, claim.value, chosen, found if called else chosen)
 
     def _is_on_other(self, part: PartSpecification, place: Claim) -> bool:
         """Whether a place is one of another part: at the bottom of the handle."""
         own = _OF_ANY_OBJECT | set(self.specification.kind.split())
         behind = (claim for claim in part.claims if claim.about == "relation" and min(claim.at) == max(place.at) + 1)
         return any(claim.value[0] == "of" and claim.value[1].split()[-1] not in own for claim in behind)
-
-    def _mirrored(self, found: Sequence[Part]) -> str | None:
-        """Whether two parts are mirror images across a plane from front to back."""
-        closed = {part.name: part for part in self.closed.parts}
-        boxes = [closed[part.name].bounds for part in found]
-        middle = np.mean([box.mean(axis=0)[0] for box in boxes])
-        images = [box[::-1, 0] * -1.0 + 2.0 * middle for box in boxes]
-        same = len(boxes) == 2 and np.allclose(images[0], boxes[1][:, 0], atol=_EDGE)
-        return None if same else "not mirrored"
 
     def _related(self, claim: Claim, part: PartSpecification, chosen: Sequence[Part]) -> str | None:
         preposition, noun = claim.value
@@ -640,17 +655,14 @@ class _Compared:
         if not others and self.counted(noun):
             return None  # it belongs to another part, whose solid it is
         if not others:
-            own = noun.split()[-1] in self.specification.kind.split()
-            return None if own or noun.split()[-1] in _OF_ANY_OBJECT else f"no {noun}"
-        if preposition == "each" and len(chosen) < len(others):
-            return f"{len(chosen)} built"
-        if preposition in _ABOVE:
-            sign = _ABOVE[preposition]
-            heights = [[sign * float(part.bounds.mean(axis=0)[2]) for part in group] for group in (chosen, others)]
-            return None if min(heights[0]) > max(heights[1]) else f"not {preposition} it"
-        pairs = ((one, other) for one in chosen for other in others)
-        is_there = preposition not in _BEFORE or any(_is_before(*pair, _BEFORE[preposition]) for pair in pairs)
-        return None if is_there else "elsewhere"
+            *before, last = noun.split()
+            own = set(self.specification.kind.split())
+            strange = [
+                word for word in before if not {word, lemma(word)} & (own | PURPOSES | PLACES.keys() | _OF_ANY_OBJECT)
+            ]
+            there = last in own or (last in _OF_ANY_OBJECT and not (last in _NOT_OF_IT and preposition in _BESIDE_WHAT))
+            return None if there and not strange else f"no {noun}"
+        return wrong_relation(preposition, chosen, others)
 
 
 def compare(
@@ -682,17 +694,10 @@ def _covers(name: str, own: Sequence[str]) -> bool:
     return any(f"_{stem_of(name)}".endswith(f"_{word}") and word not in own for word in _COVERS)
 
 
-def _is_before(one: Part, other: Part, sign: int) -> bool:
-    """Whether a part is in front of another one (sign -1) or behind it (1), and not beside it."""
-    (low, high), (other_low, other_high) = one.bounds, other.bounds
-    across = np.minimum(high, other_high) - np.maximum(low, other_low)
-    return bool(across[0] > 0.0 and across[2] > 0.0 and sign * (low + high - other_low - other_high)[1] > 0.0)
-
-
 def _ends_with(name: str, word: str) -> bool:
     """Whether a name ends with a word; ``drawer_0_top`` is the top one of some drawers, and no top."""
     stems = [stem for stem in (stem_of(name), lemma(stem_of(name))) if f"_{stem}".endswith(f"_{word}")]
-    return any(word not in _PLACES or not stem.removesuffix(f"_{word}")[-1:].isdigit() for stem in stems)
+    return any(word not in PLACES or not stem.removesuffix(f"_{word}")[-1:].isdigit() for stem in stems)
 
 
 def _said(part: PartSpecification) -> str:
@@ -701,29 +706,6 @@ def _said(part: PartSpecification) -> str:
     before = [claim for claim in part.claims[1:] if max(claim.at) < first]
     words = [claim.words for claim in sorted(before, key=lambda claim: claim.at)]
     return " ".join([*words, part.claims[0].words])
-
-
-def _chosen(found: Sequence[Part], part: PartSpecification) -> list[Part]:
-    """Those that are meant: of several, the one that is furthest in the place that is said."""
-    said = [claim.value for claim in part.claims if claim.about == "place"]
-    found = [item for item in found if set(said) & set(item.name.split("_"))] or found
-    places = [_PLACES[place] for place in said if place in _PLACES]
-    central = bool(set(_MIDDLE) & set(said))
-    ordinal = next((place.split(" ") for place in said if place[0].isdigit()), None)
-    if not (places or central or ordinal) or part.count is None or part.count >= len(found):
-        return list(found)
-    middles = np.array([item.bounds.mean(axis=0) for item in found])
-    spread = np.where(np.ptp(middles, axis=0) > _EDGE, np.ptp(middles, axis=0), 1.0)
-    if ordinal:  # counted from the top, or from the left where they stand side by side
-        stacked = np.ptp(middles, axis=0)[2] > np.ptp(middles, axis=0)[0]
-        toward = _PLACES.get(ordinal[1], (0, 0, 1) if stacked else (-1, 0, 0))
-        order = np.argsort(-(middles @ np.array(toward, dtype=np.float64)), kind="stable")
-        return [found[order[int(ordinal[0]) - 1]]] if int(ordinal[0]) <= len(found) else list(found)
-    if central:
-        aside = np.linalg.norm((middles - (middles.max(axis=0) + middles.min(axis=0)) / 2.0) / spread, axis=1)
-        return [found[k] for k in np.argsort(aside, kind="stable")[: part.count]]
-    reach = (middles / spread) @ np.sum(places, axis=0, dtype=np.float64)
-    return [found[k] for k in np.argsort(-reach, kind="stable")[: part.count]]
 
 
 def _looks(claim: Claim, parts: Sequence[Part]) -> str | None:

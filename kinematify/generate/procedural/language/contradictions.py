@@ -10,7 +10,7 @@ from kinematify.errors import InputError
 from kinematify.generate.procedural.language.words import UNITS, lemma
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from kinematify.generate.procedural.language.specification import Claim, PartSpecification, Specification
 
@@ -32,10 +32,36 @@ _NO_THING_TEXT = """
 """
 _NO_THING = frozenset(_NO_THING_TEXT.split())
 """What is no thing at all, so that nothing consists of it or has it."""
-_NO_SOLID_TEXT = "water air smoke light fog steam fire sound music time nothing milk gas"
+_NO_SOLID_TEXT = """
+    water air smoke light fog steam fire sound music time nothing milk gas soup juice tea coffee wine beer oil honey
+    mist cloud clouds rain wind breath shadow shadows flame flames lightning moonlight sunlight sunshine gravity
+    electricity magic noise laughter tears blood jelly vacuum heat cold
+"""
+_ABSTRACT = ("ness", "ity", "ism", "hood", "ship", "dom", "tion", "sion")
+"""How words end for what is no thing."""
 _NO_SOLID = frozenset(_NO_SOLID_TEXT.split()) | _NO_THING
 """What no part can be made of."""
-_MADE = (("made", "of"), ("out", "of"), ("made", "from"))
+_MADE = (("made", "of"), ("out", "of"), ("made", "from"), ("entirely", "of"), ("only", "of"), ("completely", "of"))
+_OPPOSITE_TEXT = """
+    transparent opaque, rigid flexible, hollow solid, full empty, fixed movable, fixed sliding, tall short, wide narrow,
+    big small, large small, thick thin, deep shallow, straight curved, long short, vertical horizontal,
+    heavy weightless, wheeled wheelless, hinged hingeless, moving motionless, locked unlocked, visible hidden
+"""
+_OPPOSITES = {frozenset(pair.split()) for pair in _OPPOSITE_TEXT.split(",")}
+_AGAINST = {
+    "left": "right",
+    "top": "bottom",
+    "upper": "lower",
+    "front": "back",
+    "uppermost": "lowest",
+    "inner": "outside",
+}
+_AGAINST |= {other: one for one, other in _AGAINST.items()} | {"rear": "front", "bottom": "top"}
+"""Places that exclude each other."""
+_LARGER = ("larger", "bigger", "taller", "wider", "longer", "higher", "deeper", "thicker", "heavier")
+_LEAVES = ("door", "lid", "flap", "gate", "cover", "window", "shutter", "hatch", "sash", "leaf", "tailgate", "drawer")
+"""What closes an opening, and goes round no more than once."""
+_ROUND = 6.2832  # [rad]
 _SHAPES = ("round", "circular", "square", "triangular", "hexagonal", "spherical", "cubic", "circle")
 _BEARINGS = ("hinge", "joint", "axis", "axle", "pivot", "rail", "slide", "bearing", "guide")
 _SLIDES = ("drawer",)
@@ -64,13 +90,15 @@ def _faults(specification: Specification) -> Iterator[_Fault]:
     for part in specification.all_parts():
         yield from _two_values(part)
         yield from _two_places(part)
+        yield from _too_far(part, specification)
     yield from _present_and_absent(specification)
     yield from _larger_parts(specification)
     words = [token.given for token in specification.tokens]
     for k, word in enumerate(words):
         if word in _NO_OBJECT and k not in specification.name:
             yield word, "no object with links and joints is or does that"
-        if word in _NO_SOLID and tuple(words[max(k - 2, 0) : k]) in _MADE:
+        unreal = word in _NO_SOLID or word.endswith(_ABSTRACT)
+        if unreal and tuple(words[max(k - 2, 0) : k]) in _MADE:
             yield f"made of {word}", "parts are solid"
         elif {lemma(word), word.removesuffix("es")} & _NO_THING and specification.tokens[k - 1].number is not None:
             yield f"{words[k - 1]} {word}", "no object has that"
@@ -78,6 +106,8 @@ def _faults(specification: Specification) -> Iterator[_Fault]:
         broken = words[k : k + 3] == ["and", "a", "half"] and specification.tokens[k - 1].number is not None
         if broken and words[k + 3 : k + 4] and lemma(words[k + 3]) not in UNITS:
             yield " ".join(words[k - 1 : k + 4]), "parts are counted by whole numbers"
+    yield from _opposites(words)
+    yield from _larger_than_all(specification, words)
     for one, other in pairwise(words):
         if one in _SHAPES and other in _SHAPES and one != other:
             yield f"{one} {other}", "these shapes exclude each other"
@@ -85,6 +115,38 @@ def _faults(specification: Specification) -> Iterator[_Fault]:
         for claim in part.claims:
             if part.noun in _SLIDES and claim.about == "moves" and claim.value in _OTHER_WAY:
                 yield f"{claim.words} {part.noun}", f"a {part.noun} slides"
+
+
+def _opposites(words: Sequence[str]) -> Iterator[_Fault]:
+    """`transparent opaque`, `both rigid and flexible`; doors that are tall and short may be several."""
+    for k in range(len(words) - 1):
+        joined = words[k + 1] in ("and", "but", "yet") and k + 2 < len(words)
+        other = k + 2 if joined else k + 1
+        behind = words[other + 1] if other + 1 < len(words) else ""
+        if frozenset((words[k], words[other])) in _OPPOSITES and lemma(behind) == behind:
+            yield " ".join(words[k : other + 1]), "these exclude each other"
+
+
+def _larger_than_all(specification: Specification, words: Sequence[str]) -> Iterator[_Fault]:
+    """What is larger than itself, or than the whole that it is a part of."""
+    own = specification.kind.split()[-1]
+    for k, word in enumerate(words[:-1]):
+        behind = next((other for other in words[k + 2 :] if other not in ("the", "its", "whole")), "")
+        if word in _LARGER and words[k + 1] == "than" and k > specification.name[-1] and behind == own:
+            yield " ".join(words[k : k + 4]), f"nothing of a {own} is larger than all of it"
+        if words[k + 1] in ("itself", "themselves") and word in ("than", "in", "inside", "on", "under", "above", "of"):
+            yield f"{word} {words[k + 1]}", "nothing is so beside itself"
+
+
+def _too_far(part: PartSpecification, specification: Specification) -> Iterator[_Fault]:
+    """A door that turns round more than once, a drawer that is pulled out farther than its cabinet is deep."""
+    deep = [c for c in specification.whole.claims if c.about == "size" and c.value[0] == "depth"]
+    for claim in (claim for claim in part.claims if claim.about in ("open", "range")):
+        how, much = claim.value
+        if how == "angle" and much > _ROUND and part.noun.split()[-1] in _LEAVES:
+            yield f"{part.noun} {claim.words}", "it goes round less than once"
+        if how == "distance" and part.noun in _SLIDES and deep and much > deep[0].value[1]:
+            yield f"{part.noun} {claim.words}", f"the {specification.kind} is {deep[0].words}"
 
 
 def _two_values(part: PartSpecification) -> Iterator[_Fault]:
@@ -104,7 +166,14 @@ def _two_values(part: PartSpecification) -> Iterator[_Fault]:
 
 
 def _two_places(part: PartSpecification) -> Iterator[_Fault]:
-    """A hinge that is on one side, and hinged on the other."""
+    """A hinge that is on one side, and hinged on the other; a left door on the right."""
+    noun = max(part.claims[0].at)
+    before = [claim for claim in part.claims if claim.about == "place" and max(claim.at) < noun and part.count == 1]
+    behind = [claim for claim in part.claims if claim.about == "place" and min(claim.at) > noun]
+    for one in before:
+        for other in behind:
+            if _AGAINST.get(one.value) == other.value:
+                yield f"{one.words} {part.noun} {other.words}", "these places exclude each other"
     sides = {claim.value: claim for claim in part.claims if claim.about in ("place", "hinge")}
     if part.noun == "hinge" and part.count == 1 and {"left", "right"} <= sides.keys():
         yield f"{sides['left'].words}, {sides['right'].words}", "one hinge is on one side"
@@ -117,7 +186,8 @@ def _present_and_absent(specification: Specification) -> Iterator[_Fault]:
     moving = any(claim.about in ("moves", "way") for part in specification.all_parts() for claim in part.claims)
     for noun, parts in by_noun.items():
         absent = [part for part in parts if part.absent]
-        if absent and (len(absent) < len(parts) or noun == specification.kind):
+        *_, last = specification.kind.partition(" of ")[2].split() or [specification.kind]
+        if absent and (len(absent) < len(parts) or noun == lemma(last)):
             yield f"no {noun}", f"it asks for a {noun}, too"
         elif absent and noun.rsplit(maxsplit=1)[-1] in _BEARINGS and moving:
             yield absent[0].claims[0].words, "what has no joint does not move"

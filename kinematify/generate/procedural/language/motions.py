@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 _VERBS = {
-    "slides": "slide extend retract", "turns": "turn rotate swivel pivot twist",
+    "slides": "slide extend retract", "turns": "turn rotate pivot twist", "swivels": "swivel",
     "swings": "hinge swing oscillate", "tilts": "tilt recline tip", "flips": "flip", "spins": "spin revolve",
     "folds": "fold collapse unfold", "moves": "move adjust travel", "rises": "lift raise rise", "sinks": "lower drop",
 }  # fmt: skip
@@ -88,6 +88,7 @@ def _lies(joint: BlueprintJoint) -> bool:
 _MOVES: dict[str, Callable[[Blueprint, BlueprintJoint], bool]] = {
     "slides": lambda made, joint: joint.kind is JointType.PRISMATIC,
     "turns": lambda made, joint: joint.kind.turns,
+    "swivels": lambda made, joint: joint.kind.turns and not (joint.kind is JointType.CONTINUOUS and _lies(joint)),
     "swings": lambda made, joint: joint.kind is JointType.REVOLUTE,
     "tilts": lambda made, joint: joint.kind is JointType.REVOLUTE and _lies(joint),
     "flips": lambda made, joint: joint.kind.turns and _lies(joint) and "wheel" not in joint.child,

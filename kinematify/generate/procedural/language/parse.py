@@ -87,6 +87,8 @@ LEVELS = {
     "overhead": "top",
 }  # fmt: skip
 """Places that are said without a noun behind them: `with a drawer below`."""
+_ALONE = {"inside": "inside", "behind": "back", "between": "between"}
+"""The same, of which none is a level."""
 MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word in material.words}
 _UNDER_WHOLE = ("wheel", "caster", "castor", "leg", "foot", "roller", "runner", "base", "stand", "track", "skid")
 _HINGES = ("front", "rear", "top", "bottom")
@@ -340,7 +342,7 @@ class _Parser(Words):
             self.current = self.subject = self.whole
         k = self._noun_phrase(k, self.whole)
         while k < len(self.tokens):
-            k = max(self._clause(k), k + 1)
+            k = max(self._part(k + 2) if self._says(k, ("of", "which")) else self._clause(k), k + 1)
 
     def _is_mechanism(self, k: int) -> bool:
         """Whether a word, as in `wheels` or `wheeled`, names a mechanism."""
@@ -378,7 +380,10 @@ class _Parser(Words):
     def _individual(self, k: int) -> _Draft | None:
         """The part that `with` at word k is about: `the left one with a knob`, `two doors, each with a vent`."""
         placed = any(claim.about == "place" and max(claim.at) < k for claim in self.current.claims)
-        each = self.given(k - 1) in ("each", "both")
+        before = k - 1
+        while before > 0 and self.given(before) in ("of", "them", "which", "these"):
+            before -= 1
+        each = self.given(before) in ("each", "both", "all")
         is_one = placed and self.current.count == 1 and self.given(k - 1) != ","
         return self.current if self.current is not self.whole and (each or is_one) else None
 
@@ -452,6 +457,14 @@ class _Parser(Words):
         if self._is_share(k):
             return self._share(k)
         part = _Draft(count=count, of=self.noun(of) if of is not None else "")
+        named = next((item for item in reversed(self.parts) if not item.of and item.count != 1), None)
+        alone = self.given(k + 1) in PLACES and self.given(k + 2) in (*_BEING, *_WITH)
+        if named is not None and count and self.given(k) == "the" and alone:  # of which the lowest is lockable
+            part.nouns = list(named.nouns)
+            self.claim(part, "place", self.given(k + 1), k + 1)
+            self.parts.append(part)
+            self.current = self.subject = part
+            return k + 2
         end = self._noun_phrase(k, part)
         again = [at for at in range(k, end) if self.given(at) in ("one", "ones") or self.tokens[at].given in NUMBERS]
         if not part.nouns and again and self.parts and self.given(again[0]) not in ARTICLES:
@@ -476,6 +489,8 @@ class _Parser(Words):
         """How many of those that were named last are meant at word k, and the word behind; none: 0."""
         every = next((part.count or 0 for part in reversed(self.parts) if (part.count or 0) > 1), 0)
         number = self.tokens[k].number if k < len(self.tokens) and self.given(k) not in ARTICLES else None
+        if self.given(k) == "all" and self.number(k + 1):  # all five of them
+            return self._shared(k + 1)
         if (self.given(k), self.given(k + 1)) == ("all", "but") and k + 2 < len(self.tokens):
             return every - int(self.tokens[k + 2].number or every), k + 3
         if self.given(k) == "half" and every % 2 == 0:
@@ -806,6 +821,8 @@ class _Parser(Words):
                 self.parts.append(target)
         else:
             self.current.claims += target.claims
-            if self.given(k) in LEVELS and end == k + 1:
-                self.claim(self.current, "place", LEVELS[self.given(k)], k)
+            alone = end == k + 1 or (end == k + 2 and self.given(k + 1) in _PRONOUNS)
+            place = {**LEVELS, **_ALONE}.get(self.given(k), "") if alone else ""
+            if place:
+                self.claim(self.current, "place", place, *range(k, end))
         return max(end, k + 1)

@@ -94,6 +94,12 @@ class Specification:
         yield self.whole
         yield from self.parts
 
+    def owner_of(self, part: PartSpecification) -> PartSpecification | None:
+        """The part that has a part: of those of its name, the one that was named last before it."""
+        first = min(part.claims[0].at)
+        named = [item for item in self.parts if part.of and item.noun == part.of and min(item.claims[0].at) < first]
+        return named[-1] if named else next((item for item in self.parts if part.of and item.noun == part.of), None)
+
     def __str__(self) -> str:
         return "; ".join(map(str, self.all_parts()))
 

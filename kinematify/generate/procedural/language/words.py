@@ -36,6 +36,8 @@ _PURPOSE_TEXT = """
     burner cash crisper cutlery detergent emergency freezer glove main power soap start stop storage vegetable volume
     battery mail coin card ticket cable cup bottle spice fuse inspection service access charging dust filter ash crumb
     drip bread laundry trash book wine toy cat dog pet engine water paper tool food feed paint letter
+    flush speed air focus tuning brake gear power heat temperature timer mode gas fuel drain feed safety parking
+    release reset control measuring sample alarm brightness program rinse
     countertop tabletop benchtop cupboard child children kid kids
 """
 PURPOSES = frozenset(_PURPOSE_TEXT.split())
