@@ -288,6 +288,7 @@ def test_a_colour_that_is_asked_for_is_that_of_the_base() -> None:
         ("a cabinet with two doors, each with a window", "window", {"door_1", "door_2"}),
         ("a tool chest with two drawers, all with locks", "lock", {"drawer_1", "drawer_2"}),
         ("a cabinet with three drawers, of which the lowest is lockable", "lock", {"drawer_3"}),
+        ("a locker with two doors, each with a vent and a nameplate", "nameplate", {"door_1", "door_2"}),
     ],
 )
 def test_what_a_kind_has_not_is_put_on_the_part_that_is_named(sentence: str, what: str, carriers: set[str]) -> None:

@@ -41,6 +41,7 @@ _MOST_PLACES = 12  # that are tried
 _GRID = 13  # places along either side of the object at which it is looked for
 _SAMPLES, _STEPS = 5, 5  # points of a plate along either side; poses of a joint
 _QUARTER = 0.5 * math.pi
+_ENDS = {"top": 1, "bottom": -1}
 _UNDER = ("axles", "corners")
 """How mechanisms are arranged that the whole stands on."""
 _BOARD, _UNDERNEATH = "dolly", "chassis"
@@ -120,15 +121,18 @@ def _carriers(blueprint: Blueprint, wanted: MechanismSpec) -> list[Part]:
 
 def _on_part(blueprint: Blueprint, carrier: Part, wanted: MechanismSpec, clearance: float, number: str) -> Blueprint:
     kind = wanted.mechanism
-    if kind.arranged != "grid" or (wanted.side and wanted.side not in kind.sides):
+    is_end = wanted.side in _ENDS and wanted.side not in kind.sides  # at the bottom of one of its sides
+    sides, end = ((), _ENDS[wanted.side]) if is_end else ((wanted.side,) if wanted.side else (), 0)
+    if kind.arranged != "grid" or not set(sides) <= set(kind.sides):
         raise InputError(f"There is no place for a {wanted.title} there.")
     turns = any(joint.kind is JointType.CONTINUOUS for joint in blueprint.joints)
     on_pads = max(kind.least) <= _HAND_SIZED and not (turns and kind.words[0] == "crank")  # which turns what is there
     tried = [*((scale, True) for scale in _SCALES[:-1]), *((scale, False) for scale in _SCALES if on_pads)]
     for scale, is_level in tried:
         size = scale * np.ptp(_plate(wanted, clearance).parts[0].bounds, axis=0)[[0, 2]]
-        for side in (wanted.side,) if wanted.side else kind.sides:
-            for middle, deep in islice(_places(blueprint, carrier, side, size, is_level=is_level), _MOST_PLACES):
+        for side in sides or kind.sides:
+            places = _places(blueprint, carrier, side, size, is_level=is_level, end=end)
+            for middle, deep in islice(places, _MOST_PLACES):
                 turn = np.array(FACING[side], dtype=np.float64).T
                 place = np.eye(4)
                 place[:3, :3], place[:3, 3] = turn, turn @ (middle - np.array([0.0, _GAP, 0.0]))
@@ -200,9 +204,11 @@ def _plate(wanted: MechanismSpec, clearance: float, pad: Manifold | None = None)
 
 
 def _places(
-    blueprint: Blueprint, carrier: Part, side: str, size: FloatArray, *, is_level: bool
+    blueprint: Blueprint, carrier: Part, side: str, size: FloatArray, *, is_level: bool, end: int
 ) -> Iterator[tuple[FloatArray, float]]:
-    """Find places of a part that nothing goes before, the most central first: level ones, or others.
+    """Find places of a part that nothing goes before: level ones, or others.
+
+    The most central ones come first, or those next to the top (end 1) or the bottom (-1) of the side.
 
     Yields:
         Their middles in the frame of a side, shape (3,): to the right, into the object, and up [m]; and how deep a pad
@@ -218,6 +224,7 @@ def _places(
     if (high[[0, 2]] - low[[0, 2]] < (1.0 if is_level else _MOST_OF_IT) * size).any():
         return
     centre = 0.5 * (low + high)[[0, 2]]
+    centre[1] += 0.5 * end * (high - low)[2]
     middles = sorted(((x, z) for x in at[0] for z in at[1]), key=lambda place: float(np.hypot(*(place - centre))))
     shares = sorted(np.linspace(-0.5, 0.5, _SAMPLES), key=abs, reverse=True)  # corners tell soonest
     for x, z in middles:

@@ -58,6 +58,11 @@ def _flap(place: Placement) -> None:
     add_flap(place.workshop, place.name, BODY, lifted, place.fitting, hinge="edge")
 
 
+def _leaf(place: Placement) -> None:
+    """A board on barrel hinges before what carries it, that folds down until it is level."""
+    add_flap(place.workshop, place.name, BODY, place.area, place.fitting, hinge="barrel")
+
+
 def _lid(place: Placement) -> None:
     place.hollowed()
     area = place.area
@@ -536,8 +541,8 @@ _BUILDERS: Mapping[str, Callable[[Placement], None]] = {
     **{
         build.__name__.removeprefix("_").removeprefix("add_"): build
         for build in (
-            _door, _drawer, _flap, _lid, _shutter, _sash, _trunk, _ladder, _vise, _rail, _mirror, _shelf, _round_lid,
-            _vent, _basket,
+            _door, _drawer, _flap, _leaf, _lid, _shutter, _sash, _trunk, _ladder, _vise, _rail, _mirror, _shelf,
+            _round_lid, _vent, _basket,
             _compartment, _knob, _button, _slider, _latch, _flag, _seat, _desktop, _screen, _lever, _crank, _hand_wheel,
             _needle, _wheel, _caster, _rotor, _turntable, _telescope, _bail, _arm, _push_handle, add_cantilever_tray,
             add_scissor_lift, add_gripper, add_hook, add_pedal, add_leg,

@@ -358,7 +358,7 @@ def mechanism_for(part: PartSpecification, owner: PartSpecification | None) -> M
     if "relation" in said and said["relation"].value[1].split()[-1] not in _SIDES:
         carrier = " ".join(_SIDES.get(word, word) for word in said["relation"].words.split())
     on_carrier_alone = kind is not None and kind.arranged not in _ATTACHED
-    if kind is None or part.absent or (on_carrier_alone and not carrier):
+    if kind is None or part.absent or (on_carrier_alone and not carrier and "place" not in said):
         return None
     return MechanismSpec(
         mechanism=replace(kind, build=kind.on_parts, arranged="grid", sides=_UPRIGHT) if kind.on_parts else kind,

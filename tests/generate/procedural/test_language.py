@@ -267,7 +267,8 @@ def test_a_joint_goes_no_further_than_is_asked_for():
 def test_every_description_of_a_kind_is_tried_and_no_other_kind():
     assert "plate" in from_text("a hand truck with a folding plate").build().joint_above
     assert len(from_text("an oak table with a drawer and a white turntable").build().joints) == 2
-    assert "lock" in said_of("a trolley with three drawers of which the lowest is lockable")
+    lockable = from_text("a trolley with three drawers of which the lowest is lockable").made()
+    assert (lockable.not_built, lockable.blueprint.joint_above["lock"].parent) == ((), "drawer_3")
 
 
 def test_several_stand_side_by_side_on_one_base_link():

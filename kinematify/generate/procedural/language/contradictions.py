@@ -145,7 +145,8 @@ def _too_far(part: PartSpecification, specification: Specification) -> Iterator[
         how, much = claim.value
         if how == "angle" and much > _ROUND and part.noun.split()[-1] in _LEAVES:
             yield f"{part.noun} {claim.words}", "it goes round less than once"
-        if how == "distance" and part.noun in _SLIDES and deep and much > deep[0].value[1]:
+        is_out = claim.about == "open" and how == "distance" and part.noun in _SLIDES
+        if is_out and deep and much > deep[0].value[1]:
             yield f"{part.noun} {claim.words}", f"the {specification.kind} is {deep[0].words}"
 
 

@@ -375,6 +375,13 @@ class _Parser(Words):
         if self.given(k) == "," and self._is_about_whole(k + 1):
             self.current = self.subject = self.whole
             return k + 1
+        owners = [part for part in self.parts if self.current.of and self.noun(part) == self.current.of]
+        adds = self.given(k) == "and" and self.given(k - 1) != "," and self.given(k + 1) in ARTICLES
+        if owners and adds and self._begins_noun(k + 1):  # each with a vent and a lock
+            end = self._part(k + 1, of=owners[-1])
+            if self.noun(self.current).split()[-1:] in (["door"], ["drawer"]):
+                self.current.of = ""
+            return end
         return self._part(k + 1) if self._begins_noun(k + 1) else k + 1
 
     def _individual(self, k: int) -> _Draft | None:

@@ -52,7 +52,8 @@ def wrong_place(closed: Blueprint, place: str, chosen: Sequence[Part], found: Se
         others = [bounds[part.name].mean(axis=0) - base.mean(axis=0) for part in found if part.name not in names]
         if others and any(toward):  # chosen by its place: there the others are not
             return None if along.max() > min(np.array(others) @ np.array(toward)) + EDGE else "none is apart there"
-        return None if along.max() > -EDGE else "elsewhere"
+        least = EDGE if toward[0] else -EDGE  # what is in the middle is neither left nor right
+        return None if along.max() > least else "elsewhere"
     if len(chosen) < len(found) or place[:1].isdigit():
         return None
     share = np.abs(aside) / np.maximum(0.5 * np.ptp(base, axis=0), EDGE)
