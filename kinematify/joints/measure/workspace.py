@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 
-_WINDING = ((1.0, 0.4), (1.25, 0.15), (2.0, 0.0))
-"""Accuracies of winding numbers, and how far from a half each decides. The first takes a third of the time of the last
-and is 0.6 off at most. Of 204,000 points in 136 parts, none is decided otherwise than by the last alone."""
+_WINDING = ((1.5, 0.1), (2.0, 0.0))
+"""Accuracies of winding numbers, and how far from a half each decides: the first takes two thirds of the time of the
+second and was never more than 0.015 off it. One of 1.0 takes a third, and was 0.6 off on open shells."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
