@@ -8,6 +8,7 @@ from manifold3d import Manifold, Mesh64, OpType
 
 from benchmarks.fit.drawn import DRAWN, drawn_object
 from kinematify.generate.library.builder import CAREFUL
+from kinematify.generate.library.expressions import filled_in
 from kinematify.robot.joint_type import JointType
 
 _MORE = 1e-3
@@ -101,3 +102,9 @@ def test_there_are_many_kinds_and_both_motions():
     kinds = [joint.kind for name in DRAWN for joint in drawn_object(name, 0).joints]
     assert len(DRAWN) >= 150
     assert min(kinds.count(kind) for kind in (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)) > 100
+
+
+def test_a_name_with_braces_in_braces_is_refused():
+    assert filled_in("wheel_{k + 1}", {"k": 1}) == "wheel_2"
+    with pytest.raises(ValueError, match="braces in braces"):
+        filled_in("{max(1, f'oar_{k}')}", {"k": 0})

@@ -86,5 +86,12 @@ def evaluated(given: Any, names: dict[str, Any]) -> Any:
 
 
 def filled_in(text: str, names: Mapping[str, Any]) -> str:
-    """Return a name with its formulas in braces evaluated, ``wheel_{k + 1}``."""
-    return re.sub(r"\{([^{}]*)\}", lambda found: str(evaluated(found[1], dict(names))), text)
+    """Return a name with its formulas in braces evaluated, ``wheel_{k + 1}``.
+
+    Raises:
+        ValueError: A formula cannot be evaluated, or there are braces in braces.
+    """
+    filled = re.sub(r"\{([^{}]*)\}", lambda found: str(evaluated(found[1], dict(names))), text)
+    if "{" in filled:
+        raise ValueError(f"the name {text!r} has braces in braces; compute the inner one by `let` before")
+    return filled
