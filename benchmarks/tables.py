@@ -141,11 +141,8 @@ def _degradation_sections(results: Sequence[JobResult]) -> list[list[str]]:
     groups = grouped(results, by=lambda result: f"{result.kind}, {result.input}")
     rows = [[*_row(name, group), _cuts_fixed(group)] for name, group in groups.items()]
     overview = ["### Kinds of input", table(["input", "joints", *_plain_titles(), "cuts fixed"], rows)]
-    return [overview, *(section for name, group in groups.items() for section in _input_sections(name, group))]
-
-
-def _input_sections(name: str, results: Sequence[JobResult]) -> list[list[str]]:
-    return [_object_table(name, results), _joint_errors(results)]
+    singly = [[_object_table(name, group), _joint_errors(group)] for name, group in groups.items()]
+    return [overview, *(section for sections in singly for section in sections)]
 
 
 def _cuts_fixed(results: Iterable[JobResult]) -> str:

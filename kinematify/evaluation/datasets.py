@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 BENCH_VARIABLE = "KINEMATIFY_BENCH"
 PIP_DATA = "pip"
 """The word that represents robots of the PyPI package example-robot-data."""
-SETS = ("robots", "everyday", "everyday2")
-"""Sets of the benchmark folder, each a folder in it and a word for it: robots, household objects of one data set, and
-household objects and devices of many others."""
+SETS = ("robots", "everyday", "everyday2", "articraft", "infinigen")
+"""Sets of the benchmark folder, each a folder in it and a word for it: robots, household objects of one data set,
+household objects and devices of many others, objects that language models programmed, and those of a generator."""
 DEFAULT_SETS = ("robots", "everyday")
-"""What is measured where nothing is asked for; `everyday2` was added later and is measured by itself."""
+"""What is measured where nothing is asked for; the others were added later and are measured by themselves."""
 
 
 @dataclass(frozen=True, kw_only=True)
