@@ -118,10 +118,9 @@ class _Plan:
 
     @cached_property
     def fault(self) -> tuple[int, int]:
-        """Words that are not built; where none is left, mechanisms that are put on it beyond a few, or below it."""
+        """Words that are not built; where none is left, mechanisms that are put on it beyond a few."""
         words = sum(len(item.split("(")[0].split()) for item in self.missing(self.blueprint))
-        under = any(item.mechanism.arranged in ("axles", "corners") for item in self.request.added)
-        return words, 0 if words else max(len(self.request.added) - _FEW, 0) + under
+        return words, 0 if words else max(len(self.request.added) - _FEW, 0)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -60,7 +60,7 @@ def ends_of(joint):
         ("a column with a folding arm and a crank", {JointType.REVOLUTE: 2, JointType.CONTINUOUS: 1}),
         ("a platform with four wheels and a telescopic mast", {JointType.CONTINUOUS: 4, JointType.PRISMATIC: 1}),
         ("a toolbox with two cantilever trays and a handle", {JointType.REVOLUTE: 7}),
-        ("a scissor lift on four wheels", {JointType.REVOLUTE: 3, JointType.CONTINUOUS: 4}),
+        ("a scissor lift on four wheels", {JointType.REVOLUTE: 5, JointType.CONTINUOUS: 4}),
         ("a cabinet with a gripper, three hooks and two pedals", {JointType.PRISMATIC: 2, JointType.REVOLUTE: 5}),
         ("a van with two front doors and two back doors", {JointType.CONTINUOUS: 4, JointType.REVOLUTE: 4}),
         ("a standing desk that goes up and down", {JointType.PRISMATIC: 1}),

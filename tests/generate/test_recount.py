@@ -49,3 +49,8 @@ def test_chained_parts_keep_their_number() -> None:
     made = from_text("a four-bar linkage").build()
     with pytest.raises(InputError, match="not alike"):
         recounted(made, ["crank"], 2)
+
+
+def test_an_object_on_wheels_keeps_its_own_parts():
+    made = from_text("a barbecue with two wheels").build()
+    assert {"lid", "wheel_1", "wheel_2"} <= {joint.child for joint in made.joints}
