@@ -137,7 +137,7 @@ A sentence names an object and its properties, or mechanisms that are composed o
 
 ## Families
 
-Objects with many parameters. A sentence (`--text`) may say any of them; `--category NAME --set KEY=VALUE` sets them,
+Objects with many parameters. A sentence may say any of them; `--category NAME --set KEY=VALUE` sets them,
 `--seed N` draws those that are not given, and `kinematify generate --list --category NAME` shows defaults, ranges and
 units.
 
