@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.solids import Point
     from kinematify.generate.procedural.workshop import Look
 
+_Motion = tuple[float, float, float]
+"""Lower and upper limit, and the value at which a joint is shown [rad or m]."""
 _ROUND = (solids.cylinder, solids.cone, solids.tube, solids.torus, solids.rod, solids.lathe)
 
 
@@ -174,21 +176,23 @@ class ObjectBuilder:
         rest: float = 0.0,
     ) -> None:
         """Let a part turn within limits [rad]; `rest` is where it is unless it is drawn `ajar`, which it may be."""
-        self._join(JointType.REVOLUTE, child, parent, axis, pivot, lower, upper, ajar, rest)
+        shown = self._shown(child, lower, upper, rest, ajar=ajar)
+        self._hang(JointType.REVOLUTE, child, parent, axis, pivot, shown)
 
     def spin(self, child: str, parent: str, axis: Point, pivot: Point) -> None:
         """Let a part turn without end."""
-        self._hang(JointType.CONTINUOUS, child, parent, axis, pivot, -math.inf, math.inf)
+        self._hang(JointType.CONTINUOUS, child, parent, axis, pivot, (-math.inf, math.inf, 0.0))
 
     def slide(
         self, child: str, parent: str, axis: Point, upper: float, lower: float = 0.0, *, ajar: bool = True
     ) -> None:
         """Let a part slide within limits [m]."""
-        self._join(JointType.PRISMATIC, child, parent, axis, (0.0, 0.0, 0.0), lower, upper, ajar)
+        shown = self._shown(child, lower, upper, 0.0, ajar=ajar)
+        self._hang(JointType.PRISMATIC, child, parent, axis, (0.0, 0.0, 0.0), shown)
 
     def fix(self, child: str, parent: str) -> None:
         """A part of its own that does not move."""
-        self._hang(JointType.FIXED, child, parent, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), 0.0, 0.0)
+        self._hang(JointType.FIXED, child, parent, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
     def follow(self, child: str, leader: str, multiplier: float = 1.0) -> None:
         """Let the joint of a part follow that of another one."""
@@ -200,45 +204,20 @@ class ObjectBuilder:
         """Let two parts share a pin besides the joints of the tree."""
         self.loops.append((parent, child, pivot))
 
-    def _join(
-        self,
-        kind: JointType,
-        child: str,
-        parent: str,
-        axis: Point,
-        pivot: Point,
-        lower: float,
-        upper: float,
-        ajar: bool,
-        rest: float = 0.0,
-    ) -> None:
+    def _shown(self, child: str, lower: float, upper: float, rest: float, *, ajar: bool) -> _Motion:
+        """Limits, and the value at which a joint is shown: where it rests unless it is drawn `ajar`."""
         opens = ajar and self.style.initial_opening and self.maybe(0.7)
         value = self.style.initial_opening * upper * self.draw(0.3, 1.0) if opens else rest
         if not lower <= value <= upper or lower == upper:
             raise ValueError(f"{child} would stand at {value:g} and move from {lower:g} to {upper:g}")
-        self._hang(kind, child, parent, axis, pivot, lower, upper, value)
+        return lower, upper, value
 
-    def _hang(
-        self,
-        kind: JointType,
-        child: str,
-        parent: str,
-        axis: Point,
-        pivot: Point,
-        lower: float,
-        upper: float,
-        value: float = 0.0,
-    ) -> None:
+    def _hang(self, kind: JointType, child: str, parent: str, axis: Point, pivot: Point, motion: _Motion) -> None:
+        lower, upper, value = map(float, motion)
         joint = BlueprintJoint(
-            parent=parent,
-            child=child,
-            kind=kind,
-            axis=np.asarray(axis, dtype=np.float64),
-            pivot=np.asarray(pivot, dtype=np.float64),
-            lower=float(lower),
-            upper=float(upper),
-            value=float(value),
-        )
+            parent=parent, child=child, kind=kind, lower=lower, upper=upper, value=value,
+            axis=np.asarray(axis, dtype=np.float64), pivot=np.asarray(pivot, dtype=np.float64),
+        )  # fmt: skip
         self.joints.append(joint)
 
     # ---- the whole -------------------------------------------------------------------------------------------------

@@ -56,19 +56,16 @@ def wrong_place(closed: Blueprint, place: str, chosen: Sequence[Part], found: Se
         return None if along.max() > least else "elsewhere"
     if len(chosen) < len(found) or place[:1].isdigit():
         return None
-    share = np.abs(aside) / np.maximum(0.5 * np.ptp(base, axis=0), EDGE)
-    within = [share_within(box, base) > _MOSTLY for box in boxes]
-    is_there = (
-        bool((np.abs(aside.mean(axis=0)) / np.maximum(0.5 * np.ptp(base, axis=0), EDGE) < _NEAR)[[0, 2]].any())
-        if place in _MIDDLE
-        else all(_reaches(box, base) for box in boxes)
-        if place in _SIDE
-        else bool(((share > _FAR).sum(axis=1) > 1).all())
-        if place == "corner"
-        else all(within)
-        if place in _WITHIN
-        else not any(within)
-    )
+    half = np.maximum(0.5 * np.ptp(base, axis=0), EDGE)
+    if place in _MIDDLE:
+        is_there = bool((np.abs(aside.mean(axis=0)) / half < _NEAR)[[0, 2]].any())
+    elif place in _SIDE:
+        is_there = all(_reaches(box, base) for box in boxes)
+    elif place == "corner":
+        is_there = bool(((np.abs(aside) / half > _FAR).sum(axis=1) > 1).all())
+    else:
+        within = [share_within(box, base) > _MOSTLY for box in boxes]
+        is_there = all(within) if place in _WITHIN else not any(within)
     return None if is_there else "elsewhere"
 
 
