@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.generate.library.steps import ARITHMETIC, SOLIDS, Step, StepRunner, public
+from kinematify.generate.library.builder import drawn_on
+from kinematify.generate.library.steps import ARITHMETIC, MECHANISMS, SOLIDS, Step, StepRunner, public
 from kinematify.generate.procedural import layout
-from kinematify.generate.procedural.pieces import bearings, controls, fronts, jaws, leaves, limbs, tracks
+from kinematify.generate.procedural.pieces import bearings, fronts, jaws, leaves, limbs, tracks
 from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.transforms import rotation_about
 
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
 
     from kinematify.generate.procedural.family import Values
 
-_PIECES = (bearings, controls, fronts, jaws, leaves, limbs, tracks)
+_PIECES = (bearings, fronts, jaws, leaves, limbs, tracks)
 
 
 _FOUND: Mapping[str, Any] = {name: item for module in _PIECES for name, item in public(module).items()}
@@ -33,10 +35,33 @@ _NAMES: Mapping[str, Any] = {
     **ARITHMETIC, **_FOUND, **public(layout), **SOLIDS,
     **{name: getattr(math, name) for name in ("sin", "cos", "tan", "hypot", "degrees", "copysign")},
     **{name: getattr(np, name) for name in ("diag", "zeros", "column_stack", "abs")},
-    "FRONT": controls.FRONT, "TOP": controls.TOP, "STEM": bearings.STEM, "float": float,
+    "FRONT": bearings.FRONT, "float": float,
     "rotation_about": rotation_about,
 }  # fmt: skip
 """What formulas of solids may name."""
+
+
+def carve(steps: Sequence[Step], workshop: Workshop, given: Mapping[str, Any]) -> None:
+    """Carry out steps that carve.
+
+    Args:
+        steps: In this order.
+        workshop: Takes what they make.
+        given: What formulas may name besides functions; `clearance` is among them.
+
+    Raises:
+        ValueError: A step cannot be carried out; the message quotes it.
+    """
+    drawing = {name: partial(_drawn, call, given["clearance"]) for name, call in MECHANISMS.items()}
+    StepRunner(workshop, {**drawing, **_VERBS}).run(steps, {"__builtins__": {}, **_NAMES, **given})
+
+
+def _drawn(
+    mechanism: Callable[..., Any], gap: float, workshop: Workshop, name: str, *, rest: float = 0.0, **given: Any
+) -> None:
+    """Add a mechanism that objects in steps have, too; `clearance` where it is not that of the whole."""
+    with drawn_on(workshop, given.pop("clearance", gap), rest) as builder:
+        mechanism(builder, name, **given)
 
 
 def carver_of(
@@ -54,7 +79,7 @@ def carver_of(
     def build(values: Values, workshop: Workshop) -> None:
         given = {name: values.value(name) for name in names}
         try:
-            StepRunner(workshop, _VERBS).run(steps(), {"__builtins__": {}, **_NAMES, **given})
+            carve(steps(), workshop, given)
         except ValueError as error:
             raise InputError(f"The {title} cannot be built: {error}.") from error
 
