@@ -28,7 +28,7 @@ from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.library.mechanisms import button, caster, hand_wheel, knob
 from kinematify.generate.procedural.parameter import phrases, read_table
 from kinematify.generate.procedural.pieces.bearings import BackEdge, add_barrels
-from kinematify.generate.procedural.pieces.fronts import add_door, add_drawer, add_flap, room
+from kinematify.generate.procedural.pieces.fronts import add_door, add_drawer, room
 from kinematify.generate.procedural.solids import Y, ball, bore, box, cylinder, rod, union
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def _door(place: Placement) -> None:
     # Doors of a front open from the middle of each pair; those beside are hinged at their front edge, as cars have it.
     side = {"left": "right", "right": "left"}.get(place.side, "left" if place.index % 2 == 0 else "right")
     side = place.hinge or side
-    add_door(place.workshop, place.name, BODY, place.area, place.fitting, side=side, outermost=False, hinge="edge")
+    add_door(place.workshop, place.name, BODY, place.area, place.fitting, side=side)
 
 
 def _drawer(place: Placement) -> None:
@@ -56,12 +56,12 @@ def _flap(place: Placement) -> None:
     place.hollowed()
     # When it is down, it lies before what is below.
     lifted = replace(place.area, bottom=place.area.bottom + min(0.2 * place.area.height, 1.5 * place.area.wall))
-    add_flap(place.workshop, place.name, BODY, lifted, place.fitting, hinge="edge")
+    add_door(place.workshop, place.name, BODY, lifted, place.fitting, side="bottom")
 
 
 def _leaf(place: Placement) -> None:
     """A board on barrel hinges before what carries it, that folds down until it is level."""
-    add_flap(place.workshop, place.name, BODY, place.area, place.fitting, hinge="barrel")
+    add_door(place.workshop, place.name, BODY, place.area, place.fitting, side="bottom", hinge="barrel")
 
 
 def _lid(place: Placement) -> None:
@@ -69,7 +69,7 @@ def _lid(place: Placement) -> None:
     area = place.area
     about = replace(area, left=-area.right, right=-area.left, bottom=-area.top, top=-area.bottom)
     turned = place.workshop.turned(UPSIDE_DOWN, (0, 0, 0))
-    add_flap(turned, place.name, BODY, about, place.fitting, hinge="edge")
+    add_door(turned, place.name, BODY, about, place.fitting, side="bottom")
 
 
 def _shutter(place: Placement) -> None:
@@ -123,7 +123,7 @@ def _sash(place: Placement) -> None:
 
 def _trunk(place: Placement) -> None:
     place.hollowed()
-    add_flap(place.workshop, place.name, BODY, place.area, place.fitting, hinge="edge")
+    add_door(place.workshop, place.name, BODY, place.area, place.fitting, side="bottom")
 
 
 def _ladder(place: Placement) -> None:

@@ -6,7 +6,6 @@ import math
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -107,16 +106,11 @@ class ObjectBuilder:
     """Collects parts and joints; world frame, z up, metres; front is -y unless a recipe has none."""
 
     def __init__(
-        self,
-        name: str,
-        style: ModelingStyle,
-        rng: np.random.Generator | None = None,
-        *,
-        there: Mapping[str, Look] = MappingProxyType({}),
+        self, name: str, style: ModelingStyle, workshop: Workshop, rng: np.random.Generator | None = None
     ) -> None:
-        """Begin an object, or add to one: then `there` has the looks of the parts of a workshop."""
-        self.name, self.style, self.rng = name, style, rng
-        self._parts = {name: _Drawn(look=look) for name, look in there.items()}
+        """Begin an object, or add to the one that is in a workshop."""
+        self.name, self.style, self.workshop, self.rng = name, style, workshop, rng
+        self._parts = {name: _Drawn(look=look) for name, look in workshop.looks.items()}
         self.joints: list[BlueprintJoint] = []
         """Each with the `value` at which it is shown."""
         self.loops: list[tuple[str, str, Point]] = []
@@ -259,7 +253,7 @@ def drawn_on(workshop: Workshop, clearance: float, rest: float = 0.0) -> Iterato
     """
     there = set(workshop.looks)
     style = replace(CAREFUL, gap=clearance, sides=solids.SEGMENTS, knob="pointer")
-    builder = ObjectBuilder("", style, there=workshop.looks)
+    builder = ObjectBuilder("", style, workshop)
     yield builder
     for name, part in builder._parts.items():
         if name not in there:

@@ -28,7 +28,6 @@ _FOUND: Mapping[str, Any] = {name: item for module in _PIECES for name, item in 
 _VERBS: Mapping[str, Callable[..., Any]] = {
     **{name: getattr(Workshop, name) for name in ("body", "add", "cut", "turns", "slides")},
     **{name.removeprefix("add_"): call for name, call in _FOUND.items() if name.startswith("add_")},
-    "hang": leaves.hang,
 }
 """What a step does to a workshop."""
 _NAMES: Mapping[str, Any] = {
