@@ -202,10 +202,13 @@ def leaf(
         corners = [at + s * length * along for at in (outer, inner, inner + less) for s in (-1.0, 1.0)]
         d.cut(name, Manifold.hull_points(np.array(corners)))
     if handle:
-        lengthwise = d.maybe(0.8)  # most handles run along the hinge
+        lengthwise = d.maybe(0.8)  # most handles run along the hinge; cups lie
+        if handle == "cup":
+            lengthwise = abs(hinge[2]) > 0.5
         room = 0.8 * length if lengthwise else 0.24 * wide
-        at = middle - d.draw(0.68, 0.86) * half * hinge + 0.5 * thick * out
-        size = min(room, d.pick(d.draw(0.2, 0.9) * room, min(0.25 * wide, 0.15)))
+        share = min(d.draw(0.68, 0.86), 1.0 - min(0.05 / half, 0.5))  # clear of a leaf beside it that opens
+        at = middle - share * half * hinge + 0.5 * thick * out
+        size = min(room, d.pick(min(d.draw(0.2, 0.9) * room, 0.3), min(0.25 * wide, 0.15)))
         grip(d, name, at, out, along if lengthwise else across, size, "" if handle is True else handle)
         if d.maybe(0.15):  # one on either side
             behind = middle - 0.85 * half * hinge - 0.5 * thick * out
@@ -246,7 +249,7 @@ def _knuckles(
         near, far, face = 0.5 * play + 0.6 * r, 0.5 * play + 3.0 * r, (r + gap - 2e-4, r + gap + 1e-4)
         on_parent, on_leaf = (-far, -near, *face), (near, far, *face)
     else:
-        aside = r + 0.004 + gap  # so that the parent's halves pass the leaf
+        aside = r + 0.003 + gap  # so that the parent's halves pass the leaf
         pivot = middle + to_edge - aside * into
         on_parent = (r - 0.002, r + 0.0043, 0.5 * thick + play + 0.005, 0.5 * thick + play + 0.02)
         on_leaf = (aside, aside + 0.02, -0.5 * thick, 0.003 - 0.5 * thick)

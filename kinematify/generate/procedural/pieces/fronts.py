@@ -88,8 +88,10 @@ def add_door(
         hinge: ``edge`` (nothing to be seen) or ``barrel``, beside which nothing may be.
     """
     edge, reach = {"left": (-X, 1.8), "right": (X, 1.8), "bottom": (-Z, 0.5 * np.pi)}[side]
+    less = 0.5 * _REVEAL
+    lower = opening.left + less, -opening.wall, opening.bottom + less
     with drawn_on(workshop, fitting.clearance, fitting.rest) as d:
         leaf(
-            d, name, parent, (opening.left, -opening.wall, opening.bottom), (opening.right, 0.0, opening.top),
-            hinge=edge, reach=reach, handle=fitting.grip, barrels=2 if hinge == "barrel" else 0,
+            d, name, parent, lower, (opening.right - less, 0.0, opening.top - less), hinge=edge, reach=reach,
+            handle=fitting.grip, barrels=2 if hinge == "barrel" else 0,
         )  # fmt: skip
