@@ -25,10 +25,11 @@ from kinematify.generate.composer.linkages import (
 )
 from kinematify.generate.composer.place import HANGING, OUTWARD, UPSIDE_DOWN, Placement
 from kinematify.generate.library.builder import drawn_on
+from kinematify.generate.library.carved import add_door, add_drawer
 from kinematify.generate.library.mechanisms import button, caster, hand_wheel, knob
 from kinematify.generate.procedural.parameter import phrases, read_table
 from kinematify.generate.procedural.pieces.bearings import BackEdge, add_barrels
-from kinematify.generate.procedural.pieces.fronts import add_door, add_drawer, room
+from kinematify.generate.procedural.pieces.fronts import room
 from kinematify.generate.procedural.solids import Y, ball, bore, box, cylinder, rod, union
 
 if TYPE_CHECKING:
