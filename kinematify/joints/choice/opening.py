@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kinematify.joints.candidate import ELSEWHERE, SLIDE, TURN, Hypotheses
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, columns_of, shipped_scorer
-from kinematify.joints.measure.frames import UP
-from kinematify.joints.measure.measurements import GROUPS, SLIDE, TURN, Hypotheses, MeasuredHypotheses, measure
+from kinematify.joints.features.frames import UP
+from kinematify.joints.features.measurements import GROUPS, MeasuredHypotheses, measure
 from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 
     from kinematify.config import LimitsConfig
     from kinematify.joints.choice.scorer import Scorer
-    from kinematify.joints.measure.measurements import Values
-    from kinematify.joints.measure.scene import JointScene
+    from kinematify.joints.features.measurements import Values
+    from kinematify.joints.features.scene import JointScene
     from kinematify.robot.arrays import FloatArray, IntArray
 
 
@@ -43,15 +44,20 @@ def measure_sides(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> Val
     Returns:
         Name -> value of the turn about `axis` and of that about its opposite, shape (2,).
     """
-    turns = Hypotheses(
+    measured = MeasuredHypotheses(scene, _both_ways(axis, pivot), sided=True)
+    found = {name: value for group in GROUPS.values() for name, value in group(measured).items()}
+    return {**found, **_leads_to(measured)}
+
+
+def _both_ways(axis: FloatArray, pivot: FloatArray) -> Hypotheses:
+    """The turn about a line and that about its opposite."""
+    return Hypotheses(
         kinds=np.array([TURN, TURN]),
         axes=np.array([axis, -axis]),
         pivots=np.array([pivot, pivot]),
+        places=np.array([ELSEWHERE, ELSEWHERE]),
         sources=("forward", "backward"),
     )
-    measured = MeasuredHypotheses(scene, turns, sided=True)
-    found = {name: value for group in GROUPS.values() for name, value in group(measured).items()}
-    return {**found, **_leads_to(measured)}
 
 
 def _leads_to(m: MeasuredHypotheses) -> Values:
@@ -64,7 +70,7 @@ def _leads_to(m: MeasuredHypotheses) -> Values:
         "side_hinge": off * (way @ normal),
         "side_up": m.hypotheses.axes @ UP,
         "side_parent": way @ (scene.centre - scene.parent_frame.centre) / m.unit,
-        "side_contact": way @ (scene.centre - m.anchor) / m.unit,
+        "side_contact": way @ (scene.centre - m.scene.anchor) / m.unit,
     }
     if scene.handle is not None:
         pull = _directions(m, scene.handle.centre)
@@ -229,9 +235,7 @@ def is_continuous(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: 
     if scene.serial and scene.smallness < 1.0 and not scene.rolls:
         return False
     # Of both signs of the axis, which measurements around it start from; the mean does not depend on the one given.
-    both, pivots = np.array([axis, -axis]), np.array([pivot, pivot])
-    turn = Hypotheses(kinds=np.array([TURN, TURN]), axes=both, pivots=pivots, sources=("chosen", "chosen"))
-    scorer, measured = shipped_scorer(TURNING_WEIGHTS), measure(scene, turn)
+    scorer, measured = shipped_scorer(TURNING_WEIGHTS), measure(scene, _both_ways(axis, pivot))
     columns = np.stack([turning_columns(measured, row, scorer.measurements) for row in range(2)])
     odds = float(np.sort(scorer.sums(columns)).mean()) / scorer.temperature
     return bool(odds > (_FREE if free.min() >= np.pi else _STOPPED))

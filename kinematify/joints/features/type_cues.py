@@ -7,23 +7,20 @@ with a bearing turn, small caps are pressed, and what can only move along one li
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.measure.frames import UP
-from kinematify.joints.measure.scene import eccentricity, is_cap
-from kinematify.joints.measure.sweep import contact_clearance, moving_points, sweep_slides, sweep_turns
-from kinematify.robot.joint_type import JointType
+from kinematify.joints.features.frames import UP
+from kinematify.joints.features.scene import eccentricity, is_cap
+from kinematify.joints.features.sweep import contact_clearance, moving_points, sweep_slides, sweep_turns
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.config import JointsConfig
-    from kinematify.joints.hypotheses.panels import RankedTurns
-    from kinematify.joints.hypotheses.slides import RankedSlides
-    from kinematify.joints.measure.scene import JointScene
+    from kinematify.joints.features.ranking import Ranked
+    from kinematify.joints.features.scene import JointScene
     from kinematify.robot.arrays import FloatArray, IntArray
 
 
@@ -38,47 +35,22 @@ WEIGHTS = {
 BIAS, CAP = -0.8, 3.0  # log odds of sliding without any cue, and the most that one says
 
 
-@dataclass(frozen=True, kw_only=True)
-class Siblings:
-    """Congruent parts on the same parent."""
-
-    count: int
-    """Number of twins including the part itself that have no children of their own; 1 without twins."""
-    gripping: bool
-    """The part and one twin face each other at the end of a chain, as fingers of a gripper do."""
-    overlapping: bool
-    """Thin twin panels side by side, one behind the other, as sliding windows and doors are."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class KindDecision:
-    """Type with its evidence."""
-
-    kind: JointType
-    odds: float
-    """Log odds of sliding against turning."""
-    cues: Mapping[str, float]
-
-
-def decide_kind(
-    scene: JointScene, siblings: Siblings, turns: RankedTurns, slides: RankedSlides, config: JointsConfig
-) -> KindDecision:
-    """Choose between revolute, prismatic and fixed.
+def type_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> dict[str, float]:
+    """What speaks for sliding or for turning, in terms of `WEIGHTS`.
 
     Args:
         scene: The pair.
-        siblings: Twins of the child.
-        turns: Ranked lines.
-        slides: Ranked directions.
-        config: Weights; positive ones speak for sliding.
+        turns: Proposed turns, best first.
+        slides: Proposed slides, best first.
+        config: Thresholds.
     """
     cues = {
         **_room_cues(scene, turns, slides, config),
         **_shape_cues(scene, turns),
         **{
-            "row": scene.smallness * float(siblings.count >= 3),
-            "gripper": float(siblings.gripping),
-            "sliding_pair": float(siblings.overlapping),
+            "row": scene.smallness * float(len(scene.twins) >= 2),
+            "gripper": float(scene.gripping),
+            "sliding_pair": float(scene.overlapping),
         },
         **_clearance_cues(scene, turns, slides, config),
         "rail": scene.mechanism * _held_rail(scene, turns, slides, config),
@@ -109,14 +81,15 @@ def decide_kind(
         cues[round_thing] *= 1.0 - max(cues["keyed"], cues["telescope"])  # what is round but keyed is guided
     plunger = scene.smallness * _plunger(scene, slides, config)
     cues["button"], cues["round_small"] = max(cues["button"], plunger), cues["round_small"] * (1.0 - plunger)
-    odds = BIAS + sum(float(np.clip(WEIGHTS[k] * v, -CAP, CAP)) for k, v in cues.items())
-    if not is_cap(scene) and _stuck(scene, turns, slides, config):
-        return KindDecision(kind=JointType.FIXED, odds=odds, cues=cues)
-    kind = JointType.PRISMATIC if odds > 0 else JointType.REVOLUTE
-    return KindDecision(kind=kind, odds=odds, cues=cues)
+    return cues
 
 
-def _held_rail(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: JointsConfig) -> float:
+def type_odds(cues: Mapping[str, float]) -> float:
+    """Log odds of sliding against turning that cues add up to."""
+    return BIAS + sum(float(np.clip(WEIGHTS[k] * v, -CAP, CAP)) for k, v in cues.items())
+
+
+def _held_rail(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> float:
     """The rail, unless it runs along a line about which the part can turn: a pin is extruded along its axis too.
 
     Nor is it one where the part turns freely about any line and is soon stopped along the rail: boxy knuckles that
@@ -134,12 +107,10 @@ def _held_rail(scene: JointScene, turns: RankedTurns, slides: RankedSlides, conf
     return 0.0 if loose else scene.prismatic_score
 
 
-def _clearance_cues(
-    scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: JointsConfig
-) -> dict[str, float]:
+def _clearance_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> dict[str, float]:
     """What the contact itself lets go: a key, skirt or groove stops turning, a bead, barrel or fork stops sliding."""
     few = _near_best(scene, turns, config)
-    clearance = contact_clearance(scene, turns.lines.axes[few], turns.lines.pivots[few], slides.axes[0], config)
+    clearance = contact_clearance(scene, turns.axes[few], turns.lines.pivots[few], slides.axes[0], config)
     if clearance is None:
         return {"keyed": 0.0, "retained": 0.0}
     least = config.clearance.least * scene.frame.diagonal
@@ -168,7 +139,7 @@ def _extruded(scene: JointScene, direction: FloatArray, config: JointsConfig) ->
     return rail is not None and abs(float(rail.axis @ direction)) > 0.99 and scene.rail_lead > config.rails.lead_full
 
 
-def _two_bores(scene: JointScene, turns: RankedTurns, config: JointsConfig) -> bool:
+def _two_bores(scene: JointScene, turns: Ranked, config: JointsConfig) -> bool:
     """Whether the child runs on two equal bars side by side: it would turn about either, if it were not for the other.
 
     Clearance does not see that: bars are thin, and stop few samples.
@@ -198,7 +169,7 @@ def _shafted(scene: JointScene) -> float:
     return float(radius < 0.7 * float(np.linalg.norm(np.cross(offset, axis), axis=1).max()))
 
 
-def _plunger(scene: JointScene, slides: RankedSlides, config: JointsConfig) -> float:
+def _plunger(scene: JointScene, slides: Ranked, config: JointsConfig) -> float:
     """1 for a round plug in a hole of its own width with room behind it: knobs have a shaft, or bottom out at once."""
     shaft = _shaft(scene)
     if shaft is None or _shafted(scene):
@@ -226,18 +197,18 @@ def _shaft(scene: JointScene) -> tuple[FloatArray, FloatArray, float] | None:
     return (line.axis, line.pivot, float(weights @ lengths / weights.sum())) if weights.sum() > 0 else None
 
 
-def _near_best(scene: JointScene, turns: RankedTurns, config: JointsConfig) -> IntArray:
+def _near_best(scene: JointScene, turns: Ranked, config: JointsConfig) -> IntArray:
     """The best line, and where it is no bearing the next ones along the same edge, which may fit the hinge better."""
     if scene.has_bearing:
         return np.zeros(1, dtype=np.int64)
-    axes, pivots = turns.lines.axes[: config.clearance.candidates], turns.lines.pivots[: config.clearance.candidates]
+    axes, pivots = turns.axes[: config.clearance.candidates], turns.lines.pivots[: config.clearance.candidates]
     offset = pivots - pivots[0]
     apart = np.linalg.norm(np.cross(offset, axes[0]), axis=1)
     same = (np.abs(axes @ axes[0]) > np.cos(np.radians(5.0))) & (apart < config.clearance.edge * scene.frame.diagonal)
     return np.flatnonzero(same)[: config.clearance.lines]
 
 
-def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: JointsConfig) -> dict[str, float]:
+def _room_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> dict[str, float]:
     """Where the part can go: a drawer leaves one way and stops the other; a lift cannot turn at all."""
     own = np.abs(slides.axes[0] @ scene.frame.axes.T) @ scene.frame.extents / scene.diagonal
     travel = np.minimum(slides.free_parent[0] / max(float(own), 1e-9), 1.0)
@@ -266,7 +237,7 @@ def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, conf
     }
 
 
-def _carriage(scene: JointScene, slides: RankedSlides, config: JointsConfig) -> float:
+def _carriage(scene: JointScene, slides: Ranked, config: JointsConfig) -> float:
     """1 for a plate deep inside a shaft that it can travel along, as what carries the bread of a toaster."""
     frame, thin = scene.frame, scene.frame.thin
     if not scene.panel or scene.enclosed < config.kind.shaft or abs(float(slides.axes[0] @ frame.axes[thin])) < 0.99:
@@ -277,7 +248,7 @@ def _carriage(scene: JointScene, slides: RankedSlides, config: JointsConfig) -> 
     return float(travels) * float(np.interp(sunk, (config.kind.sunk_none, config.kind.sunk_full), (0.0, 1.0)))
 
 
-def _telescope(scene: JointScene, slides: RankedSlides, config: JointsConfig) -> float:
+def _telescope(scene: JointScene, slides: Ranked, config: JointsConfig) -> float:
     """1 for a rod that is held in a tube over many times its own width, and can be drawn out: pins are retained.
 
     Bearings of what turns are about as long as wide, and hinges carry their part on one side.
@@ -297,7 +268,7 @@ def _telescope(scene: JointScene, slides: RankedSlides, config: JointsConfig) ->
     )
 
 
-def _depth(scene: JointScene, slides: RankedSlides) -> float:
+def _depth(scene: JointScene, slides: Ranked) -> float:
     """How far a part reaches along its best slide over the smaller side of its front, behind which drawers are deep."""
     along = np.abs(scene.frame.axes @ slides.axes[0])
     extents = scene.frame.upper - scene.frame.lower
@@ -305,7 +276,7 @@ def _depth(scene: JointScene, slides: RankedSlides) -> float:
     return float(along @ extents) / max(float(face[0]), 1e-12)
 
 
-def _channel(scene: JointScene, slides: RankedSlides) -> float:
+def _channel(scene: JointScene, slides: Ranked) -> float:
     """1 where the part is blocked at once across its best direction in three of four ways, or more; 0 if in fewer."""
     across = np.abs(slides.axes @ slides.axes[0]) < 0.1
     sides = np.abs(slides.axes[across] @ scene.frame.axes.T) @ scene.frame.extents / scene.diagonal
@@ -313,7 +284,7 @@ def _channel(scene: JointScene, slides: RankedSlides) -> float:
     return float(blocked.mean() > 0.7) if blocked.size else 0.0
 
 
-def _guided(scene: JointScene, slides: RankedSlides) -> float:
+def _guided(scene: JointScene, slides: Ranked) -> float:
     """1 where the part can slide by half its length and still touches its parent all round, as on a column or rail.
 
     A wheel or knob leaves its shaft instead; a link of an arm runs into its neighbour.
@@ -337,7 +308,7 @@ def _is_box(scene: JointScene) -> bool:
     return bool(facing.mean(axis=0).min() > 0.06)
 
 
-def _shape_cues(scene: JointScene, turns: RankedTurns) -> dict[str, float]:
+def _shape_cues(scene: JointScene, turns: Ranked) -> dict[str, float]:
     large = 1.0 - scene.smallness
     frame = scene.frame
     across = np.delete(frame.extents, frame.thin)
@@ -381,11 +352,13 @@ def _bridges_a_seam(scene: JointScene) -> bool:
     return any(part in scene.others and (cluster < 0 or graph.cluster_of[part] != cluster) for part in touched)
 
 
-def _stuck(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: JointsConfig) -> bool:
-    """Neither turns nor slides are free: one rigid body that was cut in two.
+def is_stuck(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> bool:
+    """Whether neither turns nor slides are free: one rigid body that was cut in two.
 
     Where little is free, both are swept again without grace, which would carry a part over the wall that holds it.
     """
+    if is_cap(scene):  # which is lifted off its body all the same
+        return False
     little = config.kind.stuck_factor
     slide = _slide_room(scene, slides.free_parent * scene.diagonal)
     turn = float(turns.free_parent[: config.kind.stuck_candidates].max())
@@ -406,13 +379,3 @@ def _stuck(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: 
 def _slide_room(scene: JointScene, free: FloatArray) -> float:
     """Largest free travel as a fraction of the child's own diagonal."""
     return float(free.max()) / max(scene.frame.diagonal, 1e-12)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ScoredHypotheses:
-    """Every joint that one tree edge may have, weighed, before one is chosen."""
-
-    scene: JointScene
-    turns: RankedTurns
-    slides: RankedSlides
-    decision: KindDecision
