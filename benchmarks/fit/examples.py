@@ -153,7 +153,7 @@ def examples_of(
                 angles=angles,
                 types_right=same.astype(np.int64),
                 cloud=point_cloud(cache, *edge, features.scene.others, size),
-                by_cues=0 if features.stuck else features.by_cues,
+                by_cues=features.by_cues,
                 alike=next((number for number, group in enumerate(alike) if edge in group), -1),
                 broken=broken,
                 sides={} if broken else _sides(features.scene, joints[0]),

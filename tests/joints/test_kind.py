@@ -78,18 +78,16 @@ def test_bars_in_short_sleeves_slide_in_machines() -> None:
         assert found[child] is JointType.PRISMATIC, family
 
 
-@pytest.mark.parametrize(("ropes", "slides"), [((-0.02, 0.02), True), ((0.0,), False)])
-def test_a_block_on_two_ropes_slides_and_a_short_one_on_a_pin_turns(ropes: tuple[float, ...], slides: bool) -> None:
+def test_a_block_on_two_ropes_slides() -> None:
     frame = box((-0.05, -0.02, 0.5), (0.05, 0.02, 0.52)) + box((-0.05, -0.02, -0.02), (0.05, 0.02, 0.0))
     block = box((-0.03, -0.015, 0.4), (0.03, 0.015, 0.45))
-    for x in ropes:
+    for x in (-0.02, 0.02):
         frame += cylinder(0.004, (x, 0, 0), (x, 0, 0.5))
         block -= cylinder(0.0045, (x, 0, 0), (x, 0, 1.0))
     hook = cylinder(0.004, (0, 0.005, 0.36), (0, 0.005, 0.401)) + box((-0.02, 0, 0.35), (0.02, 0.01, 0.362))
     joint = sliding("frame", "block", (0, 0, -1), (0, 0, 0.4), (0.0, 0.3))
-    scene = scene_of(known_object("hoist", {"frame": frame, "block": block + hook}, joint), "block")
-    cues = type_cues(scene, ranked_turns(scene), ranked_slides(scene), CONFIG.joints)
-    assert (cues["keyed"] == 1.0) is slides
+    found = infer_joints(known_object("hoist", {"frame": frame, "block": block + hook}, joint))["block"]
+    assert found.kind is JointType.PRISMATIC
 
 
 @pytest.mark.parametrize(("score", "is_round"), [(0.005, False), (0.05, True)])
@@ -143,17 +141,6 @@ def test_a_round_plug_with_room_behind_it_is_pressed_and_one_that_bottoms_out_tu
     estimate = infer_joints(known_object("panel", {"body": body, "plug": plug}, joint))["plug"]
     assert (estimate.kind is JointType.PRISMATIC) is pressed
     assert abs(float(estimate.axis[1])) > 0.999
-
-
-def test_a_part_that_cannot_move_at_all_is_fixed() -> None:
-    shell = box((-0.2, -0.2, -0.2), (0.2, 0.2, 0.2)) - box((-0.1, -0.1, -0.1), (0.1, 0.1, 0.1))
-    core = box((-0.0999, -0.0999, -0.0999), (0.0999, 0.0999, 0.0999))
-    known = known_object(
-        "walled_in", {"shell": shell, "core": core}, sliding("shell", "core", (1, 0, 0), (0, 0, 0), (0.0, 0.1))
-    )
-    estimate = infer_joints(known)["core"]
-    assert estimate.kind is JointType.FIXED
-    assert (estimate.lower, estimate.upper) == (0.0, 0.0)
 
 
 def test_evidence_moves_the_odds_the_stated_way() -> None:

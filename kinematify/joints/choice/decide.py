@@ -75,7 +75,7 @@ def estimate_joints(
 
 def _estimate(features: Features, judged: Posterior, *, config: JointsConfig) -> JointEstimate:
     scene = features.scene
-    fixed = features.stuck or judged.fixed > config.confidence.fixed
+    fixed = judged.fixed > config.confidence.fixed
     kind = JointType.FIXED if fixed else judged.kind(judged.best)
     axis, pivot = judged.hypotheses.axes[judged.best], judged.hypotheses.pivots[judged.best]
     found = find_range(scene, kind, axis, pivot, config)
@@ -85,7 +85,7 @@ def _estimate(features: Features, judged: Posterior, *, config: JointsConfig) ->
         axis=found.sign * axis,
         pivot=pivot,
         **found.facts,
-        confidence=judged.fixed if judged.fixed > config.confidence.fixed else judged.confidence,
+        confidence=judged.fixed if fixed else judged.confidence,
         alternatives=judged.alternatives(config.alternatives),
         evidence={
             **features.type_cues,

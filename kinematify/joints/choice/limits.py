@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from kinematify.joints.choice.opening import clockwise_sign, is_continuous, neutral_sign, swing_sign, turn_sign
+from kinematify.joints.choice.opening import clockwise_sign, is_continuous, neutral_sign, turn_sign
 from kinematify.joints.features.frames import UP
-from kinematify.joints.features.scene import eccentricity, is_cap
 from kinematify.joints.features.sweep import Sweep, moving_points, slide_clearance, sweep_slides, sweep_turns
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_about
@@ -120,13 +119,6 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
     furniture = scene.mechanism <= 0.5
     if furniture and scene.panel:
         return _panel_range(scene, axis, pivot, ways, config)
-    if (
-        not scene.serial
-        and scene.has_bearing
-        and free.min() > np.radians(config.limits.unstopped_deg)
-        and eccentricity(scene, axis, scene.contact.centroid) >= config.limits.even  # an arm on a pivot
-    ):
-        return _lever_range(scene, axis, ways, config)
     sign = turn_sign(scene, axis, pivot, free, config.limits)
     forward, backward = ways if sign > 0 else ways[::-1]
     usual, blocked = _usual(config.limits.panel_deg), free.max() < np.radians(config.limits.stopped_deg)
@@ -219,22 +211,6 @@ def _panel_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: W
     # Where its mesh overlaps the frame, what stops it says nothing: no door is made to stay shut.
     blocked = max(free).motion < np.radians(limits.blocked_deg)
     return _range(sign, AS_GIVEN, right if blocked else min(forward, right), free)
-
-
-# ---- levers ----------------------------------------------------------------------------------------------
-
-
-def _lever_range(scene: JointScene, axis: FloatArray, free: Ways, config: JointsConfig) -> Range:
-    """A handle is pressed down by its free end where that lies level; about an upright axis it goes both ways."""
-    reach = config.limits.lever_deg
-    arm = scene.cache.samples(scene.child).points.mean(axis=0) - scene.contact.centroid
-    falling = float(np.cross(axis, arm)[2])
-    if abs(falling) > 0.5 * float(np.linalg.norm(np.cross(axis, arm))):
-        sign = 1.0 if falling < 0.0 else -1.0
-        return _range(sign, AS_GIVEN, min(free[0 if sign > 0 else 1], _usual(reach)), free)
-    sign = swing_sign(scene, axis, scene.contact.centroid)
-    forward, backward = free if sign > 0 else free[::-1]
-    return _range(sign, min(backward, _usual(2 * reach)), min(forward, _usual(2 * reach)), free)
 
 
 def closing_turns(
@@ -361,10 +337,7 @@ def _ends(scene: JointScene, direction: FloatArray, free: Ways, length: float, c
     forward, backward = free
     ajar = min(backward, End(_standing_out(scene, direction), "flush with the body"))
     ajar = ajar if ajar.motion > config.limits.ajar * length else AS_GIVEN
-    if is_cap(scene):  # its shrunk skirt sweeps into the rim
-        forward = max(forward, End(length, "clear of the rim"))
-    usual = End(config.limits.drawer * length - ajar.motion, USUAL)
-    return min(forward, max(usual, End(_slotted(scene, direction, forward.motion, config), GUIDE))), ajar
+    return min(forward, End(config.limits.drawer * length - ajar.motion, USUAL)), ajar
 
 
 def _guided(scene: JointScene, direction: FloatArray, free: End, length: float, config: JointsConfig) -> End:
@@ -376,16 +349,9 @@ def _guided(scene: JointScene, direction: FloatArray, free: End, length: float, 
     return min(free, End(config.limits.drawer * length, USUAL) if guided is None else End(guided, GUIDE))
 
 
-def _slotted(scene: JointScene, direction: FloatArray, free: float, config: JointsConfig) -> float:
-    """Travel along a direction [m] of a part that a stop awaits in its guide, as a lever in its slot; else 0."""
-    if free > 0.99 * scene.diagonal:
-        return 0.0
-    return guided_travel(scene, direction, config) or 0.0
-
-
 def _is_runner(scene: JointScene, axis: FloatArray, free: FloatArray, length: float, config: JointsConfig) -> bool:
     """A small part that can slide farther than it is long without leaving its guide: a collar on a rod, no button."""
-    if scene.smallness < 1.0 or is_cap(scene) or _is_small_lid(scene):
+    if scene.smallness < 1.0 or _is_small_lid(scene):
         return False
     ways = (guided_travel(scene, sign * axis, config) or 0.0 for sign in (1.0, -1.0))
     return bool(max(min(*pair) for pair in zip(free, ways, strict=True)) > config.guide.runner * length)
@@ -425,8 +391,6 @@ def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray, config: J
     or cap has none, for it is in as far as it goes.
     """
     outwards = _outwards(scene, axis)
-    if is_cap(scene):
-        return outwards
     longer = 1.0 if free[0] > free[1] else -1.0
     one_way = abs(float(free[0] - free[1])) > config.limits.one_way * scene.diagonal
     if scene.smallness >= 1.0 and not (scene.has_bearing or _in_linkage(scene)) and one_way:

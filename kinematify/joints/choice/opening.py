@@ -88,40 +88,21 @@ def _directions(m: MeasuredHypotheses, point: FloatArray) -> FloatArray:
 # ---- conventions ---------------------------------------------------------------------------------------------------
 
 
-def customary_sign(
-    scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: LimitsConfig
-) -> float:
-    """Of links in series and of what nothing stops: the freer way opens, else to its barrels, else the one that rises.
+def customary_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> float:
+    """Of links in series and of what nothing stops: the freer way opens, else the one that rises.
 
     Args:
         scene: The pair.
         axis: Unit direction, shape (3,).
         pivot: Point on the axis [m], shape (3,).
         free: Free angle towards + and - [rad], shape (2,).
-        config: What lies at a face of a panel.
     """
     if abs(free[0] - free[1]) > np.radians(10.0) and free.min() < np.radians(60.0):
         return 1.0 if free[0] > free[1] else -1.0
-    beside = _hinge_side(scene, axis, pivot, config)
-    if beside != 0.0:
-        return beside
     rises = float(np.cross(axis, scene.centre - pivot) @ UP)
     if abs(rises) < 0.05 * scene.frame.diagonal:
         return swing_sign(scene, axis, pivot)
     return 1.0 if rises > 0.0 else -1.0
-
-
-def _hinge_side(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: LimitsConfig) -> float:
-    """Sign of the turn towards the face of an upright panel at which its bearing lies, 0 without such a bearing.
-
-    Barrels stand on the side to which a door opens; on the other one its edge would run into what it hangs on.
-    """
-    normal = scene.frame.axes[scene.frame.thin]
-    off = float((pivot - scene.centre) @ normal)
-    aside = abs(off) > config.hinge_off * float(scene.frame.extents[scene.frame.thin])
-    if not (scene.has_bearing and scene.panel and scene.upright and aside):
-        return 0.0
-    return float(np.sign(off * (np.cross(axis, scene.centre - pivot) @ normal)))
 
 
 def swing_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> float:
@@ -197,7 +178,7 @@ def turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Floa
         return 1.0 if free[0] > free[1] else -1.0
     either = scene.serial or (scene.has_bearing and free.min() > unstopped)
     odds = 0.0 if either else opening_odds(shipped_scorer(OPENING_WEIGHTS), measure_sides(scene, axis, pivot))
-    return customary_sign(scene, axis, pivot, free, config) if abs(odds) < _UNDECIDED else float(np.sign(odds))
+    return customary_sign(scene, axis, pivot, free) if abs(odds) < _UNDECIDED else float(np.sign(odds))
 
 
 def opening_odds(scorer: Scorer, sides: Mapping[str, FloatArray]) -> float:

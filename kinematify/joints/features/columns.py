@@ -12,7 +12,7 @@ from kinematify.joints.candidate import SLIDE, TURN, joined
 from kinematify.joints.features.measurements import measure_groups
 from kinematify.joints.features.slide_cues import rank_slides
 from kinematify.joints.features.turn_cues import rank_turns
-from kinematify.joints.features.type_cues import is_stuck, type_cues, type_odds
+from kinematify.joints.features.type_cues import type_cues, type_odds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -49,11 +49,6 @@ class Features:
         return {name: value for values in self.groups.values() for name, value in values.items()}
 
     @property
-    def stuck(self) -> bool:
-        """The part neither turns nor slides: it is fixed, whatever the fit says."""
-        return bool(self.columns["stuck"][0])
-
-    @property
     def type_cues(self) -> dict[str, float]:
         """What speaks for sliding or for turning."""
         cues = self.groups[VERDICTS].items()
@@ -62,8 +57,8 @@ class Features:
     @property
     def by_cues(self) -> int:
         """Position of the moving hypothesis that the weighted cues alone would choose."""
-        slides = not self.stuck and self.columns["rules_odds"][-1] > 0.0
-        return 1 + (int((self.hypotheses.kinds == TURN).sum()) if slides else 0)
+        slides = self.columns["rules_odds"][-1] > 0.0
+        return 1 + int(slides * (self.hypotheses.kinds == TURN).sum())
 
 
 def features_of(scene: JointScene, proposed: Hypotheses, config: JointsConfig) -> Features:
@@ -120,7 +115,7 @@ def _verdicts(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsCo
     cues = type_cues(scene, *proposed, config)
     odds = float(np.clip(type_odds(cues), -_ODDS, _ODDS))
     facts = {f"{TYPE}{name}": value for name, value in cues.items()}
-    facts["stuck"] = float(is_stuck(scene, *proposed, config))
+    facts["retired"] = 0.0  # stands for the cues that went after the fit; the next one reads nothing of it
     return {
         "rules_score": np.concatenate([[np.nan], *(found.scores - found.scores.max() for found in (turns, slides))]),
         "rules_odds": np.concatenate([[0.0], np.full(n, -odds), np.full(m, odds)]),

@@ -186,21 +186,6 @@ class JointScene:
         return np.array([offset / np.linalg.norm(offset) for offset in long_enough]).reshape(-1, 3)
 
     @property
-    def overlapping(self) -> bool:
-        """A twin is a parallel thin panel whose plane differs by about its own thickness: they can pass each other."""
-        return any(self._passes(twin) for twin in self.twins)
-
-    def _passes(self, twin: BoxFrame) -> bool:
-        frame = self.frame
-        parallel = np.abs(twin.axes @ frame.axes[frame.thin]).max() > np.cos(np.radians(3.0))
-        if not (self.panel and self.upright and parallel):
-            return False
-        shift = (twin.centre - self.centre) @ frame.axes.T
-        thickness = float((frame.upper - frame.lower)[frame.thin])
-        depth = abs(float(shift[frame.thin])) / max(thickness, 1e-12)
-        return bool(0.6 < depth < 4.0)
-
-    @property
     def diagonal(self) -> float:
         """Diagonal of the assembly [m]."""
         return self.cache.diagonal

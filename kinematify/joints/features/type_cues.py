@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.features.frames import UP
-from kinematify.joints.features.scene import eccentricity, is_cap
-from kinematify.joints.features.sweep import contact_clearance, moving_points, sweep_slides, sweep_turns
+from kinematify.joints.features.scene import is_cap
+from kinematify.joints.features.sweep import contact_clearance
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,14 +25,15 @@ if TYPE_CHECKING:
 
 
 WEIGHTS = {
-    "drawer": 3.0, "box_pulled": 1.0, "box_inside": 1.5, "blocked_turn": 2.0, "carriage": 2.5, "telescope": 3.0,
-    "guided": 3.0, "panel": -2.0, "tray": 3.0, "turntable": -2.0, "bearing": -1.5, "mechanism": -1.5, "button": 1.6,
-    "round_small": -1.5, "flat_cap": 0.5, "round_lid": 2.5, "on_moving_part": -1.0, "capped": 3.0, "latch": -2.5,
-    "keyed": 3.0, "retained": -2.5, "row": 2.4, "edge_contact": -2.0, "rocker": -2.5, "pedal": -2.5, "wheel": -3.0,
-    "gripper": 3.0, "rail": 3.0, "sliding_pair": 3.0,
+    "drawer": 3.0, "box_inside": 1.5, "panel": -2.0, "tray": 3.0, "bearing": -1.5, "mechanism": -1.5, "button": 1.6,
+    "round_small": -1.5, "round_lid": 2.5, "on_moving_part": -1.0, "capped": 3.0, "latch": -2.5, "keyed": 3.0,
+    "retained": -2.5, "row": 2.4, "rocker": -2.5, "pedal": -2.5, "wheel": -3.0, "gripper": 3.0, "rail": 3.0,
 }  # fmt: skip
 """Of each cue of the type, positive for sliding; their sum is a column of the fit, which was made with these."""
 BIAS, CAP = -0.8, 3.0  # log odds of sliding without any cue, and the most that one says
+_BOX = (0.25, 0.5)
+"""Depth over the smaller side of the front up to which a part inside its body is no drawer, and from which it is one:
+leaves have up to a tenth, one drawer behind the whole front of a cabinet is half as deep as wide."""
 
 
 def type_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> dict[str, float]:
@@ -45,42 +46,31 @@ def type_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsCo
         config: Thresholds.
     """
     cues = {
-        **_room_cues(scene, turns, slides, config),
+        **_room_cues(scene, slides),
         **_shape_cues(scene, turns),
         **{
             "row": scene.smallness * float(len(scene.twins) >= 2),
             "gripper": float(scene.gripping),
-            "sliding_pair": float(scene.overlapping),
         },
         **_clearance_cues(scene, turns, slides, config),
         "rail": scene.mechanism * _held_rail(scene, turns, slides, config),
     }
-    cues["panel"] *= 1.0 - max(
-        cues["blocked_turn"],
-        cues["keyed"],
-        cues["capped"],
-        cues["carriage"],
-        cues["rail"],
-        scene.mechanism * cues["gripper"],
-    )  # a plate that cannot turn, lies inside, rides on a rail or closes on its like is no door
-    cues["edge_contact"] *= 1.0 - cues["rail"]  # the edge runs in the rail
+    held = max(cues["keyed"], cues["capped"], cues["rail"], scene.mechanism * cues["gripper"])
+    cues["panel"] *= 1.0 - held  # a plate that cannot turn, rides on a rail or closes on its like is no door
     hinged = float(scene.journal is not None and abs(float(scene.journal.axis @ slides.axes[0])) < 0.5)
-    for pulled in ("drawer", "box_pulled", "box_inside", "tray", "round_lid"):
+    for pulled in ("drawer", "box_inside", "tray", "round_lid"):
         cues[pulled] *= 1.0 - hinged  # hinges hold it, whatever it looks like
     whirls = float(scene.has_bearing and turns.free_parent[0].min() >= np.radians(89.0))
     for box in ("drawer", "box_inside"):
         cues[box] *= 1.0 - whirls  # no drawer turns on a shaft
     if scene.journal is not None and abs(float(scene.journal.axis @ UP)) < config.upright_cosine:
         cues["round_lid"] = 0.0  # a flap in pins across its mouth is not lifted off
-    cues["row"] *= 1.0 - _shafted(scene) * (1.0 - cues["keyed"])  # knobs stand in rows, too
     cues["retained"] *= 1.0 - cues["capped"]
     cues["round_lid"] *= 1.0 - cues["retained"]  # what holds it down is turned first
-    for boxed in ("keyed", "button", "flat_cap", "drawer", "box_inside", "row"):
+    for boxed in ("keyed", "button", "drawer", "box_inside", "row"):
         cues[boxed] *= 1.0 - cues["rocker"]  # its pins are seldom seen, and its pocket is that of a button
     for round_thing in ("bearing", "mechanism", "round_small", "wheel"):
-        cues[round_thing] *= 1.0 - max(cues["keyed"], cues["telescope"])  # what is round but keyed is guided
-    plunger = scene.smallness * _plunger(scene, slides, config)
-    cues["button"], cues["round_small"] = max(cues["button"], plunger), cues["round_small"] * (1.0 - plunger)
+        cues[round_thing] *= 1.0 - cues["keyed"]  # what is round but keyed is guided
     return cues
 
 
@@ -124,9 +114,7 @@ def _clearance_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: Jo
             blocked if scene.has_bearing else _extruded(scene, slides.axes[0], config) and clearance.turn < 2.0 * least
         )
     return {
-        "keyed": float(
-            _two_bores(scene, turns, config) or (guided and clearance.slides_only(least, config.clearance.ratio))
-        ),
+        "keyed": float(guided and clearance.slides_only(least, config.clearance.ratio)),
         "retained": float(clearance.turns_only(least, config.clearance.ratio))
         * (1.0 - scene.smallness * (not scene.has_bearing))
         * (not scene.serial),
@@ -137,64 +125,6 @@ def _extruded(scene: JointScene, direction: FloatArray, config: JointsConfig) ->
     """Whether the contact's rail runs along a direction and leads its best line by as much as that of any slide."""
     rail = None if scene.bearing is None else scene.bearing.rail
     return rail is not None and abs(float(rail.axis @ direction)) > 0.99 and scene.rail_lead > config.rails.lead_full
-
-
-def _two_bores(scene: JointScene, turns: Ranked, config: JointsConfig) -> bool:
-    """Whether the child runs on two equal bars side by side: it would turn about either, if it were not for the other.
-
-    Clearance does not see that: bars are thin, and stop few samples.
-    """
-    if (
-        not scene.has_bearing
-        or scene.bearing is None
-        or float(turns.free_parent[0].max()) > np.radians(config.kind.bars_deg)
-    ):
-        return False
-    first, *others = scene.bearing.lines
-    for line in others:
-        apart = float(np.linalg.norm(np.cross(line.pivot - first.pivot, first.axis)))
-        equal = line.score > config.kind.bars_equal * first.score and abs(float(line.axis @ first.axis)) > 0.99
-        if equal and apart > config.kind.bars_apart * scene.frame.diagonal:
-            return True
-    return False
-
-
-def _shafted(scene: JointScene) -> float:
-    """1 for a head on a thinner shaft that the parent holds all around, as knobs are made; caps of buttons are not."""
-    shaft = _shaft(scene)
-    if shaft is None:
-        return 0.0
-    axis, pivot, radius = shaft
-    offset = scene.cache.samples(scene.child).points - pivot
-    return float(radius < 0.7 * float(np.linalg.norm(np.cross(offset, axis), axis=1).max()))
-
-
-def _plunger(scene: JointScene, slides: Ranked, config: JointsConfig) -> float:
-    """1 for a round plug in a hole of its own width with room behind it: knobs have a shaft, or bottom out at once."""
-    shaft = _shaft(scene)
-    if shaft is None or _shafted(scene):
-        return 0.0
-    axis, pivot, _ = shaft
-    along = np.abs(slides.axes @ axis) > 0.99
-    if not along.any() or eccentricity(scene, axis, pivot) > config.kind.plunger_even:
-        return 0.0  # a pointer is for turning
-    room = _slide_room(scene, slides.free_parent[along].min(axis=1) * scene.diagonal)
-    return float(config.kind.plunger_least < room < config.kind.plunger_most)
-
-
-def _shaft(scene: JointScene) -> tuple[FloatArray, FloatArray, float] | None:
-    """Axis, a point and the radius of what is round about the best line within the contact; None where nothing is."""
-    if scene.journal is not None:
-        return scene.journal.axis, scene.journal.pivot, scene.journal.radius
-    if not scene.has_bearing or scene.bearing is None or len(scene.contact.points) == 0:
-        return None
-    line = scene.bearing.lines[0]
-    offset = scene.contact.points - line.pivot
-    radial = offset - (offset @ line.axis)[:, None] * line.axis
-    lengths = np.linalg.norm(radial, axis=1)
-    faces = np.abs(np.einsum("ij,ij->i", radial, scene.contact.normals)) > 0.95 * lengths
-    weights = scene.contact.weights * faces
-    return (line.axis, line.pivot, float(weights @ lengths / weights.sum())) if weights.sum() > 0 else None
 
 
 def _near_best(scene: JointScene, turns: Ranked, config: JointsConfig) -> IntArray:
@@ -208,64 +138,20 @@ def _near_best(scene: JointScene, turns: Ranked, config: JointsConfig) -> IntArr
     return np.flatnonzero(same)[: config.clearance.lines]
 
 
-def _room_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> dict[str, float]:
-    """Where the part can go: a drawer leaves one way and stops the other; a lift cannot turn at all."""
+def _room_cues(scene: JointScene, slides: Ranked) -> dict[str, float]:
+    """Where the part can go: a drawer leaves one way and stops the other."""
     own = np.abs(slides.axes[0] @ scene.frame.axes.T) @ scene.frame.extents / scene.diagonal
     travel = np.minimum(slides.free_parent[0] / max(float(own), 1e-9), 1.0)
     level = float(1.0 - abs(float(slides.axes[0] @ UP)))
     depth = float(_is_box(scene)) * _depth(scene, slides)
-    box = float(np.interp(depth, (config.kind.box_none, config.kind.box_full), (0.0, 1.0)))
-    # Outside of its body a box differs from a thick door by its depth alone.
-    deep = float(np.interp(depth, (config.kind.pulled_none, config.kind.pulled_full), (0.0, 1.0)))
-    large = 1.0 - scene.smallness
-    furniture = large * (1.0 - scene.mechanism)
+    box = float(np.interp(depth, _BOX, (0.0, 1.0)))
+    furniture = (1.0 - scene.smallness) * (1.0 - scene.mechanism)
     one_way = float(travel.max() > 0.5) * float(np.clip(1.0 - 4.0 * travel.min(), 0.0, 1.0))
     channel = float(travel.max() > 0.3) * _channel(scene, slides)
-    turn_room = float(turns.free_parent[:3].max()) / np.radians(30.0)
-    blocked = float(np.clip(1.0 - turn_room, 0.0, 1.0)) * float(travel.max() > 0.3)
     return {
         "drawer": furniture * box * level * scene.inside * max(one_way, channel),
-        "box_pulled": furniture
-        * deep
-        * level
-        * float(not scene.plate and not scene.has_bearing and travel.max() > 0.5),
         "box_inside": furniture * box * scene.inside,
-        "blocked_turn": large * blocked,
-        "guided": float(scene.has_bearing) * _guided(scene, slides),
-        "carriage": furniture * _carriage(scene, slides, config),
-        "telescope": large * _telescope(scene, slides, config),
     }
-
-
-def _carriage(scene: JointScene, slides: Ranked, config: JointsConfig) -> float:
-    """1 for a plate deep inside a shaft that it can travel along, as what carries the bread of a toaster."""
-    frame, thin = scene.frame, scene.frame.thin
-    if not scene.panel or scene.enclosed < config.kind.shaft or abs(float(slides.axes[0] @ frame.axes[thin])) < 0.99:
-        return 0.0
-    to_sides = (frame.slab_lower[thin] - scene.body_box[0, thin], scene.body_box[1, thin] - frame.slab_upper[thin])
-    sunk = float(min(to_sides)) / scene.diagonal
-    travels = float(slides.free_parent[0].max()) * scene.diagonal > frame.extents[thin]
-    return float(travels) * float(np.interp(sunk, (config.kind.sunk_none, config.kind.sunk_full), (0.0, 1.0)))
-
-
-def _telescope(scene: JointScene, slides: Ranked, config: JointsConfig) -> float:
-    """1 for a rod that is held in a tube over many times its own width, and can be drawn out: pins are retained.
-
-    Bearings of what turns are about as long as wide, and hinges carry their part on one side.
-    """
-    axis, free = slides.axes[0], slides.free_parent[0]
-    if not scene.has_bearing or scene.bearing is None or len(scene.contact.points) == 0:
-        return 0.0
-    line = scene.bearing.lines[0]
-    if abs(float(axis @ line.axis)) < 0.99 or eccentricity(scene, line.axis, line.pivot) > config.limits.even:
-        return 0.0
-    offset = scene.contact.points - line.pivot
-    width = 2.0 * float(scene.contact.weights @ np.linalg.norm(np.cross(offset, line.axis), axis=1))
-    length = float(np.ptp(offset @ line.axis))
-    drawn = free.max() * scene.diagonal > config.kind.drawn * length
-    return float(drawn) * float(
-        np.interp(length / max(width, 1e-12), (config.kind.deep_none, config.kind.deep_full), (0.0, 1.0))
-    )
 
 
 def _depth(scene: JointScene, slides: Ranked) -> float:
@@ -282,23 +168,6 @@ def _channel(scene: JointScene, slides: Ranked) -> float:
     sides = np.abs(slides.axes[across] @ scene.frame.axes.T) @ scene.frame.extents / scene.diagonal
     blocked = slides.free_parent[across] < 0.1 * sides[:, None]
     return float(blocked.mean() > 0.7) if blocked.size else 0.0
-
-
-def _guided(scene: JointScene, slides: Ranked) -> float:
-    """1 where the part can slide by half its length and still touches its parent all round, as on a column or rail.
-
-    A wheel or knob leaves its shaft instead; a link of an arm runs into its neighbour.
-    """
-    axis, free = slides.axes[0], slides.free_parent[0]
-    points = scene.cache.samples(scene.child).points
-    length = float(np.ptp(points @ axis))
-    along = scene.bearing is not None and abs(float(axis @ scene.bearing.lines[0].axis)) > 0.99
-    if not along or free.max() * scene.diagonal < 0.5 * length:
-        return 0.0
-    direction = axis if free[0] >= free[1] else -axis
-    before = scene.cache.distances(scene.parent, scene.contact.points)
-    after = scene.cache.distances(scene.parent, scene.contact.points + 0.5 * length * direction)
-    return float(np.mean(after < before + 0.002 * scene.diagonal) > 0.6)
 
 
 def _is_box(scene: JointScene) -> bool:
@@ -322,16 +191,13 @@ def _shape_cues(scene: JointScene, turns: Ranked) -> dict[str, float]:
         * (1.0 - box * scene.inside)
         * float(scene.panel and not tray and not (top and scene.disc > 0.5)),
         "tray": float(tray and scene.journal is None),
-        "turntable": float(scene.panel and scene.flat and scene.disc > 0.5 and not top),
         "bearing": large * float(scene.has_bearing and not top),
         "mechanism": scene.mechanism * large,
         "button": scene.smallness * float(not scene.has_bearing) * (1.0 - scene.compact) * (1.0 - edge),
-        "edge_contact": edge,
         "wheel": float(scene.rolls),
         "rocker": float(scene.fold is not None and not scene.has_bearing),
         "pedal": float(scene.pedal_direction.any()),
         "round_small": scene.smallness * scene.disc * float(squat > 0.3),
-        "flat_cap": scene.smallness * float(squat < 0.3 and not scene.has_bearing),
         "round_lid": large * (1.0 - scene.mechanism) * float(top and scene.flat and scene.disc > 0.5),
         "capped": large * float(is_cap(scene)),
         "latch": scene.smallness * float(_bridges_a_seam(scene)),
@@ -350,32 +216,3 @@ def _bridges_a_seam(scene: JointScene) -> bool:
         edge.b if edge.a == child else edge.a for edge in graph.edges if child in (edge.a, edge.b) and not edge.bridge
     ]
     return any(part in scene.others and (cluster < 0 or graph.cluster_of[part] != cluster) for part in touched)
-
-
-def is_stuck(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> bool:
-    """Whether neither turns nor slides are free: one rigid body that was cut in two.
-
-    Where little is free, both are swept again without grace, which would carry a part over the wall that holds it.
-    """
-    if is_cap(scene):  # which is lifted off its body all the same
-        return False
-    little = config.kind.stuck_factor
-    slide = _slide_room(scene, slides.free_parent * scene.diagonal)
-    turn = float(turns.free_parent[: config.kind.stuck_candidates].max())
-    limit = np.radians(config.kind.stuck_deg)
-    if scene.has_bearing or turn > little * limit or slide > little * config.kind.stuck_slide:
-        return False
-    strict = config.sweep.model_copy(update={"grace": 0.0})
-    points = moving_points(scene.cache, scene.child, strict)
-    slid = sweep_slides(scene.cache, points, slides.axes, (scene.parent,), limit=0.1 * scene.diagonal, config=strict)
-    lines, few = turns.lines, slice(config.kind.stuck_candidates)
-    turned = sweep_turns(
-        scene.cache, points, lines.axes[few], lines.pivots[few], (scene.parent,), limit=2 * limit, config=strict
-    )
-    room = _slide_room(scene, slid.free(strict.share))
-    return bool(turned.free(strict.share).max() < limit and room < config.kind.stuck_slide)
-
-
-def _slide_room(scene: JointScene, free: FloatArray) -> float:
-    """Largest free travel as a fraction of the child's own diagonal."""
-    return float(free.max()) / max(scene.frame.diagonal, 1e-12)
