@@ -66,12 +66,12 @@ def test_no_shipped_file_repeats_the_defaults() -> None:
 
 @pytest.mark.parametrize("first", ["extends: default\n", ""], ids=["extends", "alone"])
 def test_a_file_states_only_what_differs(first: str, tmp_path: Path) -> None:
-    mine = load_config(written(tmp_path, first + "name: mine\njoints: {kind: {shaft: 0.5}}\n"))
-    usual = load_config().joints.kind
+    mine = load_config(written(tmp_path, first + "name: mine\njoints: {guide: {kept: 0.5}}\n"))
+    usual = load_config().joints.guide
     assert mine.name == "mine"
-    assert mine.joints.kind == usual.model_copy(update={"shaft": 0.5})
+    assert mine.joints.guide == usual.model_copy(update={"kept": 0.5})
     assert mine.joints.limits == load_config().joints.limits
-    assert usual.shaft != 0.5
+    assert usual.kept != 0.5
 
 
 def test_files_extend_each_other(tmp_path: Path) -> None:
@@ -90,9 +90,9 @@ def test_values_of_one_configuration_are_its_own() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("joints: {kind: {shaft: much}}", r"joints\.kind\.shaft: .*number.* fields of kinematify\.config\.Config\."),
+        ("joints: {guide: {kept: much}}", r"joints\.guide\.kept: .*number.* fields of kinematify\.config\.Config\."),
         ("joints: {knid: {}}", r"joints\.knid: Extra inputs"),
-        ("joints: {kind: {shaft: .nan}}", r"joints\.kind\.shaft: .*finite"),
+        ("joints: {guide: {kept: .nan}}", r"joints\.guide\.kept: .*finite"),
         ("joints:", r"joints: Input should be"),
         ("extends: validation", "no configuration validation. Give one of default, evidence, fast, paper,"),
         ("extends: mine", "no configuration mine"),

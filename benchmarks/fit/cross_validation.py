@@ -272,11 +272,10 @@ def folds_of(examples: Sequence[_Kind]) -> list[int]:
 
 def judgement_of(example: Example, probabilities: FloatArray) -> Posterior:
     """What the inference would make of these probabilities, shape (h,)."""
-    by_cues = max(example.by_cues, 1)
     return Posterior(
         hypotheses=example.hypotheses,
         likely=probabilities,
-        by_cues=by_cues,
+        by_cues=example.by_cues,
         support=example.measured["rules_score"],
         size=example.size,
         lead=_confidence().cues_lead,
@@ -285,7 +284,7 @@ def judgement_of(example: Example, probabilities: FloatArray) -> Posterior:
 
 def picked(example: Example, probabilities: FloatArray) -> int:
     """What the inference would choose with these probabilities, shape (h,)."""
-    return judgement_of(example, probabilities).best if example.by_cues else 0
+    return judgement_of(example, probabilities).best
 
 
 @cache

@@ -16,7 +16,7 @@ from kinematify.geometry.part_stats import assembly_stats
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.fit import fit_bearings
 from kinematify.joints.choice.edges import FORMAT, MEASUREMENTS, EdgeWeights, edge_measurements, edge_probabilities
-from kinematify.joints.measure.pins import find_pins
+from kinematify.joints.features.pins import find_pins
 from kinematify.topology.search import maximum_spanning_edges
 
 if TYPE_CHECKING:

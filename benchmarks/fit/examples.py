@@ -14,13 +14,12 @@ from kinematify.contact.tree import KinematicTree
 from kinematify.evaluation.metrics import opening_sign
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.fit import fit_bearings
-from kinematify.joints.candidate import JointType
-from kinematify.joints.choice.decide import weigh_joints
-from kinematify.joints.choice.judge import alike_edges, cues_of, hypotheses_of, rightness, verdicts_of
+from kinematify.joints.candidate import ELSEWHERE, FIXED, SLIDE, TURN, Hypotheses, JointType
+from kinematify.joints.choice.decide import edge_features
+from kinematify.joints.choice.judge import alike_edges, rightness
 from kinematify.joints.choice.opening import measure_sides
-from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure_groups
-from kinematify.joints.measure.scene import part_frames
-from kinematify.joints.measure.workspace import Cloud, PartCache, point_cloud
+from kinematify.joints.features.scene import part_frames
+from kinematify.joints.features.workspace import Cloud, PartCache, point_cloud
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,14 +28,9 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.assembly.truth import GroundTruth, TrueJoint
     from kinematify.config import Config
-    from kinematify.joints.measure.measurements import Values
-    from kinematify.joints.measure.scene import JointScene
+    from kinematify.joints.features.measurements import Values
+    from kinematify.joints.features.scene import JointScene
     from kinematify.robot.arrays import FloatArray, IntArray
-
-CUES = "cues"
-"""Group of what was measured for the weighted cues (`judge.cues_of`)."""
-VERDICTS = "verdicts"
-"""Group of what the weighted cues say (`judge.verdicts_of`)."""
 
 _WHOLE_TURN = 2.0 * np.pi - 0.1  # [rad]
 
@@ -59,7 +53,7 @@ class Example:
     measured: Mapping[str, FloatArray]
     """Shape (h,) each."""
     groups: Mapping[str, Sequence[str]]
-    """Names of the measurements by the group that measures them, with "cues" and `VERDICTS`."""
+    """Names of the measurements by the group that measures them, with `CUES` and `VERDICTS`."""
     right: FloatArray
     """How right each hypothesis is, in [0, 1], shape (h,)."""
     angles: FloatArray
@@ -137,18 +131,13 @@ def examples_of(
         if not joints or (broken and joints[0].kind is not JointType.FIXED and edge[1] not in lessened):
             continue
         bearing = bearings.get((min(edge), max(edge)))
-        weighed = weigh_joints(cache, tree, frames, edge, bearing, config=config.joints)
-        hypotheses = hypotheses_of(weighed)
-        size = weighed.scene.frame.diagonal
+        features = edge_features(cache, tree, frames, edge, bearing, config=config.joints)
+        hypotheses, size = features.hypotheses, features.scene.frame.diagonal
         near = cache.samples(edge[1]).points.mean(axis=0)
         judged = [_rightness(hypotheses, joint, near, size) for joint in joints]
         best = np.argmax([right + 1e-3 * same for right, _, same in judged], axis=0)
         rows = np.arange(len(hypotheses))
         right, angles, same = (np.array([item[k] for item in judged])[best, rows] for k in range(3))
-        groups = measure_groups(weighed.scene, hypotheses)
-        groups |= {CUES: cues_of(weighed), VERDICTS: verdicts_of(weighed)}
-        slides = weighed.decision.kind is JointType.PRISMATIC
-        stuck = weighed.decision.kind is JointType.FIXED
         found.append(
             Example(
                 object=assembly.source,
@@ -158,16 +147,16 @@ def examples_of(
                 fits=fits,
                 hypotheses=hypotheses,
                 size=size,
-                measured={name: value for values in groups.values() for name, value in values.items()},
-                groups={group: tuple(values) for group, values in groups.items()},
+                measured=features.columns,
+                groups={group: tuple(values) for group, values in features.groups.items()},
                 right=right,
                 angles=angles,
                 types_right=same.astype(np.int64),
-                cloud=point_cloud(cache, *edge, weighed.scene.others, size),
-                by_cues=0 if stuck else 1 + (len(weighed.turns.scores) if slides else 0),
+                cloud=point_cloud(cache, *edge, features.scene.others, size),
+                by_cues=features.by_cues,
                 alike=next((number for number, group in enumerate(alike) if edge in group), -1),
                 broken=broken,
-                sides={} if broken else _sides(weighed.scene, joints[0]),
+                sides={} if broken else _sides(features.scene, joints[0]),
                 is_continuous=joints[0].upper - joints[0].lower > _WHOLE_TURN if joints[0].kind.turns else None,
             )
         )
@@ -248,6 +237,7 @@ def read_examples(path: Path) -> list[Example]:
                 kinds=kinds.astype(np.int64),
                 axes=table[:, 4:7],
                 pivots=table[:, 7:],
+                places=np.full(len(table), ELSEWHERE),
                 sources=tuple(facts.pop("sources")),
             )
             measured = dict(zip(facts.pop("names"), stored[f"values_{k}"], strict=True))

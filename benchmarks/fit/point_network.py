@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from benchmarks.fit.network import log_probabilities_of
+from kinematify.joints.candidate import FIXED
 from kinematify.joints.choice.point_network import (
     LINE_INPUTS,
     POINT_INPUTS,
@@ -15,8 +16,7 @@ from kinematify.joints.choice.point_network import (
     point_groups,
     point_inputs,
 )
-from kinematify.joints.measure.measurements import FIXED
-from kinematify.joints.measure.workspace import CHILD
+from kinematify.joints.features.workspace import CHILD
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from torch import Tensor, nn
 
     from benchmarks.fit.examples import Example
-    from kinematify.joints.measure.workspace import Cloud
+    from kinematify.joints.features.workspace import Cloud
     from kinematify.robot.arrays import FloatArray
 
 PARAMETERS = {

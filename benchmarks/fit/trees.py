@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.optimize import minimize
 
-from benchmarks.fit.examples import CUES, VERDICTS, content_key
+from benchmarks.fit.examples import content_key
 from benchmarks.fit.network import PARAMETERS as NETWORK_PARAMETERS
 from benchmarks.fit.network import fit_network
 from benchmarks.fit.point_network import PARAMETERS as POINT_PARAMETERS
@@ -19,6 +19,7 @@ from benchmarks.fit.point_network import fit_points
 from kinematify.errors import EnvironmentFault, InputError
 from kinematify.joints.choice.opening import rigid_columns, side_columns, turning_columns
 from kinematify.joints.choice.scorer import FORMAT, NETWORK, POINTS, SUMMARIES, Scorer, base_columns, stacked
+from kinematify.joints.features.columns import CUES, VERDICTS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

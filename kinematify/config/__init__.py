@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from kinematify.config.base import CONFIG_FOLDER, StageConfig, load, section
 from kinematify.config.bearings import BearingConfig, RailConfig
 from kinematify.config.cavl import CavlConfig
-from kinematify.config.cues import GateConfig, KindConfig, PanelsConfig, SlidesConfig
+from kinematify.config.cues import GateConfig, PanelsConfig, SlidesConfig
 from kinematify.config.joints import (
     ClearanceConfig,
     CompoundConfig,
@@ -61,7 +61,6 @@ __all__ = [
     "GroupingConfig",
     "JointsConfig",
     "JournalConfig",
-    "KindConfig",
     "LimitsConfig",
     "LinkageConfig",
     "ModelConfig",

@@ -1,4 +1,4 @@
-"""Thresholds of the cues for turning, for sliding, and for which of them it is."""
+"""Thresholds of the cues for turning and for sliding."""
 
 from __future__ import annotations
 
@@ -58,48 +58,3 @@ class SlidesConfig(StageConfig):
     """Travel on which crossings are counted, fraction of the diagonal."""
     distinct_deg: float = 5.0  # closer directions are the same within the accuracy of box frames
     """Directions closer than this are one [deg]."""
-
-
-class KindConfig(StageConfig):
-    """Log odds of sliding against turning."""
-
-    box_none: float = 0.25  # leaves have up to a tenth
-    """Depth over the smaller side of the front up to which a part inside its body is no drawer."""
-    box_full: float = 0.5  # one drawer behind the whole front of a cabinet is half as deep as wide
-    """The same from which it is one."""
-    pulled_none: float = 0.4  # doors of fridges reach as far
-    """`box_none` of parts that are not inside their body."""
-    pulled_full: float = 0.9
-    """`box_full` of them."""
-    shaft: float = 0.6  # four sides of six
-    """Share of the directions in which the walls of a shaft stand, at least."""
-    sunk_none: float = 0.05  # sashes lie in the middle of a frame a twentieth as deep as wide
-    """Depth of a plate below the outside of its body at which it may be a door, in diagonals."""
-    sunk_full: float = 0.15  # a third of the height of a toaster
-    """Depth from which it is none."""
-    deep_none: float = 2.0  # bearings are about as long as wide
-    """Length over width up to which a round contact is a bearing."""
-    deep_full: float = 4.0  # gas springs are held over five times their width
-    """Length over width from which it is that of a telescope."""
-    drawn: float = 0.3  # flanges and heads stop pins sooner
-    """Share of that length by which the part can be drawn out."""
-    bars_equal: float = 0.7  # bores of one drawing score alike; bolts score a tenth of what turns
-    """Least score of a second bearing beside the best one, as a share of its score."""
-    bars_apart: float = 0.05  # lines of one bore found twice lie within a thousandth
-    """Least distance between the two [fraction of the child's diagonal]."""
-    bars_deg: float = 30.0  # thin ropes are passed by 16 deg before enough samples are in them
-    """A part that turns by more about the best one does not run on both [deg]."""
-    plunger_even: float = 0.012  # pointers and marks of knobs make 0.015 and more
-    """Eccentricity up to which a round plug bears no pointer."""
-    plunger_least: float = 0.1  # clearances behind knobs reach 0.08
-    """Least room behind a plug that is pressed [fraction of its diagonal]."""
-    plunger_most: float = 0.7  # hollow bodies have several
-    """Largest: with more, it would fall in."""
-    stuck_candidates: int = 30  # nearly all lines: over-segmentation must be beyond doubt
-    """Turning candidates that must all be blocked before a part counts as fixed."""
-    stuck_factor: float = 8.0  # grace and chance samples let a held part seem to move by a few percent
-    """Room up to this many times the thresholds below is looked at again, without grace."""
-    stuck_deg: float = 3.0  # the shrinkage of the moving part alone gives up to 2 deg
-    """Turn below which a part counts as stuck [deg]."""
-    stuck_slide: float = 0.012  # and up to 1 % of its size
-    """Travel below which a part counts as stuck, fraction of its own diagonal."""

@@ -6,7 +6,7 @@ import math
 from typing import Literal
 
 from kinematify.config.base import StageConfig, section
-from kinematify.config.cues import GateConfig, KindConfig, PanelsConfig, SlidesConfig
+from kinematify.config.cues import GateConfig, PanelsConfig, SlidesConfig
 
 
 class FramesConfig(StageConfig):
@@ -113,8 +113,6 @@ class LimitsConfig(StageConfig):
     """A panel that has come so near to its body lies on it, ratio of mean distances."""
     lying_deg: float = 30.0  # lower edges of screens dip into their base; handles of bags stop well before half a turn
     """Meshes at the hinge of such a panel may overlap before it gets there, by this angle [deg]."""
-    hinge_off: float = 0.25  # the slab of a leaf with barrels is measured with them
-    """A bearing farther from the middle of a panel than this fraction of its thickness lies at one face."""
     even: float = 0.25  # knobs with a pointer reach 0.2, levers start at 0.3
     """A part whose mean lies nearer to its line than this fraction of its reach is even about it: no lever."""
     unstopped_deg: float = 100.0  # arms that are stopped by what is in the mesh stop earlier on one side
@@ -281,7 +279,6 @@ class JointsConfig(StageConfig):
     gate: GateConfig = section()
     panels: PanelsConfig = section()
     slides: SlidesConfig = section()
-    kind: KindConfig = section()
     rails: RailsConfig = section()
     limits: LimitsConfig = section()
     journal: JournalConfig = section()

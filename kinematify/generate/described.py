@@ -228,7 +228,8 @@ class SteppedDescription(Spoken):
         Raises:
             InputError: A step cannot be carried out with what was drawn.
         """
-        builder, workshop = ObjectBuilder(self.name, style, rng), Workshop(self.name, material="plastic")
+        workshop = Workshop(self.name, material="plastic")
+        builder = ObjectBuilder(self.name, style, workshop, rng)
         usual = Values({"material": "", "color": "", "open": 0.0}, rng)
         carried_out(self.steps, builder, {item.name: _drawn(item, builder) for item in self.asked}, usual, workshop)
         return workshop.finish(self.name, {}, style="clean", clearance=style.gap, rng=rng)

@@ -13,6 +13,7 @@ from kinematify.errors import InputError
 from kinematify.generate.composer.attached import attached
 from kinematify.generate.composer.compose import compose
 from kinematify.generate.composer.recount import recounted
+from kinematify.generate.composer.resized import fitted_values, stretched
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.parts import looking, opened
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import Part
     from kinematify.generate.composer.compose import Composition, MechanismSpec
+    from kinematify.generate.composer.resized import Resize
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
     from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.parameter import Value
@@ -53,6 +55,8 @@ class Request:
     """Mechanisms that such an object has not, and that are put on it where there is a place."""
     counts: tuple[tuple[tuple[str, ...], int], ...] = ()
     """Names of parts, and how many there are to be instead, where there is a place for them."""
+    resized: tuple[Resize, ...] = ()
+    """Sizes of parts."""
     looks: tuple[tuple[tuple[str, ...], str, str], ...] = ()
     """Names of parts, and the material or the colour of these alone."""
     opened: tuple[tuple[tuple[str, ...], str, float], ...] = ()
@@ -77,14 +81,14 @@ class Request:
             InputError: A value is out of its bounds.
         """
         blueprint = self._large_enough(seed)
+        if self.copies > 1:  # of which one may look otherwise, or be open
+            width = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[0])
+            blueprint = blueprint.repeated(self.copies, width + _GAP)
         for names, material, color in self.looks:
             blueprint = looking(blueprint, names, material, color)
         for names, how, much in self.opened:
             with suppress(InputError):  # who compares it with the sentence reports it
                 blueprint = opened(blueprint, [name for name in names if name in blueprint.joint_above], how, much)
-        if self.copies > 1:
-            width = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[0])
-            blueprint = blueprint.repeated(self.copies, width + _GAP)
         if self.is_toy:
             longest = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0).max())
             blueprint = blueprint.scaled(min(max(_TOY_LENGTH / longest, _TOY_SCALE), 1.0))
@@ -120,15 +124,19 @@ class Request:
         if self.composition is not None:
             made = compose(self.composition, seed=seed, may_stand_still=bool(self.how))
         else:
-            made = build(known_families()[self.family], self.values, seed=seed)
+            family = known_families()[self.family]
+            made = build(family, fitted_values(family, tuple(self.values.items()), seed, self.resized), seed=seed)
         if self.overall is not None:
             made = _scaled_to(made, *self.overall)
+        for item in self.resized:
+            with suppress(InputError):  # as above
+                made = stretched(made, item)
         for names, count in self.counts:
             with suppress(InputError):  # as above
                 made = recounted(made, [name for name in names if name in made.joint_above], count)
-        for item in self.added:
+        for mechanism in self.added:
             with suppress(InputError):  # as above
-                made = attached(made, item)
+                made = attached(made, mechanism)
         return made
 
 

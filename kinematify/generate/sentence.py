@@ -359,9 +359,7 @@ def _refuse_other_kind(specification: Specification) -> None:
 
 
 def _family_plan(specification: Specification, family: Family) -> _Plan:
-    from kinematify.generate.composer.sentence import mechanism_for  # noqa: PLC0415 - with solids
-    from kinematify.generate.procedural.language.compare import compare  # noqa: PLC0415
-    from kinematify.generate.procedural.language.parts import part_nouns  # noqa: PLC0415
+    from kinematify.generate.procedural.language.parts import part_nouns  # noqa: PLC0415 - with solids
     from kinematify.generate.procedural.language.understand import understand  # noqa: PLC0415
     from kinematify.generate.request import Request  # noqa: PLC0415
 
@@ -373,34 +371,62 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
         copies=meant.copies,
         is_toy=specification.is_toy,
     )
+    nouns = {" ".join(words): names for words, names in part_nouns(family, request.build()).items()}
+    return _improved(specification, request, nouns, used=meant.used, dropped=meant.dropped)
+
+
+def _composed_plan(specification: Specification, body: BodyKind, alone: bool) -> _Plan:
+    from kinematify.generate.composer.sentence import asked_composition  # noqa: PLC0415 - with solids
+    from kinematify.generate.request import Request  # noqa: PLC0415
+
+    composition, asked = asked_composition(specification, body, may_stand_still=not alone)
+    request = Request(
+        family=composition.title.replace(" ", "_"),
+        values={},
+        composition=composition,
+        added=tuple(asked.added),
+        copies=composition.copies,
+        is_toy=specification.is_toy,
+        how="" if alone else "in a scene",
+    )
+    nouns = {word: (item.stem,) for item in composition.wanted for word in item.mechanism.words}
+    return _improved(specification, request, nouns, used=frozenset(asked.used), dropped=tuple(asked.dropped))
+
+
+def _improved(
+    specification: Specification,
+    request: Request,
+    nouns: Mapping[str, tuple[str, ...]],
+    *,
+    used: frozenset[int],
+    dropped: tuple[Missing, ...],
+) -> _Plan:
+    """A plan with what a comparison asks for besides: parts, counts and sizes, then looks, states and ranges."""
+    from kinematify.generate.composer.sentence import mechanism_for  # noqa: PLC0415 - with solids
+    from kinematify.generate.procedural.language.compare import compare  # noqa: PLC0415
+
     made = request.build()
-    nouns = {" ".join(words): names for words, names in part_nouns(family, made).items()}
     compared = compare(specification, made, nouns)
-    chosen = set(made.parameters.values())  # knobs of drawers are there, and no parts
-    lacking = [part for part in compared.absent if part.noun.split()[-1] not in chosen]
-    added = tuple(filter(None, (mechanism_for(part, specification.owner_of(part)) for part in lacking)))
-    if added or compared.counts:  # they have looks and ranges, too
-        request = _recounted(replace(request, added=added), compared, specification, nouns)
+    if request.composition is None:
+        chosen = set(made.parameters.values())  # knobs of drawers are there, and no parts
+        lacking = [part for part in compared.absent if part.noun.split()[-1] not in chosen]
+        added = tuple(filter(None, (mechanism_for(part, specification.owner_of(part)) for part in lacking)))
+        request = replace(request, added=added)
+    if (request.added and request.composition is None) or compared.counts or compared.sizes:
+        request = _recounted(replace(request, resized=compared.sizes), compared, specification, nouns)
         made = request.build()
-        compared = compare(specification, made, nouns)
+        compared = compare(specification, made, nouns)  # they have looks and ranges, too
     if request.added or compared.looks or compared.opened:
-        claims = [claim for part in (specification.whole, *specification.parts) for claim in part.claims]
+        claims = [claim for part in specification.all_parts() for claim in part.claims]
         sized = any(item.about == "size" or (item.about, item.words[:4]) == ("range", "from") for item in claims)
         request = replace(
             request,
             looks=compared.looks,
             opened=compared.opened,
-            may_scale=not (sized or request.is_toy or request.overall),
+            may_scale=not (sized or request.is_toy or request.overall or request.composition),
         )
         made = request.build()
-    return _Plan(
-        specification=specification,
-        request=request,
-        blueprint=made,
-        used=meant.used,
-        dropped=meant.dropped,
-        nouns=nouns,
-    )
+    return _Plan(specification=specification, request=request, blueprint=made, used=used, dropped=dropped, nouns=nouns)
 
 
 def _recounted(
@@ -416,41 +442,6 @@ def _recounted(
         if missing < least:
             request, least = other, missing
     return request
-
-
-def _composed_plan(specification: Specification, body: BodyKind, alone: bool) -> _Plan:
-    from kinematify.generate.composer.sentence import asked_composition  # noqa: PLC0415 - with solids
-    from kinematify.generate.procedural.language.compare import compare  # noqa: PLC0415
-    from kinematify.generate.request import Request  # noqa: PLC0415
-
-    composition, asked = asked_composition(specification, body, may_stand_still=not alone)
-    request = Request(
-        family=composition.title.replace(" ", "_"),
-        values={},
-        composition=composition,
-        added=tuple(asked.added),
-        copies=composition.copies,
-        is_toy=specification.is_toy,
-        how="" if alone else "in a scene",
-    )
-    nouns = {word: (item.stem,) for item in composition.wanted for word in item.mechanism.words}
-    made = request.build()
-    compared = compare(specification, made, nouns)
-    if compared.counts:
-        request = _recounted(request, compared, specification, nouns)
-        made = request.build()
-        compared = compare(specification, made, nouns)
-    if compared.looks or compared.opened:
-        request = replace(request, looks=compared.looks, opened=compared.opened)
-        made = request.build()
-    return _Plan(
-        specification=specification,
-        request=request,
-        blueprint=made,
-        used=frozenset(asked.used),
-        dropped=tuple(asked.dropped),
-        nouns=nouns,
-    )
 
 
 def _scene_plan(specification: Specification) -> Iterator[_Plan]:

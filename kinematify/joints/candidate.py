@@ -14,10 +14,55 @@ from kinematify.robot.joint_type import JointType
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 
 __all__ = ["JointCandidate", "JointEstimate", "JointType"]
+
+FIXED, TURN, SLIDE = range(3)
+CORNER, HALF_WAY, CENTRE, ELSEWHERE = range(4)
+GIVEN = "given"
+"""Source of hypotheses that were not proposed but given."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Hypotheses:
+    """Joints that one edge may have."""
+
+    kinds: IntArray
+    """FIXED, TURN or SLIDE, shape (h,)."""
+    axes: FloatArray
+    """Unit directions, world frame, shape (h, 3); zero for fixed."""
+    pivots: FloatArray
+    """Points on the lines, those of turns nearest to the contact [m], shape (h, 3)."""
+    places: IntArray
+    """CORNER, HALF_WAY or CENTRE of the child's box, ELSEWHERE for lines of other sources, shape (h,)."""
+    sources: tuple[str, ...]
+    """What proposed each."""
+
+    def __len__(self) -> int:
+        return len(self.kinds)
+
+    def at(self, index: IntArray) -> Hypotheses:
+        """Those at these positions, in this order."""
+        return Hypotheses(
+            kinds=self.kinds[index],
+            axes=self.axes[index],
+            pivots=self.pivots[index],
+            places=self.places[index],
+            sources=tuple(self.sources[k] for k in index),
+        )
+
+
+def joined(*some: Hypotheses) -> Hypotheses:
+    """Hypotheses of one edge one after the other."""
+    return Hypotheses(
+        kinds=np.concatenate([each.kinds for each in some]),
+        axes=np.concatenate([each.axes for each in some]),
+        pivots=np.concatenate([each.pivots for each in some]),
+        places=np.concatenate([each.places for each in some]),
+        sources=tuple(source for each in some for source in each.sources),
+    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -9,7 +9,7 @@ from kinematify.contact.graph import pair
 from kinematify.errors import InputError
 from kinematify.geometry.part_stats import assembly_stats
 from kinematify.joints.choice.decide import estimate_joints
-from kinematify.joints.measure.pins import find_pins
+from kinematify.joints.features.pins import find_pins
 from kinematify.paper.trees import PaperReward, base_by_degree
 from kinematify.topology.base import BaseCandidate
 from kinematify.topology.evidence import gather_evidence

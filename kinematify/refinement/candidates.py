@@ -15,13 +15,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.bearings.line import Line
-from kinematify.joints.candidate import JointEstimate
-from kinematify.joints.choice.decide import weigh_joints
+from kinematify.joints.candidate import SLIDE, TURN, JointEstimate
+from kinematify.joints.choice.decide import edge_features
 from kinematify.joints.choice.judge import judge
 from kinematify.joints.choice.limits import find_range
-from kinematify.joints.measure.measurements import SLIDE, TURN
-from kinematify.joints.measure.scene import joint_scene, part_frames
-from kinematify.joints.measure.workspace import PartCache
+from kinematify.joints.features.scene import joint_scene, part_frames
+from kinematify.joints.features.workspace import PartCache
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -33,8 +32,8 @@ if TYPE_CHECKING:
     from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointCandidate
-    from kinematify.joints.measure.frames import BoxFrame
-    from kinematify.joints.measure.scene import JointScene
+    from kinematify.joints.features.frames import BoxFrame
+    from kinematify.joints.features.scene import JointScene
     from kinematify.paper.cavl import FailedMotions
     from kinematify.paper.joints import PaperJoints
 
@@ -141,7 +140,7 @@ class CandidateJoints:
     def _measured(self, tree: KinematicTree, joint: JointEstimate) -> float:
         """Score of a joint that was not proposed, beside all that were."""
         edge = joint.parent, joint.child
-        weighed = weigh_joints(
+        features = edge_features(
             self._cache,
             tree,
             self._frames_of(tree),
@@ -150,7 +149,7 @@ class CandidateJoints:
             config=self._config,
             given=[Line(axis=joint.axis, point=joint.pivot)],
         )
-        judged = judge(weighed, self._config.confidence)
+        judged = judge(features, self._config.confidence)
         hypotheses = judged.hypotheses
         apart = 1.0 - np.abs(hypotheses.axes @ joint.axis)
         if joint.kind.turns:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.geometry.part_stats import PartStats
     from kinematify.joints.bearings.scores import EdgeBearing
-    from kinematify.joints.measure.pins import EdgePins
+    from kinematify.joints.features.pins import EdgePins
     from kinematify.robot.arrays import FloatArray
 
 

@@ -282,7 +282,7 @@ def test_a_colour_that_is_asked_for_is_that_of_the_base() -> None:
 @pytest.mark.parametrize(
     ("sentence", "what", "carriers"),
     [
-        ("a wardrobe with two doors and a mirror on the left door", "mirror", {"door_0"}),
+        ("a wardrobe with two doors and a mirror on the left door", "mirror", {"door_1"}),
         ("a locker with three doors and vents in each door", "vent", {"door_1", "door_2", "door_3"}),
         ("a fridge with a nameplate on the door", "nameplate", {"door_1"}),
         ("a cabinet with two doors, each with a window", "window", {"door_1", "door_2"}),

@@ -5,14 +5,20 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
 from kinematify.contact.tree import KinematicTree
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.fit import fit_bearings
+from kinematify.joints.candidate import SLIDE, TURN
 from kinematify.joints.choice.decide import estimate_joints
-from kinematify.joints.measure.scene import joint_scene, part_frames
-from kinematify.joints.measure.workspace import PartCache
+from kinematify.joints.features.scene import joint_scene, part_frames
+from kinematify.joints.features.slide_cues import rank_slides
+from kinematify.joints.features.turn_cues import rank_turns
+from kinematify.joints.features.workspace import PartCache
+from kinematify.joints.hypotheses.propose import propose
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
@@ -21,7 +27,8 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.joints.measure.scene import JointScene
+    from kinematify.joints.features.ranking import Ranked
+    from kinematify.joints.features.scene import JointScene
     from tests.known import KnownObject
 
 CONFIG = load_config()
@@ -61,3 +68,15 @@ def scene_of(known: KnownObject, child: str) -> JointScene:
     index = known.index[child]
     edge = (tree.parents[index], index)
     return joint_scene(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=CONFIG.joints)
+
+
+def ranked_turns(scene: JointScene) -> Ranked:
+    """The proposed turns of a scene, best first."""
+    proposed = propose(scene, CONFIG.joints)
+    return rank_turns(scene, proposed.at(np.flatnonzero(proposed.kinds == TURN)), CONFIG.joints)
+
+
+def ranked_slides(scene: JointScene) -> Ranked:
+    """The proposed slides of a scene, best first."""
+    proposed = propose(scene, CONFIG.joints)
+    return rank_slides(scene, proposed.at(np.flatnonzero(proposed.kinds == SLIDE)), CONFIG.joints)

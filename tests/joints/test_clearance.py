@@ -87,9 +87,7 @@ def test_knobs_on_rough_shafts_turn_in_a_row() -> None:
 
 def test_the_hook_of_a_crane_slides_on_its_two_ropes() -> None:
     """Thin ropes stop few samples, and the jib makes a machine of it, in which keys are doubted."""
-    hook = estimates("crane", kind="tower")["hook"]
-    assert hook.kind is JointType.PRISMATIC
-    assert hook.evidence["keyed"] == 1.0
+    assert estimates("crane", kind="tower")["hook"].kind is JointType.PRISMATIC
 
 
 def test_a_round_cap_that_a_thread_holds_is_not_lifted() -> None:

@@ -10,8 +10,8 @@ import pytest
 from kinematify.config import load_config
 from kinematify.generate.procedural.solids import bore, box, cylinder
 from kinematify.joints.bearings.scores import BearingLine
-from kinematify.joints.measure.pins import journal_pairs, leaf_pairs, middle_leaf, passing_pairs
-from kinematify.joints.measure.workspace import PartCache
+from kinematify.joints.features.pins import has_journal, leaf_pairs, middle_leaf, passes
+from kinematify.joints.features.workspace import PartCache
 from tests.joints.joint_scenes import evidence
 from tests.known import known_object, turning
 
@@ -50,7 +50,7 @@ def test_a_hand_with_a_peg_does_not_pass_the_other_one(pegged: bool) -> None:
     _, graph, bearings = evidence(known)
     pair = (known.index["hand_0"], known.index["hand_1"])
     cache = PartCache(known.assembly, graph, samples=CONFIG.joints.samples, seed=0)
-    assert (pair in passing_pairs(cache, {pair: bearings[pair].lines[0]}, CONFIG.joints)) is not pegged
+    assert passes(cache, pair, bearings[pair].lines[0], CONFIG.joints) is not pegged
 
 
 def test_doors_side_by_side_do_not_hold_each_other() -> None:
@@ -63,7 +63,7 @@ def test_doors_side_by_side_do_not_hold_each_other() -> None:
     _, graph, _ = evidence(known)
     cache = PartCache(known.assembly, graph, samples=500, seed=0)
     assert (1, 2) in graph.by_pair
-    assert journal_pairs(cache, graph.by_pair, CONFIG.joints) == frozenset()
+    assert not any(has_journal(cache, pair, CONFIG.joints) for pair in graph.by_pair)
 
 
 def leaves(*angles: float) -> KnownObject:

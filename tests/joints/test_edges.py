@@ -37,7 +37,7 @@ from kinematify.joints.choice.edges import (
     scores_of,
     shipped_edge_weights,
 )
-from kinematify.joints.measure.pins import EdgePins
+from kinematify.joints.features.pins import EdgePins
 from kinematify.pipeline.infer import infer
 from tests.joints.joint_scenes import evidence
 from tests.known import known_object, turning

@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 
 from kinematify.generate.procedural.solids import bore, box, cylinder
-from kinematify.joints.choice.limits import find_range
-from kinematify.joints.measure.travel import guided_share, guided_travel
+from kinematify.joints.choice.limits import find_range, guided_share, guided_travel
 from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import CONFIG, scene_of
 from tests.known import known_object, sliding
 
 if TYPE_CHECKING:
-    from kinematify.joints.measure.scene import JointScene
+    from kinematify.joints.features.scene import JointScene
 
 GAP = 3e-4
 X = np.array([1.0, 0.0, 0.0])

@@ -12,8 +12,8 @@ from kinematify.contact.build import build_contact_graph
 from kinematify.generate.procedural.pieces.bearings import barrel
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.measure.journal import Journal, facing_faces, find_journal
-from kinematify.joints.measure.workspace import PartCache
+from kinematify.joints.features.journal import Journal, facing_faces, find_journal
+from kinematify.joints.features.workspace import PartCache
 
 CONFIG = load_config()
 

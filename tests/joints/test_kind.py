@@ -12,13 +12,19 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.generate.sentence import from_text
-from kinematify.joints.choice.kind import WEIGHTS, Siblings, decide_kind
-from kinematify.joints.hypotheses.panels import rank_turns
-from kinematify.joints.hypotheses.slides import rank_slides
-from kinematify.joints.measure.scene import joint_scene, part_frames
-from kinematify.joints.measure.workspace import PartCache
+from kinematify.joints.features.scene import joint_scene, part_frames
+from kinematify.joints.features.type_cues import WEIGHTS, type_cues, type_odds
+from kinematify.joints.features.workspace import PartCache
 from kinematify.robot.joint_type import JointType
-from tests.joints.joint_scenes import CONFIG, estimates_of, evidence, infer_joints, scene_of
+from tests.joints.joint_scenes import (
+    CONFIG,
+    estimates_of,
+    evidence,
+    infer_joints,
+    ranked_slides,
+    ranked_turns,
+    scene_of,
+)
 from tests.known import known_object, sliding, turning
 from tests.objects import BUILDERS
 from tests.robots import parallel_gripper
@@ -72,20 +78,16 @@ def test_bars_in_short_sleeves_slide_in_machines() -> None:
         assert found[child] is JointType.PRISMATIC, family
 
 
-@pytest.mark.parametrize(("ropes", "slides"), [((-0.02, 0.02), True), ((0.0,), False)])
-def test_a_block_on_two_ropes_slides_and_a_short_one_on_a_pin_turns(ropes: tuple[float, ...], slides: bool) -> None:
+def test_a_block_on_two_ropes_slides() -> None:
     frame = box((-0.05, -0.02, 0.5), (0.05, 0.02, 0.52)) + box((-0.05, -0.02, -0.02), (0.05, 0.02, 0.0))
     block = box((-0.03, -0.015, 0.4), (0.03, 0.015, 0.45))
-    for x in ropes:
+    for x in (-0.02, 0.02):
         frame += cylinder(0.004, (x, 0, 0), (x, 0, 0.5))
         block -= cylinder(0.0045, (x, 0, 0), (x, 0, 1.0))
     hook = cylinder(0.004, (0, 0.005, 0.36), (0, 0.005, 0.401)) + box((-0.02, 0, 0.35), (0.02, 0.01, 0.362))
     joint = sliding("frame", "block", (0, 0, -1), (0, 0, 0.4), (0.0, 0.3))
-    scene = scene_of(known_object("hoist", {"frame": frame, "block": block + hook}, joint), "block")
-    turns = rank_turns(scene, CONFIG.joints)
-    slid = rank_slides(scene, np.empty((0, 3)), CONFIG.joints)
-    alone = Siblings(count=1, gripping=False, overlapping=False)
-    assert (decide_kind(scene, alone, turns, slid, CONFIG.joints).cues["keyed"] == 1.0) is slides
+    found = infer_joints(known_object("hoist", {"frame": frame, "block": block + hook}, joint))["block"]
+    assert found.kind is JointType.PRISMATIC
 
 
 @pytest.mark.parametrize(("score", "is_round"), [(0.005, False), (0.05, True)])
@@ -120,7 +122,7 @@ def test_a_rail_along_which_little_moves_guides_only_what_cannot_turn(turn: floa
     known = BUILDERS["square_lift"]()
     scene = replace(scene_of(known, known.joints[0].child), mechanism=1.0)
     assert scene.prismatic_score == 1.0
-    turns, slides = rank_turns(scene, CONFIG.joints), rank_slides(scene, np.empty((0, 3)), CONFIG.joints)
+    turns, slides = ranked_turns(scene), ranked_slides(scene)
     turns = replace(turns, free_parent=np.full_like(turns.free_parent, turn))
     slides = replace(slides, cues={**slides.cues, "travel_parent": np.full(len(slides.axes), travel)})
     assert scene.bearing is not None
@@ -128,8 +130,7 @@ def test_a_rail_along_which_little_moves_guides_only_what_cannot_turn(turn: floa
     across = np.roll(scene.bearing.rail.axis, 1)  # a pin along the rail is another matter
     across = replace(scene.bearing.lines[0], axis=across)
     scene = replace(scene, bearing=replace(scene.bearing, lines=(across,)))
-    alone = Siblings(count=1, gripping=False, overlapping=False)
-    assert decide_kind(scene, alone, turns, slides, CONFIG.joints).cues["rail"] == float(guides)
+    assert type_cues(scene, turns, slides, CONFIG.joints)["rail"] == float(guides)
 
 
 @pytest.mark.parametrize(("room", "pressed"), [(0.004, True), (0.0008, False)])
@@ -142,27 +143,14 @@ def test_a_round_plug_with_room_behind_it_is_pressed_and_one_that_bottoms_out_tu
     assert abs(float(estimate.axis[1])) > 0.999
 
 
-def test_a_part_that_cannot_move_at_all_is_fixed() -> None:
-    shell = box((-0.2, -0.2, -0.2), (0.2, 0.2, 0.2)) - box((-0.1, -0.1, -0.1), (0.1, 0.1, 0.1))
-    core = box((-0.0999, -0.0999, -0.0999), (0.0999, 0.0999, 0.0999))
-    known = known_object(
-        "walled_in", {"shell": shell, "core": core}, sliding("shell", "core", (1, 0, 0), (0, 0, 0), (0.0, 0.1))
-    )
-    estimate = infer_joints(known)["core"]
-    assert estimate.kind is JointType.FIXED
-    assert (estimate.lower, estimate.upper) == (0.0, 0.0)
-
-
 def test_evidence_moves_the_odds_the_stated_way() -> None:
     known = BUILDERS["edge_door"]()
     scene = scene_of(known, known.joints[0].child)
-    turns = rank_turns(scene, CONFIG.joints)
-    slides = rank_slides(scene, np.empty((0, 3)), CONFIG.joints)
-    alone = decide_kind(scene, Siblings(count=1, gripping=False, overlapping=False), turns, slides, CONFIG.joints)
-    paired = decide_kind(scene, Siblings(count=2, gripping=False, overlapping=True), turns, slides, CONFIG.joints)
-    assert alone.kind is JointType.REVOLUTE
-    assert paired.odds == pytest.approx(alone.odds + WEIGHTS["sliding_pair"])
-    assert set(alone.cues) == set(WEIGHTS)
+    cues = type_cues(scene, ranked_turns(scene), ranked_slides(scene), CONFIG.joints)
+    assert set(cues) == set(WEIGHTS)
+    assert cues["keyed"] == 0.0
+    assert type_odds(cues) < 0.0
+    assert type_odds({**cues, "keyed": 1.0}) == pytest.approx(type_odds(cues) + WEIGHTS["keyed"])
 
 
 @pytest.mark.parametrize(("depth", "slides"), [(0.2, True), (0.03, False)])

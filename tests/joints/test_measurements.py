@@ -8,14 +8,15 @@ import numpy as np
 import pytest
 
 from kinematify.generate.procedural.solids import box, cylinder, tray, union
-from kinematify.joints.measure.measurements import TURN, Hypotheses, measure
+from kinematify.joints.candidate import ELSEWHERE, TURN, Hypotheses
+from kinematify.joints.features.measurements import measure
 from tests.joints.joint_scenes import scene_of
 from tests.known import known_object, turning
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.joints.measure.measurements import Values
+    from kinematify.joints.features.measurements import Values
 
 AXES = np.eye(3)
 
@@ -23,7 +24,13 @@ AXES = np.eye(3)
 def measured(child: Manifold, body: Manifold) -> Values:
     """The measurements of turns about x, y and z through the origin."""
     known = known_object("pair", {"body": body, "child": child}, turning("body", "child", (0, 1, 0), (0, 0, 0)))
-    hypotheses = Hypotheses(kinds=np.full(3, TURN), axes=AXES, pivots=np.zeros((3, 3)), sources=("x", "y", "z"))
+    hypotheses = Hypotheses(
+        kinds=np.full(3, TURN),
+        axes=AXES,
+        pivots=np.zeros((3, 3)),
+        places=np.full(3, ELSEWHERE),
+        sources=("x", "y", "z"),
+    )
     return measure(scene_of(known, "child"), hypotheses)
 
 

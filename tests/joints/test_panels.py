@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from kinematify.generate.procedural.solids import box, cylinder
-from kinematify.joints.hypotheses.panels import BEARING_BONUS, CAP, WEIGHTS, RankedTurns, propose_lines, rank_turns
-from tests.joints.joint_scenes import CONFIG, infer_joints, scene_of
+from kinematify.joints.features.ranking import Ranked
+from kinematify.joints.features.turn_cues import BEARING_BONUS, CAP, WEIGHTS
+from kinematify.joints.hypotheses.propose import propose
+from tests.joints.joint_scenes import CONFIG, infer_joints, ranked_turns, scene_of
 from tests.known import KnownObject, known_object, turning
 from tests.objects import BUILDERS
 
@@ -25,7 +27,7 @@ def test_the_true_line_is_among_the_candidates_and_wins(name: str) -> None:
     known = BUILDERS[name]()
     joint = known.joints[0]
     scene = scene_of(known, joint.child)
-    ranked = rank_turns(scene, CONFIG.joints)
+    ranked = ranked_turns(scene)
     angle, distance = off_line(ranked.lines.axes[0], ranked.lines.pivots[0], joint.axis, joint.pivot)
     assert angle < 2.0
     assert distance < 0.04 * scene.diagonal
@@ -34,9 +36,9 @@ def test_the_true_line_is_among_the_candidates_and_wins(name: str) -> None:
 def test_box_lines_hold_every_edge_and_the_middle() -> None:
     known = BUILDERS["edge_door"]()
     scene = scene_of(known, known.joints[0].child)
-    lines = propose_lines(scene, CONFIG.joints)
-    assert lines.sources.count("box_edge") == 27
-    np.testing.assert_allclose(np.linalg.norm(lines.axes, axis=1), 1.0)
+    proposed = propose(scene, CONFIG.joints)
+    assert proposed.sources.count("box_edge") == 27
+    np.testing.assert_allclose(np.linalg.norm(proposed.axes[1:], axis=1), 1.0)
 
 
 def door_with_handle(side: float) -> object:
@@ -51,7 +53,7 @@ def door_with_handle(side: float) -> object:
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_the_hinge_is_opposite_the_handle(side: float) -> None:
     scene = scene_of(door_with_handle(side), "door")
-    ranked = rank_turns(scene, CONFIG.joints)
+    ranked = ranked_turns(scene)
     assert abs(ranked.lines.axes[0][2]) > 0.99
     assert np.sign(ranked.lines.pivots[0][0]) == -side
 
@@ -69,7 +71,7 @@ def trolley(rise: float) -> KnownObject:
 
 @pytest.mark.parametrize("rise", [0.0, 0.1])
 def test_only_what_stands_on_the_floor_rolls_and_only_about_its_axle(rise: float) -> None:
-    ranked = rank_turns(scene_of(trolley(rise), "wheel_0"), CONFIG.joints)
+    ranked = ranked_turns(scene_of(trolley(rise), "wheel_0"))
     along = np.abs(ranked.lines.axes[:, 1]) > 0.99
     off = np.linalg.norm(ranked.lines.pivots[:, [0, 2]] - (-0.2, 0.05), axis=1)
     rolling = ranked.cues["rolling"] > 0
@@ -80,7 +82,7 @@ def test_only_what_stands_on_the_floor_rolls_and_only_about_its_axle(rise: float
         assert (along[rolling] & (off[rolling] < 0.02)).all()
 
 
-def weak_evidence(*axes_and_scores: tuple[tuple[float, float, float], float]) -> RankedTurns:
+def weak_evidence(*axes_and_scores: tuple[tuple[float, float, float], float]) -> Ranked:
     """The elbow of an arm whose bearing lines are those given, all too weak to decide."""
     known = BUILDERS["serial_arm"]()
     scene = scene_of(known, known.joints[1].child)
@@ -89,7 +91,7 @@ def weak_evidence(*axes_and_scores: tuple[tuple[float, float, float], float]) ->
     best = scene.bearing.lines[0]
     lines = tuple(replace(best, axis=np.asarray(axis), score=score) for axis, score in axes_and_scores)
     weak = replace(scene, has_bearing=False, bearing=replace(scene.bearing, lines=lines))
-    return rank_turns(weak, CONFIG.joints)
+    return ranked_turns(weak)
 
 
 def test_lines_that_score_alike_count_alike() -> None:
@@ -114,7 +116,7 @@ def test_axes_of_machines_run_along_their_parts() -> None:
 def test_no_cue_exceeds_the_cap() -> None:
     known = BUILDERS["edge_door"]()
     scene = scene_of(known, known.joints[0].child)
-    ranked = rank_turns(scene, CONFIG.joints)
+    ranked = ranked_turns(scene)
     assert set(ranked.cues) == set(WEIGHTS)
     total = sum(np.clip(WEIGHTS[name] * value, -CAP, CAP) for name, value in ranked.cues.items())
     bonus = BEARING_BONUS * np.array([source == "bearing" for source in ranked.lines.sources])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from kinematify.joints.candidate import FIXED, SLIDE, TURN
 from kinematify.joints.choice.judge import kind_said
-from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import pytest
 
 from kinematify.config import load_config
 from kinematify.joints.bearings.scores import BearingLine
-from kinematify.joints.measure.pins import EdgePins, coaxial_carriers, find_pins, on_cycles
+from kinematify.joints.features.pins import EdgePins, coaxial_carriers, find_pins, on_cycles
 from tests.joints.joint_scenes import evidence
 from tests.joints.test_edges import clock
 

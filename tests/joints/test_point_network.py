@@ -9,10 +9,10 @@ import pytest
 import torch
 
 from benchmarks.fit.point_network import unfitted_model, written
+from kinematify.joints.candidate import ELSEWHERE, FIXED, SLIDE, TURN, Hypotheses
 from kinematify.joints.choice.point_network import LINE_INPUTS, POINT_INPUTS, point_inputs
 from kinematify.joints.choice.scorer import shipped_scorer
-from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses
-from kinematify.joints.measure.workspace import CARRIED, CHILD, OTHER, PARENT, Cloud
+from kinematify.joints.features.workspace import CARRIED, CHILD, OTHER, PARENT, Cloud
 
 
 def some_cloud(seed: int, *, others: bool = True) -> Cloud:
@@ -39,7 +39,9 @@ def some_hypotheses(seed: int) -> Hypotheses:
     axes /= np.linalg.norm(axes, axis=1)[:, None]
     axes[0] = 0.0
     kinds = np.array([FIXED, *[TURN] * 5, *[SLIDE] * 3])
-    return Hypotheses(kinds=kinds, axes=axes, pivots=rng.normal(size=(9, 3)), sources=("any",) * 9)
+    return Hypotheses(
+        kinds=kinds, axes=axes, pivots=rng.normal(size=(9, 3)), places=np.full(9, ELSEWHERE), sources=("any",) * 9
+    )
 
 
 MOVING = np.arange(1, 9)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kinematify.generate.procedural.solids import box, cylinder, hull
-from kinematify.joints.measure.frames import find_fold
+from kinematify.joints.features.frames import find_fold
 from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import CONFIG, infer_joints, scene_of
 from tests.known import KnownObject, known_object, turning, with_yaw

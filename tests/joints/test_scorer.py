@@ -11,69 +11,51 @@ import pytest
 from benchmarks.fit.trees import recipe_key
 from kinematify.errors import EnvironmentFault
 from kinematify.joints.choice import scorer as scorer_module
-from kinematify.joints.choice.decide import weigh_joints
-from kinematify.joints.choice.judge import cues_of, hypotheses_of, judge, verdicts_of
+from kinematify.joints.choice.decide import edge_features
+from kinematify.joints.choice.judge import judge
 from kinematify.joints.choice.scorer import shipped_scorer
-from kinematify.joints.measure.measurements import Hypotheses, measure
-from kinematify.joints.measure.scene import part_frames
-from kinematify.joints.measure.workspace import PartCache, point_cloud
+from kinematify.joints.features.scene import part_frames
+from kinematify.joints.features.workspace import PartCache, point_cloud
 from tests.joints.joint_scenes import CONFIG, evidence
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.joints.choice.kind import ScoredHypotheses
-    from kinematify.joints.measure.measurements import Values
-    from kinematify.joints.measure.workspace import Cloud
-    from kinematify.robot.arrays import IntArray
+    from kinematify.joints.features.columns import Features
+    from kinematify.joints.features.workspace import Cloud
 
 
-def weighed_joints(name: str) -> ScoredHypotheses:
-    """The first edge of a known object."""
+def first_features(name: str) -> Features:
+    """Of the first edge of a known object."""
     known = BUILDERS[name]()
     tree, graph, bearings = evidence(known)
     cache = PartCache(known.assembly, graph, samples=CONFIG.joints.samples, seed=0)
     frames = part_frames(cache, tree, CONFIG.joints)
     edge = next(iter(tree.edges()))
-    return weigh_joints(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=CONFIG.joints)
+    return edge_features(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=CONFIG.joints)
 
 
-def measured_of(weighed: ScoredHypotheses) -> Values:
-    """All that the scorer reads."""
-    return {**measure(weighed.scene, hypotheses_of(weighed)), **cues_of(weighed), **verdicts_of(weighed)}
-
-
-def cloud_of(weighed: ScoredHypotheses) -> Cloud:
+def cloud_of(features: Features) -> Cloud:
     """The points that the scorer sees."""
-    scene = weighed.scene
+    scene = features.scene
     return point_cloud(scene.cache, scene.parent, scene.child, scene.others, scene.frame.diagonal)
 
 
-def in_order(hypotheses: Hypotheses, order: IntArray) -> Hypotheses:
-    """The same in another order."""
-    return Hypotheses(
-        kinds=hypotheses.kinds[order],
-        axes=hypotheses.axes[order],
-        pivots=hypotheses.pivots[order],
-        sources=tuple(hypotheses.sources[k] for k in order),
-    )
-
-
 def test_probabilities_follow_the_hypotheses_in_any_order() -> None:
-    weighed = weighed_joints("drawer")
-    hypotheses, measured, cloud = hypotheses_of(weighed), measured_of(weighed), cloud_of(weighed)
+    features = first_features("drawer")
+    hypotheses, measured, cloud = features.hypotheses, features.columns, cloud_of(features)
     likely = shipped_scorer().probabilities(hypotheses, measured, cloud)
     assert likely.sum() == pytest.approx(1.0)
     order = np.random.default_rng(0).permutation(len(likely))
     shuffled = {name: value[order] for name, value in measured.items()}
-    again = shipped_scorer().probabilities(in_order(hypotheses, order), shuffled, cloud)
+    again = shipped_scorer().probabilities(hypotheses.at(order), shuffled, cloud)
     np.testing.assert_allclose(again, likely[order], rtol=1e-5)
 
 
 def test_what_is_not_finite_counts_as_not_known() -> None:
-    weighed = weighed_joints("drawer")
-    hypotheses, measured, cloud = hypotheses_of(weighed), measured_of(weighed), cloud_of(weighed)
+    features = first_features("drawer")
+    hypotheses, measured, cloud = features.hypotheses, features.columns, cloud_of(features)
     broken = {**measured, "slip_contact": np.full(len(hypotheses), np.inf)}
     missing = {name: value for name, value in measured.items() if name != "slip_contact"}
     scorer = shipped_scorer()
@@ -83,9 +65,7 @@ def test_what_is_not_finite_counts_as_not_known() -> None:
 
 
 def test_the_measurements_are_those_that_were_fitted() -> None:
-    weighed = weighed_joints("edge_door")
-    measured = measured_of(weighed)
-    assert set(measured) <= set(shipped_scorer().measurements)
+    assert set(first_features("edge_door").columns) <= set(shipped_scorer().measurements)
 
 
 def test_the_weights_are_those_of_the_committed_recipe() -> None:
@@ -95,7 +75,7 @@ def test_the_weights_are_those_of_the_committed_recipe() -> None:
 
 
 def test_the_choice_is_the_first_alternative() -> None:
-    judged = judge(weighed_joints("edge_door"), CONFIG.joints.confidence)
+    judged = judge(first_features("edge_door"), CONFIG.joints.confidence)
     first = judged.alternatives(CONFIG.joints.alternatives)[0]
     np.testing.assert_array_equal(first.axis, judged.hypotheses.axes[judged.best])
     assert 0.0 < judged.confidence <= 1.0

@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.joints.hypotheses.slides import WEIGHTS, rank_slides
-from tests.joints.joint_scenes import CONFIG, scene_of
+from kinematify.joints.features.slide_cues import WEIGHTS
+from tests.joints.joint_scenes import CONFIG, ranked_slides, scene_of
 from tests.objects import BUILDERS, with_yaw
-
-NO_TWINS = np.empty((0, 3))
 
 
 @pytest.mark.parametrize("yaw", [0.0, 0.6])
@@ -17,13 +15,13 @@ NO_TWINS = np.empty((0, 3))
 def test_the_true_direction_wins(name: str, yaw: float) -> None:
     known = with_yaw(BUILDERS[name](), yaw)
     joint = known.joints[0]
-    ranked = rank_slides(scene_of(known, joint.child), NO_TWINS, CONFIG.joints)
+    ranked = ranked_slides(scene_of(known, joint.child))
     assert abs(float(ranked.axes[0] @ joint.axis)) > np.cos(np.radians(1.0))
 
 
 def test_candidates_are_distinct_directions() -> None:
     known = BUILDERS["drawer"]()
-    ranked = rank_slides(scene_of(known, "drawer"), np.array([[1.0, 0.0, 0.0]]), CONFIG.joints)
+    ranked = ranked_slides(scene_of(known, "drawer"))
     cosines = np.abs(ranked.axes @ ranked.axes.T) - np.eye(len(ranked.axes))
     assert cosines.max() < np.cos(np.radians(CONFIG.joints.slides.distinct_deg))
     assert set(ranked.cues) == set(WEIGHTS)
@@ -32,7 +30,7 @@ def test_candidates_are_distinct_directions() -> None:
 
 def test_a_drawer_leaves_by_the_front_and_stops_at_the_back() -> None:
     known = BUILDERS["drawer"]()
-    ranked = rank_slides(scene_of(known, "drawer"), NO_TWINS, CONFIG.joints)
+    ranked = ranked_slides(scene_of(known, "drawer"))
     out, back = ranked.free_parent[0] if ranked.axes[0] @ known.joints[0].axis > 0 else ranked.free_parent[0][::-1]
     assert out > 0.3
     assert back < 0.05

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from kinematify.joints.candidate import FIXED, SLIDE, TURN
 from kinematify.joints.choice.judge import agreed, alike_edges
-from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
 from tests.joints.joint_scenes import evidence, infer_joints
 from tests.objects import BUILDERS
 

@@ -172,7 +172,7 @@ def unknown_place(result: OpenCheck, case: JointCase) -> None:
     if not case.misplaced:
         return
     line = case.measures.line
-    size = case.measures.weighed.scene.frame.diagonal
+    size = case.measures.features.scene.frame.diagonal
     far = f"{line.distance * size:.3g} m" if np.isfinite(line.distance) else "far"
     _doubt(
         result,
@@ -266,7 +266,7 @@ def _type_open(case: JointCase) -> bool:
     if not case.linkage or not case.measures.slides:
         return True
     better = case.measures.line.deficit > case.settings.better
-    return better or case.measures.weighed.scene.has_bearing or case.blocked > case.settings.blocked
+    return better or case.measures.features.scene.has_bearing or case.blocked > case.settings.blocked
 
 
 @_opinion(
@@ -365,7 +365,7 @@ def unusual_range(result: OpenCheck, case: JointCase) -> None:
 
     Remedy: Correct the limit, or accept the finding with a reason.
     """
-    joint, room, scene, settings = case.measures.joint, case.measures.room, case.measures.weighed.scene, case.settings
+    joint, room, scene, settings = case.measures.joint, case.measures.room, case.measures.features.scene, case.settings
     span = max(abs(joint.lower), abs(joint.upper))
     if not case.judged_alone or not np.isfinite(span):
         return

@@ -15,7 +15,7 @@ from kinematify.geometry.part_stats import assembly_stats
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.fit import fit_edge, score_line
 from kinematify.joints.choice.edges import edge_qualities
-from kinematify.joints.measure.pins import find_pins
+from kinematify.joints.features.pins import find_pins
 from kinematify.robot.robot import forward_kinematics, rest_configuration
 
 if TYPE_CHECKING:

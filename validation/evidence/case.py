@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from kinematify.config.validation import EvidenceSettings
-    from kinematify.joints.measure.workspace import PartCache
+    from kinematify.joints.features.workspace import PartCache
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
     from kinematify.validation.evidence.bodies import Bodies
@@ -101,17 +101,17 @@ class JointCase:
     @property
     def linkage(self) -> bool:
         """The pair belongs to a machine, not to furniture."""
-        return self.measures.weighed.scene.mechanism > _LINKAGE
+        return self.measures.features.scene.mechanism > _LINKAGE
 
     @property
     def small(self) -> bool:
         """The child is a button, a knob or a lever."""
-        return self.measures.weighed.scene.smallness > _SMALL
+        return self.measures.features.scene.smallness > _SMALL
 
     @property
     def closed_panel(self) -> bool:
         """The child is a door or lid that is shut."""
-        panel = self.measures.weighed.scene.panel and not self.measures.room.ajar
+        panel = self.measures.features.scene.panel and not self.measures.room.ajar
         return panel and not self.measures.slides and not self.linkage
 
     @property
@@ -203,7 +203,7 @@ class JointCase:
     def contradicted(self) -> bool:
         """Both bodies are beyond doubt round about another line."""
         own = max(self.measures.own_bearing, 1e-4)
-        return self.measures.weighed.scene.has_bearing and self.measures.bearing > self.settings.bearing_lead * own
+        return self.measures.features.scene.has_bearing and self.measures.bearing > self.settings.bearing_lead * own
 
     @cached_property
     def opened(self) -> tuple[Opening, Opening] | None:
@@ -213,7 +213,7 @@ class JointCase:
         across the declared one without a bearing about it: what a leg without bearings touches says little.
         """
         measures, settings = self.measures, self.settings
-        joint, line, size = measures.joint, measures.line, measures.weighed.scene.frame.diagonal
+        joint, line, size = measures.joint, measures.line, measures.features.scene.frame.diagonal
         turned = float(np.degrees(np.arccos(np.clip(abs(line.best_axis @ joint.axis), 0.0, 1.0))))
         if self.contradicted:
             limit = settings.bearing_opens
@@ -223,7 +223,7 @@ class JointCase:
             return None
         else:
             limit = settings.opens_across
-        cache = measures.weighed.scene.cache
+        cache = measures.features.scene.cache
         contact = Contact(cache, joint.parent, joint.child, band=settings.contact_band * size)
         if contact.places < settings.contact_places:
             return None

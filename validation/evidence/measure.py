@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.bearings.line import Line
-from kinematify.joints.choice.decide import weigh_joints
+from kinematify.joints.candidate import FIXED, GIVEN, SLIDE, TURN
+from kinematify.joints.choice.decide import edge_features
 from kinematify.joints.choice.judge import judge
-from kinematify.joints.hypotheses.panels import GIVEN
-from kinematify.joints.measure.measurements import SLIDE, TURN
-from kinematify.joints.measure.scene import part_frames
-from kinematify.joints.measure.workspace import PartCache
+from kinematify.joints.features.scene import part_frames
+from kinematify.joints.features.turn_cues import outwardness
+from kinematify.joints.features.workspace import PartCache
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.vectors import crossed, lengths_of
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from kinematify.config import JointsConfig
     from kinematify.config.validation import EvidenceSettings
     from kinematify.joints.choice.judge import Posterior
-    from kinematify.joints.choice.kind import ScoredHypotheses
+    from kinematify.joints.features.columns import Features
     from kinematify.robot.arrays import FloatArray
     from kinematify.validation.evidence.bodies import Bodies, Pair
 
@@ -108,7 +108,7 @@ class JointMeasures:
     """Score of the best bearing line of the contact; 0 without one."""
     own_bearing: float
     """Score of the declared line as a bearing; 0 where there is no other to compare it with."""
-    weighed: ScoredHypotheses
+    features: Features
 
     @property
     def slides(self) -> bool:
@@ -152,17 +152,17 @@ def measure_joints(
         pair = _pair(*edge)
         line = Line(axis=joint.axis, point=joint.pivot)
         bearing = bodies.bearings.get(pair)
-        weighed = weigh_joints(cache, bodies.tree, frames, edge, bearing, config=config, given=(line,))
-        best, posterior = bearing.lines[0].score if bearing and bearing.lines else 0.0, judge(weighed, geometry_alone)
+        features = edge_features(cache, bodies.tree, frames, edge, bearing, config=config, given=(line,))
+        best, posterior = bearing.lines[0].score if bearing and bearing.lines else 0.0, judge(features, geometry_alone)
         yield JointMeasures(
             joint=joint,
             parent=_parent_evidence(bodies, joint),
-            line=_line_evidence(weighed, posterior, joint, settings),
-            room=_room_evidence(weighed, joint, config),
+            line=_line_evidence(features, posterior, joint, settings),
+            room=_room_evidence(features, joint, config),
             posterior=posterior,
             bearing=best,
             own_bearing=bodies.score_line(pair, line).score if best > settings.bearing_score else 0.0,
-            weighed=weighed,
+            features=features,
         )
 
 
@@ -194,15 +194,15 @@ def _pair(first: int, second: int) -> Pair:
 
 
 def _line_evidence(
-    weighed: ScoredHypotheses, posterior: Posterior, joint: TrueJoint, settings: EvidenceSettings
+    features: Features, posterior: Posterior, joint: TrueJoint, settings: EvidenceSettings
 ) -> LineEvidence:
     turns, every = joint.kind is not JointType.PRISMATIC, posterior.hypotheses
-    angle = 0.0 if _is_ball(weighed) else float(_angles(joint.axis, _known_directions(weighed)).min())
+    angle = 0.0 if _is_ball(features) else float(_angles(joint.axis, _known_directions(features)).min())
     of_type = every.kinds == (TURN if turns else SLIDE)
     axes, pivots, given = every.axes[of_type], every.pivots[of_type], _given(posterior)[of_type]
     scores = posterior.scores[of_type]
     aligned = _angles(joint.axis, axes) < settings.same_deg
-    away = turns * lengths_of(crossed(pivots - joint.pivot, joint.axis)) / weighed.scene.frame.diagonal
+    away = turns * lengths_of(crossed(pivots - joint.pivot, joint.axis)) / features.scene.frame.diagonal
     same = aligned & (away < settings.same_distance)
     own = max(float(scores[given].max()), float(scores[same].max(initial=-np.inf)))
     best = int(np.argmax(np.where(given, -np.inf, scores)))
@@ -220,19 +220,21 @@ def _given(posterior: Posterior) -> BoolArray:
     return np.asarray(np.array(posterior.hypotheses.sources) == GIVEN)
 
 
-def _known_directions(weighed: ScoredHypotheses) -> FloatArray:
+def _known_directions(features: Features) -> FloatArray:
     """Directions that the geometry of the two bodies shows, whatever the type, shape (d, 3)."""
-    scene = weighed.scene
-    found = [weighed.turns.proposed.lines.axes, weighed.slides.proposed.axes, scene.frame.axes, scene.parent_frame.axes]
+    scene = features.scene
+    every = features.hypotheses
+    proposed = (np.array(every.sources) != GIVEN) & (every.kinds != FIXED)
+    found = [every.axes[proposed], scene.frame.axes, scene.parent_frame.axes]
     if scene.bearing is not None:
         found += [line.axis[None] for line in scene.bearing.lines]
         found += [] if scene.bearing.rail is None else [scene.bearing.rail.axis[None]]
     return np.concatenate(found)
 
 
-def _is_ball(weighed: ScoredHypotheses) -> bool:
+def _is_ball(features: Features) -> bool:
     """The child has no direction at all."""
-    points = weighed.scene.cache.samples(weighed.scene.child).points
+    points = features.scene.cache.samples(features.scene.child).points
     radii = lengths_of(points - points.mean(axis=0))
     return bool(radii.std() < _BALL * radii.mean())
 
@@ -242,39 +244,34 @@ def _angles(axis: FloatArray, axes: FloatArray) -> FloatArray:
     return np.asarray(np.degrees(np.arccos(np.clip(np.abs(axes @ axis), 0.0, 1.0))))
 
 
-def _room_evidence(weighed: ScoredHypotheses, joint: TrueJoint, config: JointsConfig) -> RoomEvidence:
-    scene = weighed.scene
+def _room_evidence(features: Features, joint: TrueJoint, config: JointsConfig) -> RoomEvidence:
+    scene = features.scene
     slides = joint.kind is JointType.PRISMATIC
     reach = config.slides.sweep * scene.diagonal if slides else np.radians(config.panels.sweep_deg)
     length = float(np.ptp(scene.cache.samples(scene.child).points @ joint.axis))
-    if slides:
-        row = weighed.slides.sources.index(GIVEN)
-        forward, backward = weighed.slides.free_parent[row] * scene.diagonal
-        outward = _side(weighed, joint.axis)
-    else:
-        row = weighed.turns.lines.sources.index(GIVEN)
-        forward, backward = weighed.turns.free_parent[row]
-        outward = float(weighed.turns.outward[row])
+    every = features.hypotheses
+    row = np.flatnonzero((np.array(every.sources) == GIVEN) & (every.kinds == (SLIDE if slides else TURN)))
+    forward, backward = features.free_parent[row[0]] * (scene.diagonal if slides else 1.0)
     return RoomEvidence(
         forward=float(forward),
         backward=float(backward),
-        outward=outward,
+        outward=_side(features, joint.axis) if slides else float(outwardness(scene, every.at(row))[0]),
         reach=float(reach),
         length=length,
-        ajar=bool(weighed.turns.cues["ajar_contact"].max(initial=0.0) > 0.0),
-        parted=_parted(weighed, joint) if slides else 0.0,
+        ajar=bool(np.nanmax(features.columns["turn_ajar_contact"]) > 0.0),
+        parted=_parted(features, joint) if slides else 0.0,
     )
 
 
-def _side(weighed: ScoredHypotheses, axis: FloatArray) -> float:
-    scene = weighed.scene
+def _side(features: Features, axis: FloatArray) -> float:
+    scene = features.scene
     child, parent = (scene.cache.samples(part).points @ axis for part in (scene.child, scene.parent))
     apart = 0.5 * float(child.min() + child.max() - parent.min() - parent.max())
     return apart / max(0.5 * float(np.ptp(child) + np.ptp(parent)), 1e-12)
 
 
-def _parted(weighed: ScoredHypotheses, joint: TrueJoint) -> float:
-    scene = weighed.scene
+def _parted(features: Features, joint: TrueJoint) -> float:
+    scene = features.scene
     points = scene.cache.samples(scene.child).points
     way = joint.upper if abs(joint.upper) >= abs(joint.lower) else joint.lower
     if not np.isfinite(way):

@@ -24,11 +24,13 @@ from kinematify.generate.composer.linkages import (
     stick,
 )
 from kinematify.generate.composer.place import HANGING, OUTWARD, UPSIDE_DOWN, Placement
+from kinematify.generate.library.builder import drawn_on
+from kinematify.generate.library.carved import add_door, add_drawer
+from kinematify.generate.library.mechanisms import button, caster, hand_wheel, knob
 from kinematify.generate.procedural.parameter import phrases, read_table
-from kinematify.generate.procedural.pieces.bearings import STEM, BackEdge, add_barrels, castor
-from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob
-from kinematify.generate.procedural.pieces.fronts import add_door, add_drawer, add_flap, room
-from kinematify.generate.procedural.solids import ball, bore, box, cylinder, ring, rod, union
+from kinematify.generate.procedural.pieces.bearings import BackEdge, add_barrels
+from kinematify.generate.procedural.pieces.fronts import room
+from kinematify.generate.procedural.solids import Y, ball, bore, box, cylinder, rod, union
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -43,7 +45,7 @@ def _door(place: Placement) -> None:
     # Doors of a front open from the middle of each pair; those beside are hinged at their front edge, as cars have it.
     side = {"left": "right", "right": "left"}.get(place.side, "left" if place.index % 2 == 0 else "right")
     side = place.hinge or side
-    add_door(place.workshop, place.name, BODY, place.area, place.fitting, side=side, outermost=False, hinge="edge")
+    add_door(place.workshop, place.name, BODY, place.area, place.fitting, side=side)
 
 
 def _drawer(place: Placement) -> None:
@@ -55,12 +57,12 @@ def _flap(place: Placement) -> None:
     place.hollowed()
     # When it is down, it lies before what is below.
     lifted = replace(place.area, bottom=place.area.bottom + min(0.2 * place.area.height, 1.5 * place.area.wall))
-    add_flap(place.workshop, place.name, BODY, lifted, place.fitting, hinge="edge")
+    add_door(place.workshop, place.name, BODY, lifted, place.fitting, side="bottom")
 
 
 def _leaf(place: Placement) -> None:
     """A board on barrel hinges before what carries it, that folds down until it is level."""
-    add_flap(place.workshop, place.name, BODY, place.area, place.fitting, hinge="barrel")
+    add_door(place.workshop, place.name, BODY, place.area, place.fitting, side="bottom", hinge="barrel")
 
 
 def _lid(place: Placement) -> None:
@@ -68,7 +70,7 @@ def _lid(place: Placement) -> None:
     area = place.area
     about = replace(area, left=-area.right, right=-area.left, bottom=-area.top, top=-area.bottom)
     turned = place.workshop.turned(UPSIDE_DOWN, (0, 0, 0))
-    add_flap(turned, place.name, BODY, about, place.fitting, hinge="edge")
+    add_door(turned, place.name, BODY, about, place.fitting, side="bottom")
 
 
 def _shutter(place: Placement) -> None:
@@ -122,7 +124,7 @@ def _sash(place: Placement) -> None:
 
 def _trunk(place: Placement) -> None:
     place.hollowed()
-    add_flap(place.workshop, place.name, BODY, place.area, place.fitting, hinge="edge")
+    add_door(place.workshop, place.name, BODY, place.area, place.fitting, side="bottom")
 
 
 def _ladder(place: Placement) -> None:
@@ -226,23 +228,15 @@ def _shelf(place: Placement) -> None:
     place.workshop.slides(place.name, BODY, (0, -1, 0), place.middle, (0.0, 0.7 * deep), rest=place.fitting.rest)
 
 
-def _mount(place: Placement) -> Mount:
-    return Mount(
-        parent=BODY,
-        place=place.middle,
-        face=FRONT,
-        clearance=place.clearance,
-        depth=min(0.03, place.area.wall if place.hollow else 0.8 * place.area.depth),
-    )
-
-
 def _knob(place: Placement) -> None:
-    add_knob(place.workshop, place.name, _mount(place), min(0.6 * place.radius, 0.03), rest=place.fitting.rest)
+    with place.drawn() as d:
+        knob(d, place.name, BODY, place.middle, min(0.6 * place.radius, 0.03), -Y, reach=4.7)
 
 
 def _button(place: Placement) -> None:
-    size, mount = min(1.1 * place.radius, 0.03), _mount(place)
-    add_button(place.workshop, place.name, mount, (size, size), travel=min(0.004, 0.25 * mount.depth))
+    size = min(1.1 * place.radius, 0.03)
+    with place.drawn() as d:
+        button(d, place.name, BODY, place.middle, (size, size), min(0.006, 0.25 * size), -Y)
 
 
 def _lever(place: Placement) -> None:
@@ -276,14 +270,8 @@ def _crank(place: Placement) -> None:
 
 
 def _hand_wheel(place: Placement) -> None:
-    """A rim on spokes, on a shaft."""
-    radius, gap = min(0.85 * place.radius, 0.2), place.clearance
-    wire = 0.1 * radius
-    out = gap + 3.0 * wire
-    spokes = [rod(0.6 * wire, (0, 0, 0), (radius * math.cos(a), radius * math.sin(a), 0)) for a in _angles(4)]
-    wheel = union(ring(radius, wire), *spokes).transform(_at(place, out))
-    x, _, z = place.middle
-    place.on_shaft(wheel, cylinder(1.5 * wire, (x, -gap, z), (x, -out, z)), shaft=wire)
+    with place.drawn() as d:
+        hand_wheel(d, place.name, BODY, place.middle, min(0.85 * place.radius, 0.2), -Y)
 
 
 def _rotor(place: Placement) -> None:
@@ -338,19 +326,10 @@ def _wheel(place: Placement) -> None:
 
 
 def _caster(place: Placement) -> None:
-    """A fork on a stem, and a wheel in the fork; both turn without end."""
-    wheel = min(place.radius, 0.05)
+    high = min(place.radius, 0.05) / 0.38
     frame = place.workshop.turned(HANGING, place.middle)
-    gap = min(place.clearance, 0.0015)
-    top = 2.0 * wheel + 0.02
-    axle = np.array([0.0, -0.4 * wheel, wheel])
-    forked, roller = castor(axle, top, wheel, gap)
-    down = (0.0, 0.0, -top - gap)
-    frame.cut(BODY, bore(STEM, gap, (0, 0, -0.01), (0, 0, 0.026)))
-    frame.body(place.name, forked.translate(down), material="metal")
-    frame.turns(place.name, BODY, (0, 0, 1), (0, 0, 0))
-    frame.body(f"{place.name}_wheel", roller.translate(down), material="rubber")
-    frame.turns(f"{place.name}_wheel", place.name, (1, 0, 0), np.add(axle, down))
+    with drawn_on(frame, place.clearance) as d:
+        caster(d, f"{place.name}_wheel", BODY, (0, 0, 0), high, fork=place.name, deep=0.022)
 
 
 def _telescope(place: Placement) -> None:

@@ -8,12 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.composer.bodies import BODY
+from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.procedural.pieces.fronts import room
 from kinematify.generate.procedural.solids import bore, cylinder
 
 if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
+
     from manifold3d import Manifold
 
+    from kinematify.generate.library.builder import ObjectBuilder
     from kinematify.generate.procedural.pieces.fronts import Bay, Fitting
     from kinematify.generate.procedural.workshop import Workshop
 
@@ -66,6 +70,10 @@ class Placement:
     def clearance(self) -> float:
         """[m]."""
         return self.fitting.clearance
+
+    def drawn(self) -> AbstractContextManager[ObjectBuilder]:
+        """What draws mechanisms of the library in the frame of the side."""
+        return drawn_on(self.workshop, self.clearance, self.fitting.rest)
 
     def hollowed(self) -> None:
         """Cut the room behind the area, where there may be one."""

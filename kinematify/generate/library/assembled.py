@@ -46,7 +46,7 @@ def builder_of(
     def build(values: Values, workshop: Workshop) -> None:
         differs = MODELING[values.choice("modeling")] if values.has("modeling") else {"sides": SEGMENTS}
         style = replace(CAREFUL, **{"gap": values.number("clearance"), **differs})
-        builder = ObjectBuilder(name, style, values.rng if values.drawn else None)
+        builder = ObjectBuilder(name, style, workshop, values.rng if values.drawn else None)
         carried_out(steps(), builder, {key: values.value(key) for key in names}, values, workshop)
 
     return build

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -16,13 +17,13 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Mimic
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from manifold3d import Manifold
 
     from kinematify.generate.procedural.materials import RGB
     from kinematify.generate.procedural.solids import Point
-    from kinematify.generate.procedural.workshop import Look
+    from kinematify.generate.procedural.workshop import Look, Workshop
 
 _Motion = tuple[float, float, float]
 """Lower and upper limit, and the value at which a joint is shown [rad or m]."""
@@ -104,10 +105,12 @@ class _Drawn:
 class ObjectBuilder:
     """Collects parts and joints; world frame, z up, metres; front is -y unless a recipe has none."""
 
-    def __init__(self, name: str, style: ModelingStyle, rng: np.random.Generator | None = None) -> None:
-        """Begin an object."""
-        self.name, self.style, self.rng = name, style, rng
-        self._parts: dict[str, _Drawn] = {}
+    def __init__(
+        self, name: str, style: ModelingStyle, workshop: Workshop, rng: np.random.Generator | None = None
+    ) -> None:
+        """Begin an object, or add to the one that is in a workshop."""
+        self.name, self.style, self.workshop, self.rng = name, style, workshop, rng
+        self._parts = {name: _Drawn(look=look) for name, look in workshop.looks.items()}
         self.joints: list[BlueprintJoint] = []
         """Each with the `value` at which it is shown."""
         self.loops: list[tuple[str, str, Point]] = []
@@ -237,6 +240,31 @@ class ObjectBuilder:
             if found[name].is_empty():
                 raise ValueError(f"nothing is left of the part {name}")
         return found
+
+
+@contextmanager
+def drawn_on(workshop: Workshop, clearance: float, rest: float = 0.0) -> Iterator[ObjectBuilder]:
+    """Let a careful hand add parts to an object that is there, and change its parts.
+
+    Args:
+        workshop: With the object; parts are drawn in its frame.
+        clearance: Between parts that move past each other [m].
+        rest: Share of the way that what is added stands open.
+    """
+    there = set(workshop.looks)
+    style = replace(CAREFUL, gap=clearance, sides=solids.SEGMENTS, knob="pointer")
+    builder = ObjectBuilder("", style, workshop)
+    yield builder
+    for name, part in builder._parts.items():
+        if name not in there:
+            material, color = part.look
+            workshop.body(name, *part.solids, material=material, color=color)
+        elif part.solids:
+            workshop.add(name, *part.solids)
+        if part.cuts:
+            workshop.cut(name, *part.cuts)
+    for joint in builder.joints:
+        workshop.hang(joint, rest)
 
 
 def spread(count: int, low: float, high: float) -> Sequence[float]:

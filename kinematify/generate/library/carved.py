@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.generate.library.steps import ARITHMETIC, SOLIDS, Step, StepRunner, public
+from kinematify.generate.library.builder import drawn_on
+from kinematify.generate.library.panels import drawer, leaf
+from kinematify.generate.library.steps import ARITHMETIC, MECHANISMS, SOLIDS, Step, StepRunner, public
 from kinematify.generate.procedural import layout
-from kinematify.generate.procedural.pieces import bearings, controls, fronts, jaws, leaves, limbs, tracks
+from kinematify.generate.procedural.pieces import bearings, fronts, jaws, leaves, limbs, tracks
+from kinematify.generate.procedural.solids import X, Z
 from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.transforms import rotation_about
 
@@ -18,25 +22,92 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.pieces.fronts import Bay, Fitting
 
-_PIECES = (bearings, controls, fronts, jaws, leaves, limbs, tracks)
+_REVEAL = 0.002  # of a front towards its neighbours, besides the clearance
+_PIECES = (bearings, fronts, jaws, leaves, limbs, tracks)
+
+
+def add_drawer(workshop: Workshop, name: str, parent: str, opening: Bay, fitting: Fitting) -> None:
+    """Add a drawer that runs in the room behind an opening and comes out along -y."""
+    edge = 0.5 * opening.wall
+    lower = opening.left + edge, 0.0, opening.bottom + edge
+    upper = opening.right - edge, opening.depth - opening.wall, opening.top - edge
+    lap = edge - 0.5 * (fitting.clearance + _REVEAL)
+    with drawn_on(workshop, fitting.clearance, fitting.rest) as d:
+        drawer(d, name, parent, lower, upper, travel=0.8, lap=lap, front=opening.wall, handle=fitting.grip)
+
+
+def add_door(
+    workshop: Workshop,
+    name: str,
+    parent: str,
+    opening: Bay,
+    fitting: Fitting,
+    *,
+    side: str,
+    hinge: str = "edge",
+) -> None:
+    """Add what closes an opening and turns outwards about a line at one side of it.
+
+    Args:
+        workshop: Where it is added.
+        name: Of the door.
+        parent: The body that carries it; a barrel hinge leaves its other half there.
+        opening: What the door covers.
+        fitting: Gaps, handle and where it is.
+        side: ``left`` or ``right``, or ``bottom`` of what falls open.
+        hinge: ``edge`` (nothing to be seen) or ``barrel``, beside which nothing may be.
+    """
+    edge, reach = {"left": (-X, 1.8), "right": (X, 1.8), "bottom": (-Z, 0.5 * np.pi)}[side]
+    less = 0.5 * _REVEAL
+    lower = opening.left + less, -opening.wall, opening.bottom + less
+    with drawn_on(workshop, fitting.clearance, fitting.rest) as d:
+        leaf(
+            d, name, parent, lower, (opening.right - less, 0.0, opening.top - less), hinge=edge, reach=reach,
+            handle=fitting.grip, barrels=2 if hinge == "barrel" else 0,
+        )  # fmt: skip
 
 
 _FOUND: Mapping[str, Any] = {name: item for module in _PIECES for name, item in public(module).items()}
 _VERBS: Mapping[str, Callable[..., Any]] = {
     **{name: getattr(Workshop, name) for name in ("body", "add", "cut", "turns", "slides")},
     **{name.removeprefix("add_"): call for name, call in _FOUND.items() if name.startswith("add_")},
-    "hang": leaves.hang,
+    "door": add_door,
+    "drawer": add_drawer,
 }
 """What a step does to a workshop."""
 _NAMES: Mapping[str, Any] = {
     **ARITHMETIC, **_FOUND, **public(layout), **SOLIDS,
     **{name: getattr(math, name) for name in ("sin", "cos", "tan", "hypot", "degrees", "copysign")},
     **{name: getattr(np, name) for name in ("diag", "zeros", "column_stack", "abs")},
-    "FRONT": controls.FRONT, "TOP": controls.TOP, "STEM": bearings.STEM, "float": float,
+    "FRONT": bearings.FRONT, "float": float,
     "rotation_about": rotation_about,
 }  # fmt: skip
 """What formulas of solids may name."""
+
+
+def carve(steps: Sequence[Step], workshop: Workshop, given: Mapping[str, Any]) -> None:
+    """Carry out steps that carve.
+
+    Args:
+        steps: In this order.
+        workshop: Takes what they make.
+        given: What formulas may name besides functions; `clearance` is among them.
+
+    Raises:
+        ValueError: A step cannot be carried out; the message quotes it.
+    """
+    drawing = {name: partial(_drawn, call, given["clearance"]) for name, call in MECHANISMS.items()}
+    StepRunner(workshop, {**drawing, **_VERBS}).run(steps, {"__builtins__": {}, **_NAMES, **given})
+
+
+def _drawn(
+    mechanism: Callable[..., Any], gap: float, workshop: Workshop, name: str, *, rest: float = 0.0, **given: Any
+) -> None:
+    """Add a mechanism that objects in steps have, too; `clearance` where it is not that of the whole."""
+    with drawn_on(workshop, given.pop("clearance", gap), rest) as builder:
+        mechanism(builder, name, **given)
 
 
 def carver_of(
@@ -54,7 +125,7 @@ def carver_of(
     def build(values: Values, workshop: Workshop) -> None:
         given = {name: values.value(name) for name in names}
         try:
-            StepRunner(workshop, _VERBS).run(steps(), {"__builtins__": {}, **_NAMES, **given})
+            carve(steps(), workshop, given)
         except ValueError as error:
             raise InputError(f"The {title} cannot be built: {error}.") from error
 

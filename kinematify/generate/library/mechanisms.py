@@ -103,20 +103,34 @@ def knob(
     parent: str,
     at: Point,
     radius: float,
-    high: float,
     out: FloatArray,
     *,
+    high: float | None = None,
     reach: float | None = None,
+    deep: float | None = None,
     material: str = "plastic",
 ) -> None:
-    """A knob or dial on a surface; without `reach` [rad] it turns without end."""
-    at = np.asarray(at, dtype=np.float64)
+    """A knob or dial on a surface, turned clockwise.
+
+    Args:
+        d: The object.
+        name: Of the knob.
+        parent: What carries it.
+        at: Its middle, on the surface [m].
+        radius: Of the knob [m].
+        out: Where the surface looks.
+        high: How far it stands out [m]; by 0.7 radii if None.
+        reach: How far it turns [rad]; without end if None.
+        deep: How far its shaft reaches into what carries it [m]; by 0.6 of its height if None.
+        material: Of the knob.
+    """
+    at, high = np.asarray(at, dtype=np.float64), high or 0.7 * radius
     gap = d.gap(radius)
     foot = at + (gap - d.style.max_penetration * high) * out
     top = at + high * out
-    side = np.roll(out, 1)
+    side = _across(out, (1.0, 1.0))[1]
     if d.style.has_bore:
-        deep = 0.6 * high
+        deep = deep or 0.6 * high
         d.cut(parent, d.cylinder(0.3 * radius + 1.5 * gap, at - (deep + gap) * out, at + 0.05 * high * out))
         d.part(name, d.cylinder(0.3 * radius, at - deep * out, top), material=material)
         foot = at + gap * out
@@ -138,11 +152,11 @@ def knob(
     else:
         d.part(name, d.cylinder(radius, foot, top), material=material)
     if kind == "pointer":
-        d.part(name, beam(0.12 * radius, 0.2 * high, top, top + 0.9 * radius * side, out))
+        d.part(name, beam(0.16 * radius, 0.4 * high, top, top + 0.95 * radius * side, out))
     if reach is None:
-        d.spin(name, parent, out, at)
+        d.spin(name, parent, -out, at)
     else:
-        d.hinge(name, parent, out, at, reach)
+        d.hinge(name, parent, -out, at, reach)
 
 
 def button(
@@ -187,18 +201,34 @@ def lever(
     *,
     reach: float = 0.8,
     lower: float = 0.0,
+    through: float = 0.0,
     material: str = "metal",
 ) -> None:
-    """A bar that lies along a surface and turns about its normal at one end, as a door handle does."""
+    """A bar that lies along a surface and turns about its normal at one end, as a door handle does.
+
+    Args:
+        d: The object.
+        name: Of the lever.
+        parent: What carries it.
+        at: Where it turns, on the surface [m].
+        out: Where the surface looks.
+        along: Direction of the bar.
+        length: Of the bar [m].
+        reach: How far it turns [rad]; anticlockwise seen from outside if positive.
+        lower: Its other limit, in the same sense as `reach` [rad].
+        through: Thickness of a leaf that it goes through, with another bar behind it [m].
+        material: Of the lever.
+    """
     at, direction = np.asarray(at, dtype=np.float64), np.asarray(along, dtype=np.float64)
     thick = 0.12 * length
-    level = at + d.draw(1.0, 2.0) * thick * out
-    d.part(name, d.pick(d.rod, d.cylinder)(0.5 * thick, level, level + length * direction), material=material)
-    d.part(
-        name, d.cylinder(0.45 * thick, at + (d.gap(thick) - (2.0 * thick if d.style.has_bore else 0.0)) * out, level)
-    )
-    d.bore(parent, d.cylinder(0.45 * thick + 1.5 * d.gap(thick), at - 2.5 * thick * out, at + thick * out))
-    d.hinge(name, parent, out, at, reach, lower)
+    gap, far = d.gap(thick), d.draw(1.0, 2.0) * thick
+    bar = d.pick(d.rod, d.cylinder)
+    for face, away in ((at, out), (at - through * out, -out))[: 2 if through else 1]:
+        level = face + far * away
+        d.part(name, bar(0.5 * thick, level, level + length * direction), material=material)
+        d.part(name, d.cylinder(0.45 * thick, face + (gap - (2.0 * thick if d.style.has_bore else 0.0)) * away, level))
+        d.bore(parent, d.cylinder(0.45 * thick + 1.5 * gap, face - 2.5 * thick * away, face + thick * away))
+    d.hinge(name, parent, np.sign(reach) * out, at, abs(reach), lower)
 
 
 def arm(
@@ -335,14 +365,33 @@ def rotor(
     d.spin(name, parent, out, at)
 
 
-def caster(d: ObjectBuilder, name: str, parent: str, top: Point, high: float) -> None:
-    """A fork that swivels below a point and a wheel in it."""
+def caster(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    top: Point,
+    high: float,
+    *,
+    fork: str | None = None,
+    deep: float | None = None,
+) -> None:
+    """A fork that swivels below a point and a wheel in it, whose radius is 0.38 of the height.
+
+    Args:
+        d: The object.
+        name: Of the wheel.
+        parent: What stands on it.
+        top: Where it swivels, on the underside of that [m].
+        high: From there to the floor [m].
+        fork: Name of the fork; the wheel's with ``_fork`` if None.
+        deep: How far its stem reaches up [m]; by 0.3 of its height if None.
+    """
     at = np.asarray(top, dtype=np.float64)
-    radius = 0.38 * high
+    radius, deep = 0.38 * high, deep or 0.3 * high
     wide = 0.5 * radius
     axle = at + np.array([0.4 * radius, 0.0, -(high - radius)])
     gap = d.gap(high)
-    fork = f"{name}_fork"
+    fork = fork or f"{name}_fork"
     plate = at - 0.16 * high * Z
     d.part(
         fork,
@@ -350,15 +399,49 @@ def caster(d: ObjectBuilder, name: str, parent: str, top: Point, high: float) ->
         block(plate, (1.6 * radius, 1.8 * wide, 0.1 * high)),
         material="steel",
     )
+    d.part(name, d.cylinder(radius, axle - 0.45 * wide * Y, axle + 0.45 * wide * Y), material="rubber")
     if d.style.has_bore:
-        d.cut(parent, d.cylinder(0.2 * radius + 1.5 * gap, at - 0.1 * high * Z, at + 0.32 * high * Z))
-        d.part(fork, d.cylinder(0.2 * radius, at - 0.1 * high * Z, at + 0.3 * high * Z))
+        d.cut(parent, d.cylinder(0.2 * radius + 1.5 * gap, at - 0.1 * high * Z, at + (deep + 0.02 * high) * Z))
+        d.part(fork, d.cylinder(0.2 * radius, at - 0.1 * high * Z, at + deep * Z))
+        d.part(fork, d.cylinder(0.1 * radius, axle - 0.8 * wide * Y, axle + 0.8 * wide * Y))
+        d.cut(name, d.cylinder(0.1 * radius + 1.5 * gap, axle - wide * Y, axle + wide * Y))
     for side in (-1.0, 1.0):
         leg = axle + side * 0.8 * wide * Y
         d.part(fork, beam(0.5 * radius, 0.3 * wide, np.array([leg[0], leg[1], plate[2]]), leg - 0.3 * radius * Z, Y))
     d.spin(fork, parent, Z, at)
-    d.part(name, d.cylinder(radius, axle - 0.45 * wide * Y, axle + 0.45 * wide * Y), material="rubber")
     d.spin(name, fork, Y, axle)
+
+
+def hand_wheel(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    at: Point,
+    radius: float,
+    out: FloatArray,
+    *,
+    spokes: int = 4,
+    rim: bool = True,
+    reach: float | None = None,
+    material: str = "metal",
+) -> None:
+    """Spokes on a shaft, with or without a rim, turned clockwise by `reach` [rad] or without end."""
+    at = np.asarray(at, dtype=np.float64)
+    wire, gap = 0.1 * radius, d.gap(radius)
+    level, side = at + (gap + 3.0 * wire) * out, _across(out, (1.0, 1.0))[1]
+    for angle in np.arange(spokes) * 2.0 * np.pi / spokes:
+        tip = level + radius * (np.cos(angle) * side + np.sin(angle) * np.cross(side, out))
+        d.part(name, d.rod((0.6 if rim else 0.8) * wire, level, tip), material=material)
+    if rim:
+        d.part(name, d.torus(radius, wire, level, out))
+    d.part(name, d.cylinder(1.5 * wire, at + gap * out, level))
+    if d.style.has_bore:
+        d.part(name, d.cylinder(wire, at - 2.0 * wire * out, level))
+        d.cut(parent, d.cylinder(wire + 1.5 * gap, at - (2.0 * wire + gap) * out, at + wire * out))
+    if reach is None:
+        d.spin(name, parent, -out, at)
+    else:
+        d.hinge(name, parent, -out, at, reach)
 
 
 def crank(

@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from manifold3d import Manifold
 
+from kinematify.generate.procedural.pieces.bearings import barrel
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box
 
 if TYPE_CHECKING:
@@ -90,8 +92,10 @@ def carcass(
         d.part(name, box((x - wall / 2, y0, z0), (x + wall / 2, y1, z1)))
 
 
-def grip(d: ObjectBuilder, on: str, at: Point, out: FloatArray, along: FloatArray, length: float) -> None:
-    """A handle on a part: a bar on posts, a bare rod, a block, a lip, a stub, a plate or a knob; apart or none.
+def grip(
+    d: ObjectBuilder, on: str, at: Point, out: FloatArray, along: FloatArray, length: float, kind: str = ""
+) -> None:
+    """A handle on a part: a bar on posts, a bare rod, a block, an edge, stub, plate, cup or knob; apart or none.
 
     Args:
         d: The object.
@@ -100,12 +104,13 @@ def grip(d: ObjectBuilder, on: str, at: Point, out: FloatArray, along: FloatArra
         out: Where the surface looks.
         along: Its direction.
         length: How long it is [m].
+        kind: ``bar``, ``knob``, ``cup``, ``edge`` or the like, or ``none``; drawn if empty.
     """
-    if d.style.grips == "none":
+    if d.style.grips == "none" or kind == "none":
         return
-    at = np.asarray(at, dtype=np.float64)
-    thick, half = min(0.12 * length, 0.03), 0.5 * length * along
-    kind = d.pick("bar", "bar", "block", "rod", "lip", "stub", "knob", "plate")
+    at = np.asarray(at, dtype=np.float64) - (0.0 if d.style.grips == "apart" else 1e-3) * out
+    kind = kind or d.pick("bar", "bar", "block", "rod", "edge", "stub", "knob", "plate")
+    thick, half = min(0.12 * length, d.pick(0.016, 0.03)), 0.5 * length * along
     high = d.draw(1.5, 3.0) * thick
     top = at + high * out
     if kind == "bar":
@@ -116,8 +121,13 @@ def grip(d: ObjectBuilder, on: str, at: Point, out: FloatArray, along: FloatArra
         shapes = [d.cylinder(0.5 * thick, level - half, level + half)]
     elif kind == "knob":
         shapes = [d.cylinder(0.6 * thick, at, top), ball(thick, top)]
+    elif kind == "cup":
+        half = min(0.5 * length, 0.04) * along
+        bowl = d.cylinder(0.03, at - half, at + half) - d.cylinder(0.025, at - 0.94 * half, at + 0.94 * half)
+        before = bowl.trim_by_plane(out, float(at @ out))
+        shapes = [before.trim_by_plane(np.cross(along, out), float(at @ np.cross(along, out)))]
     else:
-        wide, share = {"block": (1.0, 1.0), "lip": (0.3, 1.0), "stub": (2.0, 0.25), "plate": (0.2, 1.0)}[kind]
+        wide, share = {"block": (1.0, 1.0), "edge": (0.3, 1.0), "stub": (2.0, 0.25), "plate": (0.2, 1.0)}[kind]
         middle, edge = at + 0.5 * high * out, top + 0.4 * thick * np.cross(out, along)
         shapes = [beam(wide * thick, high, middle - share * half, middle + share * half, out)]
         if kind == "plate":
@@ -125,7 +135,7 @@ def grip(d: ObjectBuilder, on: str, at: Point, out: FloatArray, along: FloatArra
     if d.style.grips == "apart":
         d.fix(d.part(f"{on}_grip", *shapes, material="metal"), on)
     else:
-        d.part(on, *shapes)
+        d.part(on, *d.workshop.as_handle(*shapes))
 
 
 def leaf(
@@ -140,8 +150,9 @@ def leaf(
     reach: float = 1.6,
     back: float = 0.0,
     inset: bool = False,
-    handle: bool = True,
+    handle: bool | str = True,
     glazed: float = 0.0,
+    barrels: int = 0,
     material: str | None = None,
 ) -> None:
     """A door, lid or flap: a plate between two corners that turns about an edge of its own and opens outward.
@@ -157,8 +168,9 @@ def leaf(
         reach: How far it opens [rad].
         back: How far it opens to the other side [rad].
         inset: It stands in its parent, not before it.
-        handle: It may have one.
+        handle: It may have one, or has one of a kind of `grip`.
         glazed: Share of the leaves that are a frame with a pane; of the others some have a panel. Zero: all are plain.
+        barrels: So many barrel hinges hold it, which both parts have a share of; 0: as this hand draws hinges.
         material: Of the leaf; its parent's if None.
     """
     low, high = np.minimum(lower, upper), np.maximum(lower, upper)
@@ -171,24 +183,82 @@ def leaf(
     kind = "pane" if glazed and d.maybe(glazed) else d.pick("plain", "plain", "panel") if glazed else "plain"
     d.front(name, parent, material=material)
     _filled(d, name, low, high, out, kind)
-    inward = 0.0 if d.style.has_bore else d.pick(0.0, 0.0, 0.0, d.draw(0.01, 0.05) * wide)
+    inward = 0.0 if d.style.has_bore or barrels else d.pick(0.0, 0.0, 0.0, d.draw(0.01, 0.05) * wide)
     middle, half = 0.5 * (low + high), 0.5 * float((high - low) @ across) - inward
-    pivot = middle + half * hinge + ((0.5 if d.style.barrels else d.style.line - 0.5) * thick) * out
-    if d.style.barrels:
+    if barrels:
+        plate = middle, half * hinge, 0.5 * length * along, thick * out
+        pivot = _knuckles(d, name, parent, plate, play, barrels, inset=inset)
+    else:
+        pivot = middle + half * hinge + ((0.5 if d.style.barrels else d.style.line - 0.5) * thick) * out
+    if d.style.barrels and not barrels:
         radius = min(0.6 * thick, 0.03 * wide)
         for at in (pivot - 0.3 * length * along, pivot + 0.3 * length * along):
             ends = at - 0.06 * length * along, at + 0.06 * length * along
             d.part(d.pick(name, name, parent), d.cylinder(radius, *ends))
+    if inset and d.style.has_bore:  # its inner free edge would meet the border when it opens
+        free = middle - half * hinge
+        less = thick**2 / wide * hinge
+        outer, inner = free + 0.5 * thick * out, free - 0.5 * thick * out
+        corners = [at + s * length * along for at in (outer, inner, inner + less) for s in (-1.0, 1.0)]
+        d.cut(name, Manifold.hull_points(np.array(corners)))
     if handle:
-        lengthwise = d.maybe(0.8)  # most handles run along the hinge
+        lengthwise = d.maybe(0.8)  # most handles run along the hinge; cups lie
+        if handle == "cup":
+            lengthwise = abs(hinge[2]) > 0.5
         room = 0.8 * length if lengthwise else 0.24 * wide
-        at = middle - d.draw(0.68, 0.86) * half * hinge + 0.5 * thick * out
-        size = min(room, d.pick(min(0.25 * wide, 0.15), d.draw(0.2, 0.9) * room))
-        grip(d, name, at, out, along if lengthwise else across, size)
+        share = min(d.draw(0.68, 0.86), 1.0 - min(0.05 / half, 0.5))  # clear of a leaf beside it that opens
+        at = middle - share * half * hinge + 0.5 * thick * out
+        size = min(room, d.pick(min(d.draw(0.2, 0.9) * room, 0.3), min(0.25 * wide, 0.15)))
+        grip(d, name, at, out, along if lengthwise else across, size, "" if handle is True else handle)
         if d.maybe(0.15):  # one on either side
             behind = middle - 0.85 * half * hinge - 0.5 * thick * out
             d.part(name, d.cylinder(0.02 * wide, behind, behind - 0.05 * wide * out))
     d.hinge(name, parent, np.cross(out, hinge), pivot, reach, -back)
+
+
+_KNUCKLE = 0.004  # radius of a barrel hinge [m]
+
+
+def _knuckles(
+    d: ObjectBuilder,
+    name: str,
+    parent: str,
+    plate: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+    play: float,
+    count: int,
+    *,
+    inset: bool,
+) -> FloatArray:
+    """Hold a leaf by barrels beside its edge that clasp both parts; returns a point on the pins.
+
+    Args:
+        d: The object.
+        name: Of the leaf.
+        parent: What carries it.
+        plate: Middle of the leaf, and from there to its hinged edge, to its end along that, and through it [m].
+        play: Between both [m].
+        count: Of barrels.
+        inset: They stand before the flush faces of both; otherwise beside the leaf.
+    """
+    middle, to_edge, to_end, through = plate
+    r, thick, half = _KNUCKLE, float(np.linalg.norm(through)), float(np.linalg.norm(to_end))
+    gap = d.gap(10.0 * r)
+    into, inward, along = -to_edge / np.linalg.norm(to_edge), -through / thick, to_end / half
+    if inset:
+        pivot = middle + to_edge - 0.5 * play * into - (0.5 * thick + r + gap) * inward
+        near, far, face = 0.5 * play + 0.6 * r, 0.5 * play + 3.0 * r, (r + gap - 2e-4, r + gap + 1e-4)
+        on_parent, on_leaf = (-far, -near, *face), (near, far, *face)
+    else:
+        aside = r + 0.003 + gap  # so that the parent's halves pass the leaf
+        pivot = middle + to_edge - aside * into
+        on_parent = (r - 0.002, r + 0.0043, 0.5 * thick + play + 0.005, 0.5 * thick + play + 0.02)
+        on_leaf = (aside, aside + 0.02, -0.5 * thick, 0.003 - 0.5 * thick)
+    halves = barrel(min(15.0 * r, half), r, gap, (on_parent, on_leaf))
+    for share in np.linspace(-0.7, 0.7, count):
+        place = np.column_stack([into, inward, along, pivot + share * to_end])
+        for part, solid in zip((parent, name), halves, strict=True):
+            d.part(part, solid.transform(place))
+    return pivot
 
 
 def pane(d: ObjectBuilder, name: str, lower: Point, upper: Point, out: FloatArray = -Y, material: str = "wood") -> None:
@@ -240,7 +310,7 @@ def drawer(
     travel: float = 0.75,
     lap: float | None = None,
     front: float | None = None,
-    handle: bool = True,
+    handle: bool | str = True,
     material: str | None = None,
 ) -> None:
     """A tray, a block or a front in the bay between two corners, which ends at the front; it comes out.
@@ -255,7 +325,7 @@ def drawer(
         travel: How far, in depths of the bay.
         lap: How far a front that stands before the bay covers its edges [m]; 0: it is let in, None: a little.
         front: Thickness of the front [m].
-        handle: It may have one.
+        handle: It may have one, or has one of a kind of `grip`.
         material: Of the drawer; its parent's if None.
     """
     low, high = np.minimum(lower, upper), np.maximum(lower, upper)
@@ -280,7 +350,8 @@ def drawer(
     if handle:
         along = np.array([1.0, 1.0, 0.0]) * sides
         along /= max(float(np.linalg.norm(along)), 1e-9)
-        grip(d, name, behind + plate * out, out, along, min(0.35 * float(size @ along), 0.2))
+        kind = "" if handle is True else handle
+        grip(d, name, behind + plate * out, out, along, min(0.35 * float(size @ along), 0.2), kind)
     d.slide(name, parent, out, travel * deep)
 
 

@@ -165,6 +165,17 @@ def _placed(item: _Group | str, across: tuple[float, float], up: tuple[float, fl
     return cells
 
 
+def grid(count: int, columns: int, size: tuple[float, float]) -> list[tuple[float, float]]:
+    """Return the middles of `count` fields in rows of `columns`, first row on top, on an area around the origin."""
+    columns = max(1, min(columns, count))
+    rows = max(1, -(-count // columns))
+    pitch = size[0] / columns, size[1] / rows
+    return [
+        ((k % columns + 0.5) * pitch[0] - 0.5 * size[0], 0.5 * size[1] - (k // columns + 0.5) * pitch[1])
+        for k in range(count)
+    ]
+
+
 def _malformed(text: str, at: str) -> InputError:
     return InputError(
         f"The layout {text!r} cannot be read at {at!r}. Write for example '2*door / 3*drawer': / stacks, | sets "

@@ -169,6 +169,11 @@ class Workshop:
         return self.painted(*solids, material=self._handles[0], color=self._handles[1])
 
     @property
+    def looks(self) -> Mapping[str, Look]:
+        """Material and colour of the bodies that are there, keyed by name."""
+        return self._looks
+
+    @property
     def moves(self) -> bool:
         """True if there is a joint."""
         return bool(self._joints)
@@ -205,19 +210,11 @@ class Workshop:
         """
         kind = JointType.CONTINUOUS if limits is None else JointType.REVOLUTE
         lower, upper = limits or (-math.inf, math.inf)
-        self.hang(
-            BlueprintJoint(
-                parent=parent,
-                child=child,
-                kind=kind,
-                axis=self._direction(axis),
-                pivot=self._point(pivot),
-                lower=lower,
-                upper=upper,
-                mimic=follows,
-            ),
-            rest,
-        )
+        joint = BlueprintJoint(
+            parent=parent, child=child, kind=kind, axis=np.asarray(axis), pivot=np.asarray(pivot), lower=lower,
+            upper=upper, mimic=follows,
+        )  # fmt: skip
+        self.hang(joint, rest)
 
     def slides(
         self,
@@ -230,18 +227,11 @@ class Workshop:
         rest: float = 0.0,
     ) -> None:
         """Hang a body on another one by a slide; arguments as for `turns`, limits in metres."""
-        self.hang(
-            BlueprintJoint(
-                parent=parent,
-                child=child,
-                kind=JointType.PRISMATIC,
-                axis=self._direction(axis),
-                pivot=self._point(pivot),
-                lower=limits[0],
-                upper=limits[1],
-            ),
-            rest,
-        )
+        joint = BlueprintJoint(
+            parent=parent, child=child, kind=JointType.PRISMATIC, axis=np.asarray(axis), pivot=np.asarray(pivot),
+            lower=limits[0], upper=limits[1],
+        )  # fmt: skip
+        self.hang(joint, rest)
 
     def closes(self, one: str, other: str, pivot: Point) -> None:
         """Say that two bodies share a pin at `pivot` [m] besides the joints of the tree."""
@@ -254,17 +244,15 @@ class Workshop:
     def _point(self, point: Point) -> FloatArray:
         return np.asarray(point if self._frame is None else self._frame @ np.append(point, 1.0))
 
-    def _direction(self, axis: Point) -> FloatArray:
-        return np.asarray(axis if self._frame is None else self._frame[:, :3] @ axis)
-
     def hang(self, joint: BlueprintJoint, rest: float = 0.0) -> None:
-        """Hang a body on another one as a joint in the world frame says.
+        """Hang a body on another one as a joint says.
 
         Args:
             joint: It is shown at its `value`, unless it is to stand open.
             rest: As for `turns`.
         """
-        self._joints.append(replace(joint, value=0.0))
+        axis = joint.axis if self._frame is None else self._frame[:, :3] @ joint.axis
+        self._joints.append(replace(joint, axis=axis, pivot=self._point(joint.pivot), value=0.0))
         if joint.mimic is None:
             opened = rest * joint.upper if math.isfinite(joint.upper) else 0.0
             self._rest[joint.child] = opened or joint.value

@@ -10,12 +10,11 @@ import numpy as np
 from kinematify.joints.bearings.line import Line
 from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
 from kinematify.joints.choice.judge import agreed, alike_edges, judge
-from kinematify.joints.choice.kind import ScoredHypotheses, Siblings, decide_kind
 from kinematify.joints.choice.limits import find_range
-from kinematify.joints.hypotheses.panels import rank_turns
-from kinematify.joints.hypotheses.slides import rank_slides
-from kinematify.joints.measure.scene import joint_scene, part_frames
-from kinematify.joints.measure.workspace import PartCache
+from kinematify.joints.features.columns import features_of
+from kinematify.joints.features.scene import joint_scene, part_frames
+from kinematify.joints.features.workspace import PartCache
+from kinematify.joints.hypotheses.propose import propose
 from kinematify.robot.exact_faces import joined_faces
 from kinematify.robot.vectors import lengths_of
 
@@ -28,8 +27,8 @@ if TYPE_CHECKING:
     from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.choice.judge import Posterior
-    from kinematify.joints.measure.frames import BoxFrame
-    from kinematify.joints.measure.scene import JointScene
+    from kinematify.joints.features.columns import Features
+    from kinematify.joints.features.frames import BoxFrame
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.exact_faces import ExactFaces
 
@@ -58,11 +57,11 @@ def estimate_joints(
     """
     cache = PartCache(assembly, graph, samples=config.samples, seed=seed)
     frames = part_frames(cache, tree, config)
-    weighed = {
-        edge: weigh_joints(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=config)
+    found = {
+        edge: edge_features(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=config)
         for edge in tree.edges()
     }
-    judged = {edge: judge(joints, config.confidence) for edge, joints in weighed.items()}
+    judged = {edge: judge(features, config.confidence) for edge, features in found.items()}
     for group in alike_edges(graph, tree):
         alike = [judged[edge] for edge in group]
         likely = agreed([item.hypotheses.kinds for item in alike], [item.likely for item in alike])
@@ -70,13 +69,13 @@ def estimate_joints(
         judged |= {
             edge: replace(judged[edge], likely=given, fixed=fixed) for edge, given in zip(group, likely, strict=True)
         }
-    estimates = (_estimate(weighed[edge], judged[edge], config=config) for edge in tree.edges())
+    estimates = (_estimate(found[edge], judged[edge], config=config) for edge in tree.edges())
     return tuple(with_exact_lines(assembly, estimate) for estimate in estimates)
 
 
-def _estimate(weighed: ScoredHypotheses, judged: Posterior, *, config: JointsConfig) -> JointEstimate:
-    scene, decision = weighed.scene, weighed.decision
-    fixed = decision.kind is JointType.FIXED or judged.fixed > config.confidence.fixed
+def _estimate(features: Features, judged: Posterior, *, config: JointsConfig) -> JointEstimate:
+    scene = features.scene
+    fixed = judged.fixed > config.confidence.fixed
     kind = JointType.FIXED if fixed else judged.kind(judged.best)
     axis, pivot = judged.hypotheses.axes[judged.best], judged.hypotheses.pivots[judged.best]
     found = find_range(scene, kind, axis, pivot, config)
@@ -86,10 +85,10 @@ def _estimate(weighed: ScoredHypotheses, judged: Posterior, *, config: JointsCon
         axis=found.sign * axis,
         pivot=pivot,
         **found.facts,
-        confidence=judged.fixed if judged.fixed > config.confidence.fixed else judged.confidence,
+        confidence=judged.fixed if fixed else judged.confidence,
         alternatives=judged.alternatives(config.alternatives),
         evidence={
-            **decision.cues,
+            **features.type_cues,
             "odds_prismatic": judged.odds_prismatic,
             "probability_fixed": judged.fixed,
             "bearing_gate": float(scene.has_bearing),
@@ -100,7 +99,7 @@ def _estimate(weighed: ScoredHypotheses, judged: Posterior, *, config: JointsCon
     )
 
 
-def weigh_joints(
+def edge_features(
     cache: PartCache,
     tree: KinematicTree,
     frames: Mapping[int, BoxFrame],
@@ -109,8 +108,8 @@ def weigh_joints(
     *,
     config: JointsConfig,
     given: Sequence[Line] = (),
-) -> ScoredHypotheses:
-    """Rank all turns and slides of the tree edge (parent, child) and weigh the types against each other.
+) -> Features:
+    """Propose the joints of the tree edge (parent, child) and measure them.
 
     Args:
         cache: Samples and scenes of the parts.
@@ -119,79 +118,11 @@ def weigh_joints(
         edge: Parent and child.
         bearing: Of their contact, if they touch.
         config: Weights and thresholds.
-        given: Lines to rank beside the proposals, as turns about them and as slides along them. They have no say in
+        given: Lines to measure beside the proposals, as turns about them and as slides along them. They have no say in
             the type.
     """
     scene = joint_scene(cache, tree, frames, edge, bearing, config=config)
-    twins = leaf_twins(cache.graph, tree, edge)
-    siblings = describe_twins(scene, tree, frames, twins)
-    turns = rank_turns(scene, config, given)
-    grips = _twin_directions(scene, frames, twins) if siblings.gripping else np.empty((0, 3))
-    slides = rank_slides(scene, grips, config, [line.axis for line in given])
-    decision = decide_kind(scene, siblings, turns.proposed, slides.proposed, config)
-    return ScoredHypotheses(scene=scene, turns=turns, slides=slides, decision=decision)
-
-
-# ---- twins ---------------------------------------------------------------------------------------------------------
-
-
-def leaf_twins(graph: ContactGraph, tree: KinematicTree, edge: tuple[int, int]) -> tuple[int, ...]:
-    """Congruent siblings of the child that carry nothing, without the child itself; none if it carries something."""
-    parent, child = edge
-    label = graph.cluster_of[child]
-    if label < 0 or tree.children[child]:
-        return ()
-    return tuple(
-        part
-        for part in graph.clusters[label]
-        if part != child and tree.parents[part] == parent and not tree.children[part]
-    )
-
-
-def describe_twins(
-    scene: JointScene, tree: KinematicTree, frames: Mapping[int, BoxFrame], twins: tuple[int, ...]
-) -> Siblings:
-    """What the twins say about the type."""
-    return Siblings(
-        count=1 + len(twins),
-        gripping=len(twins) == 1 and _gripping(scene, tree, frames[twins[0]]),
-        overlapping=any(_overlapping(scene, frames[twin]) for twin in twins),
-    )
-
-
-def _gripping(scene: JointScene, tree: KinematicTree, twin: BoxFrame) -> bool:
-    """Fingers: no bearing, no panel, standing out of the parent and apart from each other.
-
-    At the end of a chain that is enough. On a base, where doors, legs and wheels are twins too, the pair must also be
-    parallel and thin along the line between them.
-    """
-    apart_line = twin.centre - scene.centre
-    apart_line = apart_line / max(float(np.linalg.norm(apart_line)), 1e-12)
-    closing = abs(float(apart_line @ scene.frame.axes[scene.frame.thin]))
-    parallel = abs(float(apart_line @ twin.axes[twin.thin]))
-    facing = min(closing, parallel) > np.cos(np.radians(3.0)) and not scene.plate and scene.smallness < 1.0
-    chain_end = (tree.depths[scene.child] >= 2 and scene.smallness < 1.0) or facing  # buttons of a door are no fingers
-    stands_out = scene.inside < 0.8
-    apart = float(np.linalg.norm(twin.centre - scene.centre)) < 2.0 * float(scene.parent_frame.extents.max())
-    return bool(chain_end and stands_out and apart and not scene.has_bearing and not scene.is_round)
-
-
-def _overlapping(scene: JointScene, twin: BoxFrame) -> bool:
-    """Parallel thin panels whose planes differ by about their own thickness, handles included: they can pass."""
-    frame = scene.frame
-    parallel = np.abs(twin.axes @ frame.axes[frame.thin]).max() > np.cos(np.radians(3.0))
-    if not (scene.panel and scene.upright and parallel):
-        return False
-    shift = (twin.centre - scene.centre) @ frame.axes.T
-    thickness = float((frame.upper - frame.lower)[frame.thin])
-    depth = abs(float(shift[frame.thin])) / max(thickness, 1e-12)
-    return bool(0.6 < depth < 4.0)
-
-
-def _twin_directions(scene: JointScene, frames: Mapping[int, BoxFrame], twins: tuple[int, ...]) -> FloatArray:
-    offsets = [frames[twin].centre - scene.centre for twin in twins]
-    long_enough = [offset for offset in offsets if np.linalg.norm(offset) > 1e-6 * scene.diagonal]
-    return np.array([offset / np.linalg.norm(offset) for offset in long_enough]).reshape(-1, 3)
+    return features_of(scene, propose(scene, config, given), config)
 
 
 _Joint = TypeVar("_Joint", JointEstimate, JointCandidate)

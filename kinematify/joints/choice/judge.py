@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.candidate import JointCandidate, JointType
+from kinematify.joints.candidate import FIXED, SLIDE, TURN, JointCandidate, JointType
 from kinematify.joints.choice.opening import rigid_odds
 from kinematify.joints.choice.scorer import shipped_scorer
-from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure
-from kinematify.joints.measure.workspace import point_cloud
+from kinematify.joints.features.workspace import point_cloud
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,14 +20,13 @@ if TYPE_CHECKING:
     from kinematify.config import ConfidenceConfig
     from kinematify.contact.graph import ContactGraph
     from kinematify.contact.tree import KinematicTree
-    from kinematify.joints.choice.kind import ScoredHypotheses
-    from kinematify.joints.measure.measurements import Values
+    from kinematify.joints.candidate import Hypotheses
+    from kinematify.joints.features.columns import Features
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 
 _SAME_COSINE = float(np.cos(np.radians(5.0)))
 _SAME_LINE = 0.02
-_ODDS = 8.0  # what cues say of the type counts no more than this
 _ANGLE = 4.0  # [deg] off by this much, a direction counts 1/e
 _DISTANCE = 0.05  # of the child's diagonal, the same for a line
 
@@ -158,86 +156,30 @@ def rightness(degrees: FloatArray, apart: FloatArray) -> FloatArray:
     return np.asarray(np.exp(-((degrees / _ANGLE) ** 2) - (apart / _DISTANCE) ** 2))
 
 
-def judge(weighed: ScoredHypotheses, config: ConfidenceConfig) -> Posterior:
-    """Measure every proposed joint of an edge and score them together.
+def judge(features: Features, config: ConfidenceConfig) -> Posterior:
+    """Score every proposed joint of an edge beside all others.
 
     Args:
-        weighed: The proposed joints with what cues say of them.
+        features: What is measured of them.
         config: How much cues and the child's name weigh, and from where on a part is fixed.
     """
-    hypotheses = hypotheses_of(weighed)
-    measured = {**measure(weighed.scene, hypotheses), **cues_of(weighed), **verdicts_of(weighed)}
-    slides = weighed.decision.kind is JointType.PRISMATIC
-    scene = weighed.scene
+    scene, hypotheses, columns = features.scene, features.hypotheses, features.columns
     cloud = point_cloud(scene.cache, scene.parent, scene.child, scene.others, scene.frame.diagonal)
-    likely = shipped_scorer().probabilities(hypotheses, measured, cloud)
-    odds = rigid_odds(hypotheses.kinds, measured)
-    said = kind_said(weighed.scene.cache.assembly.parts[weighed.scene.child].name)
+    likely = shipped_scorer().probabilities(hypotheses, columns, cloud)
+    odds = rigid_odds(hypotheses.kinds, columns)
+    said = kind_said(scene.cache.assembly.parts[scene.child].name)
     if said is not None:
         likely = likely * np.exp(config.name_weight * (hypotheses.kinds == said))
         odds += config.name_weight if said == FIXED else -config.name_weight
-    by_cues = 1 + (len(weighed.turns.scores) if slides else 0)
     return Posterior(
         hypotheses=hypotheses,
         likely=likely / likely.sum(),
         fixed=float(1.0 / (1.0 + np.exp(-odds))),
-        by_cues=by_cues,
-        support=measured["rules_score"],
-        size=weighed.scene.frame.diagonal,
+        by_cues=features.by_cues,
+        support=columns["rules_score"],
+        size=scene.frame.diagonal,
         lead=config.cues_lead,
     )
-
-
-def hypotheses_of(weighed: ScoredHypotheses) -> Hypotheses:
-    """Fixed, every turn and every slide, in this order."""
-    scene, lines, slides = weighed.scene, weighed.turns.lines, weighed.slides
-    anchor = scene.contact.centroid if len(scene.contact.points) else scene.centre
-    return Hypotheses(
-        kinds=np.array([FIXED] + [TURN] * len(lines.axes) + [SLIDE] * len(slides.axes)),
-        axes=np.concatenate([np.zeros((1, 3)), lines.axes, slides.axes]),
-        pivots=np.concatenate([anchor[None], lines.pivots, np.tile(anchor, (len(slides.axes), 1))]),
-        sources=("fixed", *lines.sources, *slides.sources),
-    )
-
-
-def cues_of(weighed: ScoredHypotheses) -> Values:
-    """The cues of turns and of slides before any weight, as measurements like others; NaN where none applies, (h,)."""
-    scene, turns, slides = weighed.scene, weighed.turns, weighed.slides
-    n, m = len(turns.scores), len(slides.scores)
-
-    def of_turns(value: FloatArray) -> FloatArray:
-        return np.concatenate([[np.nan], value, np.full(m, np.nan)])
-
-    def of_slides(value: FloatArray) -> FloatArray:
-        return np.concatenate([np.full(1 + n, np.nan), value])
-
-    facts = {"has_bearing": scene.has_bearing, "mechanism": scene.mechanism, "smallness": scene.smallness}
-    return {
-        "turn_room": of_turns(turns.free.max(axis=1)),
-        "turn_room_parent": of_turns(turns.free_parent.max(axis=1)),
-        "slide_room": of_slides(slides.free.max(axis=1)),
-        "slide_room_parent": of_slides(slides.free_parent.max(axis=1)),
-        **{f"turn_{name}": of_turns(value) for name, value in turns.cues.items()},
-        **{f"slide_{name}": of_slides(value) for name, value in slides.cues.items()},
-        **{name: np.full(1 + n + m, float(value)) for name, value in facts.items()},
-    }
-
-
-def verdicts_of(weighed: ScoredHypotheses) -> Values:
-    """What the weighted sums of cues say of each hypothesis, and the cues of the type, (h,) each.
-
-    They were written while objects were looked at. Half of what is fitted does not see them.
-    """
-    turns, slides, decision = weighed.turns, weighed.slides, weighed.decision
-    n, m = len(turns.scores), len(slides.scores)
-    odds = float(np.clip(decision.odds, -_ODDS, _ODDS))
-    facts = {f"type_{name}": value for name, value in decision.cues.items()}
-    facts["stuck"] = float(decision.kind is JointType.FIXED)
-    return {
-        "rules_score": np.concatenate([[np.nan], *(found.scores - found.scores.max() for found in (turns, slides))]),
-        "rules_odds": np.concatenate([[0.0], np.full(n, -odds), np.full(m, odds)]),
-        **{name: np.full(1 + n + m, value) for name, value in facts.items()},
-    }
 
 
 _WORDS = {

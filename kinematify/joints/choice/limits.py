@@ -7,24 +7,85 @@ of those kinds).
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from kinematify.joints.choice.opening import clockwise_sign, is_continuous, neutral_sign, swing_sign, turn_sign
-from kinematify.joints.measure.frames import UP
-from kinematify.joints.measure.scene import eccentricity
-from kinematify.joints.measure.sweep import Sweep, moving_points, sweep_turns
-from kinematify.joints.measure.travel import AS_GIVEN, USUAL, End, Range, Ways, free_ways, slide_range
+from kinematify.joints.choice.opening import clockwise_sign, is_continuous, neutral_sign, turn_sign
+from kinematify.joints.features.frames import UP
+from kinematify.joints.features.sweep import Sweep, moving_points, slide_clearance, sweep_slides, sweep_turns
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from kinematify.config import JointsConfig
-    from kinematify.joints.measure.scene import JointScene
+    from kinematify.joints.features.scene import JointScene
     from kinematify.robot.arrays import FloatArray
+
+
+class End(NamedTuple):
+    """How far a joint goes one way."""
+
+    motion: float
+    """From the given pose, not negative [rad or m]."""
+    stop: str
+    """What ends it there, in words; empty where nothing does."""
+
+
+AS_GIVEN, USUAL, GUIDE = End(0.0, "the given pose"), "what is usual for such a part", "the end of its guide"
+Ways = tuple[End, End]
+"""Along an axis and against it."""
+
+
+def free_ways(
+    scene: JointScene, sweep: Callable[[Sequence[int]], Sweep], obstacles: Sequence[int], share: float
+) -> Ways:
+    """How far one joint goes both ways until more than a share of the part has met others, and which it meets.
+
+    Args:
+        scene: The pair.
+        sweep: The motion against some parts.
+        obstacles: All parts that may be in the way.
+        share: Of the points that are swept.
+    """
+    whole = sweep(obstacles)
+    each = [sweep((part,)) for part in obstacles] if len(obstacles) > 1 else [whole]
+    ways = []
+    for side, motion in enumerate(whole.free(share)[0]):
+        met = obstacles[int(np.argmax([one.crossed(motion)[0, side] for one in each]))]
+        stop = f"contact with {scene.cache.assembly.parts[met].name}"
+        ways.append(End(float(motion), stop if motion < whole.limit else "the end of the search"))
+    return ways[0], ways[1]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Range:
+    """Limits of a joint whose axis is turned so that q > 0 opens."""
+
+    kind: JointType
+    """`continuous` where a wheel or knob meets nothing in a full turn; else as given."""
+    sign: float
+    """+1 if the given axis opens the joint as it is, -1 if it must be reversed."""
+    back: End
+    """Lower limit."""
+    ahead: End
+    """Upper limit."""
+    free: Ways
+    """Free motion in the opening direction and against it."""
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """The fields of a joint that it decides, but for the axis and what else is evidence."""
+        ends = {"lower": 0.0 - self.back.motion, "upper": self.ahead.motion}
+        return {"kind": self.kind, **ends, "stops": (self.back.stop, self.ahead.stop)}
+
+    @property
+    def evidence(self) -> Mapping[str, float]:
+        """Free motion in the opening direction and against it [rad or m]."""
+        return {"free_forward": self.free[0].motion, "free_backward": self.free[1].motion}
 
 
 def find_range(scene: JointScene, kind: JointType, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> Range:
@@ -41,7 +102,7 @@ def find_range(scene: JointScene, kind: JointType, axis: FloatArray, pivot: Floa
         none = End(0.0, "")
         return Range(kind=kind, sign=1.0, back=none, ahead=none, free=(none, none))
     if kind is JointType.PRISMATIC:
-        return slide_range(scene, axis, config)
+        return _slide_range(scene, axis, config)
     return _turn_range(scene, axis, pivot, config)
 
 
@@ -58,13 +119,6 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
     furniture = scene.mechanism <= 0.5
     if furniture and scene.panel:
         return _panel_range(scene, axis, pivot, ways, config)
-    if (
-        not scene.serial
-        and scene.has_bearing
-        and free.min() > np.radians(config.limits.unstopped_deg)
-        and eccentricity(scene, axis, scene.contact.centroid) >= config.limits.even  # an arm on a pivot
-    ):
-        return _lever_range(scene, axis, ways, config)
     sign = turn_sign(scene, axis, pivot, free, config.limits)
     forward, backward = ways if sign > 0 else ways[::-1]
     usual, blocked = _usual(config.limits.panel_deg), free.max() < np.radians(config.limits.stopped_deg)
@@ -159,22 +213,6 @@ def _panel_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: W
     return _range(sign, AS_GIVEN, right if blocked else min(forward, right), free)
 
 
-# ---- levers ----------------------------------------------------------------------------------------------
-
-
-def _lever_range(scene: JointScene, axis: FloatArray, free: Ways, config: JointsConfig) -> Range:
-    """A handle is pressed down by its free end where that lies level; about an upright axis it goes both ways."""
-    reach = config.limits.lever_deg
-    arm = scene.cache.samples(scene.child).points.mean(axis=0) - scene.contact.centroid
-    falling = float(np.cross(axis, arm)[2])
-    if abs(falling) > 0.5 * float(np.linalg.norm(np.cross(axis, arm))):
-        sign = 1.0 if falling < 0.0 else -1.0
-        return _range(sign, AS_GIVEN, min(free[0 if sign > 0 else 1], _usual(reach)), free)
-    sign = swing_sign(scene, axis, scene.contact.centroid)
-    forward, backward = free if sign > 0 else free[::-1]
-    return _range(sign, min(backward, _usual(2 * reach)), min(forward, _usual(2 * reach)), free)
-
-
 def closing_turns(
     scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: JointsConfig
 ) -> tuple[float, ...]:
@@ -251,3 +289,212 @@ def _closeness(scene: JointScene, axis: FloatArray, pivot: FloatArray, turn: flo
     points = scene.cache.samples(scene.child).points[::10]
     moved = pivot + (points - pivot) @ rotation_about(axis, turn).T
     return float(scene.cache.distances(scene.parent, moved).mean())
+
+
+# ---- what slides ---------------------------------------------------------------------------------------------------
+
+
+def _slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> Range:
+    """Sweep a slide both ways, and bound it by what kind of thing slides.
+
+    Args:
+        scene: The pair.
+        axis: Unit direction, shape (3,).
+        config: Bounds.
+    """
+    points = moving_points(scene.cache, scene.child, config.sweep)
+    # A door in front of a tray moves away first, so furniture slides are bounded by the body alone.
+    obstacles = (scene.parent, *scene.others) if _in_linkage(scene) else (scene.parent,)
+
+    def swept(parts: Sequence[int]) -> Sweep:
+        return sweep_slides(scene.cache, points, axis[None], parts, limit=scene.diagonal, config=config.sweep)
+
+    ways = free_ways(scene, swept, obstacles, config.sweep.share)
+    free = np.array([way.motion for way in ways])
+    length = float(np.ptp(scene.frame.local(points) @ (scene.frame.axes @ axis)))
+    runs = _in_linkage(scene) or _is_runner(scene, axis, free, length, config)
+    guided = ways
+    if runs:
+        guided = _guided(scene, axis, ways[0], length, config), _guided(scene, -axis, ways[1], length, config)
+    limited = np.array([way.motion for way in guided])
+    sign = _slide_sign(scene, axis, limited if _in_linkage(scene) else free, config)
+    ways, guided = (ways, guided) if sign > 0 else (ways[::-1], guided[::-1])
+    way = sign * axis
+    if runs:
+        ahead, back = guided
+    elif (scene.smallness > 0.5 and not _is_small_lid(scene)) or (scene.has_bearing and _outwards(scene, way) < 0.0):
+        # It overlaps the pocket that it is in: a few of its points say nothing of the floor.
+        floor = free_ways(scene, swept, obstacles, config.limits.pressed_share)[0 if sign > 0 else 1]
+        ahead, back = min(floor, _press(scene, way, length, config)), AS_GIVEN
+    else:
+        ahead, back = _ends(scene, way, ways, length, config)
+    ahead = max(ahead, End(config.limits.least_slide * scene.diagonal, "the least travel that is kept"))
+    return Range(kind=JointType.PRISMATIC, sign=sign, back=back, ahead=ahead, free=ways)
+
+
+def _ends(scene: JointScene, direction: FloatArray, free: Ways, length: float, config: JointsConfig) -> Ways:
+    """Ends of a drawer or lid that opens along a direction, ahead and back; `free` likewise."""
+    forward, backward = free
+    ajar = min(backward, End(_standing_out(scene, direction), "flush with the body"))
+    ajar = ajar if ajar.motion > config.limits.ajar * length else AS_GIVEN
+    return min(forward, End(config.limits.drawer * length - ajar.motion, USUAL)), ajar
+
+
+def _guided(scene: JointScene, direction: FloatArray, free: End, length: float, config: JointsConfig) -> End:
+    """Travel along `direction` up to the next stop, or until the guide lets the part go.
+
+    Where no guide is seen, by as much of its own length as drawers travel.
+    """
+    guided = guided_travel(scene, direction, config)
+    return min(free, End(config.limits.drawer * length, USUAL) if guided is None else End(guided, GUIDE))
+
+
+def _is_runner(scene: JointScene, axis: FloatArray, free: FloatArray, length: float, config: JointsConfig) -> bool:
+    """A small part that can slide farther than it is long without leaving its guide: a collar on a rod, no button."""
+    if scene.smallness < 1.0 or _is_small_lid(scene):
+        return False
+    ways = (guided_travel(scene, sign * axis, config) or 0.0 for sign in (1.0, -1.0))
+    return bool(max(min(*pair) for pair in zip(free, ways, strict=True)) > config.guide.runner * length)
+
+
+def _standing_out(scene: JointScene, direction: FloatArray) -> float:
+    """How far the front of a drawer stands before the body, without its own handle [m]; 0 if it does not.
+
+    What leaves upwards is a lid: it lies where it is put, and would fall in if it could go lower.
+    """
+    if float(direction @ UP) > 0.9:
+        return 0.0
+    own = scene.cache.samples(scene.child).points @ direction
+    body = scene.cache.samples(scene.parent).points @ direction
+    return max(float(np.quantile(own, 0.98) - body.max()), 0.0)
+
+
+def _press(scene: JointScene, direction: FloatArray, length: float, config: JointsConfig) -> End:
+    """Travel of a button pressed along a direction that nothing stops: what stands out of its surroundings."""
+    own = scene.cache.samples(scene.child).points
+    body = scene.cache.samples(scene.parent).points
+    centre = 0.5 * (own.min(axis=0) + own.max(axis=0))
+    wide = 2.0 * float(np.linalg.norm(np.cross(own - centre, direction), axis=1).max())
+    around = body[np.linalg.norm(np.cross(body - centre, direction), axis=1) < wide]
+    visible = length
+    if len(around) > 10:
+        visible = min(length, max(float((around @ direction).min() - (own @ direction).min()), 0.0))
+    # A stem behind the cap is no travel: what is flush is pressed by a share of its length or width.
+    whole = min(length, wide)
+    return End(config.limits.button * (visible if visible > 0.1 * whole else whole), USUAL)
+
+
+def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray, config: JointsConfig) -> float:
+    """Drawers and lids leave by the longer way, outwards if both are alike; buttons go in.
+
+    What sits in a bore and has room behind it is pressed in, as a button that stands out before its pocket; a stopper
+    or cap has none, for it is in as far as it goes.
+    """
+    outwards = _outwards(scene, axis)
+    longer = 1.0 if free[0] > free[1] else -1.0
+    one_way = abs(float(free[0] - free[1])) > config.limits.one_way * scene.diagonal
+    if scene.smallness >= 1.0 and not (scene.has_bearing or _in_linkage(scene)) and one_way:
+        return -longer  # there is a floor below a button and nothing before it; round ones and collars are split below
+    if scene.has_bearing and not _in_linkage(scene) and not _is_sheath(scene, axis):
+        clearance = slide_clearance(scene, outwards * axis, config)
+        if clearance is not None and config.limits.room * scene.frame.diagonal < clearance[1] < np.inf:
+            return -outwards
+    if scene.smallness > 0.5 and not _in_linkage(scene) and not _is_small_lid(scene):
+        return -outwards
+    return longer if one_way else outwards
+
+
+def _is_sheath(scene: JointScene, axis: FloatArray) -> bool:
+    """Whether the child goes round what it slides on, as caps and sleeves do: such a part is drawn off.
+
+    Buttons and stoppers sit in what they slide in.
+    """
+    contact = scene.contact
+    if len(contact.points) == 0:
+        return False
+    across = contact.normals - (contact.normals @ axis)[:, None] * axis
+    inwards = np.einsum("ij,ij->i", across, contact.points - contact.centroid) < 0.0
+    aside = np.linalg.norm(across, axis=1) > 0.5
+    return bool(contact.weights @ (inwards & aside) > 0.8 * max(float(contact.weights @ aside), 1e-12))
+
+
+def _in_linkage(scene: JointScene) -> bool:
+    """A link of a machine, whose motion has no outside; buttons on the base of a lamp or fan are none."""
+    return scene.mechanism > 0.5 and (scene.smallness < 1.0 or (scene.serial and scene.parent_moves))
+
+
+def _is_small_lid(scene: JointScene) -> bool:
+    """A level disc on top that is larger than a button: it covers a mouth and is lifted."""
+    return scene.smallness < 1.0 and scene.on_top and scene.flat and scene.disc > 0.5
+
+
+def _outwards(scene: JointScene, axis: FloatArray) -> float:
+    """+1 where the axis points from the middle of the parent to the child, -1 where it points back."""
+    return 1.0 if float((scene.centre - scene.parent_frame.centre) @ axis) >= 0.0 else -1.0
+
+
+def guided_travel(scene: JointScene, direction: FloatArray, config: JointsConfig) -> float | None:
+    """How far the child slides along `direction` before its guide lets it go [m]; None where no guide is seen.
+
+    The guide is the surface of the contact that runs along the way. A carriage keeps all of its own surface on a long
+    rail, a rod fills a short collar all the time, and both may go until that ends; of a telescope each half leaves the
+    other from the start, and some of it has to stay in.
+
+    Args:
+        scene: The pair.
+        direction: Unit direction of travel, shape (3,).
+        config: `guide`, and `limits.drawer` as the share of the way out that a telescope goes.
+    """
+    travels = np.linspace(0.0, scene.diagonal, config.guide.steps + 1)
+    shares = guided_share(scene, direction, travels, config)
+    if shares is None or shares[0] < config.guide.kept:
+        return None
+    leaves = _first_below(travels, shares, config.guide.kept)
+    gone = _first_below(travels, shares, config.guide.gone)
+    return max(leaves, config.limits.drawer * gone)
+
+
+def guided_share(
+    scene: JointScene, direction: FloatArray, travels: FloatArray, config: JointsConfig
+) -> FloatArray | None:
+    """Share of the guide that still lies on the other part after each travel.
+
+    Args:
+        scene: The pair.
+        direction: Unit direction, shape (3,).
+        travels: [m], shape (n,).
+        config: `guide` and the band of a contact.
+
+    Returns:
+        The larger of the shares of both parts in [0, 1], shape (n,); None where the contact is not such.
+    """
+    edge = scene.cache.graph.by_pair.get((min(scene.parent, scene.child), max(scene.parent, scene.child)))
+    if edge is None:
+        return None
+    # Of small parts, the band of a contact is as wide as they are long.
+    reach = edge.gap + min(config.contact_band * scene.diagonal, config.guide.band * scene.frame.diagonal)
+    contact = scene.contact
+    sides = (
+        (scene.parent, contact.points, contact.normals, direction),
+        (scene.child, contact.parent_points, contact.parent_normals, -direction),
+    )
+    shares = []
+    for other, points, normals, motion in sides:
+        along = points[np.abs(normals @ direction) < np.sin(np.radians(config.guide.along_deg))]
+        guiding = along[scene.cache.distances(other, along) <= reach] if len(along) else along
+        if len(guiding) < config.guide.least_samples:
+            return None
+        thinned = guiding[:: max(1, len(guiding) // config.guide.samples)]
+        moved = (thinned[None] + travels[:, None, None] * motion).reshape(-1, 3)
+        shares.append((scene.cache.distances(other, moved) <= reach).reshape(len(travels), -1).mean(axis=1))
+    return np.asarray(np.maximum(*shares))
+
+
+def _first_below(travels: FloatArray, shares: FloatArray, level: float) -> float:
+    """Travel at which the share falls below a level, between the steps by proportion; the last one if never."""
+    below = np.flatnonzero(shares < level)
+    if len(below) == 0:
+        return float(travels[-1])
+    k = int(below[0])
+    part = (shares[k - 1] - level) / max(shares[k - 1] - shares[k], 1e-12)
+    return float(travels[k - 1] + part * (travels[k] - travels[k - 1]))

@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kinematify.joints.candidate import ELSEWHERE, SLIDE, TURN, Hypotheses
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, columns_of, shipped_scorer
-from kinematify.joints.measure.frames import UP
-from kinematify.joints.measure.measurements import GROUPS, SLIDE, TURN, Hypotheses, MeasuredHypotheses, measure
+from kinematify.joints.features.frames import UP
+from kinematify.joints.features.measurements import GROUPS, MeasuredHypotheses, measure
 from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 
     from kinematify.config import LimitsConfig
     from kinematify.joints.choice.scorer import Scorer
-    from kinematify.joints.measure.measurements import Values
-    from kinematify.joints.measure.scene import JointScene
+    from kinematify.joints.features.measurements import Values
+    from kinematify.joints.features.scene import JointScene
     from kinematify.robot.arrays import FloatArray, IntArray
 
 
@@ -43,15 +44,20 @@ def measure_sides(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> Val
     Returns:
         Name -> value of the turn about `axis` and of that about its opposite, shape (2,).
     """
-    turns = Hypotheses(
+    measured = MeasuredHypotheses(scene, _both_ways(axis, pivot), sided=True)
+    found = {name: value for group in GROUPS.values() for name, value in group(measured).items()}
+    return {**found, **_leads_to(measured)}
+
+
+def _both_ways(axis: FloatArray, pivot: FloatArray) -> Hypotheses:
+    """The turn about a line and that about its opposite."""
+    return Hypotheses(
         kinds=np.array([TURN, TURN]),
         axes=np.array([axis, -axis]),
         pivots=np.array([pivot, pivot]),
+        places=np.array([ELSEWHERE, ELSEWHERE]),
         sources=("forward", "backward"),
     )
-    measured = MeasuredHypotheses(scene, turns, sided=True)
-    found = {name: value for group in GROUPS.values() for name, value in group(measured).items()}
-    return {**found, **_leads_to(measured)}
 
 
 def _leads_to(m: MeasuredHypotheses) -> Values:
@@ -64,7 +70,7 @@ def _leads_to(m: MeasuredHypotheses) -> Values:
         "side_hinge": off * (way @ normal),
         "side_up": m.hypotheses.axes @ UP,
         "side_parent": way @ (scene.centre - scene.parent_frame.centre) / m.unit,
-        "side_contact": way @ (scene.centre - m.anchor) / m.unit,
+        "side_contact": way @ (scene.centre - m.scene.anchor) / m.unit,
     }
     if scene.handle is not None:
         pull = _directions(m, scene.handle.centre)
@@ -82,40 +88,21 @@ def _directions(m: MeasuredHypotheses, point: FloatArray) -> FloatArray:
 # ---- conventions ---------------------------------------------------------------------------------------------------
 
 
-def customary_sign(
-    scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: LimitsConfig
-) -> float:
-    """Of links in series and of what nothing stops: the freer way opens, else to its barrels, else the one that rises.
+def customary_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> float:
+    """Of links in series and of what nothing stops: the freer way opens, else the one that rises.
 
     Args:
         scene: The pair.
         axis: Unit direction, shape (3,).
         pivot: Point on the axis [m], shape (3,).
         free: Free angle towards + and - [rad], shape (2,).
-        config: What lies at a face of a panel.
     """
     if abs(free[0] - free[1]) > np.radians(10.0) and free.min() < np.radians(60.0):
         return 1.0 if free[0] > free[1] else -1.0
-    beside = _hinge_side(scene, axis, pivot, config)
-    if beside != 0.0:
-        return beside
     rises = float(np.cross(axis, scene.centre - pivot) @ UP)
     if abs(rises) < 0.05 * scene.frame.diagonal:
         return swing_sign(scene, axis, pivot)
     return 1.0 if rises > 0.0 else -1.0
-
-
-def _hinge_side(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: LimitsConfig) -> float:
-    """Sign of the turn towards the face of an upright panel at which its bearing lies, 0 without such a bearing.
-
-    Barrels stand on the side to which a door opens; on the other one its edge would run into what it hangs on.
-    """
-    normal = scene.frame.axes[scene.frame.thin]
-    off = float((pivot - scene.centre) @ normal)
-    aside = abs(off) > config.hinge_off * float(scene.frame.extents[scene.frame.thin])
-    if not (scene.has_bearing and scene.panel and scene.upright and aside):
-        return 0.0
-    return float(np.sign(off * (np.cross(axis, scene.centre - pivot) @ normal)))
 
 
 def swing_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> float:
@@ -191,7 +178,7 @@ def turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Floa
         return 1.0 if free[0] > free[1] else -1.0
     either = scene.serial or (scene.has_bearing and free.min() > unstopped)
     odds = 0.0 if either else opening_odds(shipped_scorer(OPENING_WEIGHTS), measure_sides(scene, axis, pivot))
-    return customary_sign(scene, axis, pivot, free, config) if abs(odds) < _UNDECIDED else float(np.sign(odds))
+    return customary_sign(scene, axis, pivot, free) if abs(odds) < _UNDECIDED else float(np.sign(odds))
 
 
 def opening_odds(scorer: Scorer, sides: Mapping[str, FloatArray]) -> float:
@@ -229,9 +216,7 @@ def is_continuous(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: 
     if scene.serial and scene.smallness < 1.0 and not scene.rolls:
         return False
     # Of both signs of the axis, which measurements around it start from; the mean does not depend on the one given.
-    both, pivots = np.array([axis, -axis]), np.array([pivot, pivot])
-    turn = Hypotheses(kinds=np.array([TURN, TURN]), axes=both, pivots=pivots, sources=("chosen", "chosen"))
-    scorer, measured = shipped_scorer(TURNING_WEIGHTS), measure(scene, turn)
+    scorer, measured = shipped_scorer(TURNING_WEIGHTS), measure(scene, _both_ways(axis, pivot))
     columns = np.stack([turning_columns(measured, row, scorer.measurements) for row in range(2)])
     odds = float(np.sort(scorer.sums(columns)).mean()) / scorer.temperature
     return bool(odds > (_FREE if free.min() >= np.pi else _STOPPED))

@@ -19,16 +19,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import log_softmax
 
-from kinematify.joints.measure.frames import UP
-from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
-from kinematify.joints.measure.workspace import CARRIED, CHILD, OTHER, PARENT
+from kinematify.joints.candidate import FIXED, SLIDE, TURN
+from kinematify.joints.features.frames import UP
+from kinematify.joints.features.workspace import CARRIED, CHILD, OTHER, PARENT
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.joints.measure.measurements import Hypotheses
-    from kinematify.joints.measure.workspace import Cloud
+    from kinematify.joints.candidate import Hypotheses
+    from kinematify.joints.features.workspace import Cloud
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 
@@ -55,12 +55,12 @@ class Scale:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Network:
-    """Networks of one shape in arrays; s of them, n inputs, h hidden values, g that are shared among hypotheses."""
+class SetNetwork:
+    """Networks that score all hypotheses of an edge together.
 
-    scale: Scale
-    verdicts: BoolArray
-    """Inputs that are hidden when it is asked without what the weighted cues say, shape (n,)."""
+    There are s of one shape, with n inputs, h hidden values, and g that are shared among hypotheses.
+    """
+
     embed: FloatArray
     """Shape (s, n, h)."""
     embed_bias: FloatArray
@@ -76,18 +76,33 @@ class Network:
     score: FloatArray
     """Shape (s, h)."""
 
+    def compared(self, k: int, inputs: NDArray[Any]) -> NDArray[Any]:
+        """What one of the networks makes of hypotheses with inputs (m, n) beside each other, shape (m, h)."""
+        own = swish(inputs @ self.embed[k] + self.embed_bias[k])
+        shared = own @ self.share[k] + self.share_bias[k]
+        of_all = np.concatenate([shared.mean(axis=0), shared.max(axis=0)])
+        beside = np.broadcast_to(of_all, (len(own), len(of_all)))
+        return swish(np.concatenate([own, beside], axis=1) @ self.compare[k] + self.compare_bias[k])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Network(SetNetwork):
+    """What is measured of all hypotheses of an edge as inputs."""
+
+    scale: Scale
+    verdicts: BoolArray
+    """Inputs that are hidden when it is asked without what the weighted cues say, shape (n,)."""
+
     def log_probabilities(self, columns: NDArray[Any]) -> FloatArray:
         """Mean log probability of each hypothesis of an edge, from its columns (h, f), shape (h,)."""
         with_verdicts = self.scale.inputs(columns)
-        without_verdicts = np.where(self.verdicts, 0.0, with_verdicts)
-        asked = np.stack([with_verdicts, without_verdicts])[:, None]
-        own = swish(asked @ self.embed + self.embed_bias[:, None])
-        shared = own @ self.share + self.share_bias[:, None]
-        of_all = np.concatenate([shared.mean(axis=2), shared.max(axis=2)], axis=2)[:, :, None]
-        beside = np.broadcast_to(of_all, (*own.shape[:3], of_all.shape[3]))
-        compared = swish(np.concatenate([own, beside], axis=3) @ self.compare + self.compare_bias[:, None])
-        scores = np.einsum("psnh,sh->psn", compared, self.score)
-        return np.asarray(log_softmax(scores, axis=2).mean(axis=(0, 1)))
+        asked = with_verdicts, np.where(self.verdicts, 0.0, with_verdicts)
+        scores = [
+            np.einsum("nh,h->n", self.compared(k, inputs), score)
+            for inputs in asked
+            for k, score in enumerate(self.score)
+        ]
+        return np.asarray(log_softmax(np.array(scores), axis=1).mean(axis=0))
 
 
 def swish(values: FloatArray) -> FloatArray:
@@ -108,8 +123,8 @@ _AT_ONCE = 8  # hypotheses: what is said of their points fits the cache
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class PointNetwork:
-    """Networks of one shape in arrays; s of them, h and g values that are hidden and shared among hypotheses."""
+class PointNetwork(SetNetwork):
+    """What is said of points as inputs, 6 q of them, and `LINE_INPUTS` of the lines."""
 
     first: FloatArray
     """Shape (s, POINT_INPUTS, p)."""
@@ -120,39 +135,20 @@ class PointNetwork:
     third: FloatArray
     """Shape (s, p, q)."""
     third_bias: FloatArray
-    embed: FloatArray
-    """Shape (s, 6 q + LINE_INPUTS, h)."""
-    embed_bias: FloatArray
-    share: FloatArray
-    """Shape (s, h, g)."""
-    share_bias: FloatArray
-    compare: FloatArray
-    """Shape (s, h + 2 g, h)."""
-    compare_bias: FloatArray
-    score: FloatArray
-    """Shape (s, h)."""
 
     def log_probabilities(self, cloud: Cloud, hypotheses: Hypotheses) -> FloatArray:
         """Mean log probability of each hypothesis among those that move, shape (h,); -inf for fixed."""
         moving = np.flatnonzero(hypotheses.kinds != FIXED)
         found = np.full(len(hypotheses), -np.inf)
         if len(moving):
-            of_points, of_lines = point_inputs(cloud, hypotheses, moving)
+            points, lines = point_inputs(cloud, hypotheses, moving)
             groups = point_groups(cloud.labels)
-            scores = [self._scores(k, of_points, of_lines, groups) for k in range(len(self.score))]
-            found[moving] = log_softmax(np.array(scores), axis=1).mean(axis=0)
+            scores = []
+            for k, score in enumerate(self.score):
+                pooled = [self._pooled(k, points[i : i + _AT_ONCE], groups) for i in range(0, len(points), _AT_ONCE)]
+                scores.append(self.compared(k, np.concatenate([np.concatenate(pooled), lines], axis=1)) @ score)
+            found[moving] = log_softmax(np.array(scores, dtype=np.float64), axis=1).mean(axis=0)
         return found
-
-    def _scores(self, k: int, points: NDArray[Any], lines: NDArray[Any], groups: list[IntArray]) -> FloatArray:
-        """What one of the networks says of the hypotheses, shape (n,)."""
-        pooled = [self._pooled(k, points[i : i + _AT_ONCE], groups) for i in range(0, len(points), _AT_ONCE)]
-        own = swish(np.concatenate([np.concatenate(pooled), lines], axis=1) @ self.embed[k] + self.embed_bias[k])
-        shared = own @ self.share[k] + self.share_bias[k]
-        of_all = np.broadcast_to(
-            np.concatenate([shared.mean(axis=0), shared.max(axis=0)]), (len(own), 2 * shared.shape[1])
-        )
-        compared = swish(np.concatenate([own, of_all], axis=1) @ self.compare[k] + self.compare_bias[k])
-        return np.asarray(compared @ self.score[k], dtype=np.float64)
 
     def _pooled(self, k: int, points: NDArray[Any], groups: list[IntArray]) -> NDArray[Any]:
         """Mean and greatest of what one of the networks says of the points of each group, shape (n, 6 q)."""

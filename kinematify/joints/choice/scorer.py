@@ -19,8 +19,8 @@ import numpy as np
 from scipy.special import log_softmax, softmax
 
 from kinematify.errors import EnvironmentFault
+from kinematify.joints.candidate import FIXED, SLIDE, TURN
 from kinematify.joints.choice.point_network import Network, PointNetwork, Scale
-from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.joints.measure.measurements import Hypotheses
-    from kinematify.joints.measure.workspace import Cloud
+    from kinematify.joints.candidate import Hypotheses
+    from kinematify.joints.features.workspace import Cloud
     from kinematify.robot.arrays import FloatArray, IntArray
 
 WEIGHTS = "weights.npz"

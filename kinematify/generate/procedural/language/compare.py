@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.language.motions import WAYS, goes, moves_so, turns_about_itself
+from kinematify.generate.procedural.language.motions import BARE, MOTIONS, WAYS, goes, moves_so, turns_about_itself
 from kinematify.generate.procedural.language.places import (
+    MIDDLE,
     PLACES,
     chosen_by_place,
     mirrored,
@@ -20,6 +21,7 @@ from kinematify.generate.procedural.language.places import (
     wrong_place,
     wrong_relation,
 )
+from kinematify.generate.procedural.language.specification import Claim, PartSpecification
 from kinematify.generate.procedural.language.words import ARTICLES, PURPOSES, lemma, stem_of
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.robot.joint_type import JointType
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import Part
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
-    from kinematify.generate.procedural.language.specification import Claim, PartSpecification, Specification
+    from kinematify.generate.procedural.language.specification import Specification
 
 _SIZE = 0.02  # of a size, by which it may be off
 _SYNONYMS = (
@@ -55,7 +57,7 @@ _NOT_OF_IT = ("hinge", "joint", "rim", "window", "desk", "table", "row", "column
 _BESIDE_WHAT = ("between", "behind", "in front of", "inside", "through", "across", "around", "of")
 _ON_EACH = ("handle", "knob", "pull", "grip")
 """What a parameter gives to every door and drawer."""
-_CLOSING = ("door", "drawer", "lid", "flap", "hatch", "gate", "leaf", "sash", "shutter", "cover", "window")
+CLOSING = ("door", "drawer", "lid", "flap", "hatch", "gate", "leaf", "sash", "shutter", "cover", "window")
 """Parts that belong into an opening, so that there are no more than openings."""
 _COVERS = (
     "door", "drawer", "lid", "flap", "knob", "wheel", "caster", "handle", "button", "latch", "cover", "hatch", "switch",
@@ -70,8 +72,12 @@ _MOVING = frozenset({
 """Parts that move wherever they are."""
 _LOOKS = ("color", "material")
 _MEASURED = (
-    "size", "moves", "way", "range", "hinge", "place", "relation", "color", "material", "open", "like", "count"
+    "size", "moves", "way", "range", "hinge", "place", "relation", "color", "material", "open", "like", "count",
+    "answers",
 )  # fmt: skip
+_MOTION = ("moves", "way", "hinge", "open", "range", "answers")
+"""Of these, what is said of its joints."""
+_NO_ANSWER = {"sprung": "joints have no springs", "stiff": "friction follows from what a joint carries"}
 """What is said of a part that is there, and can be measured of it."""
 _AXES = {"width": (0, 1), "length": (0, 1, 2), "depth": (1, 0), "height": (2,), "diameter": (0, 1, 2), "": (0, 1, 2)}
 
@@ -107,6 +113,8 @@ class Comparison:
     """Parts that look otherwise than asked for: their names, and the material or the colour, the other one empty."""
     counts: tuple[tuple[tuple[str, ...], int], ...]
     """Moving parts of which another number is asked for: their names, and how many."""
+    sizes: tuple[tuple[tuple[str, ...], str, float], ...]
+    """Parts whose size is said, or the whole where its is another one: names, which size, and how large it is [m]."""
     opened: tuple[tuple[tuple[str, ...], str, float], ...]
     """Parts that are not so far open as is asked for: their names; ``share``, ``angle`` [rad] or ``distance`` [m], and
     how much. ``range``: that they have another range than is asked for, and how long it is [rad or m]."""
@@ -126,6 +134,7 @@ class _Compared:
     absent: list[PartSpecification] = field(default_factory=list)
     looks: list[tuple[tuple[str, ...], str, str]] = field(default_factory=list)
     counts: list[tuple[tuple[str, ...], int]] = field(default_factory=list)
+    sizes: list[tuple[tuple[str, ...], str, float]] = field(default_factory=list)
     opened: list[tuple[tuple[str, ...], str, float]] = field(default_factory=list)
 
     # ---- parts by their nouns --------------------------------------------------------------------------------------
@@ -195,13 +204,21 @@ class _Compared:
 
     def check(self) -> Comparison:
         """Compare all that is said."""
-        whole = self.specification.whole
-        for claim in whole.claims:
+        for claim in self.specification.whole.claims:
             if claim.about not in ("there", "count"):
                 wrong = self._whole_keeps(claim)
                 if wrong is not None and claim.about == "range":
                     self._to_be_limited(claim, self._meant_by_whole(claim))
+                elif wrong is not None and claim.about == "color":
+                    self.looks.append((tuple(part.name for part in self._fronts()), "", claim.value))
+                elif claim.about == "size" and (wrong is not None or claim.value[0] == "top"):
+                    self.sizes.append(((), *claim.value))
                 self._judge(claim, wrong)
+        for k in self.specification.name[:-1]:  # a folding table has a part that folds
+            word = self.specification.tokens[k].given
+            how = MOTIONS.get(word) if word not in BARE else None
+            if how and not any(moves_so(self.made, joint, how) for joint in self.made.joints):
+                self._miss(word, (k,), "no part does")
         groups: dict[str, list[PartSpecification]] = defaultdict(list)
         for part in self.specification.parts:
             groups[part.noun.split()[-1]].append(part)
@@ -214,6 +231,7 @@ class _Compared:
             absent=tuple(self.absent),
             looks=tuple(self.looks),
             counts=tuple(self.counts),
+            sizes=tuple(self.sizes),
             opened=tuple(self.opened),
         )
 
@@ -222,7 +240,7 @@ class _Compared:
         if wrong is None:
             self.held.update(claim.at)
         else:
-            sure = claim.about in _MEASURED and claim.about != "relation"
+            sure = claim.about in _MEASURED and claim.about not in ("relation", "place")
             self.missing.append(Missing(words=claim.words, at=frozenset(claim.at), reason=wrong, is_sure=sure))
 
     def _check_group(self, parts: Sequence[PartSpecification]) -> None:
@@ -330,7 +348,7 @@ class _Compared:
                 ones = [chosen_by_place(found, other) for other in parts if other is not part and _is_one(other)]
                 meant = [item for item in chosen if not any(item in one for one in ones)] or chosen
             wrong = self._part_keeps(part, claim, meant, found)
-            if wrong is not None and meant:
+            if (wrong is not None or claim.about == "size" or (claim.about in _LOOKS and self.looks)) and meant:
                 self._to_be_changed(claim, meant)
             self._judge_part(part, claim, wrong, is_there=bool(chosen))
         still = not self._joints_of(found) and not any(self._carrying(item.name) for item in found)
@@ -344,6 +362,8 @@ class _Compared:
             self.looks.append((tuple(part.name for part in parts), *look))
         elif claim.about == "open":
             self.opened.append((tuple(joint.child for joint in self._joints_of(parts)), *claim.value))
+        elif claim.about == "size":
+            self.sizes.append((tuple(part.name for part in parts), *claim.value))
         elif claim.about == "range":
             self._to_be_limited(claim, self._joints_of(parts))
 
@@ -385,7 +405,7 @@ class _Compared:
         elif said is not None:
             words, at = f"{said.words} {there.words}", frozenset((*said.at, there.at[-1]))
             self.missing.append(Missing(words=words, at=at, reason=built, is_sure=bool(found)))
-            closes = part.noun.split()[-1] in _CLOSING or self.counted(part.noun) is not None
+            closes = part.noun.split()[-1] in CLOSING or self.counted(part.noun) is not None
             if part.count and self._joints_of(found) and not closes:
                 self.counts.append((tuple(item.name for item in found), part.count))
         elif _on_sides(part) and len(found) == 1:
@@ -444,7 +464,7 @@ class _Compared:
         if wrong is not None and claim.about != "there":
             said = part.claims[0]
             words = claim.words if set(said.at) & set(claim.at) else f"{said.words}: {claim.words}"
-            sure = claim.about in _MEASURED and (is_there or claim.about in ("moves", "way", "hinge"))
+            sure = claim.about in _MEASURED and (is_there or claim.about in _MOTION)
             self.missing.append(Missing(words=words, at=frozenset(claim.at), reason=wrong, is_sure=sure))
         else:
             self.held.update(claim.at)
@@ -480,10 +500,15 @@ class _Compared:
     ) -> str | None:
         """What is wrong with a claim about some of the parts of a noun; None if it holds."""
         joints = self._joints_of(chosen)
-        if not chosen and claim.about not in ("moves", "way", "hinge", "open", "range", "color", "material"):
+        if not chosen and claim.about not in (*_MOTION, *_LOOKS):
             return "a solid of another part"
-        if claim.about in ("moves", "way", "hinge", "open", "range"):
+        if claim.about == "moves" or (claim.about in _MOTION and not joints):
             return self._joints_keep(claim, joints) if joints else "it is fixed"
+        if claim.about in _MOTION:  # of each; of one that is said by no place any will do
+            each = [own for item in chosen if (own := self._joints_of([item]))]
+            wrong = [self._joints_keep(claim, own) for own in each]
+            one = part.count == 1 and len(chosen) > 1
+            return None if one and None in wrong else next(filter(None, wrong), None)
         judges: dict[str, Callable[[], str | None]] = {
             "size": lambda: self._sized(claim.value, chosen),
             "color": lambda: self._look_of(claim, chosen),
@@ -493,9 +518,10 @@ class _Compared:
             ),
             "relation": lambda: self._related(claim, part, chosen),
             "like": lambda: mirrored(self.closed, found),
+            "still": lambda: "it moves" if self._joints_of(chosen) else None,
             "does": lambda: "no such motion",
         }
-        return judges[claim.about]() if claim.about in judges else None
+        return judges[claim.about]() if claim.about in judges else "nothing says so"
 
     def _joints_of(self, parts: Sequence[Part]) -> list[BlueprintJoint]:
         """Joints of parts; of what is fixed, those of what it carries, else of what spins with it."""
@@ -520,12 +546,19 @@ class _Compared:
         return word in _MOVING and self.counted(part.noun) != -1 and word not in self.made.parameters.values()
 
     def _look_of(self, claim: Claim, chosen: Sequence[Part]) -> str | None:
-        """What is wrong with how parts look; a solid of another part may be of another material than that part."""
-        if wrong := _looks(claim, chosen) if chosen else "a solid of another part":
-            others = [item for part in self.made.parts if part.appearance for item in part.appearance.materials[1:]]
-            names = {word for item in others for word in item.name.split()}
-            return None if str(claim.value).split()[-1] in names else wrong
-        return None
+        """What is wrong with how parts look: a solid of one may be of another material, as the pane of a door."""
+        if chosen and (claim.about == "color" or _looks(claim, chosen) is None):
+            return _looks(claim, chosen)
+        word = str(claim.value).split()[-1]
+        others = [item.appearance.materials[1:] for item in chosen or self.made.parts if item.appearance]
+        has = [any(word in item.name.split() for item in items) for items in others]
+        return (
+            None
+            if has and (all if chosen else any)(has)
+            else "another material"
+            if chosen
+            else "a solid of another part"
+        )
 
     def _joints_keep(self, claim: Claim, joints: Sequence[BlueprintJoint]) -> str | None:
         if claim.about == "moves":
@@ -536,6 +569,8 @@ class _Compared:
             return None if self._any_goes(joints, claim.value) else f"{joints[0].kind.value}, another way"
         if claim.about == "hinge":
             return self._hinged(joints[0], claim.value)
+        if claim.about == "answers":
+            return _NO_ANSWER.get(claim.value)
         if claim.about == "range":
             return self._ranges(joints, claim.value)
         return self._opened(joints, claim.value)
@@ -553,16 +588,27 @@ class _Compared:
         judges: dict[str, Callable[[], str | None]] = {
             "moves": lambda: None if any(moves_so(self.made, item, claim.value) for item in joints) else "no part does",
             "way": lambda: None if self._any_goes(joints, claim.value) else "no part goes there",
+            "place": lambda: None if self._any_goes(self.made.joints, claim.value) else "nothing says so",
             "open": lambda: self._opened(self.made.joints, claim.value),
             "size": lambda: self._sized(claim.value, ()),
-            "color": lambda: _looks(claim, self.made.parts[:1]),
+            "color": lambda: _looks(claim, [*self.made.parts[:1], *self._fronts()]),
             "material": lambda: _looks(claim, self.made.parts[:1]),
             "relation": lambda: None if self._is_there(claim.value[1]) else "no such part",
             "range": lambda: self._ranges(self.made.joints, claim.value),
             "hinge": lambda: self._any_hinged(joints_of_doors, claim.value),
+            "answers": lambda: _NO_ANSWER.get(claim.value),
+            "still": lambda: "it moves",
             "does": lambda: "no such motion",
         }
-        return judges[claim.about]() if claim.about in judges else None
+        return judges[claim.about]() if claim.about in judges else "nothing says so"
+
+    def _fronts(self) -> list[Part]:
+        """Doors, drawers and lids that are of the material of the whole, and of which no other look is said."""
+        said = [part for part in self.specification.parts if any(claim.about in _LOOKS for claim in part.claims)]
+        own = {item.name for part in said for item in chosen_by_place(self.parts_called(part.noun)[0], part)}
+        base = self.made.parts[0].density
+        closing = [part for part in self.made.parts if stem_of(part.name).rsplit("_", maxsplit=1)[-1] in CLOSING]
+        return [part for part in closing if part.density == base and part.name not in own]
 
     def _any_hinged(self, joints: Sequence[BlueprintJoint], side: str) -> str | None:
         return None if any(self._hinged(joint, side) is None for joint in joints) else "hinged on another side"
@@ -608,6 +654,11 @@ class _Compared:
 
     def _sized(self, asked: tuple[str, float], chosen: Sequence[Part]) -> str | None:
         name, metres = asked
+        if name == "top":
+            floor = float(self.closed.assembly.bounds[0, 2])
+            names = {part.name for part in chosen or self.closed.parts}
+            tops = [float(part.bounds[1, 2]) - floor for part in self.closed.parts if part.name in names]
+            return None if math.isclose(max(tops), metres, rel_tol=_SIZE) else f"it is {max(tops):.2g} m high"
         if chosen:
             of = {part.name: part for part in self.closed.parts}
             boxes = [np.ptp(of[part.name].bounds, axis=0) for part in chosen]
@@ -633,14 +684,6 @@ class _Compared:
         ]
         return [float(np.linalg.norm(one - other)) for k, one in enumerate(pins) for other in pins[:k]]
 
-    def _placed(
-        self, part: PartSpecification, claim: Claim, chosen: Sequence[Part], found: Sequence[Part]
-    ) -> str | None:
-        if self._is_on_other(part, claim):
-            return None
-        called = all(_ends_with(item.name, part.noun.split()[-1]) for item in found)  # no fingers of a gripper
-        return wrong_place(self.closed, claim.value, chosen, found if called else chosen)
-
     def _is_on_other(self, part: PartSpecification, place: Claim) -> bool:
         """Whether a place is one of another part: at the bottom of the handle."""
         own = _OF_ANY_OBJECT | set(self.specification.kind.split())
@@ -651,14 +694,26 @@ class _Compared:
         preposition, noun = claim.value
         if preposition == "of" and min(claim.at) - 1 in part.claims[0].at and noun.split()[-1] not in _OF_ANY_OBJECT:
             return "not so built"
-        others, _ = self.parts_called(noun)
+        others, known = self.parts_called(noun)
+        before = noun.split()[: len(noun.split()) - known] if others else []
+        kind = set(self.specification.kind.split())
+        other = set(before) - PURPOSES - {*PLACES, *MIDDLE} - kind
+        if other:
+            return f"no {noun}"
+        if placed := [word for word in before if word in {*PLACES, *MIDDLE}]:
+            if len(others) < (3 if placed[0] in MIDDLE else 2):
+                return f"no {noun}"
+            said = [Claim(about="place", value=word, words=word, at=claim.at) for word in placed]
+            others = chosen_by_place(others, PartSpecification(noun=noun, claims=tuple(said)))
         if not others and self.counted(noun):
             return None  # it belongs to another part, whose solid it is
         if not others:
             *before, last = noun.split()
-            own = set(self.specification.kind.split())
+            own = {self.specification.kind.split()[-1]}  # the bin, and not the pedal, of a pedal bin
             strange = [
-                word for word in before if not {word, lemma(word)} & (own | PURPOSES | PLACES.keys() | _OF_ANY_OBJECT)
+                word
+                for word in before
+                if not {word, lemma(word)} & (kind | PURPOSES | {*PLACES, *MIDDLE} | _OF_ANY_OBJECT)
             ]
             there = last in own or (last in _OF_ANY_OBJECT and not (last in _NOT_OF_IT and preposition in _BESIDE_WHAT))
             return None if there and not strange else f"no {noun}"

@@ -68,6 +68,8 @@ _SLIDES = ("drawer",)
 """They slide, whatever carries them."""
 _OTHER_WAY = ("spins", "turns", "swings", "tilts", "flips")
 _ONE_OF = {"size": "sizes", "open": "states", "hinge": "sides"}
+_SIDE_BY_SIDE = {"width": "side by side", "height": "on top of"}
+"""Sizes that add up, by how parts stand."""
 _SHOWN = 3
 
 
@@ -91,6 +93,7 @@ def _faults(specification: Specification) -> Iterator[_Fault]:
         yield from _two_values(part)
         yield from _two_places(part)
         yield from _too_far(part, specification)
+        yield from _moves_closed(part, specification)
     yield from _present_and_absent(specification)
     yield from _larger_parts(specification)
     words = [token.given for token in specification.tokens]
@@ -141,13 +144,32 @@ def _larger_than_all(specification: Specification, words: Sequence[str]) -> Iter
 def _too_far(part: PartSpecification, specification: Specification) -> Iterator[_Fault]:
     """A door that turns round more than once, a drawer that is pulled out farther than its cabinet is deep."""
     deep = [c for c in specification.whole.claims if c.about == "size" and c.value[0] == "depth"]
+    ranges = {claim.value[0]: claim for claim in part.claims if claim.about == "range"}
     for claim in (claim for claim in part.claims if claim.about in ("open", "range")):
         how, much = claim.value
+        most = ranges.get(how)
+        if claim.about == "open" and ((most and much > most.value[1] * 1.001) or (how == "share" and much > 1.0)):
+            yield f"{part.noun} {claim.words}", f"it goes {most.words}" if most else "no more than all of it is open"
         if how == "angle" and much > _ROUND and part.noun.split()[-1] in _LEAVES:
             yield f"{part.noun} {claim.words}", "it goes round less than once"
         is_out = claim.about == "open" and how == "distance" and part.noun in _SLIDES
         if is_out and deep and much > deep[0].value[1]:
             yield f"{part.noun} {claim.words}", f"the {specification.kind} is {deep[0].words}"
+
+
+def _moves_closed(part: PartSpecification, specification: Specification) -> Iterator[_Fault]:
+    """What is fixed and swings, what is locked and open, what is open in a closed object."""
+    said = {claim.about: claim for claim in part.claims}
+    opened = next((claim for claim in part.claims if claim.about == "open" and claim.value[1] > 0.0), None)
+    moves = opened or next((claim for claim in part.claims if claim.about in ("moves", "way", "range", "hinge")), None)
+    if "still" in said and moves:
+        yield f"{said['still'].words} {part.noun}, {moves.words}", "what is fixed does not move"
+    locked = [item.of or specification.kind for item in specification.parts if item.claims[0].words == "locked"]
+    if opened and {part.noun, specification.kind} & set(locked):
+        yield f"locked {part.noun} {opened.words}", "what is locked is closed"
+    closed = next((c for c in specification.whole.claims if c.about == "open" and c.value[1] == 0.0), None)
+    if opened and closed and part is not specification.whole:
+        yield f"{closed.words} {specification.kind}, {part.noun} {opened.words}", "what is closed has nothing open"
 
 
 def _two_values(part: PartSpecification) -> Iterator[_Fault]:
@@ -195,18 +217,22 @@ def _present_and_absent(specification: Specification) -> Iterator[_Fault]:
         counted = [part for part in parts if any(claim.about == "count" for claim in part.claims) and not part.of]
         numbers = {part.count for part in counted if part.count is not None}
         placed = any(claim.about in ("place", "relation") for part in parts for claim in part.claims)
-        if len(numbers) > 1 and not placed and 1 not in numbers and 0 not in numbers:
+        of_kind = any(max(part.claims[0].at) < specification.name[0] for part in counted)  # a one-armed lamp
+        if len(numbers) > 1 and not placed and (1 not in numbers or of_kind) and 0 not in numbers:
             yield " and ".join(f"{number} {noun}s" for number in sorted(numbers)), "two counts of one thing"
         every = max((number for part in counted if (number := part.count) and not part.is_share), default=0)
         for part in counted:
             if part.is_share and every < (part.count or 0):
                 yield f"{part.count} of the {noun}s", f"there are only {every} {noun}s"
+        for claim in (claim for part in parts for claim in part.claims if claim.about == "place"):
+            if every and claim.value[0].isdigit() and int(claim.value.split()[0]) > every:
+                yield f"{claim.words} of the {noun}s", f"there are only {every} {noun}s"
 
 
 def _larger_parts(specification: Specification) -> Iterator[_Fault]:
     whole = {claim.value[0]: claim for claim in specification.whole.claims if claim.about == "size"}
     for part in specification.parts:
-        for claim in part.claims:
-            size = whole.get(claim.value[0]) if claim.about == "size" and claim.value[0] else None
-            if size is not None and claim.value[1] > size.value[1] * 1.001:
+        for claim in (claim for claim in part.claims if claim.about == "size" and claim.value[0] in whole):
+            size, together = whole[claim.value[0]], _SIDE_BY_SIDE.get(claim.value[0], "-") in specification.text
+            if claim.value[0] and (part.count or 1 if together else 1) * claim.value[1] > size.value[1] * 1.001:
                 yield f"{part.noun} {claim.words}", f"the {specification.kind} is {size.words}"

@@ -42,6 +42,8 @@ MOTIONS = {
     "revolving": "turns", "movable": "moves", "moving": "moves",
 }  # fmt: skip
 """Words for how a part moves, before its noun or behind it."""
+BARE = frozenset(word for word in MOTIONS if not word.endswith(("s", "ing", "ed", "able", "ible", "ic")))
+"""Verbs that a singular noun right before them makes a noun."""
 DONE = _said_of("ed")
 """The same behind `can be`."""
 PARTICLES = ("drop", "pull", "fold", "swing", "flip", "roll", "lift", "pop", "slide", "tilt", "tip", "push", "hinge")

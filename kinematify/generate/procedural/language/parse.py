@@ -8,11 +8,11 @@ object.
 from __future__ import annotations
 
 import difflib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import InputError
-from kinematify.generate.procedural.language.motions import DONE, GOING, LINES, MOTIONS, PARTICLES, WAYS
+from kinematify.generate.procedural.language.motions import BARE, DONE, GOING, LINES, MOTIONS, PARTICLES, WAYS
 from kinematify.generate.procedural.language.openness import NOT_A_STATE, PULLED, amount_at, measured_at
 from kinematify.generate.procedural.language.sizes import DIMENSIONS, SIZE_WORDS, length_at
 from kinematify.generate.procedural.language.specification import Claim, PartSpecification, Specification
@@ -27,6 +27,7 @@ from kinematify.generate.procedural.language.words import (
     UNITS,
     Words,
     lemma,
+    nouns_in,
     tokens_of,
 )
 from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS
@@ -49,8 +50,6 @@ _AT = ("on", "at", "in", "to", "near", "from", "against", "by", "along", "onto")
 _BEGINS_PART = (*_WITH, *_RELATIVE, "whose", "where", "without", *_JOINERS)
 _BEING = ("is", "are", "can", "could", "be", "may", "will", "each", "all", "both", "it", "they", "being", "also")
 _CAN = ("be", "can", "to", "may")
-_BARE = frozenset(word for word in MOTIONS if not word.endswith(("s", "ing", "ed", "able", "ible", "ic")))
-"""Verbs that a singular noun right before them makes a noun."""
 _GOES = ("go", "goes", "opens", "come", "comes")
 _ANYHOW = ("away", "aside", "open", "over")
 """Behind a particle they say no direction: a swing-away arm."""
@@ -58,6 +57,23 @@ _ANGLES = ("degree", "degrees", "deg")
 _BY = ("by", "through", "over")
 _MOVED = frozenset({*WAYS, *MOTIONS, *DONE, *GOING, *OPENNESS} - {"closed", "shut"})
 """Words behind which they say how far."""
+_STILL = ("fixed", "immovable", "stationary", "immobile", "motionless")
+"""Before a noun they say that it does not move."""
+_TRAVEL = ("travel", "stroke", "throw", "movement", "motion", "lift")
+"""How far something goes, as a noun."""
+_DYNAMICS = {
+    tuple(words.split()): value
+    for value, phrases in {
+        "held": "stays open, stay open, stays up, stay up, stays in place, stay in place, stays put, stay put, holds "
+        "its position, hold their position, stays where it is, stay where they are",
+        "damped": "soft close, soft closing, slow close, slow closing, softly closing, damped, closes softly",
+        "sprung": "self closing, closes by itself, close by themselves, closes automatically, shuts by itself, sprung, "
+        "spring loaded, closes itself, returns by itself, springs back",
+        "stiff": "stiff",
+    }.items()
+    for words in phrases.replace("\n", " ").split(", ")
+}
+"""How a joint answers to a push."""
 _TO_BOTH = tuple(
     tuple(words.split())
     for words in (
@@ -69,7 +85,7 @@ _TO_BOTH = tuple(
 _PRONOUNS = ("it", "them", "these", "those")
 _DROPPED = ("up", "down")
 """Behind a part at the end of a statement they say that it is open there."""
-_HELD = ("propped", "held", "standing", "left", "wedged")
+_HELD = ("propped", "held", "standing", "stands", "stand", "left", "wedged", "stays", "stay", "locked")
 """Before a state they say nothing more."""
 _BACK = ("lowered", "retracted", "collapsed")
 """Behind a share they say how far something is back at its lower limit."""
@@ -182,7 +198,7 @@ def _specified(
         whole=reader.finished(reader.whole, " ".join(lemmas(tokens, name))),
         parts=(
             *(reader.finished(part, reader.noun(part)) for part in reader.parts if part.nouns),
-            *reader.implied,
+            *(replace(part, of="" if of is reader.whole else reader.noun(of)) for of, part in reader.implied),
         ),
         harmless=harmless,
     )
@@ -304,8 +320,8 @@ class _Parser(Words):
         self.parts: list[_Draft] = []
         self.pending: list[Claim] = []
         """Said of a part whose noun is still to come."""
-        self.implied: list[PartSpecification] = []
-        """By an adjective."""
+        self.implied: list[tuple[_Draft, PartSpecification]] = []
+        """By an adjective of a part."""
         self.current = self.whole
         self.subject = self.whole
         """Of the verbs to come."""
@@ -317,8 +333,8 @@ class _Parser(Words):
     def noun(self, part: _Draft) -> str:
         """What a part is called, singular."""
         words = lemmas(self.tokens, part.nouns)
-        wheel = words[-1].removesuffix("ed") if words else ""
-        return " ".join([*words[:-1], wheel] if wheel in self.mechanisms else words)
+        of = nouns_in(words[-1]) if words else ()
+        return " ".join([*words[:-1], *([noun for noun in of if noun in self.mechanisms] or words[-1:])[:1]])
 
     def finished(self, part: _Draft, noun: str) -> PartSpecification:
         """A part that was read."""
@@ -346,7 +362,7 @@ class _Parser(Words):
 
     def _is_mechanism(self, k: int) -> bool:
         """Whether a word, as in `wheels` or `wheeled`, names a mechanism."""
-        return bool({lemma(self.given(k)), self.given(k).removesuffix("ed")} & set(self.mechanisms))
+        return any(noun in self.mechanisms for noun in nouns_in(self.given(k)))
 
     def _clause(self, k: int) -> int:
         """What begins at word k: another part, or what is said of the last one."""
@@ -452,11 +468,13 @@ class _Parser(Words):
     def _has(self, k: int, part: _Draft) -> bool:
         """Whether a word says that a part has another one: what is lockable has a lock."""
         noun, count = HAVING.get(self.given(k), ("", 1))
+        without = self.given(k).removesuffix("less")
+        if without != self.given(k) and without in self.mechanisms:
+            noun, count = without, 0  # doorless
         if not noun or (count is None and part is not self.whole):  # a rolling door has no casters
             return False
-        of = "" if part is self.whole else self.noun(part)
         there = Claim(about="there", value=True, words=self.given(k), at=(k,))
-        self.implied.append(PartSpecification(noun=noun, count=count, claims=(there,), of=of))
+        self.implied.append((part, PartSpecification(noun=noun, count=count, claims=(there,))))
         return True
 
     def _part(self, k: int, *, count: int | None = 1, of: _Draft | None = None) -> int:
@@ -477,15 +495,36 @@ class _Parser(Words):
         if not part.nouns and again and self.parts and self.given(again[0]) not in ARTICLES:
             # `two on the left and one on the right`
             part.nouns = list(next((item for item in reversed(self.parts) if not item.of), self.parts[-1]).nouns)
+        if not part.nouns and self.given(end - 1) == "other" and self.current is not self.whole:
+            return self._the_other(end)
         if part.nouns:
             part.claims, self.pending = [*self.pending, *part.claims], []
             self.parts.append(part)
             self.current = self.subject = part
-        elif self.given(end) == "and" and self.given(k - 1) in _WITH and self._begins_noun(end + 1):
-            self.pending = part.claims  # red and blue knobs
+        elif self._is_one_of_copies(part, again) or (
+            self.given(end) == "and" and self.given(k - 1) in _WITH and self._begins_noun(end + 1)
+        ):
+            self.pending = part.claims  # red and blue knobs; the middle one has a red door
         else:
             self.current.claims += [claim for claim in part.claims if claim.about != "count"]
         return end
+
+    def _the_other(self, k: int) -> int:
+        """`one door hinged on the left and the other on the right`: what is said of the first holds of another one."""
+        before = self.current
+        other = _Draft(nouns=list(before.nouns), of=before.of)
+        self.parts.append(other)
+        self.current = self.subject = other
+        at = next((at for at in range(k, k + 3) if self.given(at) in WAYS), k)
+        if any(claim.about == "hinge" for claim in before.claims) and at > k:
+            self.claim(other, "hinge", self.given(at), *range(k, at + 1))
+            return at + 1
+        return k
+
+    def _is_one_of_copies(self, part: _Draft, again: Sequence[int]) -> bool:
+        """Whether one of several objects is meant by its place, so that what it has is there."""
+        placed = any(claim.about == "place" for claim in part.claims)
+        return bool(again) and placed and self.current is self.whole and (self.whole.count or 1) > 1
 
     def _is_share(self, k: int) -> bool:
         """Whether word k begins `two of which`, `half of them`, `all but one`, `one of glass`, `two red`."""
@@ -542,13 +581,18 @@ class _Parser(Words):
                 break
             named = bool(part.nouns) or self.given(k - 1) in ("one", "ones")
             if named and (
-                word in _BEING or word in (*PULLED, *_HELD) or self._verb_at(k) or word in WAYS or word in PLACES
+                word in _BEING
+                or word in (*PULLED, *_HELD)
+                or self._verb_at(k)
+                or word in WAYS
+                or word in PLACES
+                or any(self._says(k, words) for words in _DYNAMICS)
             ):
                 break
             taken = self._open(k, part) or self._look_or_size(k, part) or self._described(k, part)
             if word in ("every", "each", "either") and part is not self.whole:
                 part.count = None
-            taken = taken or int(self._has(k, part))
+            taken = taken or int(self._has(k, part)) or self._answers(k, part)
             if not taken and word.isalpha() and word not in _DETERMINERS and word not in _NO_NOUN:
                 if word in STOP_WORDS and part.nouns:
                     break
@@ -564,7 +608,7 @@ class _Parser(Words):
 
     def _verb_at(self, k: int) -> bool:
         word, before = self.given(k), self.given(k - 1)
-        if word in _BARE and before == lemma(before) and before not in _BEING:
+        if word in BARE and before == lemma(before) and before not in _BEING:
             return False  # a scissor lift
         return (word in MOTIONS or word in DONE or word in GOING) and not self._noun_behind(k)
 
@@ -587,6 +631,8 @@ class _Parser(Words):
         elif word in PARTICLES and word in MOTIONS and behind in _ANYHOW and self._noun_behind(k + 1):
             self.claim(part, "moves", MOTIONS[word], k, k + 1)
             return 2
+        elif word in _STILL and (part is self.whole or self._noun_behind(k)):
+            self.claim(part, "still", word, k)
         elif word in MOTIONS and (part is self.whole or self._noun_behind(k)):
             self.claim(part, "moves", MOTIONS[word], k)
         else:
@@ -616,7 +662,8 @@ class _Parser(Words):
         turned = part is not self.whole and word in DONE and self.given(at - 1) != "be" and amount_at(self, at + 1)
         raised = before is not None and before[0] == "share" and word in DONE and not self._noun_behind(at)
         raised = raised or bool(turned and turned[0] != "share")
-        if not (raised or word in (*OPENNESS, *PULLED)) or self.given(at + 1) in NOT_A_STATE:
+        can_be = word == "pull" and self._noun_behind(at)  # pull-out shelves
+        if not (raised or word in (*OPENNESS, *PULLED)) or self.given(at + 1) in NOT_A_STATE or can_be:
             return 0
         how, much = before[:2] if before else ("share", OPENNESS.get(word, 1.0))
         if before and (OPENNESS.get(word) == 0.0 or word in _BACK):
@@ -627,23 +674,38 @@ class _Parser(Words):
         self.claim(part, "open", (how, much), *range(k, end))
         return end - k
 
+    def _answers(self, k: int, part: _Draft) -> int:
+        """`soft-close`, `stays open`, `spring-loaded`; how many words."""
+        words = next((words for words in _DYNAMICS if self._says(k, words)), ())
+        if words and amount_at(self, k + len(words)):  # stays open at 80 degrees
+            return 0
+        if words:
+            self.claim(part, "answers", _DYNAMICS[words], *range(k, k + len(words)))
+        return len(words)
+
     def _range(self, k: int) -> int:
         """`from 70 to 120 cm`, `up to 45 degrees`, said of how something moves; how many words."""
         first, at = None, k + 1
-        if self.given(k) == "from":
+        begins = self.given(k) in ("from", "between")
+        if begins:
             first = measured_at(self, k + 1)
             at = first[2] if first else k + 2
             at += self.given(at) in _DROPPED  # from 65 cm up to 1.3 m
-        high = measured_at(self, at + 1) if self.given(at) == "to" else None
-        if high is None or high[0] == "share" or self.given(k) not in ("from", "up"):
+        joins = {"between": "and", "from": "to", "up": "to"}.get(self.given(k))
+        high = measured_at(self, at + 1) if joins and self.given(at) == joins else None
+        if high is None or high[0] == "share":
             return 0
         low = first[1] if first else 0.0
         number, bare = self.tokens[at + 1].number, self.tokens[k + 1].number
-        if self.given(k) == "from" and first is None and bare is not None and number:
+        if begins and first is None and bare is not None and number:
             low = bare / number * high[1]  # of the same unit
         if low >= high[1]:
             return 0
         self.claim(self.subject, "range", (high[0], high[1] - low), *range(k, high[2]))
+        rises = any((c.about, c.value) in (("way", "up"), ("moves", "rises")) for c in self.subject.claims)
+        rises = rises or (self.subject is self.whole and any(self.given(at) in _ADJUSTABLE for at in self.name))
+        if low and rises:
+            self.claim(self.subject, "size", ("top", low), *range(k, high[2]))  # above the floor
         return high[2] - k
 
     def _counted(self, k: int, part: _Draft) -> int:
@@ -653,7 +715,7 @@ class _Parser(Words):
         if part is self.whole:  # a two-door wardrobe is no two wardrobes
             between = range(k + 1, self.name[0])
             says_its_kind = word in KINDS or not all(may_follow(self.tokens, at) for at in between)
-            if number > 1 and word not in KINDS and k + 1 < self.name[0] and self._is_mechanism(k + 1):
+            if number and word not in (*KINDS, *ARTICLES) and k + 1 < self.name[0] and self._is_mechanism(k + 1):
                 counted = _Draft(nouns=[k + 1], count=int(number))
                 self.claim(counted, "count", int(number), k)
                 self.parts.append(counted)
@@ -699,14 +761,19 @@ class _Parser(Words):
         if length is None:
             return 0
         metres, end = length
+        if self.given(end) == "of" and self.given(end + 1) in _TRAVEL:  # with 60 cm of travel
+            self.claim(part, "range", ("distance", metres), *range(k, end + 2))
+            return end + 2 - k
         behind, before = (_dimension(self.given(at)) for at in (end, k - 2))
         if self._says(end, ("to", "the")) and self.given(end + 2) in WAYS:  # which slides 1.2 m to the left
             self.claim(part, "range", ("distance", metres), *range(k, end))
             return end - k
-        if behind:
+        if self.given(k - 1) == "of" and self.given(k - 2) in _TRAVEL:  # with a travel of 60 cm
+            self.claim(part, "range", ("distance", metres), *range(k - 2, end))
+        elif behind:
             self.claim(part, "size", (behind, metres), *range(k, end + 1))
             return end + 1 - k
-        if before and self.given(k - 1) == "of":
+        elif before and self.given(k - 1) == "of":
             self.claim(part, "size", (before, metres), *range(k - 2, end))
         elif not {self.given(k - 1), self.given(end)} & {"x", "by", "to"}:
             self.claim(part, "size", ("", metres), *range(k, end))
@@ -716,7 +783,7 @@ class _Parser(Words):
         """What is said of a part behind its noun: a verb, a place, a state, a look, or what it stands on."""
         word, part, before = self.given(k), self.current, self.given(k - 1)
         able = word in OPENNESS and before in (*_RELATIVE, *_CAN)
-        taken = 0 if able else self._open(k, part) or (self._range(k) if word == "up" else 0)
+        taken = 0 if able else self._answers(k, part) or self._open(k, part) or (self._range(k) if word == "up" else 0)
         taken = taken or self._look_or_size(k, part) or self._adjustable(k, self.whole)
         if taken:
             return k + taken
@@ -823,7 +890,13 @@ class _Parser(Words):
             looks = {k for claim in target.claims if claim.about in ("color", "material", "size") for k in claim.at}
             apart = bool(counted or looks) and not in_grid and noun.split()[-1] not in PLACES
             apart = apart and not {lemma(self.given(k - 1)), noun} & set(_GROUPS)
-            self.claim(self.current, "relation", (how, noun), *(at for at in range(k, end) if at not in looks))
+            placed = [claim.value for claim in target.claims if claim.about == "place" and claim.value.isalpha()]
+            self.claim(
+                self.current,
+                "relation",
+                (how, " ".join([*placed, noun])),
+                *(at for at in range(k, end) if at not in looks),
+            )
             if apart:
                 self.parts.append(target)
         else:

@@ -21,12 +21,14 @@ PLACES = {
     "front": (0, -1, 0), "back": (0, 1, 0), "rear": (0, 1, 0), "first": (0, 0, 0),
 }  # fmt: skip
 """Words for a place -> where it is, seen from the middle; fronts look along -y."""
-_MIDDLE = ("middle", "center", "centre", "central", "between")
+MIDDLE = ("middle", "center", "centre", "central", "between")
 _SIDE = ("side", "end")
 _WITHIN = ("inside", "inner")
 _ABOVE = {"above": 1, "over": 1, "below": -1, "under": -1, "beneath": -1, "underneath": -1}
 _BEFORE = {"in front of": -1, "behind": 1}
-_TOUCHING = ("on", "onto", "in", "into", "each", "against", "through", "across", "inside")
+_LOOSE = ("of", "for", "with", "from", "to", "between")
+"""Prepositions that say no place beside another part; of all others the parts meet."""
+_BESIDE = ("beside", "next", "near", "by")
 _NEAR, _FAR = 0.35, 0.3  # of half the whole: so near its middle is central, and so far from it is at a side
 _EDGE_SHARE = 0.1  # of a side, near which something is at that side
 _MOSTLY = 0.7  # of its box, that is in another box
@@ -57,7 +59,7 @@ def wrong_place(closed: Blueprint, place: str, chosen: Sequence[Part], found: Se
     if len(chosen) < len(found) or place[:1].isdigit():
         return None
     half = np.maximum(0.5 * np.ptp(base, axis=0), EDGE)
-    if place in _MIDDLE:
+    if place in MIDDLE:
         is_there = bool((np.abs(aside.mean(axis=0)) / half < _NEAR)[[0, 2]].any())
     elif place in _SIDE:
         is_there = all(_reaches(box, base) for box in boxes)
@@ -92,9 +94,9 @@ def wrong_relation(preposition: str, chosen: Sequence[Part], others: Sequence[Pa
     if preposition == "each":
         on_each = all(any(touch(one, other) for one in chosen) for other in others)
         return None if len(chosen) >= len(others) and on_each else f"{len(chosen)} built"
-    if preposition in _TOUCHING and not any(touch(*pair) for pair in pairs):
-        return "elsewhere"
-    return None
+    if preposition in _BESIDE:
+        return None if any(_is_beside(*pair) for pair in pairs) else "not beside it"
+    return None if preposition in _LOOSE or any(touch(*pair) for pair in pairs) else "elsewhere"
 
 
 def touch(one: Part, other: Part) -> bool:
@@ -118,7 +120,7 @@ def chosen_by_place(found: Sequence[Part], part: PartSpecification) -> list[Part
     said = [claim.value for claim in part.claims if claim.about == "place"]
     found = [item for item in found if set(said) & set(item.name.split("_"))] or found
     places = [PLACES[place] for place in said if place in PLACES]
-    central = bool(set(_MIDDLE) & set(said))
+    central = bool(set(MIDDLE) & set(said))
     ordinal = next((place.split(" ") for place in said if place[0].isdigit()), None)
     if not (places or central or ordinal) or part.count is None or part.count >= len(found):
         return list(found)
@@ -161,6 +163,14 @@ def _reaches(box: FloatArray, other: FloatArray) -> bool:
     """Whether a box comes near a side of another one, or out of it."""
     near = _EDGE_SHARE * np.ptp(other, axis=0)[:2]
     return bool((np.abs(box[:, :2] - other[:, :2]) < near).any() or share_within(box, other) < _MOSTLY)
+
+
+def _is_beside(one: Part, other: Part) -> bool:
+    """Whether two parts meet or are as high, no farther from each other than the larger of them is long."""
+    (low, high), (other_low, other_high) = one.bounds, other.bounds
+    between = np.maximum(low, other_low) - np.minimum(high, other_high)
+    far = max(float((high - low).max()), float((other_high - other_low).max()))
+    return touch(one, other) or bool(between[2] < 0.0 and between.max() < far)
 
 
 def _is_before(one: Part, other: Part, sign: int) -> bool:

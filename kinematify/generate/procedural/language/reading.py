@@ -10,7 +10,7 @@ from kinematify.generate.procedural.language.compare import Missing
 from kinematify.generate.procedural.language.words import NOUNS, Words
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Mapping
 
     from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.language.arrangement import Mention
@@ -36,6 +36,8 @@ class ParseState(Words):
     """Where the family is named; a choice may be part of its name."""
     ranges: frozenset[int] = frozenset()
     """Words that say how far something moves, which are no size."""
+    of_parts: Mapping[int, str] = field(default_factory=dict)
+    """Words of sizes of parts -> the noun of the part."""
     counted: set[int] = field(default_factory=set)
     """Nouns that were counted; a choice may say their kind, as in `two cross handles`."""
     overall: tuple[str, float] | None = None

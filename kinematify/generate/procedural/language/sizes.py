@@ -83,7 +83,7 @@ def read_overall(reading: ParseState) -> None:
     if any(p.unit == "m" and p.name in reading.said for p in reading.family.parameters):
         return  # which scaling would change
     for k in range(len(reading.tokens)):
-        length = length_at(reading, k) if k not in reading.used else None
+        length = length_at(reading, k) if k not in {*reading.used, *reading.of_parts} else None
         word = reading.text(length[1]) if length else ""
         name = next((name for name in OVERALL if word in DIMENSIONS[name]), "")
         if length and name and reading.overall is None and not any(p.name == name for p in reading.family.parameters):
@@ -94,8 +94,10 @@ def read_overall(reading: ParseState) -> None:
 def length_at(reading: Words, k: int) -> tuple[float, int] | None:
     """A number with a unit at word k: metres, and the word behind it; `6 ft 2 in` is one length."""
     number, unit = reading.number(k), reading.text(k + 1)
-    if number is None or unit not in UNITS or (unit == "in" and reading.text(k + 2) in ("diameter", "total")):
+    if number is None or unit not in UNITS:
         return None
+    if unit == "in" and (reading.text(k + 2) in ("diameter", "total") or not reading.text(k)[0].isdigit()):
+        return None  # two in front
     metres, end = number * UNITS[unit], k + 2
     if unit in ("foot", "feet", "ft") and reading.text(end + 1) in ("inch", "inche", "in") and reading.number(end):
         metres, end = metres + (reading.number(end) or 0.0) * UNITS["inch"], end + 2
@@ -141,6 +143,8 @@ def _lengths(reading: ParseState) -> None:
         metres, end = length
         for at in (end, end + 1, k - 1, k - 2):
             name = _dimension(reading, reading.text(at), metres) if at not in reading.used else None
+            if name is not None and k in reading.of_parts and not _is_named_for(reading, name, reading.of_parts[k]):
+                continue
             if both and reading.text(at) in (*DIMENSIONS["length"], *DIMENSIONS["width"]):
                 is_long, has_depth = reading.text(at) in DIMENSIONS["length"], "depth" in there - said
                 name = ("width" if is_long else "depth") if has_depth else None if is_long else name
@@ -148,6 +152,12 @@ def _lengths(reading: ParseState) -> None:
                 reading.take(name, metres, f"{name} {metres:g} m", *range(min(k, at), max(end, at + 1)))
                 break
         k = end
+
+
+def _is_named_for(reading: ParseState, name: str, noun: str) -> bool:
+    """Whether a parameter is of a part by its name, or by what people call it."""
+    parameter = reading.parameter(name)
+    return noun in name.split("_") or bool(parameter and any(noun in words.split() for words in parameter.words))
 
 
 def _is_of_a_part(reading: ParseState, k: int) -> bool:
@@ -160,7 +170,7 @@ def read_bare_length(reading: ParseState) -> None:
     """`6 inch pliers`, `a fridge, 180 cm`: of what has one length or diameter, or one side that is clearly longest."""
     name = next((name for name in ("length", "diameter") if reading.parameter(name) is not None), None)
     for k in range(len(reading.tokens)):
-        length = length_at(reading, k) if k not in reading.used | reading.ranges else None
+        length = length_at(reading, k) if k not in {*reading.used, *reading.ranges, *reading.of_parts} else None
         if length is None:
             continue
         metres, end = length
@@ -237,7 +247,7 @@ def _refuse_sizes_without_unit(reading: ParseState) -> None:
     for k, token in enumerate(reading.tokens):
         behind = _dimension(reading, reading.text(k + 1), 0.0)
         before = _dimension(reading, reading.text(k - 2), 0.0) if reading.text(k - 1) == "of" else None
-        if token.given[0].isdigit() and k not in reading.used and (behind or before):
+        if token.given[0].isdigit() and k not in {*reading.used, *reading.of_parts} and (behind or before):
             raise InputError(
                 f"The text says {token.given} for the {behind or before} and no unit. Write for example "
                 f"'{token.given} cm'; mm, cm, m, inches and feet are known."

@@ -5,11 +5,8 @@ Driven by what the families declare: nothing here knows a family.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.family import build, checked
@@ -21,7 +18,6 @@ from kinematify.generate.procedural.language.parts import part_nouns
 from kinematify.generate.procedural.language.reading import ParseState, nouns_of
 from kinematify.generate.procedural.language.sizes import (
     DIMENSIONS,
-    OVERALL,
     SIZE_WORDS,
     read_bare_length,
     read_overall,
@@ -51,7 +47,6 @@ _DOUBLED = ("leaf", "sash", "door")
 _OPEN = {"share": "open", "angle": "open_angle", "distance": "open_distance"}
 _HANDLES = ("handle", "knob", "pull", "grip")
 """Words for handles, which are no parts of their own."""
-_SIZE = 0.02  # of a size, by which it may be off
 _LESS = 0.95  # so much smaller, a size makes another object
 _ABSURD = 4.0  # times out of its range, something is no such object
 
@@ -92,6 +87,13 @@ def understand(specification: Specification, family: Family) -> Understanding:
         used=set(specification.name),
         named=frozenset(specification.name),
         ranges=frozenset(k for item in ranges for k in item.at),
+        of_parts={
+            k: part.noun.split()[-1]
+            for part in specification.parts
+            for claim in part.claims
+            if claim.about == "size"
+            for k in claim.at
+        },
     )
     counting = (read_sizes, read_overall, read_grids, read_counts, read_counted_name)
     for step in (*counting, _double, _choices, _parts_it_has, read_bare_length):
@@ -103,7 +105,6 @@ def understand(specification: Specification, family: Family) -> Understanding:
     _said_of_whole(reading, specification)
     _looks_of_handles(reading, specification, made)
     read_copies(reading)
-    _fit_sizes(reading, made)
     return Understanding(
         family=family.name,
         values=dict(reading.values),
@@ -146,26 +147,6 @@ def _looks_of_handles(reading: ParseState, specification: Specification, made: B
         for claim in part.claims:
             if claim.about in ("material", "color"):
                 reading.take(f"handle_{claim.about}", claim.value, claim.words, *claim.at)
-
-
-def _fit_sizes(reading: ParseState, made: Blueprint) -> None:
-    """Where a frame makes the whole larger than its opening, the whole is as large as is asked for."""
-    for axis, name in enumerate(OVERALL):
-        value, base = reading.values.get(name), made.parts[0].bounds
-        said = reading.said.get(name, "").split()
-        if not set(DIMENSIONS[name]) & set(said) or not isinstance(value, float):
-            continue
-        there = [float(np.ptp(bounds, axis=0)[axis]) for bounds in (base, made.assembly.bounds)]
-        fits = reading.copies > 1 or any(math.isclose(size, value, rel_tol=_SIZE) for size in there)
-        for size in () if fits else there[::-1]:
-            values = {**reading.values, name: value + value - size}
-            try:
-                other = build(reading.family, values)
-            except InputError:
-                continue
-            if math.isclose(float(np.ptp(other.assembly.bounds, axis=0)[axis]), value, rel_tol=_SIZE):
-                reading.values, made = values, other
-                break
 
 
 def _usual_of_its_kind(reading: ParseState) -> None:

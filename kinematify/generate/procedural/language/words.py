@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
+from kinematify.generate.procedural.language.motions import MOTIONS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -57,7 +58,8 @@ _STOP_TEXT = """
     we you would like want need please make me give build create generate some any this these those there be
     can could into my our each per every made very quite nice simple standard typical normal ordinary solid old new
     modern gas kitchen living room office bedroom household home bathroom containing featuring including plus
-    also just how about show maybe really very lot hello hi hey thanks thank looking one's let draw design get
+    also just only overall how about show maybe really very lot hello hi hey thanks thank looking one's let draw design
+    get
 """
 _PLAIN_TEXT = """
     sleek contemporary minimalist minimalistic vintage retro rustic antique classic classical elegant stylish fancy
@@ -96,20 +98,22 @@ _WRITTEN = (
     (r"\b(in|on|of|for|to) both\b(?! sides)(?= \w+s\b)", r"\1 each"),
     *((rf"\b{body}[ -](?:high|tall)\b", f"{cm} cm tall") for body, cm in _BODY_CM.items()),
     (r"\b(?<!garage )(doors?|shutters?) (?:that|which) (?:can )?rolls? up\b", r"roll up \1"),
-    (r"\b(?:that|which) stays? open\b", ""),
+    (r"\b(?:at (?:the )?(?:most|least)|no (?:more|less|fewer) than|exactly|precisely)\b", ""),
     (r"\b(doors?|panels?|windows?|lids?|shutters?) (?:that|which) (?:can )?slides?(?: open)?\b", r"sliding \1"),
 )
 """Signs that people write for words."""
+_DOES = rf"(?:{'|'.join(sorted({*MOTIONS, 'open', 'close', 'lock', 'pull', 'push'}))})\b"
+"""Verbs that ask for a motion, and say no purpose."""
 _PURPOSE = re.compile(
     r"(?<!look)(?<!looking)(?<!search)(?<!searching)(?<!asking)(?<!wish)\s(?:for (?!sliding|opening|turning|moving)"
     r"|to (?:keep|store|put|hold|carry|use|hang|sit|cook|play|work|make|sort|hide|collect|display|serve|read)\b"
-    r"|(?:that|which) (?:i|we|you|my|kids|people|one) (?:can|could|may|use|put|keep|want|need)\b"
+    rf"|(?:that|which) (?:i|we|you|my|kids|people|one) (?:can|could|may|use|put|keep|want|need)\b(?! {_DOES})"
     r"|where (?:i|we|you|my)\b)"
     r"[^,;.:]*?(?=\s*(?:$|[,;.:]|\b(?:with|and|that|which|having|whose|has|featuring|including|made|on|in)\b))",
     re.IGNORECASE,
 )
 _MANNER = re.compile(
-    r"\b(?:in )?(?:an? )?[\w.]+[ -](?:style|styled|fashioned)\b|\bfree[ -]?standing\b|\bsoft[ -]clos(?:e|ing)\b"
+    r"\b(?:in )?(?:an? )?[\w.]+[ -](?:style|styled|fashioned)\b|\bfree[ -]?standing\b"
     r"|\b(?:wall|floor|ceiling)[ -]mounted\b",
     re.IGNORECASE,
 )
@@ -259,6 +263,12 @@ def lemma(word: str) -> str:
     if word.endswith(("ches", "shes", "xes", "sses")):
         return word[:-2]
     return word.removesuffix("s")
+
+
+def nouns_in(word: str) -> tuple[str, ...]:
+    """Nouns, singular, that a word may be of: `wheels`, `wheeled`, `legged`, `handled`."""
+    stem = word.removesuffix("ed")
+    return (lemma(word), stem, f"{stem}e", stem[:-1]) if stem != word else (lemma(word),)
 
 
 def stem_of(name: str) -> str:

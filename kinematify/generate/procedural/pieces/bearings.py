@@ -1,4 +1,4 @@
-"""Pairs of solids that let one part turn on another: barrel hinges, forks, flanged stubs and castors."""
+"""Pairs of solids that let one part turn on another: barrel hinges, forks and flanged stubs."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.solids import bore, box, cylinder, hull, off, union
+from kinematify.generate.procedural.solids import bore, box, cylinder, hull, union
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,6 +24,8 @@ Rectangle = tuple[float, float, float, float]
 
 ALONG_X = np.array([[0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]])
 """Turns what is built along z so that it runs along x: local x becomes y and local y becomes z."""
+FRONT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+"""Turns what is built to look along z so that it looks along -y, with its y up."""
 
 
 def at(position: Point, turn: FloatArray | None = None) -> FloatArray:
@@ -151,28 +153,3 @@ def add_barrels(
         for name, half in zip((parent, upper), halves, strict=True):
             workshop.add(name, half.transform(place))
     return pivot
-
-
-STEM = 0.006
-"""Radius of a castor's stem [m]; it reaches 22 mm above the fork."""
-_TREAD = 0.011  # half the width of a wheel [m]
-
-
-def castor(axle: FloatArray, top: float, wheel: float, clearance: float) -> tuple[Manifold, Manifold]:
-    """Return a fork whose stem stands on the z axis and whose pin carries a wheel, and that wheel.
-
-    Args:
-        axle: Middle of the pin [m], shape (3,); its y is how far the wheel trails.
-        top: Upper face of the fork, where the stem begins [m]; above the wheel.
-        wheel: Radius of the wheel [m].
-        clearance: Between both [m].
-    """
-    tight = min(clearance, 0.0015)
-    y, inner, outer = axle[1], _TREAD + tight, _TREAD + 0.006
-    crown = box((-outer, y - 0.012, 2.0 * wheel + 0.004), (outer, 0.012, top))
-    cheeks = [box((x, y - 0.01, wheel - 0.01), (x + outer - inner, y + 0.01, top)) for x in (-outer, inner)]
-    ends = off(axle, 1e-3 - outer, 0, 0), off(axle, outer - 1e-3, 0, 0)
-    stem = cylinder(STEM, (0, 0, top - 0.005), (0, 0, top + 0.022))
-    tyre = cylinder(wheel, off(axle, -_TREAD, 0, 0), off(axle, _TREAD, 0, 0))
-    roller = tyre - bore(0.004, tight, off(axle, -0.1, 0, 0), off(axle, 0.1, 0, 0))
-    return union(crown, stem, cylinder(0.004, *ends), *cheeks), roller

@@ -6,13 +6,9 @@ towards it, along -y.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from kinematify.generate.procedural.pieces.bearings import barrel
 from kinematify.generate.procedural.solids import box, union
 
 if TYPE_CHECKING:
@@ -21,19 +17,10 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from kinematify.generate.procedural.workshop import Workshop
-    from kinematify.robot.arrays import FloatArray
 
-_REVEAL = 0.001  # around a leaf, besides the clearance [m]
 _STOP = 0.012  # how far the strip that a leaf lies against reaches into the opening [m]
 _GROOVE = 0.012  # depth of the grooves that leaves run in [m]
 _RIB = 0.008  # between two grooves [m]
-_TOWARDS = {
-    "left": (1.0, 0.0, 0.0),
-    "right": (-1.0, 0.0, 0.0),
-    "bottom": (0.0, 0.0, 1.0),
-    "top": (0.0, 0.0, -1.0),
-}
-"""From a hinged edge into the leaf."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,30 +53,6 @@ class Field:
         return 0.5 * (self.left + self.right), 0.5 * (self.bottom + self.top)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Hinge:
-    """How a leaf hangs at an edge."""
-
-    edge: str
-    """``left``, ``right``, ``bottom`` or ``top``."""
-    barrel: float
-    """Radius of the barrels that stand before the front [m]; zero hides the hinge in the front corner."""
-    thick: float
-    """Of the leaf [m]."""
-    clearance: float
-    """[m]."""
-
-    @property
-    def gap(self) -> float:
-        """Between the leaf and the borders of its field [m]."""
-        return self.clearance + _REVEAL
-
-    @property
-    def pivot(self) -> tuple[float, float]:
-        """From the hinged border into the field, and y [m]."""
-        return 0.5 * self.gap, -(self.barrel + self.clearance) if self.barrel else 0.0
-
-
 def side_by_side(whole: Field, count: int, mullion: float, *, together: int = 1) -> list[list[Field]]:
     """Divide a field into `count` equal ones in groups of `together`, with a mullion between groups."""
     groups = -(-count // together)
@@ -108,67 +71,6 @@ def stopped_opening(groups: Sequence[Sequence[Field]], depth: float, thick: floa
         whole = Field(left=group[0].left, right=group[-1].right, bottom=group[0].bottom, top=group[0].top)
         cuts += [whole.box(-1.0, thick + clearance), whole.box(-1.0, depth + 1.0, inset=_STOP)]
     return union(*cuts)
-
-
-def hinged_slab(field: Field, hinge: Hinge) -> Manifold:
-    """Return the solid leaf of a field, its free edge so bevelled that it passes the border when it opens."""
-    place, span, length = _canonical(field, hinge)
-    near, level = hinge.pivot
-    reach = span - hinge.gap - near
-    front = near + math.sqrt(reach**2 - level**2)
-    back = near + math.sqrt(reach**2 - (hinge.thick - level) ** 2)
-    half = 0.5 * length - hinge.gap
-    slab = box((hinge.gap, 0.0, -half), (front, hinge.thick, half))
-    bevel = np.array([-hinge.thick, back - front, 0.0])
-    bevel /= np.linalg.norm(bevel)
-    return slab.trim_by_plane(bevel, float(bevel[0] * front)).transform(place)
-
-
-def hang(
-    workshop: Workshop,
-    name: str,
-    *solids: Manifold,
-    parent: str,
-    field: Field,
-    hinge: Hinge,
-    opens: float,
-    rest: float,
-    count: int = 2,
-) -> None:
-    """Hang a leaf, made of `solids`, at an edge of its field; it opens by `opens` [rad] on `count` barrels."""
-    place, _, length = _canonical(field, hinge)
-    near, level = hinge.pivot
-    halves = list(solids)
-    if hinge.barrel:
-        pieces = _barrels(hinge, min(12.0 * hinge.barrel, 0.2 * length))
-        for share in np.linspace(-0.36, 0.36, count):
-            of_frame, of_leaf = (piece.translate((near, level, share * length)).transform(place) for piece in pieces)
-            workshop.add(parent, of_frame)
-            halves.append(of_leaf)
-    workshop.body(name, *halves)
-    axis = np.cross(_TOWARDS[hinge.edge], (0.0, -1.0, 0.0))
-    workshop.turns(name, parent, axis, place @ (near, level, 0.0, 1.0), (0.0, opens), rest=rest)
-
-
-def _canonical(field: Field, hinge: Hinge) -> tuple[FloatArray, float, float]:
-    """Transform, shape (3, 4), from where the hinge runs along z at x = 0 with the leaf on +x; span and length."""
-    into = np.array(_TOWARDS[hinge.edge], dtype=np.float64)
-    upright = hinge.edge in ("left", "right")
-    span, length = (field.width, field.height) if upright else (field.height, field.width)
-    x, z = field.middle
-    along = (0, 0, 1) if upright else (1, 0, 0)
-    origin = np.array([x, 0.0, z]) - 0.5 * span * into
-    return np.column_stack([into, (0, 1, 0), along, origin]), span, length
-
-
-def _barrels(hinge: Hinge, length: float) -> tuple[Manifold, Manifold]:
-    """Halves of one barrel for frame and leaf, about z; their wings touch the fronts from outside."""
-    near, level = hinge.pivot
-    inner, outer = 0.6 * hinge.barrel, 3.0 * hinge.barrel
-    face = (-level - 2e-4, -level + 1e-4)  # a wing that reached deeper would meet the other side
-    on_frame = (-near - outer, -near - inner, *face)
-    on_leaf = (hinge.gap - near + inner, hinge.gap - near + outer, *face)
-    return barrel(length, hinge.barrel, hinge.clearance, (on_frame, on_leaf))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -260,13 +162,10 @@ def add_sliding(
         workshop.slides(f"{name}_{k + 1}", parent, (sign, 0, 0), place, (0.0, 0.95 * room), rest=rest)
 
 
-def carved(
-    slab: Manifold, face: Field, front: float, thick: float, *, bar: float, rows: int, columns: int, sunk: float
-) -> Manifold:
-    """Return a leaf with `rows` x `columns` fields sunk into both faces between bars of width `bar`.
+def fields_of(face: Field, front: float, thick: float, *, bar: float, rows: int, columns: int, sunk: float) -> Manifold:
+    """Return what to cut from a leaf so that `rows` x `columns` fields are sunk into both faces between bars.
 
     Args:
-        slab: The solid leaf.
         face: Its borders.
         front: Y of its front [m].
         thick: Its thickness [m].
@@ -284,4 +183,4 @@ def carved(
             bottom = face.bottom + bar + row * (height + 0.5 * bar)
             field = Field(left=left, right=left + width, bottom=bottom, top=bottom + height)
             cuts += [field.box(front - 1.0, front + sunk * thick), field.box(front + (1.0 - sunk) * thick, front + 1.0)]
-    return slab - union(*cuts) if cuts else slab
+    return union(*cuts)

@@ -12,9 +12,9 @@ from scipy.sparse.csgraph import connected_components
 
 from kinematify.contact.graph import pair
 from kinematify.joints.bearings.refine import across_axis
-from kinematify.joints.measure.journal import facing_faces, find_journal
-from kinematify.joints.measure.sweep import moving_points, sweep_turns
-from kinematify.joints.measure.workspace import PartCache
+from kinematify.joints.features.journal import facing_faces, find_journal
+from kinematify.joints.features.sweep import moving_points, sweep_turns
+from kinematify.joints.features.workspace import PartCache
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -63,10 +63,10 @@ def find_pins(
     if not doubtful and not carriers:
         return EdgePins()
     cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
-    passing = passing_pairs(cache, {edge: lines[edge] for edge in carriers}, config.joints)
+    passing = frozenset(edge for edge in carriers if passes(cache, edge, lines[edge], config.joints))
     triples = sorted({tuple(sorted((a, b, c))) for (a, b), found in carriers.items() for c in found})
     adjacent, skipping = leaf_pairs(cache, triples, lines, passing, config.joints)
-    journals = journal_pairs(cache, doubtful, config.joints)
+    journals = frozenset(edge for edge in doubtful if has_journal(cache, edge, config.joints))
     beside = {edge: carriers[edge] for edge in sorted(passing)}
     return EdgePins(journals=journals, passing=beside, adjacent=adjacent, skipping=skipping)
 
@@ -113,22 +113,12 @@ def coaxial_carriers(lines: Mapping[Pair, BearingLine], *, angle: float, distanc
     return found
 
 
-def journal_pairs(cache: PartCache, pairs: Iterable[Pair], config: JointsConfig) -> frozenset[Pair]:
-    """Those contacts in which a pin, barrel or shaft of one part sits in the other.
+def has_journal(cache: PartCache, pair: Pair, config: JointsConfig) -> bool:
+    """Whether a pin, barrel or shaft of one part sits in the other; looking from the smaller one.
 
     Leaves that lie edge to edge, fingers and drawers touch as well as a hinge does, but nothing of one goes round the
     other.
-
-    Args:
-        cache: The parts.
-        pairs: Contacts (a, b) with a < b that are asked about.
-        config: Band of a contact and tolerances of journals.
     """
-    return frozenset(pair for pair in pairs if _has_journal(cache, pair, config))
-
-
-def _has_journal(cache: PartCache, pair: Pair, config: JointsConfig) -> bool:
-    """Whether a journal is found, looking from the smaller part."""
     small, large = _by_size(cache, pair)
     reach = cache.graph.by_pair[pair].gap + config.contact_band * cache.diagonal
     facing = facing_faces(cache, large, small, reach, config.journal)
@@ -136,18 +126,8 @@ def _has_journal(cache: PartCache, pair: Pair, config: JointsConfig) -> bool:
     return find_journal(facing, size, config.journal) is not None
 
 
-def passing_pairs(cache: PartCache, lines: Mapping[Pair, BearingLine], config: JointsConfig) -> frozenset[Pair]:
-    """Those pairs of which one part turns all around a line without meeting the other.
-
-    Args:
-        cache: The parts.
-        lines: The line of each pair (a, b), a < b, that is asked about.
-        config: Of the sweep.
-    """
-    return frozenset(pair for pair, line in lines.items() if _passes(cache, pair, line, config))
-
-
-def _passes(cache: PartCache, pair: Pair, line: BearingLine, config: JointsConfig) -> bool:
+def passes(cache: PartCache, pair: Pair, line: BearingLine, config: JointsConfig) -> bool:
+    """Whether one part turns all around a line without meeting the other."""
     small, large = _by_size(cache, pair)
     points = moving_points(cache, small, config.sweep)
     swept = sweep_turns(cache, points, line.axis[None], line.pivot[None], (large,), limit=np.pi, config=config.sweep)

@@ -17,7 +17,7 @@ from kinematify.joints.bearings.refine import across_axis
 
 if TYPE_CHECKING:
     from kinematify.config import JournalConfig
-    from kinematify.joints.measure.workspace import PartCache
+    from kinematify.joints.features.workspace import PartCache
     from kinematify.robot.arrays import FloatArray
 
 _LEAST = 6  # faces all around: fewer are the sides of a box

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
-from kinematify.joints.measure.frames import UP, body_axes, box_frame, find_fold
-from kinematify.joints.measure.journal import facing_faces, find_journal
+from kinematify.joints.features.frames import UP, body_axes, box_frame, find_fold
+from kinematify.joints.features.journal import facing_faces, find_journal
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.config import FrontCuesConfig, JointsConfig, RailsConfig
+    from kinematify.contact.graph import ContactGraph
     from kinematify.contact.tree import KinematicTree
-    from kinematify.joints.measure.frames import BoxFrame, Fold
-    from kinematify.joints.measure.journal import Journal
-    from kinematify.joints.measure.workspace import ContactView, PartCache
+    from kinematify.joints.features.frames import BoxFrame, Fold
+    from kinematify.joints.features.journal import Journal
+    from kinematify.joints.features.workspace import ContactView, PartCache
     from kinematify.robot.arrays import BoolArray, FloatArray
 
 
@@ -147,6 +149,41 @@ class JointScene:
     """Of lids, level direction in which the front of the parent looks as its foot tells, else zero, shape (3,)."""
     pedal_direction: FloatArray
     """Level direction from the parent to the child where that is a pedal, else zero, shape (3,)."""
+    depth: int
+    """Joints from the root to the child."""
+    twins: tuple[BoxFrame, ...]
+    """Box frames of congruent siblings that carry nothing; none where the child itself carries something."""
+
+    @property
+    def anchor(self) -> FloatArray:
+        """Centroid of the contact, the child's centre without one [m], shape (3,)."""
+        return self.contact.centroid if len(self.contact.points) else self.centre
+
+    @cached_property
+    def gripping(self) -> bool:
+        """The child and its one twin are fingers: no bearing, no panel, out of the parent and apart from each other.
+
+        At the end of a chain that is enough. On a base, where doors, legs and wheels are twins too, the pair must also
+        be parallel and thin along the line between them.
+        """
+        if len(self.twins) != 1:
+            return False
+        (twin,) = self.twins
+        apart_line = twin.centre - self.centre
+        apart_line = apart_line / max(float(np.linalg.norm(apart_line)), 1e-12)
+        closing = abs(float(apart_line @ self.frame.axes[self.frame.thin]))
+        parallel = abs(float(apart_line @ twin.axes[twin.thin]))
+        facing = min(closing, parallel) > np.cos(np.radians(3.0)) and not self.plate and self.smallness < 1.0
+        chain_end = (self.depth >= 2 and self.smallness < 1.0) or facing  # buttons of a door are no fingers
+        apart = float(np.linalg.norm(twin.centre - self.centre)) < 2.0 * float(self.parent_frame.extents.max())
+        return bool(chain_end and self.inside < 0.8 and apart and not self.has_bearing and not self.is_round)
+
+    @property
+    def grips(self) -> FloatArray:
+        """Unit direction from a finger to its twin, shape (1, 3); (0, 3) for all other parts."""
+        offsets = [twin.centre - self.centre for twin in self.twins] if self.gripping else []
+        long_enough = [offset for offset in offsets if np.linalg.norm(offset) > 1e-6 * self.diagonal]
+        return np.array([offset / np.linalg.norm(offset) for offset in long_enough]).reshape(-1, 3)
 
     @property
     def diagonal(self) -> float:
@@ -262,6 +299,21 @@ def joint_scene(
         fold=find_fold(cache.samples(child), frame, config.rockers) if folds else None,
         front=_front(cache, tree, parent, frames, config) if panel and up > config.flat_cosine else np.zeros(3),
         pedal_direction=_pedal_direction(cache, parent, frame, config),
+        depth=tree.depths[child],
+        twins=tuple(frames[part] for part in _leaf_twins(cache.graph, tree, edge)),
+    )
+
+
+def _leaf_twins(graph: ContactGraph, tree: KinematicTree, edge: tuple[int, int]) -> tuple[int, ...]:
+    """Congruent siblings of the child that carry nothing, without the child itself; none if it carries something."""
+    parent, child = edge
+    label = graph.cluster_of[child]
+    if label < 0 or tree.children[child]:
+        return ()
+    return tuple(
+        part
+        for part in graph.clusters[label]
+        if part != child and tree.parents[part] == parent and not tree.children[part]
     )
 
 

@@ -1,4 +1,4 @@
-"""Turning joints: candidate lines and the cues that rank them (doors, lids, flaps, and bearings where modelled).
+"""Cues that rank the lines about which a part may turn (doors, lids, flaps, and bearings where modelled).
 
 A panel has no bearing in most meshes, so its hinge is found from what the object is for: the panel must be free to
 turn and stay with the body, people pull it by a handle far from the hinge, and it hangs or lies in the way gravity
@@ -7,33 +7,23 @@ wants. No cue decides alone: each is bounded, and the sum is compared among line
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.centres import centre_lines
-from kinematify.joints.measure.frames import UP
-from kinematify.joints.measure.sweep import moving_points, turn_paths
+from kinematify.joints.candidate import CENTRE, CORNER, HALF_WAY
+from kinematify.joints.features.frames import UP
+from kinematify.joints.features.measurements import turned_about
+from kinematify.joints.features.ranking import Ranked, cue_sum
+from kinematify.joints.features.sweep import moving_points, turn_paths
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from kinematify.config import JointsConfig
-    from kinematify.joints.bearings.line import Line
-    from kinematify.joints.measure.scene import JointScene
-    from kinematify.joints.measure.sweep import Sweep
-    from kinematify.robot.arrays import FloatArray, IntArray
-
-CORNER, HALF_WAY, CENTRE, OTHER = range(4)
-
-_SAME_DEG, _SAME_LINE = 2.0, 0.01  # lines this close, the second in diagonals of the child, are one
-
-GIVEN = "given"
-"""Source of candidates that were not proposed but given."""
-
+    from kinematify.joints.candidate import Hypotheses
+    from kinematify.joints.features.scene import JointScene
+    from kinematify.joints.features.sweep import Sweep
+    from kinematify.robot.arrays import FloatArray
 
 WEIGHTS = {
     "free": 1.0, "crossed": -0.5, "outside": 0.5, "separation": -5.0, "axis_to_parent": -4.0, "contact_share": 0.4,
@@ -48,222 +38,58 @@ WEIGHTS = {
 CAP, BEARING_BONUS = 1.5, 4.0  # the most that one cue says, and what a bearing that passes the gate adds
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class CandidateLines:
-    """Candidate axes of one joint."""
-
-    axes: FloatArray
-    """Unit directions in the world frame, shape (c, 3)."""
-    pivots: FloatArray
-    """Points on the lines, nearest to the contact centroid or the part's centre [m], shape (c, 3)."""
-    places: tuple[int, ...]
-    """CORNER, HALF_WAY or CENTRE of the box, OTHER for lines that a contact or bearing gave."""
-    sources: tuple[str, ...]
-    """Generator of each line."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class RankedTurns:
-    """Candidate lines with their scores, best first."""
-
-    lines: CandidateLines
-    scores: FloatArray
-    """Shape (c,), higher is better."""
-    cues: Mapping[str, FloatArray]
-    """Value of each cue before its weight, shape (c,) each."""
-    free: FloatArray
-    """Free turn towards + and - of the axis before the part hits anything [rad], shape (c, 2)."""
-    free_parent: FloatArray
-    """The same against the parent alone [rad], shape (c, 2)."""
-    outward: FloatArray
-    """+1 where turning about + moves the part out of the body, -1 where inwards, in between undecided, shape (c,)."""
-
-    @property
-    def proposed(self) -> RankedTurns:
-        """Without those that were given."""
-        found: RankedTurns = some_of(self, np.flatnonzero(np.array(self.lines.sources) != GIVEN))
-        return found
-
-
-def some_of(ranked: Any, index: IntArray) -> Any:
-    """Candidates at these positions, in this order: of arrays, tuples, mappings and dataclasses of such."""
-    if isinstance(ranked, np.ndarray):
-        return ranked[index]
-    if isinstance(ranked, tuple):
-        return tuple(ranked[i] for i in index)
-    if isinstance(ranked, Mapping):
-        return {name: value[index] for name, value in ranked.items()}
-    return replace(ranked, **{item.name: some_of(getattr(ranked, item.name), index) for item in fields(ranked)})
-
-
-def rank_turns(scene: JointScene, config: JointsConfig, given: Sequence[Line] = ()) -> RankedTurns:
-    """Propose the lines about which the child may turn and rank them.
+def rank_turns(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> Ranked:
+    """What cues say of lines about which the child may turn, best first.
 
     Args:
         scene: The pair.
-        config: Weights and sweeps.
-        given: Lines to rank beside the proposals, from elsewhere; their source is `GIVEN`.
+        lines: Turns alone.
+        config: Thresholds and sweeps.
     """
-    lines = propose_lines(scene, config, given)
     points = moving_points(scene.cache, scene.child, config.sweep)
     limit = np.radians(config.panels.sweep_deg)
     paths = turn_paths(scene.cache, points, lines.axes, lines.pivots, limit=limit, config=config.sweep)
     with_parent = paths.against((scene.parent,))
     everything = with_parent.joined(paths.against(scene.others))
-    outward = _outwardness(scene, lines)
     cues = {
-        **_motion_cues(scene, lines, with_parent, everything, outward, config=config),
+        **_motion_cues(scene, lines, with_parent, everything, config=config),
         **_contact_cues(scene, lines, config),
         **_handle_cues(scene, lines, config),
         **_margin_cues(scene, lines, config),
         **_gravity_cues(scene, lines, with_parent),
     }
     cues |= _shape_cues(scene, lines, near=1.0 - cues["contact_radius"])
-    scores = np.sum([np.clip(WEIGHTS[name] * value, -CAP, CAP) for name, value in cues.items()], axis=0)
     telling = "bearing" if scene.has_bearing else "fold"
-    scores = scores + BEARING_BONUS * np.array([source == telling for source in lines.sources])
-    ranked = RankedTurns(
+    bonus = BEARING_BONUS * np.array([source == telling for source in lines.sources])
+    return Ranked(
         lines=lines,
-        scores=scores,
+        scores=cue_sum(cues, WEIGHTS, CAP) + bonus,
         cues=cues,
         free=everything.free(config.sweep.share),
         free_parent=with_parent.free(config.sweep.share),
-        outward=outward,
-    )
-    best_first: RankedTurns = some_of(ranked, np.argsort(-scores, kind="stable"))
-    return best_first
+    ).best_first
 
 
-# ---- candidates ----------------------------------------------------------------------------------------------------
-
-
-def propose_lines(scene: JointScene, config: JointsConfig, given: Sequence[Line] = ()) -> CandidateLines:
-    """Bearing lines, lines through the contact, nine lines per direction of the slab's box, and those given."""
-    found: list[tuple[FloatArray, FloatArray, int, str]] = []
-    if scene.bearing is not None:
-        found += [(line.axis, line.pivot, OTHER, "bearing") for line in scene.bearing.lines[:1] if scene.has_bearing]
-        found += [
-            (line.axis, line.pivot, OTHER, "weak_bearing")
-            for line in scene.bearing.lines[int(scene.has_bearing) : config.panels.bearings]
-        ]
-    found += _contact_lines(scene, config)
-    if scene.fold is not None:
-        found.append((scene.fold.axis, scene.fold.point, OTHER, "fold"))
-    found += _box_lines(scene)
-    found += _distinct(scene, centre_lines(scene), found)
-    found += [(line.axis, line.point, OTHER, GIVEN) for line in given]
-    anchor = scene.contact.centroid if len(scene.contact.points) else scene.centre
-    axes = np.array([axis for axis, _, _, _ in found])
-    pivots = np.array([pivot for _, pivot, _, _ in found])
-    pivots = pivots + np.einsum("cd,cd->c", anchor - pivots, axes)[:, None] * axes
-    return CandidateLines(
-        axes=axes,
-        pivots=pivots,
-        places=tuple(place for _, _, place, _ in found),
-        sources=tuple(source for _, _, _, source in found),
-    )
-
-
-def _distinct(
-    scene: JointScene,
-    lines: Sequence[tuple[FloatArray, FloatArray]],
-    known: Sequence[tuple[FloatArray, FloatArray, int, str]],
-) -> list[tuple[FloatArray, FloatArray, int, str]]:
-    """Those of the lines through centres that run beside all known ones, and beside each other."""
-    axes, points = [line[0] for line in known], [line[1] for line in known]
-    found = []
-    for axis, point in lines:
-        apart = lengths_of(np.cross(np.array(points) - point, axis))
-        same = (np.abs(np.array(axes) @ axis) > np.cos(np.radians(_SAME_DEG))) & (
-            apart < _SAME_LINE * scene.frame.diagonal
-        )
-        if not same.any():
-            axes.append(axis)
-            points.append(point)
-            found.append((axis, point, OTHER, "centre"))
-    return found
-
-
-def _box_lines(scene: JointScene) -> list[tuple[FloatArray, FloatArray, int, str]]:
-    frame = scene.frame
-    levels = np.stack([frame.slab_lower, 0.5 * (frame.slab_lower + frame.slab_upper), frame.slab_upper])
-    found = []
-    for along in range(3):
-        first, second = (along + 1) % 3, (along + 2) % 3
-        for i in range(3):
-            for j in range(3):
-                corner = levels[1].copy()
-                corner[first], corner[second] = levels[i, first], levels[j, second]
-                place = (CORNER, HALF_WAY, CENTRE)[(i == 1) + (j == 1)]
-                found.append((frame.axes[along], corner @ frame.axes, place, "box_edge"))
-    return found
-
-
-def _contact_lines(scene: JointScene, config: JointsConfig) -> list[tuple[FloatArray, FloatArray, int, str]]:
-    """The long direction of the contact, and the line through two clusters of it (two pins, two hinges)."""
-    contact = scene.contact
-    if len(contact.points) < config.panels.least_contact:
-        return []
-    offset = contact.points - contact.centroid
-    covariance = (offset * contact.weights[:, None]).T @ offset
-    values, vectors = np.linalg.eigh(covariance)
-    found = []
-    normals = (contact.normals * contact.weights[:, None]).T @ contact.normals
-    if max(scene.smallness, scene.compact) > 0:
-        found.append((np.linalg.eigh(normals)[1][:, 2], contact.centroid, OTHER, "contact_axis"))
-    if values[1] < 0.1 * values[2]:
-        found.append((vectors[:, 2], contact.centroid, OTHER, "contact_line"))
-    clusters = contact_clusters(scene, config)
-    if clusters is not None:
-        direction = clusters[1] - clusters[0]
-        found.append((direction / np.linalg.norm(direction), clusters.mean(axis=0), OTHER, "contact_clusters"))
-    return found
-
-
-def contact_clusters(scene: JointScene, config: JointsConfig) -> FloatArray | None:
-    """Centres (2, 3) of two compact contact zones that lie far apart; None where the contact is not so."""
-    contact = scene.contact
-    offset = contact.points - contact.centroid
-    direction = np.linalg.eigh((offset * contact.weights[:, None]).T @ offset)[1][:, 2]
-    along = offset @ direction
-    order = np.argsort(along)
-    gaps = np.diff(along[order])
-    split = int(np.argmax(gaps))
-    size = float(np.max(scene.frame.extents))
-    if gaps[split] < config.panels.cluster_gap * size:
-        return None
-    sides = order[: split + 1], order[split + 1 :]
-    shares = [float(contact.weights[side].sum()) for side in sides]
-    if min(shares) < 0.15:
-        return None
-    centres = np.array([np.average(contact.points[s], axis=0, weights=contact.weights[s]) for s in sides])
-    spreads = [lengths_of(contact.points[s] - c).max() for s, c in zip(sides, centres, strict=True)]
-    return centres if max(spreads) < 0.5 * np.linalg.norm(centres[1] - centres[0]) else None
-
-
-# ---- cues ----------------------------------------------------------------------------------------------------------
-
-
-def _radii(points: FloatArray, lines: CandidateLines) -> FloatArray:
+def _radii(points: FloatArray, lines: Hypotheses) -> FloatArray:
     """Distance of points (n, 3) from each line [m], shape (c, n)."""
     offset = points[None] - lines.pivots[:, None]
     along = np.einsum("cnk,ck->cn", offset, lines.axes)
     return np.asarray(np.sqrt(np.maximum(np.einsum("cnk,cnk->cn", offset, offset) - along**2, 0.0)))
 
 
-def _arms(point: FloatArray, lines: CandidateLines) -> FloatArray:
+def _arms(point: FloatArray, lines: Hypotheses) -> FloatArray:
     """Vector from each line to a point, across the line [m], shape (c, 3)."""
     offset = point - lines.pivots
     return np.asarray(offset - np.einsum("ck,ck->c", offset, lines.axes)[:, None] * lines.axes)
 
 
-def _reach(scene: JointScene, lines: CandidateLines) -> FloatArray:
+def _reach(scene: JointScene, lines: Hypotheses) -> FloatArray:
     """Largest distance of the child from each line [m], shape (c,)."""
     points = scene.cache.samples(scene.child).points
     return np.asarray(np.maximum(_radii(points, lines).max(axis=1), 1e-12))
 
 
-def _outwardness(scene: JointScene, lines: CandidateLines) -> FloatArray:
+def outwardness(scene: JointScene, lines: Hypotheses) -> FloatArray:
     """Cosine between the first motion of the centre (turning about +) and the way out of the body, shape (c,)."""
     velocity = crossed(lines.axes, _arms(scene.centre, lines))
     speed = lengths_of(velocity)
@@ -277,15 +103,14 @@ def _outwardness(scene: JointScene, lines: CandidateLines) -> FloatArray:
 
 def _motion_cues(
     scene: JointScene,
-    lines: CandidateLines,
+    lines: Hypotheses,
     with_parent: Sweep,
     everything: Sweep,
-    outward: FloatArray,
     *,
     config: JointsConfig,
 ) -> dict[str, FloatArray]:
     """Free turn, share that crosses, gap that opens behind the hinge, and whether the free way leads outwards."""
-    share = config.sweep.share
+    share, outward = config.sweep.share, outwardness(scene, lines)
     full = np.radians(config.panels.full_turn_deg)
     mean_free = 0.5 * (np.minimum(with_parent.free(share), full) + np.minimum(everything.free(share), full)) / full
     prefer = mean_free + 0.1 * np.stack([outward, -outward], axis=1)
@@ -301,26 +126,18 @@ def _motion_cues(
     }
 
 
-def _separation(scene: JointScene, lines: CandidateLines, sign: FloatArray, config: JointsConfig) -> FloatArray:
+def _separation(scene: JointScene, lines: Hypotheses, sign: FloatArray, config: JointsConfig) -> FloatArray:
     """Gap to the parent after a turn of `panels.part_deg` in the preferred direction, fraction of the diagonal."""
     points = scene.cache.samples(scene.child).points
     points = points[:: max(1, len(points) // config.panels.separation_points)]
     before = float(scene.cache.distances(scene.parent, points).min())
     angle = sign * np.radians(config.panels.part_deg)
-    offset = points[None] - lines.pivots[:, None]
-    along = np.einsum("cnk,ck->cn", offset, lines.axes)[..., None] * lines.axes[:, None]
-    radial = offset - along
-    moved = (
-        lines.pivots[:, None]
-        + along
-        + np.cos(angle)[:, None, None] * radial
-        + np.sin(angle)[:, None, None] * crossed(lines.axes[:, None], radial)
-    )
+    moved = turned_about(points[None], lines, angle)
     distances = scene.cache.distances(scene.parent, moved.reshape(-1, 3)).reshape(moved.shape[:2])
     return np.asarray(np.maximum(distances.min(axis=1) - before, 0.0) / scene.diagonal)
 
 
-def _contact_cues(scene: JointScene, lines: CandidateLines, config: JointsConfig) -> dict[str, FloatArray]:
+def _contact_cues(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> dict[str, FloatArray]:
     """How close to the line the parts touch, and how close the line runs to the parent."""
     along = (scene.frame.local(scene.cache.samples(scene.child).points)).T
     half = 0.5 * np.ptp(along, axis=1)
@@ -345,13 +162,13 @@ def _contact_cues(scene: JointScene, lines: CandidateLines, config: JointsConfig
     }
 
 
-def is_ajar(scene: JointScene, lines: CandidateLines, share: FloatArray, config: JointsConfig) -> bool:
+def is_ajar(scene: JointScene, lines: Hypotheses, share: FloatArray, config: JointsConfig) -> bool:
     """A panel that touches its parent along one edge only stands open; then contact tells the hinge by itself."""
-    corners = np.array([place == CORNER for place in lines.places])
+    corners = lines.places == CORNER
     return bool(scene.plate and corners.any() and share[corners].max() > config.panels.ajar_share)
 
 
-def _handle_cues(scene: JointScene, lines: CandidateLines, config: JointsConfig) -> dict[str, FloatArray]:
+def _handle_cues(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> dict[str, FloatArray]:
     """A handle is far from the hinge, and a long one runs along it."""
     n = len(lines.axes)
     if scene.handle is None:
@@ -366,7 +183,7 @@ def _handle_cues(scene: JointScene, lines: CandidateLines, config: JointsConfig)
     }
 
 
-def _margin_cues(scene: JointScene, lines: CandidateLines, config: JointsConfig) -> dict[str, FloatArray]:
+def _margin_cues(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> dict[str, FloatArray]:
     """The hinge is on the side where less of the body is left; controls and the next door are opposite."""
     n = len(lines.axes)
     here, opposite = np.zeros(n), np.zeros(n)
@@ -420,7 +237,7 @@ def _tallness(scene: JointScene) -> float:
     return float(frame.extents[vertical] / max(frame.extents[level], 1e-12))
 
 
-def _gravity_cues(scene: JointScene, lines: CandidateLines, with_parent: Sweep) -> dict[str, FloatArray]:
+def _gravity_cues(scene: JointScene, lines: Hypotheses, with_parent: Sweep) -> dict[str, FloatArray]:
     """Doors turn about upright lines or drop down, lids rise, and a lid's hinge is where the body stands higher."""
     vertical = np.abs(lines.axes @ UP)
     arms = -_arms(scene.centre, lines)
@@ -444,7 +261,7 @@ def _gravity_cues(scene: JointScene, lines: CandidateLines, with_parent: Sweep) 
     }
 
 
-def _heel(scene: JointScene, lines: CandidateLines, arms: FloatArray) -> FloatArray:
+def _heel(scene: JointScene, lines: Hypotheses, arms: FloatArray) -> FloatArray:
     """Level lines across a pedal, from -1 at its tip to 1 at its end inside the body, shape (c,)."""
     half = 0.5 * float(np.abs(scene.frame.axes @ scene.pedal_direction) @ scene.frame.extents)
     across = (np.abs(lines.axes @ UP) < 0.1) & (np.abs(lines.axes @ scene.pedal_direction) < 0.5)
@@ -465,7 +282,7 @@ def _body_behind(scene: JointScene, arms: FloatArray) -> FloatArray:
     return np.asarray(side.mean(axis=0))
 
 
-def _shape_cues(scene: JointScene, lines: CandidateLines, near: FloatArray) -> dict[str, FloatArray]:
+def _shape_cues(scene: JointScene, lines: Hypotheses, near: FloatArray) -> dict[str, FloatArray]:
     """Where on the box the line lies and how it runs; for small parts, the normal of the contact.
 
     A round part that touches only far from its own axis (a porthole on its hinge) does not turn about that axis.
@@ -473,18 +290,14 @@ def _shape_cues(scene: JointScene, lines: CandidateLines, near: FloatArray) -> d
     frame = scene.frame
     thin = np.abs(lines.axes @ frame.axes[frame.thin])
     along = np.abs(lines.axes @ frame.axes.T) @ frame.extents / max(float(frame.extents.max()), 1e-12)
-    place = np.array(lines.places)
-    source = np.array(lines.sources)
+    place, source = lines.places, np.array(lines.sources)
     turned = np.maximum(_roundness(scene, lines), scene.disc * (place == CENTRE) * (thin > 0.99))
     turned *= 1.0 - scene.compact * (1.0 - near)
     clusters = (source == "contact_clusters") & (not (scene.panel and (scene.upright or scene.flat)))
     by_contact = (source == "weak_bearing") | (source == "contact_axis")
     stands = (place == CENTRE) | (by_contact if scene.mechanism > 0.5 else source == "contact_axis")
-    normal = np.zeros(len(thin))
-    if len(scene.contact.points):
-        tensor = (scene.contact.normals * scene.contact.weights[:, None]).T @ scene.contact.normals
-        values, vectors = np.linalg.eigh(tensor)
-        normal = np.abs(lines.axes @ vectors[:, 2]) * float(values[2])
+    values, vectors = scene.contact.facing
+    normal = np.abs(lines.axes @ vectors[:, 2]) * float(values[2])
     return {
         "thin_along": thin * (1.0 - turned) * (1.0 - scene.mechanism),
         "length_along": along,
@@ -501,14 +314,14 @@ def _shape_cues(scene: JointScene, lines: CandidateLines, near: FloatArray) -> d
     }
 
 
-def _squareness(scene: JointScene, lines: CandidateLines) -> FloatArray:
+def _squareness(scene: JointScene, lines: Hypotheses) -> FloatArray:
     """1 for lines along an axis of the child's or the parent's frame, 0 from 8 deg off all of them, shape (c,)."""
     axes = np.concatenate([scene.frame.axes, scene.parent_frame.axes])
     nearest = np.minimum(np.abs(lines.axes @ axes.T).max(axis=1), 1.0)
     return np.asarray(np.interp(np.degrees(np.arccos(nearest)), (4.0, 8.0), (1.0, 0.0)))
 
 
-def _rolling(scene: JointScene, lines: CandidateLines) -> FloatArray:
+def _rolling(scene: JointScene, lines: Hypotheses) -> FloatArray:
     """1 for the lines through the middle of a wheel on the floor, along its axle, shape (c,)."""
     frame = scene.frame
     along = np.abs(lines.axes @ frame.axes[frame.thin]) > np.cos(np.radians(10.0))
@@ -516,7 +329,7 @@ def _rolling(scene: JointScene, lines: CandidateLines) -> FloatArray:
     return np.asarray(along & (off < 0.1) & scene.rolls, dtype=np.float64)
 
 
-def _bearing_ratio(scene: JointScene, lines: CandidateLines) -> FloatArray:
+def _bearing_ratio(scene: JointScene, lines: Hypotheses) -> FloatArray:
     """Score of each bearing line over that of the best one; 0 for other lines."""
     if scene.bearing is None or not scene.bearing.lines:
         return np.zeros(len(lines.sources))
@@ -525,7 +338,7 @@ def _bearing_ratio(scene: JointScene, lines: CandidateLines) -> FloatArray:
     return np.array([next(scores) / best if source in ("bearing", "weak_bearing") else 0.0 for source in lines.sources])
 
 
-def _roundness(scene: JointScene, lines: CandidateLines) -> FloatArray:
+def _roundness(scene: JointScene, lines: Hypotheses) -> FloatArray:
     """Share of the child's area across the line's direction that turns into itself about the line, from 0.5 to 1."""
     samples = scene.cache.samples(scene.child)
     result = np.zeros(len(lines.axes))

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.config import JointsConfig, SweepConfig
-    from kinematify.joints.measure.scene import JointScene
-    from kinematify.joints.measure.workspace import PartCache
+    from kinematify.joints.features.scene import JointScene
+    from kinematify.joints.features.workspace import PartCache
     from kinematify.robot.arrays import FloatArray
 
 

@@ -12,7 +12,7 @@ from embreex.rtcore_scene import EmbreeScene
 
 from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
 from kinematify.geometry.sampling import sample_surface
-from kinematify.joints.measure.frames import body_axes
+from kinematify.joints.features.frames import body_axes
 from kinematify.robot.vectors import all_three, lengths_of
 
 if TYPE_CHECKING:
@@ -50,6 +50,25 @@ class ContactView:
         if len(self.points) == 0:
             return np.full(3, np.nan)
         return np.asarray(self.weights @ self.points)
+
+    @cached_property
+    def spread(self) -> tuple[FloatArray, FloatArray]:
+        """Principal variances of the contact [m^2], ascending, shape (3,), and their axes in columns, shape (3, 3)."""
+        offset = self.points - self.centroid
+        values, vectors = np.linalg.eigh((offset * self.weights[:, None]).T @ offset)
+        return values, vectors
+
+    @cached_property
+    def facing(self) -> tuple[FloatArray, FloatArray]:
+        """Shares of the child's normals along their principal axes, ascending, and these axes; as above."""
+        values, vectors = np.linalg.eigh((self.normals * self.weights[:, None]).T @ self.normals)
+        return values, vectors
+
+    @property
+    def normal(self) -> FloatArray | None:
+        """Dominant direction of the child's normals, shape (3,); None without a dominant one."""
+        values, vectors = self.facing
+        return np.asarray(vectors[:, 2]) if values[2] > 0.7 else None
 
 
 class PartCache:

@@ -1,23 +1,21 @@
-"""Sliding joints: candidate directions and the cues that rank them (drawers, trays, buttons, lift-off lids)."""
+"""Cues that rank the directions along which a part may slide (drawers, trays, buttons, lift-off lids)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.panels import GIVEN, some_of
-from kinematify.joints.measure.frames import UP
-from kinematify.joints.measure.scene import is_cap
-from kinematify.joints.measure.sweep import moving_points, sweep_slides
+from kinematify.joints.features.frames import UP
+from kinematify.joints.features.ranking import Ranked, cue_sum
+from kinematify.joints.features.scene import is_cap
+from kinematify.joints.features.sweep import moving_points, sweep_slides
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from kinematify.config import JointsConfig
-    from kinematify.joints.measure.scene import JointScene
-    from kinematify.joints.measure.sweep import Sweep
+    from kinematify.joints.candidate import Hypotheses
+    from kinematify.joints.features.scene import JointScene
+    from kinematify.joints.features.sweep import Sweep
     from kinematify.robot.arrays import FloatArray
 
 
@@ -30,44 +28,15 @@ WEIGHTS = {
 CAP = 2.5  # the most that one cue says
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class RankedSlides:
-    """Candidate directions with their scores, best first."""
-
-    axes: FloatArray
-    """Unit directions in the world frame, shape (c, 3)."""
-    sources: tuple[str, ...]
-    """Generator of each direction."""
-    scores: FloatArray
-    """Shape (c,), higher is better."""
-    cues: Mapping[str, FloatArray]
-    """Value of each cue before its weight, shape (c,) each."""
-    free: FloatArray
-    """Free travel towards + and - before the part hits anything, fraction of the diagonal, shape (c, 2)."""
-    free_parent: FloatArray
-    """The same against the parent alone, shape (c, 2)."""
-
-    @property
-    def proposed(self) -> RankedSlides:
-        """Without those that were given."""
-        found: RankedSlides = some_of(self, np.flatnonzero(np.array(self.sources) != GIVEN))
-        return found
-
-
-def rank_slides(
-    scene: JointScene, twins: FloatArray, config: JointsConfig, given: Sequence[FloatArray] = ()
-) -> RankedSlides:
-    """Propose the directions along which the child may slide and rank them.
+def rank_slides(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> Ranked:
+    """What cues say of directions along which the child may slide, best first.
 
     Args:
         scene: The pair.
-        twins: Unit directions towards congruent leaf siblings, shape (k, 3).
-        config: Weights and sweeps.
-        given: Unit directions (3,) to rank beside the proposals, from elsewhere; their source is `panels.GIVEN`.
+        lines: Slides alone.
+        config: Thresholds and sweeps.
     """
-    axes, sources = _directions(scene, twins, config)
-    axes = np.concatenate([axes, np.reshape(given, (-1, 3))])
-    sources += (GIVEN,) * len(given)
+    axes = lines.axes
     points = moving_points(scene.cache, scene.child, config.sweep)
     limit = config.slides.sweep * scene.diagonal
     with_parent = sweep_slides(scene.cache, points, axes, (scene.parent,), limit=limit, config=config.sweep)
@@ -76,50 +45,16 @@ def rank_slides(
     )
     cues = {
         **_motion_cues(scene, axes, with_parent, everything, config),
-        **_shape_cues(scene, axes, twins, with_parent, config),
+        **_shape_cues(scene, axes, with_parent, config),
         "small_way": _small_way(scene, points, axes, config),
     }
-    scores = np.sum([np.clip(WEIGHTS[name] * value, -CAP, CAP) for name, value in cues.items()], axis=0)
-    ranked = RankedSlides(
-        axes=axes,
-        sources=sources,
-        scores=scores,
+    return Ranked(
+        lines=lines,
+        scores=cue_sum(cues, WEIGHTS, CAP),
         cues=cues,
         free=everything.free(config.sweep.share) / scene.diagonal,
         free_parent=with_parent.free(config.sweep.share) / scene.diagonal,
-    )
-    best_first: RankedSlides = some_of(ranked, np.argsort(-scores, kind="stable"))
-    return best_first
-
-
-def _directions(scene: JointScene, twins: FloatArray, config: JointsConfig) -> tuple[FloatArray, tuple[str, ...]]:
-    """Distinct directions: rail, bearing, twins, the child's box, the parent's box, the contact normal."""
-    found: list[tuple[FloatArray, str]] = []
-    if scene.bearing is not None and scene.bearing.rail is not None and scene.mechanism > 0:
-        found.append((scene.bearing.rail.axis, "rail"))
-    if scene.bearing is not None and scene.bearing.lines and scene.has_bearing:
-        found.append((scene.bearing.lines[0].axis, "bearing"))
-    found += [(axis, "twin") for axis in twins]
-    found += [(axis, "box") for axis in scene.frame.axes]
-    found += [(axis, "parent_box") for axis in scene.parent_frame.axes]
-    normal = contact_normal(scene)
-    if normal is not None:
-        found.append((normal, "contact_normal"))
-    kept: list[tuple[FloatArray, str]] = []
-    cosine = np.cos(np.radians(config.slides.distinct_deg))
-    for axis, source in found:
-        if all(abs(float(axis @ other)) < cosine for other, _ in kept):
-            kept.append((axis, source))
-    return np.array([axis for axis, _ in kept]), tuple(source for _, source in kept)
-
-
-def contact_normal(scene: JointScene) -> FloatArray | None:
-    """Dominant direction of the child's normals where it touches its parent; None without a dominant one."""
-    contact = scene.contact
-    if len(contact.points) == 0:
-        return None
-    values, vectors = np.linalg.eigh((contact.normals * contact.weights[:, None]).T @ contact.normals)
-    return np.asarray(vectors[:, 2]) if values[2] > 0.7 else None
+    ).best_first
 
 
 def _motion_cues(
@@ -169,12 +104,10 @@ def _flush(scene: JointScene, axes: FloatArray, free: FloatArray) -> FloatArray:
     return np.asarray((closeness * (free > 0.1)).max(axis=1))
 
 
-def _shape_cues(
-    scene: JointScene, axes: FloatArray, twins: FloatArray, with_parent: Sweep, config: JointsConfig
-) -> dict[str, FloatArray]:
+def _shape_cues(scene: JointScene, axes: FloatArray, with_parent: Sweep, config: JointsConfig) -> dict[str, FloatArray]:
     large = 1.0 - scene.smallness
     thin = np.abs(axes @ scene.frame.axes[scene.frame.thin])
-    normal = contact_normal(scene)
+    normal = scene.contact.normal
     pressed = np.abs(axes @ normal) if normal is not None else np.zeros(len(axes))
     free = with_parent.free(config.sweep.share)
     rising = np.where(axes[:, 2] >= 0, free[:, 0], free[:, 1]) > 0.1 * scene.diagonal
@@ -192,7 +125,7 @@ def _shape_cues(
         "cap": float(is_cap(scene)) * np.abs(axes @ UP),
         "thin_small": scene.smallness * thin,
         "normal_small": scene.smallness * pressed,
-        "twin": _along_any(axes, twins, config),
+        "twin": _along_any(axes, scene.grips, config),
         "lift_off": large * float(scene.panel and scene.flat and scene.on_top) * np.abs(axes @ UP) * rising,
     }
 

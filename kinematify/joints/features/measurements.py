@@ -7,23 +7,22 @@ that lies inside the parent at rest may stay there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.measure.frames import UP
+from kinematify.joints.candidate import FIXED, SLIDE, TURN
+from kinematify.joints.features.frames import UP
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from kinematify.joints.measure.scene import JointScene
+    from kinematify.joints.candidate import Hypotheses
+    from kinematify.joints.features.scene import JointScene
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
-
-FIXED, TURN, SLIDE = range(3)
 
 _POINTS = 90  # of a part, in tests of motion
 _CONTACT_POINTS = 50
@@ -37,23 +36,6 @@ _ALIKE = 0.01  # of the child's diagonal: a mirror image this far off is 1/e ali
 _TINY = 1e-12
 _LEVEL = 1e-6  # of the child's diagonal: less is rounding
 _FIRST_SECTOR = np.pi + 0.1  # [rad]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Hypotheses:
-    """Every joint that one edge may have."""
-
-    kinds: IntArray
-    """FIXED, TURN or SLIDE, shape (h,)."""
-    axes: FloatArray
-    """Unit directions, world frame, shape (h, 3); zero for fixed."""
-    pivots: FloatArray
-    """Points on the lines [m], shape (h, 3)."""
-    sources: tuple[str, ...]
-    """What proposed each."""
-
-    def __len__(self) -> int:
-        return len(self.kinds)
 
 
 class MeasuredHypotheses:
@@ -90,11 +72,6 @@ class MeasuredHypotheses:
         low, high = self.scene.cache.assembly.parts[self.scene.child].bounds
         slack = 0.25 * self.unit
         return np.flatnonzero(np.all((points > low - slack) & (points < high + slack), axis=1))
-
-    @cached_property
-    def anchor(self) -> FloatArray:
-        """Centroid of the contact, the child's centre without one [m], shape (3,)."""
-        return self.scene.contact.centroid if len(self.scene.contact.points) else self.scene.centre
 
     @cached_property
     def arms(self) -> FloatArray:
@@ -136,11 +113,7 @@ class MeasuredHypotheses:
         """Points (n, 3) or (h, n, 3) after each hypothesis has moved by its amount (h,), shape (h, n, 3)."""
         h = self.hypotheses
         given = np.broadcast_to(points, (len(h), *points.shape[-2:]))
-        offset = given - h.pivots[:, None]
-        along = np.einsum("hnk,hk->hn", offset, h.axes)[..., None] * h.axes[:, None]
-        radial = offset - along
-        cosine, sine = np.cos(amounts)[:, None, None], np.sin(amounts)[:, None, None]
-        turned = h.pivots[:, None] + along + cosine * radial + sine * crossed(h.axes[:, None], radial)
+        turned = turned_about(given, h, amounts)
         straight = given + amounts[:, None, None] * h.axes[:, None]
         kinds = h.kinds[:, None, None]
         return np.where(kinds == TURN, turned, np.where(kinds == SLIDE, straight, given))
@@ -194,6 +167,15 @@ class MeasuredHypotheses:
             return np.zeros(len(self.hypotheses), dtype=np.int64)
         total = np.sum([shares.sum(axis=2) for shares in self.blocked.values()], axis=0)
         return np.asarray(np.argmin(total, axis=1))
+
+
+def turned_about(points: FloatArray, lines: Hypotheses, angles: FloatArray) -> FloatArray:
+    """Points (c, n, 3) or (1, n, 3) after a turn about each of c lines by its angle (c,) [rad], shape (c, n, 3)."""
+    offset = points - lines.pivots[:, None]
+    along = np.einsum("cnk,ck->cn", offset, lines.axes)[..., None] * lines.axes[:, None]
+    radial = offset - along
+    cosine, sine = np.cos(angles)[:, None, None], np.sin(angles)[:, None, None]
+    return np.asarray(lines.pivots[:, None] + along + cosine * radial + sine * crossed(lines.axes[:, None], radial))
 
 
 # ---- measurements --------------------------------------------------------------------------------------------------
@@ -323,7 +305,7 @@ def place(m: MeasuredHypotheses) -> Values:
     result["off_most"] = np.abs(offset).max(axis=1)
     result["off_least"] = np.where(across, np.abs(offset), 9.0).min(axis=1)
     points = m.child.points[:: max(1, len(m.child.points) // 300)]
-    radius = lengths_of(np.cross(points[None] - h.pivots[:, None], h.axes[:, None]))
+    radius = m.radii(points)
     reach = np.maximum(radius.max(axis=1), _TINY)
     result["mean_radius"] = radius.mean(axis=1) / reach
     result["least_radius"] = radius.min(axis=1) / reach
@@ -367,7 +349,7 @@ def contact_place(m: MeasuredHypotheses) -> Values:
     if len(contact.points) == 0:
         return {f"contact_{name}": np.full(count, np.nan) for name in names}
     points = contact.points[m.few_contact]
-    radius = lengths_of(np.cross(points[None] - h.pivots[:, None], h.axes[:, None])) / m.unit
+    radius = m.radii(points) / m.unit
     along = (points - contact.centroid) @ h.axes.T
     values, vectors = np.linalg.eigh(np.cov((points - points.mean(axis=0)).T) + _TINY * m.unit**2 * np.eye(3))
     reach = np.maximum(radius.max(axis=1), _TINY)
@@ -497,12 +479,9 @@ def symmetry(m: MeasuredHypotheses) -> Values:
 def _outline(m: MeasuredHypotheses, points: FloatArray) -> Values:
     """How round the outline about each line is: least over largest radius of twelve sectors, and their spread."""
     h = m.hypotheses
-    first, second = _across_pair(h.axes)
-    offset = points[None] - h.pivots[:, None]
-    x, y = np.einsum("hnk,hk->hn", offset, first), np.einsum("hnk,hk->hn", offset, second)
-    sector = _sectors(x, y)
+    sector, apart = _sectors(m, points)
     radius = np.zeros((len(h), 12))
-    np.maximum.at(radius, (np.arange(len(h))[:, None], sector), np.hypot(x, y))
+    np.maximum.at(radius, (np.arange(len(h))[:, None], sector), apart)
     largest = np.maximum(radius.max(axis=1), _TINY)
     turns = h.kinds == TURN
     return {
@@ -511,9 +490,15 @@ def _outline(m: MeasuredHypotheses, points: FloatArray) -> Values:
     }
 
 
-def _sectors(x: FloatArray, y: FloatArray) -> IntArray:
-    """Which of twelve sectors places lie in; none starts where outlines of boxes and prisms have their corners."""
-    return np.asarray(((np.arctan2(y, x) + _FIRST_SECTOR) / (2.0 * np.pi) * 12).astype(np.int64) % 12)
+def _sectors(m: MeasuredHypotheses, points: FloatArray) -> tuple[IntArray, FloatArray]:
+    """In which of twelve sectors about each line points (n, 3) lie, and how far from it [m], shape (h, n) each.
+
+    No sector starts where outlines of boxes and prisms have their corners.
+    """
+    first, second = _across_pair(m.hypotheses.axes)
+    offset = points[None] - m.hypotheses.pivots[:, None]
+    x, y = np.einsum("hnk,hk->hn", offset, first), np.einsum("hnk,hk->hn", offset, second)
+    return ((np.arctan2(y, x) + _FIRST_SECTOR) / (2.0 * np.pi) * 12).astype(np.int64) % 12, np.hypot(x, y)
 
 
 def _across_pair(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -548,7 +533,7 @@ def axle(m: MeasuredHypotheses) -> Values:
         hits = scene.cache.first_hits(scene.parent, foot, reach)
         inside = scene.cache.inside(scene.parent, foot + 1.1 * half[:, None] * h.axes * sense)
         met.append(np.where(inside, 0.0, np.minimum(hits, 2.0)))
-    of_contact = np.einsum("hk,hk->h", m.anchor - scene.centre + np.zeros_like(h.axes), h.axes)
+    of_contact = np.einsum("hk,hk->h", m.scene.anchor - scene.centre + np.zeros_like(h.axes), h.axes)
     return {
         "above_floor": np.clip((foot[:, 2] - floor) / radius, 0.0, 5.0),
         "axle_meets": np.min(met, axis=0),
@@ -662,12 +647,8 @@ def _around(m: MeasuredHypotheses, points: FloatArray) -> FloatArray:
     h = m.hypotheses
     if len(points) == 0:
         return np.full(len(h), np.nan)
-    first, second = _across_pair(h.axes)
-    offset = points[None] - h.pivots[:, None]
-    x, y = np.einsum("hnk,hk->hn", offset, first), np.einsum("hnk,hk->hn", offset, second)
-    sector = _sectors(x, y)
     met = np.zeros((len(h), 12))
-    met[np.arange(len(h))[:, None], sector] = 1.0
+    met[np.arange(len(h))[:, None], _sectors(m, points)[0]] = 1.0
     return np.where(h.kinds == TURN, met.mean(axis=1), np.nan)
 
 

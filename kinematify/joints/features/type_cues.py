@@ -1,0 +1,218 @@
+"""Does it turn, slide or not move at all? Log odds from physical cues, each bounded; turning is the default.
+
+The paper compares averages of DW-CAVL over a motion range (section III-D, type verification); these are nearly equal
+for doors and drawers. What distinguishes them is shape and room: boxes in a cavity slide, plates hinge, round things
+with a bearing turn, small caps are pressed, and what can only move along one line slides along it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.joints.features.frames import UP
+from kinematify.joints.features.scene import is_cap
+from kinematify.joints.features.sweep import contact_clearance
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.config import JointsConfig
+    from kinematify.joints.features.ranking import Ranked
+    from kinematify.joints.features.scene import JointScene
+    from kinematify.robot.arrays import FloatArray, IntArray
+
+
+WEIGHTS = {
+    "drawer": 3.0, "box_inside": 1.5, "panel": -2.0, "tray": 3.0, "bearing": -1.5, "mechanism": -1.5, "button": 1.6,
+    "round_small": -1.5, "round_lid": 2.5, "on_moving_part": -1.0, "capped": 3.0, "latch": -2.5, "keyed": 3.0,
+    "retained": -2.5, "row": 2.4, "rocker": -2.5, "pedal": -2.5, "wheel": -3.0, "gripper": 3.0, "rail": 3.0,
+}  # fmt: skip
+"""Of each cue of the type, positive for sliding; their sum is a column of the fit, which was made with these."""
+BIAS, CAP = -0.8, 3.0  # log odds of sliding without any cue, and the most that one says
+_BOX = (0.25, 0.5)
+"""Depth over the smaller side of the front up to which a part inside its body is no drawer, and from which it is one:
+leaves have up to a tenth, one drawer behind the whole front of a cabinet is half as deep as wide."""
+
+
+def type_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> dict[str, float]:
+    """What speaks for sliding or for turning, in terms of `WEIGHTS`.
+
+    Args:
+        scene: The pair.
+        turns: Proposed turns, best first.
+        slides: Proposed slides, best first.
+        config: Thresholds.
+    """
+    cues = {
+        **_room_cues(scene, slides),
+        **_shape_cues(scene, turns),
+        **{
+            "row": scene.smallness * float(len(scene.twins) >= 2),
+            "gripper": float(scene.gripping),
+        },
+        **_clearance_cues(scene, turns, slides, config),
+        "rail": scene.mechanism * _held_rail(scene, turns, slides, config),
+    }
+    held = max(cues["keyed"], cues["capped"], cues["rail"], scene.mechanism * cues["gripper"])
+    cues["panel"] *= 1.0 - held  # a plate that cannot turn, rides on a rail or closes on its like is no door
+    hinged = float(scene.journal is not None and abs(float(scene.journal.axis @ slides.axes[0])) < 0.5)
+    for pulled in ("drawer", "box_inside", "tray", "round_lid"):
+        cues[pulled] *= 1.0 - hinged  # hinges hold it, whatever it looks like
+    whirls = float(scene.has_bearing and turns.free_parent[0].min() >= np.radians(89.0))
+    for box in ("drawer", "box_inside"):
+        cues[box] *= 1.0 - whirls  # no drawer turns on a shaft
+    if scene.journal is not None and abs(float(scene.journal.axis @ UP)) < config.upright_cosine:
+        cues["round_lid"] = 0.0  # a flap in pins across its mouth is not lifted off
+    cues["retained"] *= 1.0 - cues["capped"]
+    cues["round_lid"] *= 1.0 - cues["retained"]  # what holds it down is turned first
+    for boxed in ("keyed", "button", "drawer", "box_inside", "row"):
+        cues[boxed] *= 1.0 - cues["rocker"]  # its pins are seldom seen, and its pocket is that of a button
+    for round_thing in ("bearing", "mechanism", "round_small", "wheel"):
+        cues[round_thing] *= 1.0 - cues["keyed"]  # what is round but keyed is guided
+    return cues
+
+
+def type_odds(cues: Mapping[str, float]) -> float:
+    """Log odds of sliding against turning that cues add up to."""
+    return BIAS + sum(float(np.clip(WEIGHTS[k] * v, -CAP, CAP)) for k, v in cues.items())
+
+
+def _held_rail(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> float:
+    """The rail, unless it runs along a line about which the part can turn: a pin is extruded along its axis too.
+
+    Nor is it one where the part turns freely about any line and is soon stopped along the rail: boxy knuckles that
+    stand in each other are extruded as well.
+    """
+    if scene.bearing is None or scene.bearing.rail is None:
+        return 0.0
+    rail = scene.bearing.rail.axis
+    along = bool(scene.bearing.lines) and abs(float(scene.bearing.lines[0].axis @ rail)) > 0.95
+    turn = float(np.degrees(turns.free_parent[0].max()))
+    if along and turn > config.rails.pin_deg:
+        return 0.0
+    travel = float(slides.cues["travel_parent"][np.abs(slides.axes @ rail) > 0.99].max(initial=0.0))
+    loose = turn > config.panels.full_turn_deg and travel < config.rails.least_travel
+    return 0.0 if loose else scene.prismatic_score
+
+
+def _clearance_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> dict[str, float]:
+    """What the contact itself lets go: a key, skirt or groove stops turning, a bead, barrel or fork stops sliding."""
+    few = _near_best(scene, turns, config)
+    clearance = contact_clearance(scene, turns.axes[few], turns.lines.pivots[few], slides.axes[0], config)
+    if clearance is None:
+        return {"keyed": 0.0, "retained": 0.0}
+    least = config.clearance.least * scene.frame.diagonal
+    # Round buttons are stopped early both ways; what else is stopped both ways rather overlaps its parent.
+    guided = scene.has_bearing or np.isinf(clearance.slide)
+    if scene.serial:
+        # Links of machines overlap where they meet; guided are rods in bores that cannot turn as a whole either, and
+        # what is extruded along its slide, nowhere round, and stopped within its clearance.
+        blocked = float(turns.free_parent[0].max()) < np.radians(config.rails.pin_deg)
+        guided = (
+            blocked if scene.has_bearing else _extruded(scene, slides.axes[0], config) and clearance.turn < 2.0 * least
+        )
+    return {
+        "keyed": float(guided and clearance.slides_only(least, config.clearance.ratio)),
+        "retained": float(clearance.turns_only(least, config.clearance.ratio))
+        * (1.0 - scene.smallness * (not scene.has_bearing))
+        * (not scene.serial),
+    }
+
+
+def _extruded(scene: JointScene, direction: FloatArray, config: JointsConfig) -> bool:
+    """Whether the contact's rail runs along a direction and leads its best line by as much as that of any slide."""
+    rail = None if scene.bearing is None else scene.bearing.rail
+    return rail is not None and abs(float(rail.axis @ direction)) > 0.99 and scene.rail_lead > config.rails.lead_full
+
+
+def _near_best(scene: JointScene, turns: Ranked, config: JointsConfig) -> IntArray:
+    """The best line, and where it is no bearing the next ones along the same edge, which may fit the hinge better."""
+    if scene.has_bearing:
+        return np.zeros(1, dtype=np.int64)
+    axes, pivots = turns.axes[: config.clearance.candidates], turns.lines.pivots[: config.clearance.candidates]
+    offset = pivots - pivots[0]
+    apart = np.linalg.norm(np.cross(offset, axes[0]), axis=1)
+    same = (np.abs(axes @ axes[0]) > np.cos(np.radians(5.0))) & (apart < config.clearance.edge * scene.frame.diagonal)
+    return np.flatnonzero(same)[: config.clearance.lines]
+
+
+def _room_cues(scene: JointScene, slides: Ranked) -> dict[str, float]:
+    """Where the part can go: a drawer leaves one way and stops the other."""
+    own = np.abs(slides.axes[0] @ scene.frame.axes.T) @ scene.frame.extents / scene.diagonal
+    travel = np.minimum(slides.free_parent[0] / max(float(own), 1e-9), 1.0)
+    level = float(1.0 - abs(float(slides.axes[0] @ UP)))
+    depth = float(_is_box(scene)) * _depth(scene, slides)
+    box = float(np.interp(depth, _BOX, (0.0, 1.0)))
+    furniture = (1.0 - scene.smallness) * (1.0 - scene.mechanism)
+    one_way = float(travel.max() > 0.5) * float(np.clip(1.0 - 4.0 * travel.min(), 0.0, 1.0))
+    channel = float(travel.max() > 0.3) * _channel(scene, slides)
+    return {
+        "drawer": furniture * box * level * scene.inside * max(one_way, channel),
+        "box_inside": furniture * box * scene.inside,
+    }
+
+
+def _depth(scene: JointScene, slides: Ranked) -> float:
+    """How far a part reaches along its best slide over the smaller side of its front, behind which drawers are deep."""
+    along = np.abs(scene.frame.axes @ slides.axes[0])
+    extents = scene.frame.upper - scene.frame.lower
+    face = np.sort(extents[np.argsort(-along)[1:]])
+    return float(along @ extents) / max(float(face[0]), 1e-12)
+
+
+def _channel(scene: JointScene, slides: Ranked) -> float:
+    """1 where the part is blocked at once across its best direction in three of four ways, or more; 0 if in fewer."""
+    across = np.abs(slides.axes @ slides.axes[0]) < 0.1
+    sides = np.abs(slides.axes[across] @ scene.frame.axes.T) @ scene.frame.extents / scene.diagonal
+    blocked = slides.free_parent[across] < 0.1 * sides[:, None]
+    return float(blocked.mean() > 0.7) if blocked.size else 0.0
+
+
+def _is_box(scene: JointScene) -> bool:
+    """All three directions of the frame hold a fair share of the surface."""
+    samples = scene.cache.samples(scene.child)
+    facing = np.abs(samples.normals @ scene.frame.axes.T) > np.cos(np.radians(15.0))
+    return bool(facing.mean(axis=0).min() > 0.06)
+
+
+def _shape_cues(scene: JointScene, turns: Ranked) -> dict[str, float]:
+    large = 1.0 - scene.smallness
+    frame = scene.frame
+    across = np.delete(frame.extents, frame.thin)
+    squat = float(frame.extents[frame.thin] / max(float(across.min()), 1e-12))
+    box = float(_is_box(scene))
+    edge = float(scene.plate and turns.cues["ajar_contact"].max() > 0.0)
+    tray = scene.panel and scene.flat and scene.covered and scene.enclosed > 0.6 and scene.disc < 0.5
+    top = scene.on_top
+    return {
+        "panel": large
+        * (1.0 - box * scene.inside)
+        * float(scene.panel and not tray and not (top and scene.disc > 0.5)),
+        "tray": float(tray and scene.journal is None),
+        "bearing": large * float(scene.has_bearing and not top),
+        "mechanism": scene.mechanism * large,
+        "button": scene.smallness * float(not scene.has_bearing) * (1.0 - scene.compact) * (1.0 - edge),
+        "wheel": float(scene.rolls),
+        "rocker": float(scene.fold is not None and not scene.has_bearing),
+        "pedal": float(scene.pedal_direction.any()),
+        "round_small": scene.smallness * scene.disc * float(squat > 0.3),
+        "round_lid": large * (1.0 - scene.mechanism) * float(top and scene.flat and scene.disc > 0.5),
+        "capped": large * float(is_cap(scene)),
+        "latch": scene.smallness * float(_bridges_a_seam(scene)),
+        "on_moving_part": float(scene.parent_moves) * scene.smallness,
+    }
+
+
+def _bridges_a_seam(scene: JointScene) -> bool:
+    """It touches, besides its parent, a part that is no twin of its own and does not hang on it: a hasp or catch.
+
+    Buttons sit in one part, or beside their like.
+    """
+    graph, child = scene.cache.graph, scene.child
+    cluster = graph.cluster_of[child]
+    touched = [
+        edge.b if edge.a == child else edge.a for edge in graph.edges if child in (edge.a, edge.b) and not edge.bridge
+    ]
+    return any(part in scene.others and (cluster < 0 or graph.cluster_of[part] != cluster) for part in touched)
