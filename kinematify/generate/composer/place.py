@@ -2,31 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
-import numpy as np
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
 
 from kinematify.generate.composer.bodies import BODY
-from kinematify.generate.library.builder import drawn_on
-from kinematify.generate.procedural.pieces.fronts import room
-from kinematify.generate.procedural.solids import bore, cylinder
 
 if TYPE_CHECKING:
-    from contextlib import AbstractContextManager
-
-    from manifold3d import Manifold
-
-    from kinematify.generate.library.builder import ObjectBuilder
     from kinematify.generate.procedural.pieces.fronts import Bay, Fitting
     from kinematify.generate.procedural.workshop import Workshop
-
-OUTWARD = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
-"""Turns what is built to stand on z = 0 so that it stands on the side."""
-HANGING = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-"""Turns what is built to hang from z = 0 so that it hangs from the side."""
-UPSIDE_DOWN = np.diag([-1.0, 1.0, -1.0])
-"""Turns a side about its normal."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -71,27 +54,15 @@ class Placement:
         """[m]."""
         return self.fitting.clearance
 
-    def drawn(self) -> AbstractContextManager[ObjectBuilder]:
-        """What draws mechanisms of the library in the frame of the side."""
-        return drawn_on(self.workshop, self.clearance, self.fitting.rest)
-
-    def hollowed(self) -> None:
-        """Cut the room behind the area, where there may be one."""
-        if self.hollow:
-            self.workshop.cut(BODY, room(self.area))
-
-    def on_shaft(
-        self,
-        *solids: Manifold,
-        shaft: float,
-        limits: tuple[float, float] | None = None,
-        material: str | None = None,
-    ) -> None:
-        """Add what turns clockwise about the normal through the middle, on a shaft in a bore of the body."""
+    @property
+    def named(self) -> dict[str, Any]:
+        """What steps may name: what is said of the place, its middle `x`, `z`, and how `deep` holes may go [m]."""
         x, _, z = self.middle
         # Behind a side that may be hollow, only its wall is sure to be there.
-        deep, out = (min(0.02, self.area.wall) if self.hollow else 0.8 * self.area.depth), self.clearance + 1e-3
-        self.workshop.cut(BODY, bore(shaft, self.clearance, (x, deep, z), (x, -0.01, z)))
-        end = deep - max(self.clearance, 1e-3)
-        self.workshop.body(self.name, cylinder(shaft, (x, end, z), (x, -out, z)), *solids, material=material)
-        self.workshop.turns(self.name, BODY, (0, 1, 0), self.middle, limits, rest=self.fitting.rest)
+        deep = min(0.02, self.area.wall) if self.hollow else 0.8 * self.area.depth
+        workshop = self.workshop
+        return {
+            **{item.name: getattr(self, item.name) for item in fields(self)},
+            "x": x, "z": z, "radius": self.radius, "clearance": self.clearance, "rest": self.fitting.rest, "deep": deep,
+            "above_floor": workshop.above_floor, "as_handle": workshop.as_handle, "painted": workshop.painted,
+        }  # fmt: skip

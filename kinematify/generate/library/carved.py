@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ from kinematify.generate.procedural import layout
 from kinematify.generate.procedural.pieces import bearings, fronts, jaws, leaves, limbs, tracks
 from kinematify.generate.procedural.solids import X, Z
 from kinematify.generate.procedural.workshop import Workshop
+from kinematify.robot.robot import Mimic
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
@@ -69,9 +71,14 @@ def add_door(
         )  # fmt: skip
 
 
+def _mimic(leader: str, multiplier: float = 1.0) -> Mimic:
+    """What a joint follows: the leader's child part, and how many times as far it goes."""
+    return Mimic(joint=leader, multiplier=multiplier, offset=0.0)
+
+
 _FOUND: Mapping[str, Any] = {name: item for module in _PIECES for name, item in public(module).items()}
 _VERBS: Mapping[str, Callable[..., Any]] = {
-    **{name: getattr(Workshop, name) for name in ("body", "add", "cut", "turns", "slides")},
+    **{name: getattr(Workshop, name) for name in ("body", "add", "cut", "turns", "slides", "closes")},
     **{name.removeprefix("add_"): call for name, call in _FOUND.items() if name.startswith("add_")},
     "door": add_door,
     "drawer": add_drawer,
@@ -81,25 +88,29 @@ _NAMES: Mapping[str, Any] = {
     **ARITHMETIC, **_FOUND, **public(layout), **SOLIDS,
     **{name: getattr(math, name) for name in ("sin", "cos", "tan", "hypot", "degrees", "copysign")},
     **{name: getattr(np, name) for name in ("diag", "zeros", "column_stack", "abs")},
-    "FRONT": bearings.FRONT, "float": float,
+    "FRONT": bearings.FRONT, "float": float, "replace": replace, "mimic": _mimic,
     "rotation_about": rotation_about,
 }  # fmt: skip
 """What formulas of solids may name."""
 
 
-def carve(steps: Sequence[Step], workshop: Workshop, given: Mapping[str, Any]) -> None:
+def carve(title: str, steps: Sequence[Step], workshop: Workshop, given: Mapping[str, Any]) -> None:
     """Carry out steps that carve.
 
     Args:
+        title: In messages.
         steps: In this order.
         workshop: Takes what they make.
         given: What formulas may name besides functions; `clearance` is among them.
 
     Raises:
-        ValueError: A step cannot be carried out; the message quotes it.
+        InputError: A step cannot be carried out; the message quotes it.
     """
     drawing = {name: partial(_drawn, call, given["clearance"]) for name, call in MECHANISMS.items()}
-    StepRunner(workshop, {**drawing, **_VERBS}).run(steps, {"__builtins__": {}, **_NAMES, **given})
+    try:
+        StepRunner(workshop, {**drawing, **_VERBS}).run(steps, {"__builtins__": {}, **_NAMES, **given})
+    except ValueError as error:
+        raise InputError(f"The {title} cannot be built: {error}.") from error
 
 
 def _drawn(
@@ -123,10 +134,6 @@ def carver_of(
     names = (*parameters, "open", "clearance")
 
     def build(values: Values, workshop: Workshop) -> None:
-        given = {name: values.value(name) for name in names}
-        try:
-            carve(steps(), workshop, given)
-        except ValueError as error:
-            raise InputError(f"The {title} cannot be built: {error}.") from error
+        carve(title, steps(), workshop, {name: values.value(name) for name in names})
 
     return build

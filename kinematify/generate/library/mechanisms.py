@@ -129,10 +129,9 @@ def knob(
     foot = at + (gap - d.style.max_penetration * high) * out
     top = at + high * out
     side = _across(out, (1.0, 1.0))[1]
+    d.part(name, material=material)
     if d.style.has_bore:
-        deep = deep or 0.6 * high
-        d.cut(parent, d.cylinder(0.3 * radius + 1.5 * gap, at - (deep + gap) * out, at + 0.05 * high * out))
-        d.part(name, d.cylinder(0.3 * radius, at - deep * out, top), material=material)
+        _shaft(d, name, parent, at, 0.3 * radius, out, deep or 0.6 * high, gap)
         foot = at + gap * out
     kind = d.style.knob
     if kind == "bar":
@@ -157,6 +156,15 @@ def knob(
         d.spin(name, parent, -out, at)
     else:
         d.hinge(name, parent, -out, at, reach)
+
+
+def _shaft(
+    d: ObjectBuilder, name: str, parent: str, at: FloatArray, radius: float, out: FloatArray, deep: float, gap: float
+) -> None:
+    """Let a part that stands `gap` before its parent turn in a hole of it, where this hand makes holes."""
+    if d.style.has_bore:
+        d.cut(parent, d.cylinder(radius + 1.5 * d.gap(radius), at - deep * out, at + radius * out))
+        d.part(name, d.cylinder(radius, at - (deep - max(gap, 1e-3 * deep)) * out, at + (gap + 0.2 * radius) * out))
 
 
 def button(
@@ -345,14 +353,17 @@ def rotor(
     blades: int,
     *,
     wide: float = 0.15,
+    deep: float | None = None,
     material: str = "plastic",
 ) -> None:
-    """Blades about a hub in front of a surface."""
+    """Blades about a hub in front of a surface; `deep` as for `knob`, without a shaft if None."""
     at = np.asarray(at, dtype=np.float64)
     hub = 0.14 * radius
     gap = d.gap(hub)
     foot = at + (gap - d.style.max_penetration * hub) * out
     d.part(name, d.cylinder(hub, foot, at + 1.6 * hub * out), material=material)
+    if deep is not None:
+        _shaft(d, name, parent, at, 0.5 * hub, out, deep, gap)
     if d.maybe():
         d.part(name, d.cone(hub, 0.2 * hub, at + 1.6 * hub * out, at + 2.6 * hub * out))
     side = np.roll(out, 1)
@@ -362,7 +373,7 @@ def rotor(
         flat = np.cos(tilt) * out + np.sin(tilt) * np.cross(out, along)
         middle = at + hub * out
         d.part(name, beam(wide * radius, 0.3 * hub, middle + 0.5 * hub * along, middle + radius * along, flat))
-    d.spin(name, parent, out, at)
+    d.spin(name, parent, -out, at)
 
 
 def caster(
@@ -423,9 +434,10 @@ def hand_wheel(
     spokes: int = 4,
     rim: bool = True,
     reach: float | None = None,
+    deep: float | None = None,
     material: str = "metal",
 ) -> None:
-    """Spokes on a shaft, with or without a rim, turned clockwise by `reach` [rad] or without end."""
+    """Spokes on a shaft, with or without a rim, turned clockwise; `reach` and `deep` as for `knob`."""
     at = np.asarray(at, dtype=np.float64)
     wire, gap = 0.1 * radius, d.gap(radius)
     level, side = at + (gap + 3.0 * wire) * out, _across(out, (1.0, 1.0))[1]
@@ -435,9 +447,7 @@ def hand_wheel(
     if rim:
         d.part(name, d.torus(radius, wire, level, out))
     d.part(name, d.cylinder(1.5 * wire, at + gap * out, level))
-    if d.style.has_bore:
-        d.part(name, d.cylinder(wire, at - 2.0 * wire * out, level))
-        d.cut(parent, d.cylinder(wire + 1.5 * gap, at - (2.0 * wire + gap) * out, at + wire * out))
+    _shaft(d, name, parent, at, wire, out, deep or 2.0 * wire, gap)
     if reach is None:
         d.spin(name, parent, -out, at)
     else:
@@ -453,15 +463,16 @@ def crank(
     length: float,
     *,
     spins: bool = True,
+    deep: float | None = None,
     material: str = "metal",
 ) -> None:
-    """A shaft out of a surface, an arm across and a grip at its end; the grip may be a part that turns."""
+    """A shaft out of a surface, `deep` in it as for `knob`, an arm across and a grip, which may turn by itself."""
     at = np.asarray(at, dtype=np.float64)
     thick = 0.1 * length
     along = np.roll(out, 1)
     level = at + 0.35 * length * out
     gap = d.gap(thick)
-    start = at - (0.3 * length if d.style.has_bore else -gap) * out
+    start = at - ((deep or 0.3 * length) if d.style.has_bore else -gap) * out
     d.bore(parent, d.cylinder(0.5 * thick + 1.5 * gap, start - gap * out, at + 1e-3 * length * out))
     d.part(
         name,
@@ -477,7 +488,7 @@ def crank(
     else:
         low = foot - (0.4 * thick + gap) * out
         d.part(name, d.cylinder(0.7 * thick, low, foot + 0.5 * length * out))
-    d.spin(name, parent, out, at)
+    d.spin(name, parent, -out, at)
 
 
 def bail(
