@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
     from kinematify.robot.arrays import FloatArray
 
-_SEEDS = "library 3"
+_SEEDS = "library 4"
 """Namespace of the seeds: another one wherever the order of the draws changes."""
 DRAWN = tuple(sorted(name for name, item in library().items() if isinstance(item, SteppedDescription)))
 """Names of the objects of the library that are written in steps."""

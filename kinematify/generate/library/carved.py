@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +15,8 @@ from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.library.panels import drawer, leaf
 from kinematify.generate.library.steps import ARITHMETIC, MECHANISMS, SOLIDS, Step, StepRunner, public
 from kinematify.generate.procedural import layout
-from kinematify.generate.procedural.pieces import bearings, fronts, jaws, leaves, limbs, tracks
+from kinematify.generate.procedural.parameter import read_table
+from kinematify.generate.procedural.pieces import bearings, fronts, leaves
 from kinematify.generate.procedural.solids import X, Z
 from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.robot import Mimic
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.pieces.fronts import Bay, Fitting
 
 _REVEAL = 0.002  # of a front towards its neighbours, besides the clearance
-_PIECES = (bearings, fronts, jaws, leaves, limbs, tracks)
+_PIECES = (bearings, fronts, leaves)
 
 
 def add_drawer(workshop: Workshop, name: str, parent: str, opening: Bay, fitting: Fitting) -> None:
@@ -94,6 +96,13 @@ _NAMES: Mapping[str, Any] = {
 """What formulas of solids may name."""
 
 
+@cache
+def _pieces() -> Sequence[Step]:
+    """What steps that carve may call besides functions."""
+    found: Sequence[Step] = read_table(Path(__file__).with_name("pieces.yaml"))
+    return found
+
+
 def carve(title: str, steps: Sequence[Step], workshop: Workshop, given: Mapping[str, Any]) -> None:
     """Carry out steps that carve.
 
@@ -107,8 +116,12 @@ def carve(title: str, steps: Sequence[Step], workshop: Workshop, given: Mapping[
         InputError: A step cannot be carried out; the message quotes it.
     """
     drawing = {name: partial(_drawn, call, given["clearance"]) for name, call in MECHANISMS.items()}
+    runner = StepRunner(workshop, {**drawing, **_VERBS})
+    names = {"__builtins__": {}, **_NAMES, "clearance": given["clearance"]}
     try:
-        StepRunner(workshop, {**drawing, **_VERBS}).run(steps, {"__builtins__": {}, **_NAMES, **given})
+        runner.run(_pieces(), names)
+        names.update(given)
+        runner.run(steps, names)
     except ValueError as error:
         raise InputError(f"The {title} cannot be built: {error}.") from error
 

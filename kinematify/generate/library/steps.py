@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 Step = dict[str, Any]
 _MOST_ROUNDS = 500
 """Of one loop."""
-_TEXTS = ("parent", "other", "fork", "material", "color", "leader", "child", "names", "palm")
+_TEXTS = ("parent", "other", "fork", "material", "color", "leader", "child", "names")
 _CORE = ("part", "cut", "bore", "hinge", "spin", "slide", "fix", "follow", "close")
 
 
