@@ -403,13 +403,6 @@ def located_support(points: FloatArray, normals: FloatArray, weights: FloatArray
     return float(2.0 * np.linalg.eigvalsh((across * fit[:, None]).T @ across)[1] / max(float(weights.sum()), 1e-300))
 
 
-def eccentricity(scene: JointScene, axis: FloatArray, anchor: FloatArray) -> float:
-    """Distance of the child's mean from a line over the largest distance of any of its points, in [0, 1]."""
-    points = scene.cache.samples(scene.child).points
-    lever = np.linalg.norm(np.cross(points.mean(axis=0) - anchor, axis))
-    return float(lever / max(float(np.linalg.norm(np.cross(points - anchor, axis), axis=1).max()), 1e-12))
-
-
 def _compactness(frame: BoxFrame, contact: ContactView, config: JointsConfig) -> float:
     if len(contact.points) == 0:
         return 0.0
