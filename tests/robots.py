@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.pieces.bearings import at, fork, fork_room, stub
-from kinematify.generate.procedural.pieces.limbs import leg_solids
 from kinematify.generate.procedural.solids import bore, box, cylinder, off, rod, union
 from kinematify.robot.transforms import rotation_about
 from tests.known import KnownJoint, KnownObject, known_object, moved, sliding, turning, varied
@@ -18,6 +17,39 @@ if TYPE_CHECKING:
 UP = np.array([0.0, 0.0, 1.0])
 QUARTER = rotation_about(UP, 0.5 * np.pi)
 """Turns a fork about x into a fork about y."""
+
+
+def leg_solids(
+    hip: np.ndarray, side: tuple[int, int], radius: float, lengths: tuple[float, float], clearance: float
+) -> tuple[Manifold, Manifold, dict[str, Manifold], tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """A straight leg that hangs down from `hip`: roll about x, thigh and shank about y, all on stubs [m].
+
+    Returns:
+        Boss and hole for the trunk, the three links, and the three pivots.
+    """
+    sx, sy = side
+    boss, hole, rotor = stub(hip, (sx, 0, 0), radius, clearance)
+    flange, end = sx * (radius + clearance), sx * (2 * radius + clearance)
+    pitch = off(hip, end, sy * 2.2 * radius, 0)
+    thigh_boss, thigh_hole, thigh_rotor = stub(pitch, (0, sy, 0), radius, clearance, length=2 * radius)
+    top = off(pitch, 0, sy * (radius + clearance), 0)
+    knee = off(top, 0, -sy * radius, -lengths[0])
+    knee_boss, knee_hole, knee_rotor = stub(knee, (0, -sy, 0), 0.8 * radius, clearance, length=1.6 * radius)
+    stem = knee_boss + rod(0.7 * radius, top, off(top, 0, 0, -lengths[0]), segments=20)
+    ankle = off(knee, 0, -sy * (0.8 * radius + clearance), 0)
+    shank = rod(0.5 * radius, ankle, off(ankle, 0, 0, -lengths[1]), segments=20)
+    bridge = thigh_boss + rod(0.8 * radius, off(hip, flange, 0, 0), off(hip, end, 0, 0), segments=20)
+    links = {
+        "hip": union(rotor, beyond(bridge, off(hip, sx * clearance, 0, 0), (sx, 0, 0))) - thigh_hole,
+        "thigh": union(thigh_rotor, beyond(stem, knee, (0, sy, 0))) - knee_hole,
+        "shank": union(knee_rotor, beyond(shank, off(knee, 0, -sy * clearance, 0), (0, -sy, 0))),
+    }
+    return boss, hole, links, (hip, pitch, knee)
+
+
+def beyond(solid: Manifold, point: np.ndarray, direction: tuple[int, int, int]) -> Manifold:
+    """What lies on the far side of the plane through `point` across `direction`."""
+    return solid.trim_by_plane(direction, float(np.dot(direction, point)))
 
 
 def wheel(*, radius: float = 0.1, clearance: float = 3e-4, seed: int | None = None) -> KnownObject:
