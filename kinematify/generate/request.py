@@ -18,6 +18,7 @@ from kinematify.generate.described import known_families
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.parts import looking, opened
 from kinematify.generate.procedural.language.sizes import OVERALL
+from kinematify.generate.procedural.language.understand import handle_choice
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from kinematify.generate.composer.resized import Resize
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
     from kinematify.generate.procedural.family import Family
+    from kinematify.generate.procedural.language.compare import Fitting
     from kinematify.generate.procedural.parameter import Value
     from kinematify.robot.arrays import FloatArray
 
@@ -55,6 +57,8 @@ class Request:
     """Mechanisms that such an object has not, and that are put on it where there is a place."""
     counts: tuple[tuple[tuple[str, ...], int], ...] = ()
     """Names of parts, and how many there are to be instead, where there is a place for them."""
+    handles: tuple[Fitting, ...] = ()
+    """Handles of some parts alone."""
     resized: tuple[Resize, ...] = ()
     """Sizes of parts."""
     looks: tuple[tuple[tuple[str, ...], str, str], ...] = ()
@@ -125,7 +129,10 @@ class Request:
             made = compose(self.composition, seed=seed, may_stand_still=bool(self.how))
         else:
             family = known_families()[self.family]
-            made = build(family, fitted_values(family, tuple(self.values.items()), seed, self.resized), seed=seed)
+            values = fitted_values(family, tuple(self.values.items()), seed, self.resized)
+            made = build(family, values, seed=seed)
+            for fitting in self.handles:
+                made = _with_handles(made, family, values, seed, fitting)
         if self.overall is not None:
             made = _scaled_to(made, *self.overall)
         for item in self.resized:
@@ -154,6 +161,21 @@ def _scaled_to(blueprint: Blueprint, size: str, metres: float) -> Blueprint:
             f"{there / _SCALES:.2g} m to {there * _SCALES:.2g} m."
         )
     return blueprint.scaled(factor)
+
+
+def _with_handles(
+    made: Blueprint, family: Family, values: Mapping[str, Value], seed: int | None, fitting: Fitting
+) -> Blueprint:
+    """Return an object of which some parts are as they would be if all had another handle."""
+    names, noun, color, material = fitting
+    own = {"handle": handle_choice(family, noun), "handle_color": color, "handle_material": material}
+    chosen = {name: value for name, value in own.items() if value}
+    like = {part.name: part for part in build(family, {**values, **chosen}, seed=seed).parts}
+    if not chosen or not like.keys() >= set(names):
+        return made
+    said = {f"handle of {name}": " ".join(filter(None, fitting[1:])) for name in names}
+    parts = tuple(like[part.name] if part.name in names else part for part in made.parts)
+    return replace(made, parts=parts, parameters={**made.parameters, **said})
 
 
 def _holding(blueprint: Blueprint, held: Blueprint) -> Blueprint:

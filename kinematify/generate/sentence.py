@@ -409,11 +409,13 @@ def _improved(
     compared = compare(specification, made, nouns)
     if request.composition is None:
         chosen = set(made.parameters.values())  # knobs of drawers are there, and no parts
-        lacking = [part for part in compared.absent if part.noun.split()[-1] not in chosen]
+        request = replace(request, handles=tuple(compared.handles))
+        fitted = {noun for _, noun, *_ in compared.handles}
+        lacking = [part for part in compared.absent if part.noun.split()[-1] not in chosen | fitted]
         added = tuple(filter(None, (mechanism_for(part, specification.owner_of(part)) for part in lacking)))
         request = replace(request, added=added)
-    if (request.added and request.composition is None) or compared.counts or compared.sizes:
-        request = _recounted(replace(request, resized=compared.sizes), compared, specification, nouns)
+    if (request.added and request.composition is None) or compared.counts or compared.sizes or compared.handles:
+        request = _recounted(replace(request, resized=tuple(compared.sizes)), compared, specification, nouns)
         made = request.build()
         compared = compare(specification, made, nouns)  # they have looks and ranges, too
     if request.added or compared.looks or compared.opened:
@@ -421,8 +423,8 @@ def _improved(
         sized = any(item.about == "size" or (item.about, item.words[:4]) == ("range", "from") for item in claims)
         request = replace(
             request,
-            looks=compared.looks,
-            opened=compared.opened,
+            looks=tuple(compared.looks),
+            opened=tuple(compared.opened),
             may_scale=not (sized or request.is_toy or request.overall or request.composition),
         )
         made = request.build()

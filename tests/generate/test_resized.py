@@ -81,3 +81,49 @@ def test_pull_out_shelves_are_not_pulled_out() -> None:
 def test_contradictions_are_refused(sentence: str, words: str) -> None:
     with pytest.raises(InputError, match=words):
         from_text(sentence).made()
+
+
+@pytest.mark.parametrize(
+    ("sentence", "of"),
+    [
+        ("a cabinet with two doors, a knob on the left door and a bar handle on the right one", ["knob", "bar handle"]),
+        ("a cabinet with two doors, the right one without a handle", [None, "none"]),
+        ("a cabinet with two doors, the left one with a brass knob", ["knob brass", None]),
+    ],
+)
+def test_each_front_has_its_own_handle(sentence: str, of: list[str | None]) -> None:
+    made = from_text(sentence).made()
+    assert made.not_built == ()
+    for name, handle in zip(("door_1", "door_2"), of, strict=True):
+        assert made.blueprint.parameters.get(f"handle of {name}") == handle
+    left, right = (part for part in made.blueprint.parts if part.name.startswith("door"))
+    assert len(left.vertices) != len(right.vertices), "mirror images have as many"
+
+
+@pytest.mark.parametrize(
+    ("sentence", "listed"),
+    [
+        ("a bed with storage drawers underneath, two on each side", "on each side"),
+        ("a cabinet with two doors, only one can be opened", "only (every door does)"),
+        ("a cabinet with two doors, opening inwards", "opening inwards"),
+        ("a wall cabinet whose doors open upwards", "open upwards"),
+        ("a toolbox that opens on both sides", "on both sides"),
+        ("a cabinet with two doors, and it turns", "turns"),
+        ("a cabinet with two doors, tilted by 10 degrees", "tilted"),
+        ("an office chair which folds flat", "folds"),
+        ("a desk with a drawer deeper than the others", "than"),
+    ],
+)
+def test_a_phrase_that_changes_nothing_is_listed(sentence: str, listed: str) -> None:
+    assert listed in "; ".join(from_text(sentence).made().not_built)
+
+
+def test_what_a_part_moves_and_where_a_part_is_may_be_said_first() -> None:
+    sentence = (
+        "a pillar drill with a table that goes up and down by 35 cm and, on the right side, "
+        "a lever that lowers the chuck by 8 cm"
+    )
+    made = from_text(sentence).made()
+    ways = [joint.upper - joint.lower for joint in made.blueprint.joints if not joint.kind.turns]
+    assert made.not_built == ()
+    assert all(np.isclose(ways, metres).any() for metres in (0.08, 0.35))

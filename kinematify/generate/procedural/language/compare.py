@@ -21,7 +21,7 @@ from kinematify.generate.procedural.language.places import (
     wrong_place,
     wrong_relation,
 )
-from kinematify.generate.procedural.language.specification import Claim, PartSpecification
+from kinematify.generate.procedural.language.specification import HANDLES, Claim, PartSpecification
 from kinematify.generate.procedural.language.words import ARTICLES, PURPOSES, lemma, stem_of
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.robot.joint_type import JointType
@@ -52,11 +52,19 @@ _OF_ANY_OBJECT = frozenset({
     "grid", "line", "stack", "half", "way", "direction",
 })  # fmt: skip
 """What every object has, and what it may stand on or hang from."""
+_AROUND = (
+    "wall", "floor", "ceiling", "table", "ground", "desk", "it", "row", "column", "grid", "line", "stack", "pair",
+    "set", "height", "size", "way", "half", "window", "position",
+)  # fmt: skip
+"""What the whole may stand on, hang from or be in."""
 _NOT_OF_IT = ("hinge", "joint", "rim", "window", "desk", "table", "row", "column", "grid", "line", "stack", "size")
 """Of these, what an object has only if it is built: something is between the hinges of two hinges alone."""
+_OWN_PLACES = ("side", "end", "top", "bottom", "front", "back")
+_LIES = ("on", "at", "in", "of", "along", "near", "onto")
+"""Before these they say where something is, and no way through."""
 _BESIDE_WHAT = ("between", "behind", "in front of", "inside", "through", "across", "around", "of")
-_ON_EACH = ("handle", "knob", "pull", "grip")
-"""What a parameter gives to every door and drawer."""
+Fitting = tuple[tuple[str, ...], str, str, str]
+"""Names of parts; what their handle is called, its colour and its material, empty where nothing is said."""
 CLOSING = ("door", "drawer", "lid", "flap", "hatch", "gate", "leaf", "sash", "shutter", "cover", "window")
 """Parts that belong into an opening, so that there are no more than openings."""
 _COVERS = (
@@ -73,7 +81,7 @@ _MOVING = frozenset({
 _LOOKS = ("color", "material")
 _MEASURED = (
     "size", "moves", "way", "range", "hinge", "place", "relation", "color", "material", "open", "like", "count",
-    "answers",
+    "answers", "only",
 )  # fmt: skip
 _MOTION = ("moves", "way", "hinge", "open", "range", "answers")
 """Of these, what is said of its joints."""
@@ -98,44 +106,38 @@ class Missing:
         return f"{self.words} ({self.reason})" if self.reason else self.words
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(kw_only=True)
 class Comparison:
     """What of a specification an object keeps."""
 
-    held: frozenset[int]
+    held: set[int] = field(default_factory=set)
     """Words that hold."""
-    missing: tuple[Missing, ...]
-    names: Mapping[str, str]
+    missing: list[Missing] = field(default_factory=list)
+    names: dict[str, str] = field(default_factory=dict)
     """Parts that the sentence calls otherwise, by their names -> as it calls them."""
-    absent: tuple[PartSpecification, ...]
+    absent: list[PartSpecification] = field(default_factory=list)
     """Parts that are not there."""
-    looks: tuple[tuple[tuple[str, ...], str, str], ...]
+    looks: list[tuple[tuple[str, ...], str, str]] = field(default_factory=list)
     """Parts that look otherwise than asked for: their names, and the material or the colour, the other one empty."""
-    counts: tuple[tuple[tuple[str, ...], int], ...]
+    counts: list[tuple[tuple[str, ...], int]] = field(default_factory=list)
     """Moving parts of which another number is asked for: their names, and how many."""
-    sizes: tuple[tuple[tuple[str, ...], str, float], ...]
+    sizes: list[tuple[tuple[str, ...], str, float]] = field(default_factory=list)
     """Parts whose size is said, or the whole where its is another one: names, which size, and how large it is [m]."""
-    opened: tuple[tuple[tuple[str, ...], str, float], ...]
+    handles: list[Fitting] = field(default_factory=list)
+    """Handles of some parts that differ from those of the others."""
+    opened: list[tuple[tuple[str, ...], str, float]] = field(default_factory=list)
     """Parts that are not so far open as is asked for: their names; ``share``, ``angle`` [rad] or ``distance`` [m], and
     how much. ``range``: that they have another range than is asked for, and how long it is [rad or m]."""
 
 
 @dataclass(kw_only=True)
-class _Compared:
+class _Compared(Comparison):
     """An object, and what was found in it so far."""
 
     made: Blueprint
     nouns: Mapping[str, Sequence[str]]
     """What its parts are called besides their names -> names of parts."""
     specification: Specification
-    held: set[int] = field(default_factory=set)
-    missing: list[Missing] = field(default_factory=list)
-    names: dict[str, str] = field(default_factory=dict)
-    absent: list[PartSpecification] = field(default_factory=list)
-    looks: list[tuple[tuple[str, ...], str, str]] = field(default_factory=list)
-    counts: list[tuple[tuple[str, ...], int]] = field(default_factory=list)
-    sizes: list[tuple[tuple[str, ...], str, float]] = field(default_factory=list)
-    opened: list[tuple[tuple[str, ...], str, float]] = field(default_factory=list)
 
     # ---- parts by their nouns --------------------------------------------------------------------------------------
 
@@ -143,6 +145,19 @@ class _Compared:
     def closed(self) -> Blueprint:
         """With all joints at their zero."""
         return self.made.moved({joint.child: -joint.value for joint in self.made.joints})
+
+    def _take_handles(self) -> None:
+        for part, owner in self.specification.handles():
+            every = self.parts_called(owner.noun)[0] if owner else []
+            color, material = (next((str(c.value) for c in part.claims if c.about == about), "") for about in _LOOKS)
+            if owner and every and "handle" in self.made.parameters:
+                names = tuple(item.name for item in chosen_by_place(every, owner))
+                self.handles.append((names, "none" if part.absent else part.noun, color, material))
+        taken: set[str] = set()
+        for k in sorted(range(len(self.handles)), key=lambda k: len(self.handles[k][0])):  # the others have another one
+            names, *look = self.handles[k]
+            self.handles[k] = (tuple(name for name in names if name not in taken), look[0], look[1], look[2])
+            taken |= set(names)
 
     def parts_called(self, noun: str) -> tuple[list[Part], int]:
         """Parts that are called so, and how many words of the noun say it."""
@@ -185,7 +200,7 @@ class _Compared:
                 if isinstance(value, int):
                     return value
                 if isinstance(value, str) and value:
-                    return 0 if value == "none" else -1 if key in _ON_EACH else 1
+                    return 0 if value == "none" else -1 if key in HANDLES else 1
         return None
 
     def _numbers(self, noun: str, found: Sequence[Part]) -> set[int | None]:
@@ -204,6 +219,7 @@ class _Compared:
 
     def check(self) -> Comparison:
         """Compare all that is said."""
+        self._take_handles()
         for claim in self.specification.whole.claims:
             if claim.about not in ("there", "count"):
                 wrong = self._whole_keeps(claim)
@@ -224,16 +240,7 @@ class _Compared:
             groups[part.noun.split()[-1]].append(part)
         for parts in groups.values():
             self._check_group(parts)
-        return Comparison(
-            held=frozenset(self.held),
-            missing=tuple(self.missing),
-            names=self.names,
-            absent=tuple(self.absent),
-            looks=tuple(self.looks),
-            counts=tuple(self.counts),
-            sizes=tuple(self.sizes),
-            opened=tuple(self.opened),
-        )
+        return self
 
     def _judge(self, claim: Claim, wrong: str | None) -> None:
         """Take up that a claim holds (None), or what is wrong with it."""
@@ -245,7 +252,7 @@ class _Compared:
 
     def _check_group(self, parts: Sequence[PartSpecification]) -> None:
         """Check parts of one noun together: the left door is one of two doors."""
-        numbers = [part.count for part in parts if part.count is not None]
+        numbers = [number for part in parts if (number := _total(part)) is not None]
         new = len(parts) > 1 and all(map(self._is_new, parts))
         placed = all(any(claim.about == "place" for claim in part.claims) for part in parts)
         apart = len(parts) > 1 and (new or placed)
@@ -259,7 +266,9 @@ class _Compared:
             if not found and owners and part.noun in ("front", "face", "panel"):  # which looks as its owner does
                 found = chosen_by_place(self.parts_called(part.of)[0], owners[0])
             number = len(found) if found else self.counted(part.noun)
-            if part.absent:
+            if any(part is item for item, owner in self.specification.handles() if owner) and self._fitted(part):
+                self.held.update(k for claim in part.claims for k in claim.at)
+            elif part.absent:
                 self._absent(part, found, number)
             elif number:
                 self._account_for_modifiers(part, part.claims[0], known)
@@ -267,7 +276,7 @@ class _Compared:
                 if part.of and not self._is_on_owners(part, found, number):
                     self._not_there(part)
                     continue
-                self._check_number(part, found, {asked, -1, asked if apart else part.count}, alone=len(parts) == 1)
+                self._check_number(part, found, {asked, -1, asked if apart else _total(part)}, alone=len(parts) == 1)
                 chosen = self._individuals(part, found, parts, new=new)
                 if part.count == 1 < len(found) == len(chosen) and known < len(part.noun.split()) and len(parts) > 1:
                     chosen = []  # which of them is not known: the hour hand of three hands
@@ -277,6 +286,15 @@ class _Compared:
                     self._call(found, "_".join(part.noun.split()[-known:]), part.noun)
             elif not (part.of and self._all_have_it(part)):
                 self._not_there(part)
+
+    def _fitted(self, part: PartSpecification) -> bool:
+        """Whether parts have a handle of their own, as it was asked for."""
+        given = [item for item in self.handles if item[1] == ("none" if part.absent else part.noun)]
+        return bool(given) and all(
+            self.made.parameters.get(f"handle of {name}") == " ".join(filter(None, item[1:]))
+            for item in given
+            for name in item[0]
+        )
 
     def _is_on_owners(self, part: PartSpecification, found: Sequence[Part], number: int) -> bool:
         """Whether each of those that are to have a part has one: `three drawers, all with locks`."""
@@ -365,7 +383,7 @@ class _Compared:
         elif claim.about == "size":
             self.sizes.append((tuple(part.name for part in parts), *claim.value))
         elif claim.about == "range":
-            self._to_be_limited(claim, self._joints_of(parts))
+            self._to_be_limited(claim, self._ranging(parts, claim) or self._joints_of(parts))
 
     def _to_be_limited(self, claim: Claim, joints: Sequence[BlueprintJoint]) -> None:
         """Take up joints that go less far than is asked for, or farther."""
@@ -407,7 +425,7 @@ class _Compared:
             self.missing.append(Missing(words=words, at=at, reason=built, is_sure=bool(found)))
             closes = part.noun.split()[-1] in CLOSING or self.counted(part.noun) is not None
             if part.count and self._joints_of(found) and not closes:
-                self.counts.append((tuple(item.name for item in found), part.count))
+                self.counts.append((tuple(item.name for item in found), _total(part) or part.count))
         elif _on_sides(part) and len(found) == 1:
             self._miss(f"{there.words} on each side", there.at, built)
         elif part.count is None and len(found) == 1 and not self._several(part):
@@ -505,7 +523,7 @@ class _Compared:
         if claim.about == "moves" or (claim.about in _MOTION and not joints):
             return self._joints_keep(claim, joints) if joints else "it is fixed"
         if claim.about in _MOTION:  # of each; of one that is said by no place any will do
-            each = [own for item in chosen if (own := self._joints_of([item]))]
+            each = [own for item in chosen if (own := self._ranging([item], claim) or self._joints_of([item]))]
             wrong = [self._joints_keep(claim, own) for own in each]
             one = part.count == 1 and len(chosen) > 1
             return None if one and None in wrong else next(filter(None, wrong), None)
@@ -514,14 +532,25 @@ class _Compared:
             "color": lambda: self._look_of(claim, chosen),
             "material": lambda: self._look_of(claim, chosen),
             "place": lambda: (
-                None if self._is_on_other(part, claim) else wrong_place(self.closed, claim.value, chosen, found)
+                None
+                if self._is_on_other(part, claim)
+                else wrong_place(self.closed, claim.value, chosen, found, on_each=_on_sides(part))
             ),
             "relation": lambda: self._related(claim, part, chosen),
             "like": lambda: mirrored(self.closed, found),
             "still": lambda: "it moves" if self._joints_of(chosen) else None,
+            "only": lambda: self._others_do(part, chosen, found),
             "does": lambda: "no such motion",
         }
         return judges[claim.about]() if claim.about in judges else "nothing says so"
+
+    def _others_do(self, part: PartSpecification, chosen: Sequence[Part], found: Sequence[Part]) -> str | None:
+        """What is wrong with what only some of the parts are or do; None if the others do not."""
+        names = {item.name for item in (chosen[: part.count] if part.count else chosen)}
+        others = [item for item in found if item.name not in names]
+        said = [claim for claim in part.claims if claim.about in (*_MOTION, *_LOOKS)]
+        do = others and said and all(self._part_keeps(part, claim, others[:1], found) is None for claim in said)
+        return f"every {part.noun} does" if do else None
 
     def _joints_of(self, parts: Sequence[Part]) -> list[BlueprintJoint]:
         """Joints of parts; of what is fixed, those of what it carries, else of what spins with it."""
@@ -531,6 +560,12 @@ class _Compared:
         above = above or [joint for joint in moving if joint.parent in names - {self.made.root}]
         carrying = [joint for part in parts for joint in self._carrying(part.name)[:1]]
         return above or [joint for joint in carrying if joint.kind is JointType.CONTINUOUS]
+
+    def _ranging(self, parts: Sequence[Part], claim: Claim) -> list[BlueprintJoint]:
+        """Of a range, the nearest joints that turn or slide as it says: a chuck spins on a quill that goes down."""
+        turns = claim.about == "range" and claim.value[0] == "angle"
+        chains = [self._carrying(part.name) for part in parts] if claim.about == "range" else []
+        return [joint for chain in chains for joint in [j for j in chain if j.kind.turns is turns][:1]]
 
     def _carrying(self, name: str) -> list[BlueprintJoint]:
         """Joints that move a part, its own first, up to a door or the like: a blade spins on an arm that goes down."""
@@ -593,7 +628,7 @@ class _Compared:
             "size": lambda: self._sized(claim.value, ()),
             "color": lambda: _looks(claim, [*self.made.parts[:1], *self._fronts()]),
             "material": lambda: _looks(claim, self.made.parts[:1]),
-            "relation": lambda: None if self._is_there(claim.value[1]) else "no such part",
+            "relation": lambda: None if self._is_there(claim.value[1]) else "nothing says so",
             "range": lambda: self._ranges(self.made.joints, claim.value),
             "hinge": lambda: self._any_hinged(joints_of_doors, claim.value),
             "answers": lambda: _NO_ANSWER.get(claim.value),
@@ -614,7 +649,7 @@ class _Compared:
         return None if any(self._hinged(joint, side) is None for joint in joints) else "hinged on another side"
 
     def _is_there(self, noun: str) -> bool:
-        return noun.rsplit(maxsplit=1)[-1] in _OF_ANY_OBJECT or bool(self.parts_called(noun)[0])
+        return noun.rsplit(maxsplit=1)[-1] in _AROUND or bool(self.parts_called(noun)[0])
 
     def _any_goes(self, joints: Sequence[BlueprintJoint], way: str) -> bool:
         if way == "out" and any(joint.kind is JointType.PRISMATIC for joint in joints):
@@ -692,32 +727,31 @@ class _Compared:
 
     def _related(self, claim: Claim, part: PartSpecification, chosen: Sequence[Part]) -> str | None:
         preposition, noun = claim.value
-        if preposition == "of" and min(claim.at) - 1 in part.claims[0].at and noun.split()[-1] not in _OF_ANY_OBJECT:
+        *before, last = noun.split()
+        if preposition == "than":
+            return "not compared"
+        if preposition == "of" and min(claim.at) - 1 in part.claims[0].at and last not in _OF_ANY_OBJECT:
             return "not so built"
         others, known = self.parts_called(noun)
-        before = noun.split()[: len(noun.split()) - known] if others else []
-        kind = set(self.specification.kind.split())
-        other = set(before) - PURPOSES - {*PLACES, *MIDDLE} - kind
-        if other:
-            return f"no {noun}"
-        if placed := [word for word in before if word in {*PLACES, *MIDDLE}]:
-            if len(others) < (3 if placed[0] in MIDDLE else 2):
-                return f"no {noun}"
-            said = [Claim(about="place", value=word, words=word, at=claim.at) for word in placed]
-            others = chosen_by_place(others, PartSpecification(noun=noun, claims=tuple(said)))
         if not others and self.counted(noun):
             return None  # it belongs to another part, whose solid it is
-        if not others:
-            *before, last = noun.split()
-            own = {self.specification.kind.split()[-1]}  # the bin, and not the pedal, of a pedal bin
-            strange = [
-                word
-                for word in before
-                if not {word, lemma(word)} & (kind | PURPOSES | {*PLACES, *MIDDLE} | _OF_ANY_OBJECT)
-            ]
-            there = last in own or (last in _OF_ANY_OBJECT and not (last in _NOT_OF_IT and preposition in _BESIDE_WHAT))
-            return None if there and not strange else f"no {noun}"
-        return wrong_relation(preposition, chosen, others)
+        kind, places = self.specification.kind.split(), {*PLACES, *MIDDLE}
+        own = {*PURPOSES, *places, *kind, *(() if others else _OF_ANY_OBJECT)}
+        strange = [word for word in (noun.split()[:-known] if others else before) if not {word, lemma(word)} & own]
+        placed = [word for word in before if word in places] if others else []
+        if strange or (placed and len(others) < (3 if placed[0] in MIDDLE else 2)):
+            return f"no {noun}"
+        if others and placed:
+            said = [Claim(about="place", value=word, words=word, at=claim.at) for word in placed]
+            others = chosen_by_place(others, PartSpecification(noun=noun, claims=tuple(said)))
+        if others:
+            return wrong_relation(preposition, chosen, others)
+        # The bin, and not the pedal, of a pedal bin.
+        there = last == kind[-1] or (
+            last in _OF_ANY_OBJECT and not (last in _NOT_OF_IT and preposition in _BESIDE_WHAT)
+        )
+        through = lemma(last) in _OWN_PLACES and preposition not in _LIES
+        return "nothing says so" if through else None if there else f"no {noun}"
 
 
 def compare(
@@ -740,8 +774,16 @@ def _is_one(part: PartSpecification) -> bool:
 
 def _on_sides(part: PartSpecification) -> bool:
     """Whether one is asked for on either side."""
-    places = [claim for claim in part.claims if claim.about == "place" and claim.value == "side"]
-    return any(set(claim.words.split()) & {"each", "either", "both", "every"} for claim in places)
+    places = [claim for claim in part.claims if claim.about == "place" and claim.value in ("side", "end")]
+    said = [set(claim.words.split()) for claim in places if not claim.words.startswith("to ")]  # it moves there
+    return any(words & {"each", "either", "both", "every"} for words in said)
+
+
+def _total(part: PartSpecification) -> int | None:
+    """How many there are: two on each side are four, and two on both sides are two."""
+    words = {word for claim in part.claims if claim.about == "place" for word in claim.words.split()}
+    doubled = _on_sides(part) and part.count and ("both" not in words or part.count % 2)
+    return 2 * part.count if doubled and part.count else part.count
 
 
 def _covers(name: str, own: Sequence[str]) -> bool:

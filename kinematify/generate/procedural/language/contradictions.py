@@ -210,7 +210,9 @@ def _present_and_absent(specification: Specification) -> Iterator[_Fault]:
     for noun, parts in by_noun.items():
         absent = [part for part in parts if part.absent]
         *_, last = specification.kind.partition(" of ")[2].split() or [specification.kind]
-        if absent and (len(absent) < len(parts) or noun == lemma(last)):
+        if absent and noun.split()[-1] in ("part", "joint"):
+            yield f"no {absent[0].claims[0].words}", "something of every object that is built moves"
+        elif absent and (len(absent) < len(parts) or noun == lemma(last)):
             yield f"no {noun}", f"it asks for a {noun}, too"
         elif absent and noun.rsplit(maxsplit=1)[-1] in _BEARINGS and moving:
             yield absent[0].claims[0].words, "what has no joint does not move"

@@ -61,6 +61,7 @@ LINES = ("vertically", "horizontally", "vertical", "horizontal")
 """Of these, those that say a line, and not which way along it."""
 _SLANT = 0.2  # of a part's way that must go where it is said to go; a door goes out as much as aside
 _QUARTER = 0.5 * math.pi
+_FOLDED = math.radians(40.0)  # at least, of what folds
 _ABOUT, _LARGE = 0.2, 0.3  # of a part's diagonal from its middle to its axis; of the whole's diagonal
 
 
@@ -70,7 +71,12 @@ def goes(blueprint: Blueprint, joint: BlueprintJoint, way: str) -> bool:
     value = min(joint.upper, _QUARTER) if joint.kind.turns else joint.upper
     middle = part.bounds.mean(axis=0)
     moved: FloatArray = (joint.motion(value) @ np.append(middle, 1.0))[:3] - middle
-    along = float(moved @ np.array(WAYS[way]))
+    toward = np.array(WAYS[way], dtype=np.float64)
+    if way in ("inward", "outward"):  # across a door or a lid, which is thin there
+        thin = np.eye(3)[int(np.argmin(np.ptp(part.bounds, axis=0)))]
+        inward = np.sign((blueprint.assembly.bounds.mean(axis=0) - middle) @ thin) * thin
+        toward = inward if way == "inward" else -inward
+    along = float(moved @ toward)
     return (abs(along) if way in LINES else along) > _SLANT * float(np.linalg.norm(moved)) > 0.0
 
 
@@ -95,7 +101,7 @@ _MOVES: dict[str, Callable[[Blueprint, BlueprintJoint], bool]] = {
     "tilts": lambda made, joint: joint.kind is JointType.REVOLUTE and _lies(joint),
     "flips": lambda made, joint: joint.kind.turns and _lies(joint) and "wheel" not in joint.child,
     "spins": lambda made, joint: joint.kind is JointType.CONTINUOUS,
-    "folds": lambda made, joint: joint.kind is JointType.REVOLUTE,
+    "folds": lambda made, joint: joint.kind is JointType.REVOLUTE and joint.upper - joint.lower > _FOLDED,
     "moves": lambda made, joint: joint.kind is not JointType.FIXED,
     # What slides up can be lowered again.
     "rises": lambda made, joint: goes(made, joint, "vertically" if joint.kind is JointType.PRISMATIC else "up"),

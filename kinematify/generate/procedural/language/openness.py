@@ -14,7 +14,7 @@ FRACTIONS = {
     "all": 1.0, "slightly": 0.15, "partly": 0.4, "partially": 0.4, "fully": 1.0, "completely": 1.0, "wide": 1.0,
 }  # fmt: skip
 """Words for a share of the way."""
-PULLED = ("pulled", "swung", "slid", "pull")
+PULLED = ("pulled", "pushed", "swung", "slid", "pull")
 """With or without `out` they are as good as opened."""
 NOT_A_STATE = ("shelf", "shelves", "compartment", "compartments", "front", "field", "top")
 """An open shelf is no state."""

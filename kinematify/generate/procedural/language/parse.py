@@ -43,7 +43,7 @@ _RELATIVE = ("that", "which", "who")
 _PREPOSITIONS = (
     "on", "at", "in", "inside", "under", "underneath", "below", "beneath", "above", "over", "behind", "beside",
     "between", "about", "across",
-    "next", "around", "along", "from", "to", "into", "of", "for", "by", "through", "onto", "against", "near",
+    "next", "than", "around", "along", "from", "to", "into", "of", "for", "by", "through", "onto", "against", "near",
 )  # fmt: skip
 _AT = ("on", "at", "in", "to", "near", "from", "against", "by", "along", "onto")
 """Before a place they say that something is there."""
@@ -370,7 +370,7 @@ class _Parser(Words):
         if self._is_share(k):
             return self._share(k)
         if word in ("without", "minus"):
-            return self._part(k + 1, count=0)
+            return self._part(k + 1, count=0, of=self._individual(k))
         if word in _WITH:
             individual = self._individual(k)
             if individual is None and word in ("with", "featuring", "including", "plus"):
@@ -380,17 +380,29 @@ class _Parser(Words):
             owner = self.current if word == "whose" and self.current is not self.whole else None
             return self._part(k + 1, of=owner)
         if word in _RELATIVE:
+            if self._is_of_one(k + 1) and self.current.count != 1:  # two doors that is; a cabinet with two doors
+                self.current = self.whole
             self.subject = self.current
             return k + 1
         return self._joined(k) if word in _JOINERS else self._said_behind(k)
+
+    def _is_of_one(self, k: int) -> bool:
+        """Whether a verb is of one thing: `is`, `opens`."""
+        word = self.given(k)
+        return word in ("is", "has") or (word.endswith("s") and (word in MOTIONS or word in GOING))
 
     def _joined(self, k: int) -> int:
         """What stands behind `and` or a comma: another part, or what is said of the object."""
         if self._is_share(k + 1):
             return self._share(k + 1)
+        if begins := self._place_first(k + 1):
+            return self._part(begins)
         if self.given(k) == "," and self._is_about_whole(k + 1):
             self.current = self.subject = self.whole
             return k + 1
+        if self.given(k + 1) == "it" and self.current.count != 1:
+            self.current = self.subject = self.whole
+            return k + 2
         owners = [part for part in self.parts if self.current.of and self.noun(part) == self.current.of]
         adds = self.given(k) == "and" and self.given(k - 1) != "," and self.given(k + 1) in ARTICLES
         if owners and adds and self._begins_noun(k + 1):  # each with a vent and a lock
@@ -399,6 +411,21 @@ class _Parser(Words):
                 self.current.of = ""
             return end
         return self._part(k + 1) if self._begins_noun(k + 1) else k + 1
+
+    def _place_first(self, k: int) -> int:
+        """`on the left a door`: a place that is said before its part; where that begins, or 0."""
+        at = k + 1
+        while self.given(at) in _DETERMINERS:
+            at += 1
+        if self.given(k) not in _AT or self.given(at) not in PLACES:
+            return 0
+        end = at + 1 + (self.given(at + 1) in ("side", "hand", "end"))
+        begins = end + (self.given(end) in (",", "is", "are"))
+        counted = begins < len(self.tokens) and self.tokens[begins].number is not None
+        if not counted or not self._begins_noun(begins):
+            return 0
+        self.claim(_Draft(claims=self.pending), "place", self.given(at), *range(k, end))
+        return begins
 
     def _individual(self, k: int) -> _Draft | None:
         """The part that `with` at word k is about: `the left one with a knob`, `two doors, each with a vent`."""
@@ -420,7 +447,9 @@ class _Parser(Words):
         plain = [w for w in words if not self._is_adjective(w) and w not in units and lemma(w) not in units]
         plain = [w for w in plain if w not in STOP_WORDS and not w[:1].isdigit() and w not in NUMBERS]
         sizes = {word for names in DIMENSIONS.values() for word in names}
-        if self.given(k) in ("each", "both", "all"):
+        units_behind = [k for k in range(k, end) if {self.given(k + 1), lemma(self.given(k + 1))} & set(units)]
+        someone = [i for i in range(k, end) if self.given(i) in NUMBERS and self.given(i) not in ARTICLES]
+        if self.given(k) in ("each", "both", "all") or set(someone) - set(units_behind):
             return False
         if self.given(k) in ARTICLES and any(self._is_mirror(i) for i in range(k, end)):
             return False
@@ -454,7 +483,7 @@ class _Parser(Words):
             if word in ("one", "ones", "degrees"):  # swings 20 degrees either way
                 return word != "degrees"
             if (
-                word in WAYS
+                word.removesuffix("s") in WAYS
                 or word in PLACES
                 or word in _DETERMINERS
                 or self._is_adjective(word)
@@ -593,6 +622,8 @@ class _Parser(Words):
             if word in ("every", "each", "either") and part is not self.whole:
                 part.count = None
             taken = taken or int(self._has(k, part)) or self._answers(k, part)
+            if word == "only" and part is not self.whole:
+                self.claim(part, "only", True, k)
             if not taken and word.isalpha() and word not in _DETERMINERS and word not in _NO_NOUN:
                 if word in STOP_WORDS and part.nouns:
                     break
@@ -662,13 +693,17 @@ class _Parser(Words):
         turned = part is not self.whole and word in DONE and self.given(at - 1) != "be" and amount_at(self, at + 1)
         raised = before is not None and before[0] == "share" and word in DONE and not self._noun_behind(at)
         raised = raised or bool(turned and turned[0] != "share")
-        can_be = word == "pull" and self._noun_behind(at)  # pull-out shelves
+        can_be = word == "pull" and self._noun_behind(at)  # pull-out shelves; doors open upwards
+        can_be = can_be or (word == "open" and before is None and self.given(at + 1).removesuffix("s") in WAYS)
         if not (raised or word in (*OPENNESS, *PULLED)) or self.given(at + 1) in NOT_A_STATE or can_be:
             return 0
-        how, much = before[:2] if before else ("share", OPENNESS.get(word, 1.0))
+        is_in = word in PULLED and self.given(at + 1) == "in"
+        if raised:  # what tilts is no door
+            self.claim(part, "moves", DONE[word], at)
+        how, much = before[:2] if before else ("share", 0.0 if is_in else OPENNESS.get(word, 1.0))
         if before and (OPENNESS.get(word) == 0.0 or word in _BACK):
             how, much = "share", 1.0 - much if how == "share" else 0.0  # fully closed
-        end = at + 1 + (self.given(at + 1) in ("out", "up"))
+        end = at + 1 + (is_in or self.given(at + 1) in ("out", "up"))
         if amount := amount_at(self, end) if (how, much) == ("share", 1.0) else None:
             how, much, end = amount
         self.claim(part, "open", (how, much), *range(k, end))
@@ -789,11 +824,12 @@ class _Parser(Words):
             return k + taken
         if tuple(self.given(at) for at in range(k, k + 3)) == ("side", "by", "side"):
             return k + 3
-        does = word in GOING and (word not in OPENNESS or before in (*_RELATIVE, *_CAN))
+        goes = self.given(k + 1).removesuffix("s") in WAYS
+        does = word in GOING and (word not in OPENNESS or goes or before in (*_RELATIVE, *_CAN))
         if word in MOTIONS or does or (word in DONE and before == "be"):
             return self._verb(k)
         if word in _PREPOSITIONS:
-            return self._preposition(k)
+            return self._than(k) if word == "than" else self._preposition(k)
         if able:
             self.claim(part, "moves", "moves", k)
         elif word in _DROPPED and self.given(k + 1) in ("", *_BEGINS_PART):
@@ -811,6 +847,8 @@ class _Parser(Words):
         """`slides out`, `opens downwards`, `hinged on the left`: how the subject moves, and where to."""
         word, subject, end = self.given(k), self.subject, k + 1
         moves = MOTIONS.get(word, DONE.get(word, ""))
+        if self.given(end) in ("the", "its", "a", "an", "both", "all") and (behind := self._moves_other(k, moves)):
+            return behind
         while self.given(end) in ("to", "the", "on", "at", "towards", "sideways"):
             end += 1
         way = self.given(end).removesuffix("s")
@@ -830,6 +868,17 @@ class _Parser(Words):
         self.claim(subject, "moves", moves or "moves", k)
         return far or k + 1
 
+    def _moves_other(self, k: int, moves: str) -> int:
+        """`a crank that raises the bucket by 1 m`: what the subject moves; the word behind it, or 0."""
+        other = _Draft()
+        end = self._noun_phrase(k + 1, other)
+        if not other.nouns:
+            return 0
+        self.claim(other, "moves", moves or "moves", k)
+        self.parts.append(other)
+        self.current = self.subject = other
+        return self._far(end + (self.given(end) in _BY)) or end
+
     def _far(self, k: int) -> int:
         """`3 m`, `by 90 degrees`, `through 45 degrees to either side`, of the subject; the word behind it, or 0."""
         amount = None if (self.given(k - 1), self.given(k)) == ("up", "to") else amount_at(self, k)
@@ -847,6 +896,13 @@ class _Parser(Words):
 
     def _says(self, k: int, words: Sequence[str]) -> bool:
         return tuple(self.given(k + n) for n in range(len(words))) == tuple(words)
+
+    def _than(self, k: int) -> int:
+        """`wider than the right one`."""
+        other = _Draft()
+        end = max(self._noun_phrase(k + 1, other), k + 1)
+        self.claim(self.current, "relation", ("than", self.noun(other) or "other"), *range(k, end))
+        return end
 
     def _preposition(self, k: int) -> int:
         """`on the left side`, `under the bed`, `of glass`, `on four casters`."""

@@ -35,7 +35,9 @@ _MOSTLY = 0.7  # of its box, that is in another box
 _TOUCH = 0.02  # [m] between what touches, with handles and gaps
 
 
-def wrong_place(closed: Blueprint, place: str, chosen: Sequence[Part], found: Sequence[Part]) -> str | None:
+def wrong_place(
+    closed: Blueprint, place: str, chosen: Sequence[Part], found: Sequence[Part], *, on_each: bool = False
+) -> str | None:
     """What is wrong with where parts are; None if they are at a place of the whole.
 
     Args:
@@ -43,6 +45,7 @@ def wrong_place(closed: Blueprint, place: str, chosen: Sequence[Part], found: Se
         place: As in `PLACES`, or a word for the middle, a side, a corner, the inside or the outside.
         chosen: The parts that are meant.
         found: All parts that are called so.
+        on_each: On each side.
     """
     bounds = {part.name: part.bounds for part in closed.parts}
     boxes, base = [bounds[part.name] for part in chosen], closed.parts[0].bounds
@@ -62,7 +65,8 @@ def wrong_place(closed: Blueprint, place: str, chosen: Sequence[Part], found: Se
     if place in MIDDLE:
         is_there = bool((np.abs(aside.mean(axis=0)) / half < _NEAR)[[0, 2]].any())
     elif place in _SIDE:
-        is_there = all(_reaches(box, base) for box in boxes)
+        apart = (aside / half > _FAR).any(axis=0) & (aside / half < -_FAR).any(axis=0)
+        is_there = all(_reaches(box, base) for box in boxes) and (not on_each or bool(apart[:2].any()))
     elif place == "corner":
         is_there = bool(((np.abs(aside) / half > _FAR).sum(axis=1) > 1).all())
     else:
@@ -94,9 +98,8 @@ def wrong_relation(preposition: str, chosen: Sequence[Part], others: Sequence[Pa
     if preposition == "each":
         on_each = all(any(touch(one, other) for one in chosen) for other in others)
         return None if len(chosen) >= len(others) and on_each else f"{len(chosen)} built"
-    if preposition in _BESIDE:
-        return None if any(_is_beside(*pair) for pair in pairs) else "not beside it"
-    return None if preposition in _LOOSE or any(touch(*pair) for pair in pairs) else "elsewhere"
+    meet = _is_beside if preposition in _BESIDE else touch
+    return None if preposition in _LOOSE or any(meet(*pair) for pair in pairs) else "elsewhere"
 
 
 def touch(one: Part, other: Part) -> bool:

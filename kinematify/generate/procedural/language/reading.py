@@ -36,6 +36,8 @@ class ParseState(Words):
     """Where the family is named; a choice may be part of its name."""
     ranges: frozenset[int] = frozenset()
     """Words that say how far something moves, which are no size."""
+    apart: frozenset[int] = frozenset()
+    """Words for handles of some parts alone."""
     of_parts: Mapping[int, str] = field(default_factory=dict)
     """Words of sizes of parts -> the noun of the part."""
     counted: set[int] = field(default_factory=set)

@@ -94,7 +94,12 @@ def read_overall(reading: ParseState) -> None:
 def length_at(reading: Words, k: int) -> tuple[float, int] | None:
     """A number with a unit at word k: metres, and the word behind it; `6 ft 2 in` is one length."""
     number, unit = reading.number(k), reading.text(k + 1)
-    if number is None or unit not in UNITS:
+    if number is not None and unit not in UNITS:  # 180 cm high, 80 wide, 40 deep
+        alone = reading.text(k)[0].isdigit() and reading.text(k + 2) in ("", ",", "and", "with", ".")
+        before = [reading.text(at) for at in range(k) if reading.text(at) in UNITS and reading.number(at - 1)]
+        is_size = alone and before and any(unit in words for words in DIMENSIONS.values())
+        return (round(number * UNITS[before[-1]], 9), k + 1) if is_size else None
+    if number is None:
         return None
     if unit == "in" and (reading.text(k + 2) in ("diameter", "total") or not reading.text(k)[0].isdigit()):
         return None  # two in front
@@ -232,7 +237,8 @@ def _products(reading: ParseState) -> None:
                 break
             at += 1
         units = [reading.text(i) for i in range(k, at + 1) if reading.text(i) in UNITS]
-        names = [name for name in ("width", "depth", "height") if reading.parameter(name) is not None]
+        free = (name for name in ("width", "depth", "height") if name not in reading.values)
+        names = [name for name in free if reading.parameter(name) is not None]
         if len(numbers) < 2 or not units or len(numbers) > len(names):
             continue
         end = at + 1 if reading.text(at) in UNITS else at

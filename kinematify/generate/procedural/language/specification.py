@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -11,12 +11,19 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.language.words import Token
 
 
+HANDLES = ("handle", "knob", "pull", "grip")
+"""Words for handles, which may be no parts of their own."""
+FRONTS = ("door", "drawer", "lid", "flap", "window")
+"""What has handles."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Claim:
     """One thing that is said of a part or of the whole."""
 
     about: str
-    """``there``, ``count``, ``moves``, ``way``, ``place``, ``size``, ``look``, ``open``, ``like`` or ``relation``."""
+    """``there``, ``count``, ``moves``, ``way``, ``range``, ``hinge``, ``open``, ``answers`` (to a push), ``still``,
+    ``only``, ``does``, ``place``, ``size``, ``color``, ``material``, ``like`` or ``relation``."""
     value: Any
     words: str
     """As it was written."""
@@ -93,6 +100,27 @@ class Specification:
         """The object, then its parts."""
         yield self.whole
         yield from self.parts
+
+    def handles(self) -> list[tuple[PartSpecification, PartSpecification | None]]:
+        """Handles and knobs, each with the fronts that it is said of: those it is on, or those named before."""
+        found: list[tuple[PartSpecification, PartSpecification | None]] = []
+        every = [part for part in self.parts if part.noun.split()[-1] in HANDLES]
+        for part in every:
+            on: list[str] = next((claim.value[1].split() for claim in part.claims if claim.about == "relation"), [])
+            places = tuple(claim for claim in part.claims if claim.about == "place")
+            before = found[-1][1] if found else None
+            owner = self.owner_of(part)
+            if owner is None and on and on[-1] in FRONTS:
+                at = part.claims[0].at
+                said = tuple(Claim(about="place", value=word, words=word, at=at) for word in on[:-1])
+                owner = PartSpecification(noun=on[-1], count=1 if said else None, claims=said)
+            elif owner is None and places and before:
+                owner = replace(before, count=1, claims=places)
+            elif owner is None and len(every) > 1:
+                named = [item for item in self.parts[: self.parts.index(part)] if item.noun in FRONTS]
+                owner = named[-1] if named else None
+            found.append((part, owner))
+        return found
 
     def owner_of(self, part: PartSpecification) -> PartSpecification | None:
         """The part that has a part: of those of its name, the one that was named last before it."""

@@ -45,8 +45,6 @@ _NOT = ("no", "without")
 _SWINGS = {"hinged", "hinge", "hinges", "opens", "opening", "swings"}
 _DOUBLED = ("leaf", "sash", "door")
 _OPEN = {"share": "open", "angle": "open_angle", "distance": "open_distance"}
-_HANDLES = ("handle", "knob", "pull", "grip")
-"""Words for handles, which are no parts of their own."""
 _LESS = 0.95  # so much smaller, a size makes another object
 _ABSURD = 4.0  # times out of its range, something is no such object
 
@@ -81,11 +79,13 @@ def understand(specification: Specification, family: Family) -> Understanding:
     vocabulary = vocabulary_of(family)
     tokens = tokens_of(specification.text, vocabulary)
     ranges = [item for part in specification.all_parts() for item in part.claims if item.about == "range"]
+    apart = {k for part, owner in specification.handles() if owner for claim in part.claims for k in claim.at}
     reading = ParseState(
         tokens=tokens,
         family=family,
         used=set(specification.name),
         named=frozenset(specification.name),
+        apart=frozenset(apart) if any(p.name == "handle" and p.choices for p in family.parameters) else frozenset(),
         ranges=frozenset(k for item in ranges for k in item.at),
         of_parts={
             k: part.noun.split()[-1]
@@ -140,9 +140,9 @@ def _said_of_whole(reading: ParseState, specification: Specification) -> None:
 def _looks_of_handles(reading: ParseState, specification: Specification, made: Blueprint) -> None:
     """`brass knobs`, of what has handles that are no parts of their own."""
     nouns = part_nouns(reading.family, made)
-    for part in specification.parts:
+    for part, owner in specification.handles():
         word = part.noun.split()[-1]
-        if word not in _HANDLES or (word,) in nouns or reading.parameter("handle") is None:
+        if owner or (word,) in nouns or reading.parameter("handle") is None:
             continue
         for claim in part.claims:
             if claim.about in ("material", "color"):
@@ -274,6 +274,14 @@ def _choice_words(parameter: Parameter, choice: str) -> tuple[str, ...]:
     return (choice.replace("_", " "), *parameter.choice_words.get(choice, ()), *common) if choice else ()
 
 
+def handle_choice(family: Family, noun: str) -> str:
+    """The choice of handles that a noun says; empty where it says none."""
+    parameter = next((p for p in family.parameters if p.name == "handle" and p.choices), None)
+    said = [(words, c) for c in parameter.choices for words in _choice_words(parameter, c)] if parameter else []
+    fits = [item for item in said if f" {noun} ".find(f" {item[0]} ") >= 0]
+    return max(fits, key=lambda item: len(item[0]), default=("", ""))[1]
+
+
 def _spoken(family: Family) -> list[Parameter]:
     """Parameters that a sentence may set; how it is modelled is none: a door of solid oak."""
     return [parameter for parameter in family.parameters if parameter.name != "modeling"]
@@ -294,6 +302,8 @@ def _choices(reading: ParseState) -> None:
 
 def _is_free(reading: ParseState, where: range) -> bool:
     """Whether words may say a choice: not taken up, but for the object's name and for a noun that was counted."""
+    if reading.apart & set(where):
+        return False
     taken = (reading.used - reading.named) & set(where)
     return not taken or (taken < set(where) and taken <= reading.counted)
 
@@ -316,7 +326,7 @@ def _parts_it_has(reading: ParseState) -> None:
     chosen = {name: p for p in reading.family.parameters if p.choices for name in (p.name, *p.words)}
     for k, token in enumerate(reading.tokens):
         parameter = chosen.get(token.text)
-        if parameter is None or k in reading.used:
+        if parameter is None or k in reading.used | reading.apart:
             continue
         if reading.text(k - 1) not in _NOT and parameter.default == "none":
             kind = next(choice for choice in parameter.choices if choice != "none")
