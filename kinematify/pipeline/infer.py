@@ -110,8 +110,14 @@ def infer(
         raise InputError(f"There is no part {base} to be the base link. The parts are {', '.join(assembly.names)}.")
     angle = heading_of(assembly) if graph is None and config.joints.method == "geometry" else 0.0
     if angle != 0.0:
-        square = infer(turned(assembly, -angle), config=config, base=base, progress=progress)
-        return with_heading(square, assembly, angle)
+        return with_heading(_square(turned(assembly, -angle), config, base, None, clock), assembly, angle)
+    return _square(assembly, config, base, graph, clock)
+
+
+def _square(
+    assembly: Assembly, config: Config, base: str | None, graph: ContactGraph | None, clock: StageClock
+) -> Inference:
+    """What `infer` returns of rigid parts whose walls stand along the axes of the world, as far as they can."""
     with clock.stage("contacts", 0.0):
         surfaces = part_surfaces(assembly, config=config.surface)
         cuts = find_cuts(assembly, surfaces, config.seam) if graph is None and config.seam.join else {}
@@ -120,7 +126,7 @@ def infer(
             graph = build_contact_graph(assembly, surfaces, config=config.contact, seed=config.seed)
     if 1 < len(pieces) < len(assembly.parts):
         main = piece_standing_for(base, assembly, pieces)
-        whole = infer(joined(assembly, pieces), config=config, base=main, progress=progress)
+        whole = _square(joined(assembly, pieces), config, main, None, StageClock(clock.progress))
         return inference_of_pieces(whole, assembly, graph, pieces, clock.seconds)
     bearings: dict[Pair, EdgeBearing] = {}
     if config.joints.method == "geometry":
