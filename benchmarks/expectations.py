@@ -48,6 +48,7 @@ SETS = {
     "heldout_12": "forty more, written before the library was opened by somebody who worked on neither",
     "heldout_13": "forty more, committed before the grammar or the library was opened in the session after that",
     "heldout_14": "forty more, written beside the work of a session without sight of library and code",
+    "heldout_15": "forty more, written in the same manner a session later",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }

@@ -76,6 +76,7 @@ def test_pull_out_shelves_are_not_pulled_out() -> None:
         ("a locked cabinet with its door wide open", "what is locked"),
         ("a closed box with its lid open at 90 degrees", "what is closed"),
         ("a bookcase 80 cm wide with two doors that are each 70 cm wide, side by side", "80 cm wide"),
+        ("a bookcase 50 cm high with three drawers on top of each other, each drawer 20 cm high", "50 cm high"),
     ],
 )
 def test_contradictions_are_refused(sentence: str, words: str) -> None:

@@ -236,5 +236,7 @@ def _larger_parts(specification: Specification) -> Iterator[_Fault]:
     for part in specification.parts:
         for claim in (claim for claim in part.claims if claim.about == "size" and claim.value[0] in whole):
             size, together = whole[claim.value[0]], _SIDE_BY_SIDE.get(claim.value[0], "-") in specification.text
-            if claim.value[0] and (part.count or 1 if together else 1) * claim.value[1] > size.value[1] * 1.001:
+            alike = [other.count or 1 for other in specification.parts if other.noun == part.noun]
+            count = part.count or max(alike) if together else 1
+            if claim.value[0] and count * claim.value[1] > size.value[1] * 1.001:
                 yield f"{part.noun} {claim.words}", f"the {specification.kind} is {size.words}"
