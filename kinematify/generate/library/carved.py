@@ -39,7 +39,7 @@ def add_drawer(workshop: Workshop, name: str, parent: str, opening: Bay, fitting
     upper = opening.right - edge, opening.depth - opening.wall, opening.top - edge
     lap = edge - 0.5 * (fitting.clearance + _REVEAL)
     with drawn_on(workshop, fitting.clearance, fitting.rest) as d:
-        drawer(d, name, parent, lower, upper, travel=0.8, lap=lap, front=opening.wall, handle=fitting.grip)
+        drawer(d, name, parent, lower, upper, travel=0.8, lap=lap, front=opening.wall, rim=0.75, handle=fitting.grip)
 
 
 def add_door(

@@ -310,6 +310,7 @@ def drawer(
     travel: float = 0.75,
     lap: float | None = None,
     front: float | None = None,
+    rim: float = 1.0,
     handle: bool | str = True,
     material: str | None = None,
 ) -> None:
@@ -325,6 +326,7 @@ def drawer(
         travel: How far, in depths of the bay.
         lap: How far a front that stands before the bay covers its edges [m]; 0: it is let in, None: a little.
         front: Thickness of the front [m].
+        rim: Height of what is behind the front, share of the bay's.
         handle: It may have one, or has one of a kind of `grip`.
         material: Of the drawer; its parent's if None.
     """
@@ -342,9 +344,9 @@ def drawer(
     d.front(name, parent, box(behind - cover, behind + plate * out + cover), material=material)
     if d.style.drawer != "front":
         back, half = middle - (0.5 * deep - max(play, 0.0)) * out, reach - play * sides
-        d.part(name, box(back - half, behind + 0.5 * plate * out + half))
+        d.part(name, box(back - half, behind + 0.5 * plate * out + half - 2.0 * (1.0 - rim) * half * Z))
         if d.style.drawer == "tray":
-            wall = 0.06 * least
+            wall = min(0.06 * least, plate)
             inner = half - wall * sides
             d.cut(name, box(back + wall * out - inner, behind - wall * out + inner + 2.0 * wall * Z))
     if handle:
