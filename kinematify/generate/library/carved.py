@@ -17,7 +17,7 @@ from kinematify.generate.library.steps import ARITHMETIC, MECHANISMS, SOLIDS, St
 from kinematify.generate.procedural import layout
 from kinematify.generate.procedural.parameter import read_table
 from kinematify.generate.procedural.pieces import bearings, fronts, leaves
-from kinematify.generate.procedural.solids import X, Z
+from kinematify.generate.procedural.solids import X, Z, box
 from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.robot import Mimic
 from kinematify.robot.transforms import rotation_about
@@ -28,18 +28,29 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.family import Values
     from kinematify.generate.procedural.pieces.fronts import Bay, Fitting
 
+_RIM = 0.75  # height of a drawer's sides, share of the bay's
 _REVEAL = 0.002  # of a front towards its neighbours, besides the clearance
 _PIECES = (bearings, fronts, leaves)
 
 
 def add_drawer(workshop: Workshop, name: str, parent: str, opening: Bay, fitting: Fitting) -> None:
-    """Add a drawer that runs in the room behind an opening and comes out along -y."""
-    edge = 0.5 * opening.wall
+    """Add a drawer that runs in the room behind an opening and comes out along -y.
+
+    Strips along both sides of the room, above its rim, keep it from lifting and tipping when it is out.
+    """
+    edge, clearance = 0.5 * opening.wall, fitting.clearance
     lower = opening.left + edge, 0.0, opening.bottom + edge
     upper = opening.right - edge, opening.depth - opening.wall, opening.top - edge
-    lap = edge - 0.5 * (fitting.clearance + _REVEAL)
-    with drawn_on(workshop, fitting.clearance, fitting.rest) as d:
-        drawer(d, name, parent, lower, upper, travel=0.8, lap=lap, front=opening.wall, rim=0.75, handle=fitting.grip)
+    lap = edge - 0.5 * (clearance + _REVEAL)
+    with drawn_on(workshop, clearance, fitting.rest) as d:
+        drawer(d, name, parent, lower, upper, travel=0.8, lap=lap, front=opening.wall, rim=_RIM, handle=fitting.grip)
+    rim = lower[2] + _RIM * (upper[2] - lower[2]) + clearance
+    reach = edge + clearance + min(0.012, 0.06 * min(opening.width, opening.height))
+    for low, high in (
+        (opening.left + 0.5 * edge, opening.left + reach),
+        (opening.right - reach, opening.right - 0.5 * edge),
+    ):
+        workshop.add(parent, box((low, 0.0, rim), (high, upper[1] + 0.5 * edge, opening.top - 0.5 * edge)))
 
 
 def add_door(
