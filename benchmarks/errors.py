@@ -15,12 +15,12 @@ from PIL import Image, ImageDraw, ImageFont
 
 from benchmarks.tables import CLOSE_LINE, is_right
 from kinematify.errors import OutputError
-from kinematify.evaluation.job import CLEAN, degraded, erased_item, shown_parts
+from kinematify.evaluation.benchmark_job import CLEAN, degraded, erased_item, shown_parts
 from kinematify.evaluation.metrics import CLOSE_ANGLE, axis_angle
-from kinematify.evaluation.record import document, replace_text
-from kinematify.evaluation.run import jobs_of
-from kinematify.model.scene import GLYPH_COLORS, camera_for, sliding_arrow, turning_arrow
-from kinematify.pipeline.infer import infer
+from kinematify.evaluation.result_record import document, replace_text
+from kinematify.evaluation.run_benchmark import jobs_of
+from kinematify.model.picture_scene import GLYPH_COLORS, camera_for, sliding_arrow, turning_arrow
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import joint_motion
@@ -32,10 +32,10 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, Part
     from kinematify.assembly.truth import TrueJoint
     from kinematify.config import PreviewConfig
-    from kinematify.evaluation.job import Job, JobResult
+    from kinematify.evaluation.benchmark_job import Job, JobResult
     from kinematify.evaluation.metrics import JointScore
-    from kinematify.evaluation.record import Report
-    from kinematify.evaluation.run import BenchmarkRequest
+    from kinematify.evaluation.result_record import Report
+    from kinematify.evaluation.run_benchmark import BenchmarkRequest
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import FloatArray

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from statistics import fmean
 
-from kinematify.evaluation.run import DEFAULT_VARIANTS, Variant
+from kinematify.evaluation.run_benchmark import DEFAULT_VARIANTS, Variant
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,12 +16,12 @@ import numpy as np
 
 from benchmarks.paper import PAPER_VARIANTS
 from kinematify.config import load_config
-from kinematify.contact.build import build_contact_graph
-from kinematify.evaluation.job import score_erased, shown_parts
+from kinematify.contact.build_graph import build_contact_graph
+from kinematify.evaluation.benchmark_job import score_erased, shown_parts
 from kinematify.evaluation.metrics import Prediction
-from kinematify.evaluation.run import changed
+from kinematify.evaluation.run_benchmark import changed
 from kinematify.geometry.surface import part_surfaces
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.stages import find_trees
 from kinematify.robot.joint_type import JointType
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from benchmarks.study import Record
-    from kinematify.assembly.erase import ErasedModel
+    from kinematify.assembly.erasure import ErasedModel
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.evaluation.datasets import BenchObject

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.erase import ErasedModel
+from kinematify.assembly.erasure import ErasedModel
 from kinematify.contact.tree import KinematicTree
-from kinematify.evaluation.job import predicted, score_erased, shown_parts
+from kinematify.evaluation.benchmark_job import predicted, score_erased, shown_parts
 from kinematify.evaluation.metrics import opening_sign
 from kinematify.joints.candidate import JointCandidate, JointEstimate
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.stages import choose_joints
 from kinematify.refinement.candidates import CandidateJoints

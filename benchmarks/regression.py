@@ -6,11 +6,11 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kinematify.evaluation.summary import Summary, summarise
+from kinematify.evaluation.benchmark_summary import Summary, summarise
 
 if TYPE_CHECKING:
-    from kinematify.evaluation.job import JobResult
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.benchmark_job import JobResult
+    from kinematify.evaluation.result_record import Report
 
     Group = tuple[list[JobResult], list[JobResult]]
 

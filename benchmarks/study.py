@@ -20,12 +20,12 @@ import click
 from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter, ValidationError
 
 from benchmarks import studies
-from kinematify.batch.pool import WORK_FOLDER, Pool
+from kinematify.batch.task_pool import WORK_FOLDER, Pool
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus, InputError, OutputError
-from kinematify.evaluation.record import Report, as_json, code_version, load_report, new_header, write_report
+from kinematify.evaluation.result_record import Report, as_json, code_version, load_report, new_header, write_report
 from kinematify.processes.pool import TaskFailure
 
 if TYPE_CHECKING:

@@ -8,17 +8,17 @@ from statistics import fmean, median
 from typing import TYPE_CHECKING
 
 from benchmarks.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
-from kinematify.evaluation.job import CLEAN
+from kinematify.evaluation.benchmark_job import CLEAN
 from kinematify.evaluation.metrics import CLOSE_ANGLE
-from kinematify.evaluation.record import grouped, number, table
-from kinematify.evaluation.summary import Summary, motion_rates, summarise, summarise_types
+from kinematify.evaluation.result_record import grouped, number, table
+from kinematify.evaluation.benchmark_summary import Summary, motion_rates, summarise, summarise_types
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from kinematify.evaluation.job import JobResult
+    from kinematify.evaluation.benchmark_job import JobResult
     from kinematify.evaluation.metrics import JointScore
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
 
 CLOSE_LINE = 0.05
 """An axis line counts as found within this share of the object's diagonal."""

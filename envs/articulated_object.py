@@ -20,7 +20,7 @@ from kinematify.envs.settings import load_settings as load_env_settings
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene, transformed
 from kinematify.manipulation.grasp import moved_bodies, search_grasps
-from kinematify.manipulation.request import Hold
+from kinematify.manipulation.plan_request import Hold
 from kinematify.model.collision import collides_as_it_is
 from kinematify.model.masses import prepared_inertials
 from kinematify.model.output import urdf_of

@@ -12,7 +12,7 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.request import from_category
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
-from kinematify.pipeline.generate import true_model
+from kinematify.pipeline.blueprint_files import true_model
 
 if TYPE_CHECKING:
     from pathlib import Path

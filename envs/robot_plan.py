@@ -16,18 +16,18 @@ import numpy as np
 from kinematify.config.validation import load_settings
 from kinematify.envs.articulated_object import loadable
 from kinematify.envs.settings import load_settings as load_env_settings
-from kinematify.envs.verdict import content_digest, keep, kept, tell
+from kinematify.envs.model_verdict import content_digest, keep, kept, tell
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene
 from kinematify.manipulation.kinematics import Arm
 from kinematify.manipulation.planning import plan_pull
-from kinematify.manipulation.robot import builtin_robot, user_robot
+from kinematify.manipulation.manipulator import builtin_robot, user_robot
 from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject
     from kinematify.geometry.scene import Scene
-    from kinematify.manipulation.robot import TaskRobot
+    from kinematify.manipulation.manipulator import TaskRobot
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import LeaderMechanism
 

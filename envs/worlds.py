@@ -10,16 +10,16 @@ import numpy as np
 
 from kinematify.config.validation import load_settings as load_validation_settings
 from kinematify.envs.articulated_object import held_links
-from kinematify.envs.dynamics import full_force, joint_dynamics
+from kinematify.envs.joint_dynamics import full_force, joint_dynamics
 from kinematify.envs.settings import load_settings
-from kinematify.geometry.rest import overlapping_links
-from kinematify.manipulation.robot import effort_limits
+from kinematify.geometry.rest_pairs import overlapping_links
+from kinematify.manipulation.manipulator import effort_limits
 from kinematify.simulation.engines import open_world
 from kinematify.simulation.world import HeldPoint, PlacedModel, PlacedRobot, PullingHand, WorldSpec
 
 if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject, Target
-    from kinematify.envs.dynamics import JointDynamics
+    from kinematify.envs.joint_dynamics import JointDynamics
     from kinematify.envs.robot_plan import EnvRobot, RobotPlan
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.mujoco_world import MujocoWorld

@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph
     from kinematify.contact.tree import KinematicTree
     from kinematify.errors import KinematifyError
-    from kinematify.formats.export import export
+    from kinematify.formats.export_model import export
     from kinematify.joints.candidate import JointCandidate
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.pipeline.infer import infer
+    from kinematify.pipeline.infer_assembly import infer
     from kinematify.pipeline.inference import Inference
     from kinematify.pipeline.record import write_inference
     from kinematify.refinement.loop import Refinement, refine
@@ -82,8 +82,8 @@ _HOMES = {
     "Part": "kinematify.assembly.part",
     "Refinement": "kinematify.refinement",
     "ValidationReport": "kinematify.validation.run.report",
-    "export": "kinematify.formats.export",
-    "infer": "kinematify.pipeline.infer",
+    "export": "kinematify.formats.export_model",
+    "infer": "kinematify.pipeline.infer_assembly",
     "load": "kinematify.view.loaded",
     "load_assembly": "kinematify.assembly.load",
     "load_config": "kinematify.config",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.pieces.bearings import ALONG_X, at, barrel, fork, fork_room
+from kinematify.generate.procedural.pieces.bearing_pieces import ALONG_X, at, barrel, fork, fork_room
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, rod, tray, union
 from kinematify.robot.transforms import rotation_about
 from tests.known import KnownJoint, KnownObject, fixed, known_object, moved, sliding, turning, varied

@@ -1,4 +1,4 @@
-"""Stand-ins for `kinematify.pipeline.infer` that tests of the benchmark name by ``quick_inference:...``.
+"""Stand-ins for `kinematify.pipeline.infer_assembly` that tests of the benchmark name by ``quick_inference:...``.
 
 They answer at once, so that what is tested is the runner: its workers, its ledger and what it shows to an inference.
 """

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.pieces.bearings import at, fork, fork_room, stub
+from kinematify.generate.procedural.pieces.bearing_pieces import at, fork, fork_room, stub
 from kinematify.generate.procedural.solids import bore, box, cylinder, off, rod, union
 from kinematify.robot.transforms import rotation_about
 from tests.known import KnownJoint, KnownObject, known_object, moved, sliding, turning, varied

@@ -6,7 +6,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from kinematify.evaluation.run import BenchmarkRequest
+from kinematify.evaluation.run_benchmark import BenchmarkRequest
 
 BOX = '<visual><geometry><box size="{size}"/></geometry></visual>'
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from kinematify.config import CONFIG_FOLDER, Config, StageConfig, load_config
-from kinematify.config.nightly import NightlySettings, load_nightly
+from kinematify.config.nightly_settings import NightlySettings, load_nightly
 from kinematify.config.validation import ValidationSettings, load_settings
 from kinematify.envs.settings import EnvSettings
 from kinematify.errors import ConfigError

@@ -132,10 +132,10 @@ def test_relative_imports_are_refused() -> None:
         ("kinematify.assembly.load", "from kinematify.contact.graph import ContactGraph"),
         ("kinematify.config", "import kinematify.assembly.part"),
         ("kinematify.paper.cavl", "def f():\n    from kinematify.cli import main"),
-        ("kinematify.contact.build", "if TYPE_CHECKING:\n    from kinematify.topology.tree import KinematicTree"),
+        ("kinematify.contact.build_graph", "if TYPE_CHECKING:\n    from kinematify.topology.tree import KinematicTree"),
         ("kinematify.validation.run", "from kinematify.topology.search import search"),
         ("kinematify.model.urdf", "from kinematify import infer"),
-        ("kinematify.model.urdf", "importlib.import_module('kinematify.pipeline.infer')"),
+        ("kinematify.model.urdf", "importlib.import_module('kinematify.pipeline.infer_assembly')"),
         ("kinematify.cli.bench", "from benchmarks.study import load_study"),
         ("kinematify.cli.bench", "importlib.import_module('benchmarks.study')"),
         ("kinematify.utils", "import os"),
@@ -148,8 +148,8 @@ def test_the_check_can_fail(name: str, source: str) -> None:
 @pytest.mark.parametrize(
     ("name", "source"),
     [
-        ("kinematify.cli.infer", "from kinematify.pipeline.infer import infer\nfrom kinematify import __version__"),
-        ("kinematify.contact.build", "from kinematify.contact.graph import ContactGraph\nimport numpy as np"),
+        ("kinematify.cli.infer", "from kinematify.pipeline.infer_assembly import infer\nfrom kinematify import __version__"),
+        ("kinematify.contact.build_graph", "from kinematify.contact.graph import ContactGraph\nimport numpy as np"),
     ],
 )
 def test_the_check_can_pass(name: str, source: str) -> None:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from kinematify.config.nightly import load_nightly
-from kinematify.evaluation.nightly.compare import compare
+from kinematify.config.nightly_settings import load_nightly
+from kinematify.evaluation.nightly.comparison import compare
 from kinematify.evaluation.nightly.night_page import night_page, problem_anchor
 from kinematify.evaluation.nightly.runs import Problem, Run
 from kinematify.evaluation.nightly.store import Night, earlier_runs

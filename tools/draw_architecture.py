@@ -6,7 +6,7 @@ import ast
 
 import networkx as nx
 
-from tools.count_lines import packages, size
+from tools.size import measured, packages
 from tools.imports import ORDER, ROOT, import_graph, modules
 
 PAGE = ROOT / "docs" / "architecture.md"
@@ -34,15 +34,15 @@ def _package(module: str) -> str | None:
 
 
 def table() -> str:
-    """Markdown: every package with the first sentence of its docstring and its lines."""
-    sizes = {name: size(files).lines for name, files in packages(ROOT).items()}
+    """Markdown: every package with the first sentence of its docstring and its tokens."""
+    sizes = {name: size.tokens for name, size in packages().items()}
     rows = []
     for name in ORDER:
         path = modules()[f"kinematify.{name}"]
         sentence = (ast.get_docstring(ast.parse(path.read_text("utf-8"))) or "").split("\n\n")[0].replace("\n", " ")
-        lines = sizes.get(name, path.read_text("utf-8").count("\n"))
-        rows.append(f"| `{name}` | {sentence} | {lines:,} |")
-    return "\n".join(["| package | what it does | lines |", "|---|---|---|", *rows])
+        tokens = sizes.get(name) or measured(path.name, path.read_text("utf-8")).tokens
+        rows.append(f"| `{name}` | {sentence} | {tokens:,} |")
+    return "\n".join(["| package | what it does | tokens |", "|---|---|---|", *rows])
 
 
 def rewritten(page: str) -> str:

@@ -43,7 +43,7 @@ _EVERY_STAGE = (
     "kinematify.validation.isolation",
     "kinematify.validation.stage",
     "kinematify.config.validation",
-    "kinematify.manipulation.request",
+    "kinematify.manipulation.plan_request",
 )
 """Modules that all stages need."""
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config.validation import ValidationSettings
-    from kinematify.manipulation.request import PriorFinding, TaskRequest
+    from kinematify.manipulation.plan_request import PriorFinding, TaskRequest
     from kinematify.validation.check import Check
     from kinematify.validation.summary import Summary
 

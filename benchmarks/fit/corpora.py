@@ -21,7 +21,7 @@ from benchmarks.fit.edges import read_tree_examples, tree_example, write_tree_ex
 from benchmarks.fit.examples import content_key, examples_of, read_examples, write_examples
 from benchmarks.fit.fragmentation import with_pieces_broken_off
 from benchmarks.fit.modelling import WAYS, augment
-from kinematify.assembly.erase import erase
+from kinematify.assembly.erasure import erase
 from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, InputError, KinematifyError

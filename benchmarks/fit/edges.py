@@ -11,10 +11,10 @@ import numpy as np
 from scipy.optimize import minimize
 
 from benchmarks.fit.examples import content_key
-from kinematify.contact.build import build_contact_graph
+from kinematify.contact.build_graph import build_contact_graph
 from kinematify.geometry.part_stats import assembly_stats
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.bearings.fit import fit_bearings
+from kinematify.joints.bearings.bearing_fit import fit_bearings
 from kinematify.joints.choice.edges import FORMAT, MEASUREMENTS, EdgeWeights, edge_measurements, edge_probabilities
 from kinematify.joints.features.pins import find_pins
 from kinematify.topology.search import maximum_spanning_edges

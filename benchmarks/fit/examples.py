@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.contact.build import build_contact_graph
+from kinematify.contact.build_graph import build_contact_graph
 from kinematify.contact.tree import KinematicTree
 from kinematify.evaluation.metrics import opening_sign
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.bearings.fit import fit_bearings
+from kinematify.joints.bearings.bearing_fit import fit_bearings
 from kinematify.joints.candidate import ELSEWHERE, FIXED, SLIDE, TURN, Hypotheses, JointType
 from kinematify.joints.choice.decide import edge_features
 from kinematify.joints.choice.judge import alike_edges, rightness
 from kinematify.joints.choice.opening import measure_sides
-from kinematify.joints.features.scene import part_frames
+from kinematify.joints.features.edge_scene import part_frames
 from kinematify.joints.features.workspace import Cloud, PartCache, point_cloud
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.truth import GroundTruth, TrueJoint
     from kinematify.config import Config
     from kinematify.joints.features.measurements import Values
-    from kinematify.joints.features.scene import JointScene
+    from kinematify.joints.features.edge_scene import JointScene
     from kinematify.robot.arrays import FloatArray, IntArray
 
 _WHOLE_TURN = 2.0 * np.pi - 0.1  # [rad]

@@ -52,7 +52,7 @@ from benchmarks.fit.trees import (
     write_scorer,
 )
 from kinematify import __version__
-from kinematify.evaluation.record import git_commit, table
+from kinematify.evaluation.result_record import git_commit, table
 from kinematify.joints.choice.edges import EDGE_WEIGHTS
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, WEIGHTS, shipped_scorer
 

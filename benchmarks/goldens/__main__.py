@@ -27,9 +27,9 @@ from benchmarks.goldens.file import (
 from benchmarks.goldens.subjects import SUBJECTS
 from benchmarks.goldens.values import KINDS, PORTABLE, SPREAD, digest, first_difference
 from benchmarks.study import Work
-from kinematify.batch.pool import Pool
+from kinematify.batch.task_pool import Pool
 from kinematify.errors import ExitStatus, InputError, KinematifyError
-from kinematify.evaluation.record import git_commit
+from kinematify.evaluation.result_record import git_commit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence

@@ -17,11 +17,11 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, bench_folder, find_objects
-from kinematify.evaluation.job import erased_item, shown_parts
+from kinematify.evaluation.benchmark_job import erased_item, shown_parts
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.pipeline.generate import write_blueprint
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.blueprint_files import write_blueprint
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 from kinematify.simulation.engines import DEFAULT_ENGINES
 from kinematify.validation.run import validate

@@ -22,8 +22,8 @@ from kinematify.config.validation import load_settings
 from kinematify.generate.described import ObjectDescription
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.pipeline.generate import write_blueprint
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.blueprint_files import write_blueprint
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.run import validate

@@ -30,9 +30,9 @@ from benchmarks.study import Options, Study, among, explained
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import CONDITIONS, find_objects
-from kinematify.evaluation.job import erased_item, shown_parts
+from kinematify.evaluation.benchmark_job import erased_item, shown_parts
 from kinematify.evaluation.metrics import score_blueprint
-from kinematify.evaluation.record import grouped, table
+from kinematify.evaluation.result_record import grouped, table
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
@@ -40,9 +40,9 @@ from kinematify.generate.procedural.family import build
 from kinematify.generate.sentence import from_text
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
-from kinematify.pipeline.generate import true_model
-from kinematify.pipeline.infer import infer
-from kinematify.refinement.fix import fix_urdf
+from kinematify.pipeline.blueprint_files import true_model
+from kinematify.pipeline.infer_assembly import infer
+from kinematify.refinement.repair import fix_urdf
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.checks import checks_of
 from kinematify.validation.finding import Severity, Status
@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from benchmarks.study import Measured, Record, Work
     from kinematify.config import Config
     from kinematify.evaluation.datasets import BenchObject
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
     from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline.inference import Inference

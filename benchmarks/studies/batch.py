@@ -28,15 +28,15 @@ from scipy.optimize import nnls
 from benchmarks.study import Options, Study, explained
 from kinematify.batch.corpus import write_corpus
 from kinematify.batch.manifest import RECORD
-from kinematify.batch.summary import STEP_HEADINGS, step_rows
-from kinematify.evaluation.record import table
+from kinematify.batch.batch_summary import STEP_HEADINGS, step_rows
+from kinematify.evaluation.result_record import table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from benchmarks.study import Measured, Record, Work
     from kinematify.batch.manifest import ObjectRecord
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
 
 _LOOK = 0.1
 """Seconds between two looks at a run that is to be killed."""

@@ -20,7 +20,7 @@ from benchmarks.faults.plan import FAULTS, Verdict, facts, judge, write_mutants
 from benchmarks.study import Options, Study, explained
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import find_objects
-from kinematify.evaluation.record import table
+from kinematify.evaluation.result_record import table
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity
 from kinematify.validation.run import validate
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from benchmarks.faults.plan import Fact
     from benchmarks.study import Measured, Record, Work
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
 
 _FILE_FAMILIES = ("KV1", "KV2")
 _MOTION_FAMILIES = ("KV1", "KV2", "KV3")

@@ -22,13 +22,13 @@ from benchmarks.study import Options, Study, among, explained
 from kinematify.envs import DRAWER_PULL, OPEN_PART
 from kinematify.envs.bundled import BUNDLED, DRAWERS
 from kinematify.envs.expert import ArmExpert, HandExpert
-from kinematify.evaluation.record import grouped, table
+from kinematify.evaluation.result_record import grouped, table
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from benchmarks.study import Measured, Record, Work
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
 
 _SPEED_MODELS = ("drawers", "cabinet", "microwave")
 _PARTS = {

@@ -37,9 +37,9 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.errors import OutputError
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
-from kinematify.evaluation.job import erased_item
-from kinematify.evaluation.record import table
-from kinematify.refinement.plan import Plan
+from kinematify.evaluation.benchmark_job import erased_item
+from kinematify.evaluation.result_record import table
+from kinematify.refinement.joint_plan import Plan
 from kinematify.refinement.simulate import TIERS, DearTiers, Simulator
 from kinematify.validation import failure_rates
 from kinematify.validation.failure_rates import CLASSES, GEOMETRY, RIGHT, FailureRates, tier_of
@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from benchmarks.study import Measured, Record, Work
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
     from kinematify.pipeline.inference import Inference
     from kinematify.validation.finding import Finding
 

@@ -17,16 +17,16 @@ from benchmarks.study import Options, Study, explained
 from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, bench_folder, find_objects
-from kinematify.evaluation.job import erased_item, shown_parts
-from kinematify.evaluation.record import table
-from kinematify.pipeline.infer import infer
+from kinematify.evaluation.benchmark_job import erased_item, shown_parts
+from kinematify.evaluation.result_record import table
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from benchmarks.study import Measured, Record, Work
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import FloatArray, IntArray

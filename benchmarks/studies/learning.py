@@ -21,16 +21,16 @@ from pydantic import Field
 from benchmarks.study import Options, Study, explained
 from kinematify.envs.expert import HandExpert
 from kinematify.errors import EnvironmentFault
-from kinematify.evaluation.record import table
+from kinematify.evaluation.result_record import table
 from kinematify.generate.request import from_category
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from benchmarks.study import Measured, Record, Work
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
 
 _OPEN_PART = "kinematify.envs:kinematify/OpenPart-v0"
 CONTROL = "position"

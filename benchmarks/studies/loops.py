@@ -24,11 +24,11 @@ from pydantic import Field
 from benchmarks.linkages import KINDS, linkage
 from benchmarks.study import Options, Study, explained
 from kinematify.config import load_config
-from kinematify.evaluation.record import table
-from kinematify.formats.export import export
+from kinematify.evaluation.result_record import table
+from kinematify.formats.export_model import export
 from kinematify.model.output import MODEL_FILE
-from kinematify.pipeline.generate import true_model
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.blueprint_files import true_model
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.linkage import linkages
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from benchmarks.study import Measured, Record, Work
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
 

@@ -34,11 +34,11 @@ from benchmarks.paper import ABLATION, TABLE_I, mean_over_robots
 from benchmarks.paper_configurations import OWN, configured
 from benchmarks.study import Options, Study, among, explained
 from kinematify.config import load_config
-from kinematify.contact.build import build_contact_graph
+from kinematify.contact.build_graph import build_contact_graph
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, Condition, find_objects, matching
-from kinematify.evaluation.job import erased_item, shown_parts
+from kinematify.evaluation.benchmark_job import erased_item, shown_parts
 from kinematify.evaluation.metrics import axis_angle
-from kinematify.evaluation.record import grouped, table
+from kinematify.evaluation.result_record import grouped, table
 from kinematify.evaluation.tree_metrics import parent_errors, tree_edit_distance
 from kinematify.geometry.sampling import sample_surface
 from kinematify.geometry.surface import part_surfaces
@@ -50,11 +50,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from benchmarks.study import Measured, Record, Work
-    from kinematify.assembly.erase import ErasedModel
+    from kinematify.assembly.erasure import ErasedModel
     from kinematify.assembly.part import Assembly
     from kinematify.config import CavlConfig
     from kinematify.contact.graph import ContactGraph, Pair
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
     from kinematify.paper.cavl import CavlScene
 
 _BY_AREA, _BY_FIELDS = ", by area", ", by fields"

@@ -26,7 +26,7 @@ from scipy.spatial import cKDTree
 from benchmarks.fit.corpora import may_be_fitted_to
 from benchmarks.fit.pieces import HeldOut, category_of_piece
 from benchmarks.study import Options, Study, explained
-from kinematify.assembly.erase import erase
+from kinematify.assembly.erasure import erase
 from kinematify.assembly.load import load_assembly
 from kinematify.assembly.part import Part
 from kinematify.assembly.pieces import baked
@@ -34,9 +34,9 @@ from kinematify.config import load_config
 from kinematify.errors import KinematifyError
 from kinematify.evaluation.datasets import bench_folder, find_objects
 from kinematify.evaluation.metrics import CLOSE_ANGLE, CLOSE_ORIGIN, axis_angle, axis_line_distance
-from kinematify.evaluation.record import grouped, table
+from kinematify.evaluation.result_record import grouped, table
 from kinematify.grouping.groups import group_pieces
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
@@ -45,10 +45,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from benchmarks.study import Measured, Record, Work
-    from kinematify.assembly.erase import ErasedModel
+    from kinematify.assembly.erasure import ErasedModel
     from kinematify.assembly.truth import TrueJoint
     from kinematify.evaluation.datasets import BenchObject
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import FloatArray, IntArray

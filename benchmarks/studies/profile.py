@@ -24,10 +24,10 @@ from pydantic import Field
 
 from benchmarks.studies.scaling import chain_and_branch
 from benchmarks.study import Options, Study, among, explained
-from kinematify.assembly.erase import erase
+from kinematify.assembly.erasure import erase
 from kinematify.errors import InputError
 from kinematify.evaluation.datasets import find_objects
-from kinematify.evaluation.record import table
+from kinematify.evaluation.result_record import table
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.robot.obj_file import write_obj
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from benchmarks.study import Measured, Record, Work
     from kinematify.assembly.part import Part
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
 
 ROOT = Path(__file__).resolve().parents[2]
 """The checkout that this runs from."""

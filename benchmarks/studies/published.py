@@ -40,14 +40,14 @@ from benchmarks.study import Options, Study, explained
 from kinematify.config import StageConfig, load
 from kinematify.errors import EnvironmentFault, ExitStatus, InputError
 from kinematify.evaluation.datasets import bench_folder, example_robots
-from kinematify.evaluation.record import grouped, table
+from kinematify.evaluation.result_record import grouped, table
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from benchmarks.study import Measured, Record, Work
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
 
 _JUDGED = "published"
 """Configuration with what was judged by hand."""

@@ -32,12 +32,12 @@ from benchmarks.study import Options, Study, among, explained
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
-from kinematify.evaluation.job import erased_item
-from kinematify.evaluation.record import grouped, table
+from kinematify.evaluation.benchmark_job import erased_item
+from kinematify.evaluation.result_record import grouped, table
 from kinematify.refinement import refine
 from kinematify.refinement.candidates import CandidateJoints, is_same
 from kinematify.refinement.choose import Chooser
-from kinematify.refinement.plan import Plan
+from kinematify.refinement.joint_plan import Plan
 from kinematify.refinement.simulate import TIERS, DearTiers, Simulator
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
     from benchmarks.planted import TrueMechanism
     from benchmarks.study import Measured, Record, Work
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
 
 SAMPLE = (
     "bottle_3763", "box_100141", "cabinet_40147", "dishwasher_11700", "door_9128", "drawer_cabinet_20279",

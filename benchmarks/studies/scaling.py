@@ -19,9 +19,9 @@ from pydantic import Field
 from benchmarks.study import Options, Study, explained
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
-from kinematify.evaluation.job import INFER, imported
-from kinematify.evaluation.record import table
-from kinematify.pipeline.infer import peak_mb
+from kinematify.evaluation.benchmark_job import INFER, imported
+from kinematify.evaluation.result_record import table
+from kinematify.pipeline.infer_assembly import peak_mb
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from benchmarks.study import Measured, Record, Work
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
     from kinematify.robot.arrays import FloatArray
 
 BRANCH = 4

@@ -20,14 +20,14 @@ import yaml
 from benchmarks.expectations import SETS, broken_expectations, is_listed, load_sentences
 from benchmarks.study import Options, Study, explained
 from kinematify.errors import InputError
-from kinematify.evaluation.record import grouped, table
+from kinematify.evaluation.result_record import grouped, table
 from kinematify.generate.sentence import from_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from benchmarks.study import Measured, Record, Work
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
 
 RIGHT, LISTED, REFUSED, WRONG = "right", "listed", "refused", "silently wrong"
 CAME = (RIGHT, LISTED, REFUSED, WRONG)

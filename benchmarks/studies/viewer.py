@@ -25,9 +25,9 @@ from pydantic import Field
 from benchmarks.browser import open_browser
 from benchmarks.study import Options, Study, explained
 from kinematify.errors import EnvironmentFault
-from kinematify.evaluation.record import grouped, table
+from kinematify.evaluation.result_record import grouped, table
 from kinematify.generate.sentence import from_text
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page, WebSocket
 
     from benchmarks.study import Measured, Record, Work
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
 
 SENTENCE = "a kitchen cabinet with three doors above six drawers, 80 cm wide"
 GOALS = {"picture": 2.0, "answer": 0.05}

@@ -28,23 +28,23 @@ from pydantic import Field
 from benchmarks.study import Options, Study, explained
 from kinematify.config import load_config
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, bench_folder, find_objects, matching
-from kinematify.evaluation.job import erased_item, shown_parts
+from kinematify.evaluation.benchmark_job import erased_item, shown_parts
 from kinematify.evaluation.metrics import CLOSE_ANGLE, axis_angle, axis_line_distance
-from kinematify.evaluation.record import grouped, table
+from kinematify.evaluation.result_record import grouped, table
 from kinematify.joints.candidate import JointCandidate
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.robot.joint_type import JointType
-from kinematify.vision.options import look_alike, offered
+from kinematify.vision.motion_options import look_alike, offered
 from kinematify.vision.votes import VoterRecord, groups, place_of_choice, posterior, prior, same_on_twin, to_ask
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from benchmarks.study import Measured, Record, Work
-    from kinematify.assembly.erase import ErasedModel
+    from kinematify.assembly.erasure import ErasedModel
     from kinematify.assembly.part import Part
     from kinematify.config import VisionConfig
-    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.result_record import Report
     from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import BoolArray
 

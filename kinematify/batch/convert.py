@@ -16,13 +16,13 @@ from PIL import Image
 
 from kinematify.assembly.load import load_assembly
 from kinematify.batch.manifest import ObjectRecord
-from kinematify.batch.source import content_hash, fetched, publish
+from kinematify.batch.batch_inputs import content_hash, fetched, publish
 from kinematify.config import Config
 from kinematify.config.validation import ValidationSettings
 from kinematify.errors import InputError, KinematifyError, OutputError
-from kinematify.formats.export import export
+from kinematify.formats.export_model import export
 from kinematify.model.output import MODEL_FILE
-from kinematify.pipeline.infer import StageClock, infer, peak_mb
+from kinematify.pipeline.infer_assembly import StageClock, infer, peak_mb
 from kinematify.pipeline.record import write_inference_files
 from kinematify.processes.pool import sentence
 from kinematify.refinement.loop import refine
@@ -30,12 +30,12 @@ from kinematify.robot.joint_type import JointType
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity
 from kinematify.validation.formats.html import as_html
-from kinematify.validation.formats.picture import drawing_of
+from kinematify.validation.formats.report_picture import drawing_of
 from kinematify.validation.run import validate
 from kinematify.validation.run.outcome import as_json_text
 
 if TYPE_CHECKING:
-    from kinematify.batch.source import Source
+    from kinematify.batch.batch_inputs import Source
     from kinematify.validation.finding import Finding
     from kinematify.validation.run.report import ValidationReport
 

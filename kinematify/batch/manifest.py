@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import TypeAdapter, ValidationError
 
 from kinematify.batch.ledger import Ledger
-from kinematify.batch.source import filesystem, is_local
+from kinematify.batch.batch_inputs import filesystem, is_local
 from kinematify.errors import OutputError
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
-    from kinematify.batch.run import BatchResult
+    from kinematify.batch.run_batch import BatchResult
     from kinematify.processes.pool import Executor
 
 _SHOWN = 10
@@ -90,8 +90,8 @@ def command(**values: Any) -> int:
     Ends with 0 if every object has a model without errors, with 1 if one has not. Ctrl-C leaves valid records and ends
     with 130; the same command with --resume goes on.
     """
-    from kinematify.batch.run import BatchRequest, run_batch
-    from kinematify.batch.summary import write_page
+    from kinematify.batch.run_batch import BatchRequest, run_batch
+    from kinematify.batch.batch_summary import write_page
     from kinematify.config import load_config
     from kinematify.config.validation import load_settings
 
@@ -129,7 +129,7 @@ def command(**values: Any) -> int:
 
 def _engine(values: dict[str, Any]) -> Executor:
     """The engine that was asked for, started."""
-    from kinematify.batch.run import PRELOAD
+    from kinematify.batch.run_batch import PRELOAD
 
     memory = int(values["memory"] * 2**30)
     if values["engine"] == "ray":
@@ -152,7 +152,7 @@ def _share(words: str | None) -> tuple[int, int]:
 
 
 def _described(result: BatchResult) -> str:
-    from kinematify.batch.summary import STEP_HEADINGS, outcome_words, step_rows
+    from kinematify.batch.batch_summary import STEP_HEADINGS, outcome_words, step_rows
 
     rate = f", {3600.0 * result.new / result.seconds:.0f} an hour" if result.new else ""
     bad = [record for record in result.records if record.failed]

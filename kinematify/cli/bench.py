@@ -18,9 +18,9 @@ from kinematify.errors import ExitStatus
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.evaluation.job import JobResult
-    from kinematify.evaluation.record import Report
-    from kinematify.evaluation.run import Variant
+    from kinematify.evaluation.benchmark_job import JobResult
+    from kinematify.evaluation.result_record import Report
+    from kinematify.evaluation.run_benchmark import Variant
 
 
 _HEADINGS = (
@@ -194,9 +194,9 @@ def command(
 
     `kinematify bench STUDY` runs another study; --list names them, and each has its own options.
     """
-    from kinematify.evaluation.job import CLEAN
-    from kinematify.evaluation.record import as_json, load_report, table, write_report
-    from kinematify.evaluation.run import RESULTS, BenchmarkRequest, run_benchmark
+    from kinematify.evaluation.benchmark_job import CLEAN
+    from kinematify.evaluation.result_record import as_json, load_report, table, write_report
+    from kinematify.evaluation.run_benchmark import RESULTS, BenchmarkRequest, run_benchmark
 
     if folder is not None and data is not None:
         raise click.UsageError(f"Both DATA ({folder}) and --data ({data}) are given. Leave one out.")
@@ -250,7 +250,7 @@ def _faults(given: str) -> tuple[tuple[str, ...], str]:
 
 def _variants(configs: Sequence[str], *, ablation: bool) -> tuple[Variant, ...]:
     """One variant per configuration; in a checkout `paper` has its ablations too, and `default` where it is asked."""
-    from kinematify.evaluation.run import Variant
+    from kinematify.evaluation.run_benchmark import Variant
 
     several: dict[str, tuple[Variant, ...]] = {}
     if ablation or has_benchmarks():
@@ -279,9 +279,9 @@ def _rows(report: Report[JobResult]) -> list[tuple[str, ...]]:
 
 
 def _summary_row(key: tuple[str, str, str], runs: Sequence[JobResult]) -> tuple[str, ...]:
-    from kinematify.evaluation.job import CLEAN
-    from kinematify.evaluation.record import number
-    from kinematify.evaluation.summary import summarise
+    from kinematify.evaluation.benchmark_job import CLEAN
+    from kinematify.evaluation.result_record import number
+    from kinematify.evaluation.benchmark_summary import summarise
 
     summary = summarise(runs)
     columns = (("angle_deg", 1.0, 2), ("line_m", 1e3, 2), ("ted", 1.0, 2), ("root", 1.0, 2), ("types", 100.0, 1))

@@ -50,7 +50,7 @@ def command(
     Links joined by fixed joints become one part. Order and names of the parts are shuffled. OUT is an input of
     `kinematify infer`; the ground truth is written beside it as OUT.truth.json and is never read by `infer`.
     """
-    from kinematify.assembly.erase import erase, write_erased
+    from kinematify.assembly.erasure import erase, write_erased
     from kinematify.model.output import urdf_of
     from kinematify.robot.read import read_robot
 

@@ -71,7 +71,7 @@ def command(
     with its reason: neighbours, in contact at rest, always or never in contact in sampled configurations.
     """
     from kinematify.config.validation import load_settings
-    from kinematify.formats.export import export
+    from kinematify.formats.export_model import export
     from kinematify.model.output import check_file
 
     if form != "srdf" and (tool or gripper):

@@ -12,7 +12,7 @@ from kinematify.cli.options import examples, force_file_option, package_dirs_opt
 from kinematify.cli.progress import progress_reporter
 
 if TYPE_CHECKING:
-    from kinematify.refinement.fix import Fix, Look
+    from kinematify.refinement.repair import Fix, Look
 
 
 @click.command(
@@ -71,7 +71,7 @@ def command(
     from kinematify.config import load_config
     from kinematify.config.validation import load_settings
     from kinematify.model.output import check_file, urdf_of
-    from kinematify.refinement.fix import fix_urdf
+    from kinematify.refinement.repair import fix_urdf
 
     check_file(out, overwrite=force)
     model = urdf_of(model)

@@ -269,7 +269,7 @@ def _pairs(settings: Sequence[str]) -> dict[str, str]:
 
 def _categories() -> str:
     from kinematify.generate.composer.bodies import BODIES
-    from kinematify.generate.composer.mechanisms import MECHANISMS
+    from kinematify.generate.composer.placed_mechanisms import MECHANISMS
     from kinematify.generate.described import known_families
 
     rows = [
@@ -296,7 +296,7 @@ def _list(category: str | None, json_to: str | None) -> None:
 def _listing(category: str | None) -> dict[str, Any]:
     """Categories with their parameters, or one of them, as JSON values."""
     from kinematify.generate.composer.bodies import BODIES
-    from kinematify.generate.composer.mechanisms import MECHANISMS
+    from kinematify.generate.composer.placed_mechanisms import MECHANISMS
     from kinematify.generate.described import known_families
     from kinematify.generate.request import find_family
 

@@ -14,7 +14,7 @@ from kinematify.config import load_config
 from kinematify.errors import ExitStatus, InputError
 from kinematify.generate.sentence import Made, Sentence
 from kinematify.model.output import MODEL_FILE, PREVIEW_FILE, check_output, write_model_folder
-from kinematify.pipeline.generate import INFERRED_FOLDER, PARTS_FOLDER, write_blueprint, write_parts
+from kinematify.pipeline.blueprint_files import INFERRED_FOLDER, PARTS_FOLDER, write_blueprint, write_parts
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -77,7 +77,7 @@ class Generation:
             start_server([asset_stage(), *later_stages(DEFAULT_ENGINES), *as_loaded_stages(DEFAULT_ENGINES)])
         config = with_collision(self.config, self.collision)
         if self.inferred:
-            from kinematify.pipeline.infer import infer
+            from kinematify.pipeline.infer_assembly import infer
 
             self.inference = infer(
                 self.blueprint.assembly, config=config, progress=lambda stage, done: progress(stage, _INFERRED * done)

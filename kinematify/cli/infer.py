@@ -169,7 +169,7 @@ def command(
         from kinematify.assembly.load import load_assembly
         from kinematify.config import load_config
         from kinematify.model.output import check_output
-        from kinematify.pipeline.infer import infer
+        from kinematify.pipeline.infer_assembly import infer
 
     check_output(out, overwrite=force)
     settings = load_config(config) if seed is None else load_config(config, seed=seed)

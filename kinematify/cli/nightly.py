@@ -16,9 +16,9 @@ from kinematify.errors import ExitStatus
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.config.nightly import NightlySettings
-    from kinematify.evaluation.nightly.compare import Change
-    from kinematify.evaluation.nightly.run import NightResult
+    from kinematify.config.nightly_settings import NightlySettings
+    from kinematify.evaluation.nightly.comparison import Change
+    from kinematify.evaluation.nightly.run_night import NightResult
 
 _SHOWN = 20
 """Changes of a class that the terminal shows; the page has all."""
@@ -79,7 +79,7 @@ def command(
     nights. A run that was killed at any point goes on where it stopped. Ends with 1 if quality became worse than in
     the night before or than in the accepted baseline; times are only reported.
     """
-    from kinematify.evaluation.nightly.run import NightRequest, run_night
+    from kinematify.evaluation.nightly.run_night import NightRequest, run_night
 
     folder = out or Path("out/nightly-smoke" if smoke else "results/nightly")
     if accept is not None:
@@ -116,7 +116,7 @@ def _accept(folder: Path, name: str) -> int:
 
 
 def _settings(config: str, *, data: str | None, smoke: bool) -> NightlySettings:
-    from kinematify.config.nightly import load_nightly
+    from kinematify.config.nightly_settings import load_nightly
 
     settings = load_nightly(config)
     changes: dict[str, object] = {} if data is None else {"data": data}
@@ -126,7 +126,7 @@ def _settings(config: str, *, data: str | None, smoke: bool) -> NightlySettings:
 
 
 def _answer(result: NightResult) -> dict[str, object]:
-    from kinematify.evaluation.nightly.compare import CHANGES
+    from kinematify.evaluation.nightly.comparison import CHANGES
 
     night = result.night
     return {
@@ -153,7 +153,7 @@ def _described(result: NightResult) -> str:
 
 
 def _change_lines(changes: Sequence[Change]) -> list[str]:
-    from kinematify.evaluation.nightly.compare import Class
+    from kinematify.evaluation.nightly.comparison import Class
 
     lines = []
     for kind in Class:

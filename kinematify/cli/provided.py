@@ -22,14 +22,14 @@ from kinematify.generate.procedural.language.compare import compare
 from kinematify.generate.procedural.language.parse import parse_any
 from kinematify.generate.providers.command import CommandSource
 from kinematify.generate.providers.job import open_job
-from kinematify.generate.providers.judge import drawn_findings
+from kinematify.generate.providers.judge_blueprint import drawn_findings
 from kinematify.generate.providers.language_model import LanguageModel, examples_for, language_model
 from kinematify.generate.providers.rodin import RodinSource
 from kinematify.generate.providers.source import RecordingSource, ReplayedSource, check_prompt
 from kinematify.generate.sentence import Made, from_text, kinds_of_object
 from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
-from kinematify.pipeline.generate import write_blueprint
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.blueprint_files import write_blueprint
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference_files
 from kinematify.validation.run import validate
 

@@ -94,7 +94,7 @@ def command(
     so far and ends with 130.
     """
     from kinematify.model.output import MODEL_FILE
-    from kinematify.pipeline.infer import infer
+    from kinematify.pipeline.infer_assembly import infer
     from kinematify.refinement import refine
     from kinematify.refinement.folder import as_left, open_model_folder, read_record, write_refined
 

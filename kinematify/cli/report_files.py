@@ -114,7 +114,7 @@ def generated_files(folder: Path) -> ReportFiles:
 def report_on(folder: Path, files: ReportFiles, *, progress: Reporter | None = None) -> ValidationReport:
     """Validate the model of a folder and write its reports, with the picture of the folder if there is one."""
     from kinematify.model.output import MODEL_FILE, PREVIEW_FILE
-    from kinematify.validation.formats.picture import scene_of
+    from kinematify.validation.formats.report_picture import scene_of
     from kinematify.validation.run import validate
 
     report = validate(folder / MODEL_FILE, workers=os.cpu_count() or 1, progress=progress)

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     from kinematify.cli.progress import Reporter
     from kinematify.config.validation import ValidationSettings
-    from kinematify.manipulation.request import TaskRequest
-    from kinematify.validation.formats.picture import Drawing
+    from kinematify.manipulation.plan_request import TaskRequest
+    from kinematify.validation.formats.report_picture import Drawing
     from kinematify.validation.run.outcome import Outcome
     from kinematify.validation.run.report import ValidationReport
     from kinematify.validation.suppression import Suppression
@@ -96,7 +96,7 @@ class ValidationRun:
         return replace(self.task, stem=f"{stem}_{self.task.kind}")
 
     def _drawing(self, model: Path) -> Drawing:
-        from kinematify.validation.formats.picture import drawing_of
+        from kinematify.validation.formats.report_picture import drawing_of
 
         return drawing_of(model, self.package_dirs, self.settings, seconds=PICTURE_SECONDS)
 

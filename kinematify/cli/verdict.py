@@ -12,7 +12,7 @@ import click
 
 from kinematify.cli.table import format_table
 from kinematify.validation.finding import Severity, Status
-from kinematify.validation.formats.content import (
+from kinematify.validation.formats.report_content import (
     block_of,
     blocks,
     family_table,
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from kinematify.validation.finding import Finding
-    from kinematify.validation.formats.content import FindingBlock, Table
+    from kinematify.validation.formats.report_content import FindingBlock, Table
     from kinematify.validation.run.causes import FindingGroup
     from kinematify.validation.run.outcome import Outcome
     from kinematify.validation.run.report import ValidationReport

@@ -13,7 +13,7 @@ from kinematify.cli.options import complete_joints, examples, package_dirs_optio
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.view.record import Sight
+    from kinematify.view.inference_view import Sight
 
 _SHOWN_TITLE = 60
 
@@ -111,7 +111,7 @@ def _sights(report: Path) -> list[Sight]:
 
 
 def _sight(finding: dict[str, Any], titles: Mapping[str, str]) -> Sight:
-    from kinematify.view.record import Sight
+    from kinematify.view.inference_view import Sight
 
     place = finding["joint"] or " - ".join(finding["pair"] or ()) or finding["link"] or ""
     links = [*(finding["pair"] or ()), *([finding["link"]] if finding["link"] else [])]

@@ -9,10 +9,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from kinematify.config.base import CONFIG_FOLDER, StageConfig, load, section
-from kinematify.config.bearings import BearingConfig, RailConfig
-from kinematify.config.cavl import CavlConfig
+from kinematify.config.bearing_settings import BearingConfig, RailConfig
+from kinematify.config.cavl_settings import CavlConfig
 from kinematify.config.cues import GateConfig, PanelsConfig, SlidesConfig
-from kinematify.config.joints import (
+from kinematify.config.joint_settings import (
     ClearanceConfig,
     CompoundConfig,
     ConfidenceConfig,
@@ -25,7 +25,7 @@ from kinematify.config.joints import (
     RockersConfig,
     SweepConfig,
 )
-from kinematify.config.output import CollisionConfig, DynamicsConfig, LinkageConfig, ModelConfig, PreviewConfig
+from kinematify.config.output_settings import CollisionConfig, DynamicsConfig, LinkageConfig, ModelConfig, PreviewConfig
 from kinematify.config.services import RodinConfig, ServiceConfig, SourcesConfig, VisionConfig
 from kinematify.config.shapes import (
     AssemblyConfig,
@@ -36,7 +36,7 @@ from kinematify.config.shapes import (
     SeamConfig,
     SurfaceConfig,
 )
-from kinematify.config.trees import BaseConfig, FeedbackConfig, RefineConfig, RewardWeights, TopologyConfig
+from kinematify.config.tree_settings import BaseConfig, FeedbackConfig, RefineConfig, RewardWeights, TopologyConfig
 
 if TYPE_CHECKING:
     from pathlib import Path

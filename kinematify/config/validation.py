@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from kinematify.config import StageConfig, load, section
-from kinematify.config.task import TaskSettings
+from kinematify.config.task_settings import TaskSettings
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -21,7 +21,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from kinematify.assembly.part import Assembly, Part
-from kinematify.contact.build import near_pairs
+from kinematify.contact.build_graph import near_pairs
 from kinematify.robot.exact_faces import joined_faces
 from kinematify.robot.vectors import lengths_of
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.config import load_config
-from kinematify.geometry.rest import overlapping_links
+from kinematify.geometry.rest_pairs import overlapping_links
 from kinematify.geometry.scene import read_scene
 from kinematify.model.collision import collides_as_it_is, fit_collision
 from kinematify.model.masses import prepared_inertials

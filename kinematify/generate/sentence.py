@@ -213,7 +213,7 @@ def from_text(sentence: str) -> Sentence:
     Raises:
         InputError: It is empty, too long, no English, or names no kind of object that is known.
     """
-    from kinematify.generate.composer.sentence import nouns_of_mechanisms  # noqa: PLC0415 - with the library
+    from kinematify.generate.composer.body_sentence import nouns_of_mechanisms  # noqa: PLC0415 - with the library
 
     asking = nouns_of_mechanisms()
     plain, purposes = without_purposes(sentence, asking)
@@ -263,7 +263,7 @@ def kinds_of_object() -> list[str]:
 
 
 def _parsed(text: str, harmless: tuple[str, ...]) -> Specification:
-    from kinematify.generate.composer.sentence import nouns_of_mechanisms  # noqa: PLC0415 - with the library
+    from kinematify.generate.composer.body_sentence import nouns_of_mechanisms  # noqa: PLC0415 - with the library
 
     return parse(text, _library(), nouns_of_mechanisms(), harmless)
 
@@ -293,7 +293,7 @@ def _scenes(text: str, harmless: tuple[str, ...]) -> Iterator[Specification]:
 
 def _names_a_part(text: str) -> bool:
     """Whether `the door` is that of what was named before, and no object of its own."""
-    from kinematify.generate.composer.sentence import nouns_of_mechanisms  # noqa: PLC0415 - with the library
+    from kinematify.generate.composer.body_sentence import nouns_of_mechanisms  # noqa: PLC0415 - with the library
 
     words = text.lower().rstrip(" .!").split()
     return words[0] in ("the", "its") and lemma(words[-1]) in nouns_of_mechanisms()
@@ -346,7 +346,7 @@ def _refuse_other_kind(specification: Specification) -> None:
     Raises:
         InputError: It is said.
     """
-    from kinematify.generate.composer.sentence import nouns_of_mechanisms  # noqa: PLC0415 - with the library
+    from kinematify.generate.composer.body_sentence import nouns_of_mechanisms  # noqa: PLC0415 - with the library
 
     before = specification.name[0] - 1
     word = specification.tokens[before].given if before >= 0 else ""
@@ -376,7 +376,7 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
 
 
 def _composed_plan(specification: Specification, body: BodyKind, alone: bool) -> _Plan:
-    from kinematify.generate.composer.sentence import asked_composition  # noqa: PLC0415 - with solids
+    from kinematify.generate.composer.body_sentence import asked_composition  # noqa: PLC0415 - with solids
     from kinematify.generate.request import Request  # noqa: PLC0415
 
     composition, asked = asked_composition(specification, body, may_stand_still=not alone)
@@ -402,7 +402,7 @@ def _improved(
     dropped: tuple[Missing, ...],
 ) -> _Plan:
     """A plan with what a comparison asks for besides: parts, counts and sizes, then looks, states and ranges."""
-    from kinematify.generate.composer.sentence import mechanism_for  # noqa: PLC0415 - with solids
+    from kinematify.generate.composer.body_sentence import mechanism_for  # noqa: PLC0415 - with solids
     from kinematify.generate.procedural.language.compare import compare  # noqa: PLC0415
 
     made = request.build()

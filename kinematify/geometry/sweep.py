@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.geometry.overlap import OverlapQueries, boxes_meet
-from kinematify.geometry.rest import DepthAllowance
+from kinematify.geometry.rest_pairs import DepthAllowance
 from kinematify.geometry.scene import box_corners, relative
 from kinematify.robot.vectors import lengths_of
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.geometry.overlap import OverlapQueries
-    from kinematify.geometry.rest import DepthAllowance
+    from kinematify.geometry.rest_pairs import DepthAllowance
     from kinematify.geometry.scene import Pair, Scene
     from kinematify.robot.arrays import BoolArray, FloatArray
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.manipulation.grip import grip_piece
-from kinematify.manipulation.request import Hold
-from kinematify.manipulation.robot import effort_limits, hand_links
+from kinematify.manipulation.plan_request import Hold
+from kinematify.manipulation.manipulator import effort_limits, hand_links
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import rest_configuration, rigid_groups
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from kinematify.config.task import ExecutionSettings
+    from kinematify.config.task_settings import ExecutionSettings
     from kinematify.config.validation import PrepareSettings
     from kinematify.manipulation.grasp import Grasp
-    from kinematify.manipulation.robot import TaskRobot
+    from kinematify.manipulation.manipulator import TaskRobot
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
     from kinematify.simulation.prepared import Prepared
@@ -186,7 +186,7 @@ class Loaded:
 
     @property
     def hand_links(self) -> frozenset[str]:
-        """Links of the hand (`kinematify.manipulation.robot.hand_links`)."""
+        """Links of the hand (`kinematify.manipulation.manipulator.hand_links`)."""
         return hand_links(self.robot, self.motion.robot)
 
     def fastest(self, settings: ExecutionSettings) -> FloatArray:

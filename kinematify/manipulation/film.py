@@ -11,8 +11,8 @@ from PIL import Image, ImageDraw, ImageFont
 
 from kinematify.config import load_config
 from kinematify.geometry.scene import transformed
-from kinematify.manipulation.place import column_mesh
-from kinematify.model.scene import camera_for
+from kinematify.manipulation.robot_place import column_mesh
+from kinematify.model.picture_scene import camera_for
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from kinematify.robot.robot import forward_kinematics, rigid_groups
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config import PreviewConfig
-    from kinematify.config.task import FilmSettings
+    from kinematify.config.task_settings import FilmSettings
     from kinematify.manipulation.execute import Execution, Frame, Loaded
     from kinematify.render.camera import Camera
     from kinematify.robot.arrays import FloatArray, IntArray

@@ -15,7 +15,7 @@ from kinematify.robot.robot import forward_kinematics
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.config.task import GraspSettings
+    from kinematify.config.task_settings import GraspSettings
     from kinematify.geometry.scene import Scene
     from kinematify.manipulation.grasp_search import Candidates, Tally
     from kinematify.robot.arrays import FloatArray

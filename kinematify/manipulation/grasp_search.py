@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.config.task import GraspSettings
+    from kinematify.config.task_settings import GraspSettings
     from kinematify.geometry.scene import Scene
     from kinematify.robot.arrays import FloatArray, IntArray
 

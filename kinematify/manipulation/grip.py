@@ -20,7 +20,7 @@ from kinematify.robot.vectors import referenced
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.config.task import ExecutionSettings
+    from kinematify.config.task_settings import ExecutionSettings
     from kinematify.manipulation.grasp import Grasp
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.robot import Robot

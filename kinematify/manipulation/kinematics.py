@@ -17,8 +17,8 @@ from kinematify.robot.read import read_robot
 from kinematify.robot.write import robot_element
 
 if TYPE_CHECKING:
-    from kinematify.config.planning import PlanSettings
-    from kinematify.manipulation.robot import TaskRobot
+    from kinematify.config.planning_settings import PlanSettings
+    from kinematify.manipulation.manipulator import TaskRobot
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
 

@@ -13,27 +13,27 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.geometry.overlap import OverlapQueries
-from kinematify.geometry.rest import DepthAllowance
+from kinematify.geometry.rest_pairs import DepthAllowance
 from kinematify.geometry.sweep import Sweeper
-from kinematify.manipulation.collision import CollisionWorld
+from kinematify.manipulation.collision_world import CollisionWorld
 from kinematify.manipulation.execute import Motion
 from kinematify.manipulation.grasp import moved_bodies, opening_sign, search_grasps
-from kinematify.manipulation.place import Places, object_box, object_motion
+from kinematify.manipulation.robot_place import Places, object_box, object_motion
 from kinematify.manipulation.pull import ITSELF, Pull, Puller, Stop
-from kinematify.manipulation.request import Failure
+from kinematify.manipulation.plan_request import Failure
 from kinematify.manipulation.sampling_planner import plan_reach, search_pull
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from kinematify.config.planning import PlanSettings
-    from kinematify.config.task import TaskSettings
+    from kinematify.config.planning_settings import PlanSettings
+    from kinematify.config.task_settings import TaskSettings
     from kinematify.geometry.scene import Scene
     from kinematify.manipulation.grasp import GraspReport
     from kinematify.manipulation.kinematics import Arm
-    from kinematify.manipulation.place import ObjectMotion, RobotPlacement
-    from kinematify.manipulation.robot import TaskRobot
+    from kinematify.manipulation.robot_place import ObjectMotion, RobotPlacement
+    from kinematify.manipulation.manipulator import TaskRobot
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import Travel
 

@@ -14,10 +14,10 @@ import numpy as np
 import pinocchio as pin
 
 if TYPE_CHECKING:
-    from kinematify.config.planning import PlanSettings
-    from kinematify.manipulation.collision import CollisionWorld, Hit
+    from kinematify.config.planning_settings import PlanSettings
+    from kinematify.manipulation.collision_world import CollisionWorld, Hit
     from kinematify.manipulation.kinematics import Arm
-    from kinematify.manipulation.place import ObjectMotion, RobotPlacement
+    from kinematify.manipulation.robot_place import ObjectMotion, RobotPlacement
     from kinematify.robot.arrays import FloatArray
 
 LIMIT, SINGULAR, JUMP, SELF, OBJECT, FLOOR, UNREACHED, ITSELF = (

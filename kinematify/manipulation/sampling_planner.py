@@ -20,10 +20,10 @@ from ompl import util as ou
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.config.planning import PlanSettings
-    from kinematify.manipulation.collision import CollisionWorld
+    from kinematify.config.planning_settings import PlanSettings
+    from kinematify.manipulation.collision_world import CollisionWorld
     from kinematify.manipulation.kinematics import Arm
-    from kinematify.manipulation.place import RobotPlacement
+    from kinematify.manipulation.robot_place import RobotPlacement
     from kinematify.manipulation.pull import Pull, Puller
     from kinematify.robot.arrays import FloatArray
 

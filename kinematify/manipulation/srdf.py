@@ -18,11 +18,11 @@ from lxml import etree
 
 from kinematify.errors import InputError
 from kinematify.geometry.overlap import OverlapQueries
-from kinematify.geometry.rest import DepthAllowance
+from kinematify.geometry.rest_pairs import DepthAllowance
 from kinematify.geometry.scene import judged_shapes, placed_links, read_scene, relative, transformed
 from kinematify.geometry.solid import Solid
 from kinematify.geometry.together import random_rows
-from kinematify.manipulation.robot import arm_chain, found_fingers, named_fingers
+from kinematify.manipulation.manipulator import arm_chain, found_fingers, named_fingers
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import rest_configuration, rigid_groups

@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 from scipy.ndimage import distance_transform_edt
 
-from kinematify.model.scene import (
+from kinematify.model.picture_scene import (
     GLYPH_COLORS,
     best_azimuth,
     camera_for,

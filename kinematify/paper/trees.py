@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.topology.base import BaseCandidate
+from kinematify.topology.base_link import BaseCandidate
 from kinematify.topology.reward import EPSILON, TreeReward, equal_depth
 
 if TYPE_CHECKING:

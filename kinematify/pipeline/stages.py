@@ -11,8 +11,8 @@ from kinematify.geometry.part_stats import assembly_stats
 from kinematify.joints.choice.decide import estimate_joints
 from kinematify.joints.features.pins import find_pins
 from kinematify.paper.trees import PaperReward, base_by_degree
-from kinematify.topology.base import BaseCandidate
-from kinematify.topology.evidence import gather_evidence
+from kinematify.topology.base_link import BaseCandidate
+from kinematify.topology.edge_evidence import gather_evidence
 from kinematify.topology.reward import TreeReward
 from kinematify.topology.search import plausible_bases, search_trees
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from kinematify.geometry.part_stats import PartStats
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.topology.evidence import EdgeEvidence
+    from kinematify.topology.edge_evidence import EdgeEvidence
     from kinematify.topology.reward import SimulatedEdges
 
 

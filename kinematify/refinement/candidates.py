@@ -19,7 +19,7 @@ from kinematify.joints.candidate import SLIDE, TURN, JointEstimate
 from kinematify.joints.choice.decide import edge_features
 from kinematify.joints.choice.judge import judge
 from kinematify.joints.choice.limits import find_range
-from kinematify.joints.features.scene import joint_scene, part_frames
+from kinematify.joints.features.edge_scene import joint_scene, part_frames
 from kinematify.joints.features.workspace import PartCache
 from kinematify.robot.joint_type import JointType
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointCandidate
     from kinematify.joints.features.frames import BoxFrame
-    from kinematify.joints.features.scene import JointScene
+    from kinematify.joints.features.edge_scene import JointScene
     from kinematify.paper.cavl import FailedMotions
     from kinematify.paper.joints import PaperJoints
 

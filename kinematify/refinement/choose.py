@@ -19,7 +19,7 @@ import numpy as np
 
 from kinematify.refinement.candidates import described, is_same, ranged
 from kinematify.refinement.hints import HINTED
-from kinematify.refinement.plan import PlanChange
+from kinematify.refinement.joint_plan import PlanChange
 from kinematify.refinement.simulate import TIERS
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.failure_rates import GEOMETRY, tier_of
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from kinematify.config import RefineConfig
     from kinematify.joints.candidate import JointCandidate, JointEstimate
     from kinematify.refinement.candidates import CandidateJoints
-    from kinematify.refinement.plan import Plan
+    from kinematify.refinement.joint_plan import Plan
     from kinematify.refinement.simulate import DearTiers, Simulator
     from kinematify.validation.run.feedback import Feedback, RangeSignal
 
@@ -261,7 +261,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph
     from kinematify.joints.candidate import JointEstimate
     from kinematify.refinement.choose import Chooser
-    from kinematify.refinement.plan import Plan
+    from kinematify.refinement.joint_plan import Plan
 
 
 def vote(plan: Plan, graph: ContactGraph, chooser: Chooser) -> tuple[Plan, list[PlanChange]]:

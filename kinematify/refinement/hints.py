@@ -16,7 +16,7 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointCandidate
-from kinematify.joints.choice.twins import TwinJoints
+from kinematify.joints.choice.congruent_joints import TwinJoints
 from kinematify.pipeline.stages import choose_joints, tree_reward, with_doubt_of_parents
 from kinematify.pipeline.warnings import floating_parts, unlike_twins
 from kinematify.refinement.candidates import CandidateJoints, described

@@ -18,7 +18,7 @@ from kinematify.contact.seams import find_seams
 from kinematify.geometry.surface import part_surfaces
 from kinematify.refinement.candidates import CandidateJoints
 from kinematify.refinement.choose import TWINS, Chooser, vote
-from kinematify.refinement.plan import History, Plan, PlanChange, Round
+from kinematify.refinement.joint_plan import History, Plan, PlanChange, Round
 from kinematify.refinement.simulate import TIERS, DearTiers, Simulator
 from kinematify.refinement.topology import (
     EdgeMemory,
@@ -38,7 +38,7 @@ from kinematify.validation.run.feedback import feedback_from
 
 if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings
-    from kinematify.pipeline.infer import Progress
+    from kinematify.pipeline.infer_assembly import Progress
     from kinematify.pipeline.inference import Inference
     from kinematify.refinement.simulate import MotionVerdict
     from kinematify.validation.run.feedback import Feedback

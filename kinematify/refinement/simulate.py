@@ -18,7 +18,7 @@ import numpy as np
 
 from kinematify.geometry.scene import Scene, SceneBody
 from kinematify.geometry.solid import Solid
-from kinematify.manipulation.request import PULL, TaskRequest
+from kinematify.manipulation.plan_request import PULL, TaskRequest
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.robot.mechanism import LeaderMechanism
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from kinematify.config.validation import GeometrySettings, ValidationSettings
     from kinematify.geometry.sweep import JointSweep
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.refinement.plan import Plan
+    from kinematify.refinement.joint_plan import Plan
     from kinematify.robot.arrays import FloatArray
     from kinematify.validation.check import Check
     from kinematify.validation.finding import Finding

@@ -14,15 +14,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.contact.build import build_contact_graph, exact_gap, near_pairs
+from kinematify.contact.build_graph import build_contact_graph, exact_gap, near_pairs
 from kinematify.contact.seams import joined, largest_piece, rigid_pieces
 from kinematify.contact.tree import KinematicTree
-from kinematify.joints.bearings.fit import fit_edge
+from kinematify.joints.bearings.bearing_fit import fit_edge
 from kinematify.joints.bearings.scores import EdgeBearing
-from kinematify.pipeline.infer import infer
-from kinematify.pipeline.pieces import joints_of_pieces, tree_of_pieces
+from kinematify.pipeline.infer_assembly import infer
+from kinematify.pipeline.piece_report import joints_of_pieces, tree_of_pieces
 from kinematify.pipeline.stages import choose_joints, find_trees
-from kinematify.refinement.plan import Plan, PlanChange
+from kinematify.refinement.joint_plan import Plan, PlanChange
 from kinematify.topology.reward import SimulatedEdges
 
 if TYPE_CHECKING:

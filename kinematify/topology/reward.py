@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.geometry.part_stats import PartStats
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.topology.evidence import EdgeEvidence
+    from kinematify.topology.edge_evidence import EdgeEvidence
 
 EPSILON = 1e-9
 """The paper's ``epsilon``: keeps denominators positive."""

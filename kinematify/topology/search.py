@@ -13,8 +13,8 @@ from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
 from kinematify.contact.graph import pair
 from kinematify.contact.tree import KinematicTree
-from kinematify.topology.base import rank_bases
-from kinematify.topology.evidence import nearest_pair, virtual_costs
+from kinematify.topology.base_link import rank_bases
+from kinematify.topology.edge_evidence import nearest_pair, virtual_costs
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kinematify.config import TopologyConfig
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.robot.arrays import FloatArray
-    from kinematify.topology.base import BaseCandidate
+    from kinematify.topology.base_link import BaseCandidate
     from kinematify.topology.reward import TreeReward
 
 

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from kinematify.robot.appearance import Material, Surface, Texture
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.robot import Joint
-    from kinematify.view.record import DrawnChain
-    from kinematify.view.scene import ViewScene
+    from kinematify.view.inference_view import DrawnChain
+    from kinematify.view.viewer_scene import ViewScene
 
 
 _MAGIC, _VERSION, _JSON, _BINARY = 0x46546C67, 2, 0x4E4F534A, 0x004E4942

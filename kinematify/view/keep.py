@@ -11,7 +11,7 @@ import numpy as np
 from kinematify.errors import InputError
 from kinematify.grouping.groups import GROUPS_FILE
 from kinematify.model.output import check_output
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.refinement.folder import as_left, open_model_folder, read_record, write_refined
 from kinematify.refinement.hints import AXES, Hint, parse_hints, with_hints
 from kinematify.robot.joint_type import JointType

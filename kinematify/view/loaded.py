@@ -107,7 +107,7 @@ class LoadedModel:
             InputError: The model cannot be simulated.
         """
         mujoco = _engine("mujoco", "mujoco")
-        from kinematify.formats.export import export  # noqa: PLC0415  # loads the collision geometry
+        from kinematify.formats.export_model import export  # noqa: PLC0415  # loads the collision geometry
 
         with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
             file = Path(folder, "model.xml")

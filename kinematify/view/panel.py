@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from kinematify.robot.robot import Joint
     from kinematify.view.keep import Kept
-    from kinematify.view.record import Shown, Sight
-    from kinematify.view.scene import Touch, ViewScene
+    from kinematify.view.inference_view import Shown, Sight
+    from kinematify.view.viewer_scene import Touch, ViewScene
 
 _AS_WRITTEN, _OWN = "as in the file", "-"
 _TYPES = {

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint
     from kinematify.view.keep import Kept, ModelFolder
-    from kinematify.view.record import Shown, Sight
+    from kinematify.view.inference_view import Shown, Sight
 
 _CHOSEN, _MARKED, _WRONG = (66, 133, 244), (245, 166, 35), (219, 40, 40)
 """Of the part whose joint is chosen, of what a finding is about, and of what collides."""
@@ -443,7 +443,7 @@ class ModelViewer:
         waiting = client.add_notification("Drawing the film ...", "It takes some seconds.", loading=True)
         try:
             camera = client.camera
-            from kinematify.view.film import film_of  # noqa: PLC0415  # loads the ray caster
+            from kinematify.view.model_film import film_of  # noqa: PLC0415  # loads the ray caster
 
             film = film_of(
                 self._scene, ends, eye=camera.position, target=camera.look_at, field_of_view=float(camera.fov)

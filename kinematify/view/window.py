@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING
 from kinematify.errors import EnvironmentFault
 from kinematify.model.output import MODEL_FILE, RECORD_FILE
 from kinematify.robot.read import read_robot
-from kinematify.view.record import Shown, declared_chains, shown_with
-from kinematify.view.scene import ViewScene
+from kinematify.view.inference_view import Shown, declared_chains, shown_with
+from kinematify.view.viewer_scene import ViewScene
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
     from kinematify.view.keep import ModelFolder
-    from kinematify.view.record import Sight
+    from kinematify.view.inference_view import Sight
     from kinematify.view.server import ModelViewer
 
 _PAGE_HEIGHT = 620

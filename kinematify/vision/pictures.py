@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from kinematify.model.scene import sliding_arrow, turning_arrow
+from kinematify.model.picture_scene import sliding_arrow, turning_arrow
 from kinematify.render.picture import PictureScene, PosedMesh, render_scene
 from kinematify.robot.appearance import plain
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_about
-from kinematify.vision.options import offered, shuffled
+from kinematify.vision.motion_options import offered, shuffled
 from kinematify.vision.question import JointQuestion
 from kinematify.vision.views import around, corners, find_viewpoints, part_pixels
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from kinematify.generate.procedural.family import build
 from kinematify.generate.request import find_family
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.refinement.candidates import CandidateJoints
 from kinematify.vision.pictures import joint_question
 

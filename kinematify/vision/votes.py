@@ -18,7 +18,7 @@ from scipy.special import betaincinv
 from kinematify.joints.choice.judge import alike_edges
 from kinematify.refinement.candidates import CandidateJoints, described, is_same
 from kinematify.robot.joint_type import JointType
-from kinematify.vision.options import chosen_candidate, look_alike, offered
+from kinematify.vision.motion_options import chosen_candidate, look_alike, offered
 from kinematify.vision.question import FIXED, NONE, TURNS, UNSURE, Answer
 
 if TYPE_CHECKING:

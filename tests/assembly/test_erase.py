@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kinematify.assembly.erase import erase, truth_path, write_erased
+from kinematify.assembly.erasure import erase, truth_path, write_erased
 from kinematify.assembly.load import load_assembly
 from kinematify.config import load_config
 from kinematify.errors import DescriptionError, OutputError

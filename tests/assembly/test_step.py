@@ -10,7 +10,7 @@ import pytest
 
 from kinematify.assembly.load import load_assembly
 from kinematify.errors import AssemblyError, EnvironmentFault
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.robot.joint_type import JointType
 from tests.places import ROOT
 

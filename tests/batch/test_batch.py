@@ -16,7 +16,7 @@ import pytest
 import trimesh
 
 from benchmarks.studies.batch import Killed, killed_run, workers_of
-from kinematify.batch.source import find_sources
+from kinematify.batch.batch_inputs import find_sources
 from kinematify.cli.app import run
 from tests.batch.assets import kill, manifest_lines, wait_for, write_assets, write_knob
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from pydantic import TypeAdapter
 
-from kinematify.batch.pool import Pool
+from kinematify.batch.task_pool import Pool
 from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 from tests.places import ROOT
 

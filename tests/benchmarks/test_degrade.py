@@ -16,8 +16,8 @@ from benchmarks.voxels import voxel_remeshed
 from kinematify.assembly.part import Assembly, Part
 from kinematify.cli.options import words_of
 from kinematify.config import load_config
-from kinematify.evaluation.job import CLEAN
-from kinematify.evaluation.run import run_benchmark
+from kinematify.evaluation.benchmark_job import CLEAN
+from kinematify.evaluation.run_benchmark import run_benchmark
 from tests.secret_cabinets import request, write_object
 
 CONFIG = load_config()

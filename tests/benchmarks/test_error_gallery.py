@@ -10,7 +10,7 @@ from PIL import Image
 from benchmarks.errors import ShownJoint, draw_error, write_error_gallery, wrong_joints
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
-from kinematify.evaluation.run import run_benchmark
+from kinematify.evaluation.run_benchmark import run_benchmark
 from kinematify.robot.joint_type import JointType
 from tests.secret_cabinets import request, write_object
 

@@ -11,7 +11,7 @@ from lxml import etree
 
 from benchmarks.faults.fault import BaseModel, PlantedFault, write_base
 from benchmarks.faults.plan import FAULTS, Mutant, Verdict, judge, write_mutants
-from kinematify.assembly.erase import ErasedModel, erase
+from kinematify.assembly.erasure import ErasedModel, erase
 from kinematify.evaluation.datasets import BenchObject
 from kinematify.robot.read import read_robot
 from tests.household import barrel_hinge_door, nested_drawer

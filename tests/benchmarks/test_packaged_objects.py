@@ -11,7 +11,7 @@ from lxml import etree
 
 from benchmarks.fit.mjcf import read_mjcf
 from benchmarks.fit.packages import OBJECTS, write_installed
-from kinematify.assembly.erase import erase
+from kinematify.assembly.erasure import erase
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 

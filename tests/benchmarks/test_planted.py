@@ -22,11 +22,11 @@ from benchmarks.planted import (
 )
 from benchmarks.studies.refine import mistakes
 from benchmarks.study import RECORDS
-from kinematify.assembly.erase import erase
+from kinematify.assembly.erasure import erase
 from kinematify.cli.app import run
 from kinematify.config import load_config
-from kinematify.evaluation.record import load_report
-from kinematify.pipeline.infer import infer
+from kinematify.evaluation.result_record import load_report
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 from kinematify.robot.read import read_robot
 from tests.objects import BUILDERS

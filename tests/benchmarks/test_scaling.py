@@ -15,7 +15,7 @@ from benchmarks.studies.scaling import chain_and_branch
 from benchmarks.study import write_study
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import Config
-from kinematify.evaluation.record import Report, new_header
+from kinematify.evaluation.result_record import Report, new_header
 
 
 def distance(a: Part, b: Part) -> float:

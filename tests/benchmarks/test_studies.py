@@ -20,8 +20,8 @@ from benchmarks.study import RECORDS, file_stem, load_study, study_names
 from benchmarks.tables import benchmark_blocks
 from kinematify.cli.app import run
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.evaluation.record import document, load_report, write_report
-from kinematify.evaluation.run import RESULTS
+from kinematify.evaluation.result_record import document, load_report, write_report
+from kinematify.evaluation.run_benchmark import RESULTS
 from kinematify.validation.checks import CHECKS
 from tests.places import ROOT
 

@@ -11,10 +11,10 @@ import pytest
 from benchmarks.regression import find_regressions
 from benchmarks.tables import benchmark_blocks
 from kinematify.cli.app import run
-from kinematify.evaluation.job import JobResult
+from kinematify.evaluation.benchmark_job import JobResult
 from kinematify.evaluation.metrics import JointScore, ObjectScore
-from kinematify.evaluation.record import Header, Report
-from kinematify.evaluation.run import BenchmarkRequest
+from kinematify.evaluation.result_record import Header, Report
+from kinematify.evaluation.run_benchmark import BenchmarkRequest
 from kinematify.evaluation.tree_metrics import TreeDistance
 
 NO_DISTANCE = TreeDistance(value=0, exact=True)
@@ -80,7 +80,7 @@ def results(monkeypatch: pytest.MonkeyPatch) -> list[BenchmarkRequest]:
         asked.append(request)
         return report(RESULT)
 
-    monkeypatch.setattr("kinematify.evaluation.run.run_benchmark", answer)
+    monkeypatch.setattr("kinematify.evaluation.run_benchmark.run_benchmark", answer)
     return asked
 
 

@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import minimum_spanning_tree
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
-from kinematify.contact.build import build_contact_graph, exact_gap, find_bridges, near_pairs
+from kinematify.contact.build_graph import build_contact_graph, exact_gap, find_bridges, near_pairs
 from kinematify.geometry.surface import part_surfaces
 from kinematify.robot.transforms import rotation_about
 from tests.objects import BUILDERS

@@ -12,7 +12,7 @@ from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.contact.seams import find_cuts, find_seams, rigid_pieces
 from kinematify.geometry.surface import part_surfaces
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.robot.joint_type import JointType
 
 CONFIG = load_config()

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from benchmarks.voxels import voxel_remeshed
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
-from kinematify.contact.build import aligned_chamfer, find_clusters
+from kinematify.contact.build_graph import aligned_chamfer, find_clusters
 from kinematify.generate.procedural.solids import box, cylinder, union
 from kinematify.geometry.surface import part_surfaces
 from kinematify.robot.transforms import rotation_about

@@ -18,7 +18,7 @@ from kinematify.envs.expert import ArmExpert
 from kinematify.envs.settings import load_settings
 from kinematify.envs.tasks import EPISODE_STEPS
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.manipulation.robot import builtin_robot
+from kinematify.manipulation.manipulator import builtin_robot
 from kinematify.simulation.world import ROBOT
 from tests.envs.hands import documented_rows, write_slider
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from quick_inference import star
 
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 
 if TYPE_CHECKING:
     from types import SimpleNamespace

@@ -19,15 +19,15 @@ from benchmarks.tables import benchmark_blocks
 from kinematify.config import load_config
 from kinematify.errors import ConfigError, EnvironmentFault, InputError, OutputError
 from kinematify.evaluation.datasets import bench_folder, find_objects
-from kinematify.evaluation.job import JobResult
-from kinematify.evaluation.record import Report, load_report, write_report
-from kinematify.evaluation.run import (
+from kinematify.evaluation.benchmark_job import JobResult
+from kinematify.evaluation.result_record import Report, load_report, write_report
+from kinematify.evaluation.run_benchmark import (
     RESULTS,
     Variant,
     changed,
     run_benchmark,
 )
-from kinematify.evaluation.summary import summarise
+from kinematify.evaluation.benchmark_summary import summarise
 from tests.places import ROOT
 from tests.secret_cabinets import request, write_object
 
@@ -132,7 +132,7 @@ def test_killed_run_resumes_to_the_same_report(data: Path, tmp_path: Path, end: 
     ledger = work / "jobs.jsonl"
     program = (
         "from pathlib import Path\n"
-        "from kinematify.evaluation.run import BenchmarkRequest, run_benchmark\n"
+        "from kinematify.evaluation.run_benchmark import BenchmarkRequest, run_benchmark\n"
         "if __name__ == '__main__':\n"
         f"    run_benchmark(BenchmarkRequest(data={str(data)!r}, work_folder=Path({str(work)!r}), workers=2,\n"
         "        infer='quick_inference:slow_star'))\n"

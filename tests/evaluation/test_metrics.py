@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinematify.assembly.erase import GroundTruth, TrueJoint
+from kinematify.assembly.erasure import GroundTruth, TrueJoint
 from kinematify.contact.tree import KinematicTree
 from kinematify.evaluation.metrics import (
     NOTHING_PREDICTED,

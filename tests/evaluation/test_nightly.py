@@ -18,10 +18,10 @@ import pytest
 from lxml import etree
 
 from kinematify.cli.app import run as run_command
-from kinematify.config.nightly import NightlySettings, load_nightly
+from kinematify.config.nightly_settings import NightlySettings, load_nightly
 from kinematify.errors import InputError, OutputError
-from kinematify.evaluation.nightly.compare import Class, compare
-from kinematify.evaluation.nightly.run import NightRequest, run_night, write_smoke_objects
+from kinematify.evaluation.nightly.comparison import Class, compare
+from kinematify.evaluation.nightly.run_night import NightRequest, run_night, write_smoke_objects
 from kinematify.evaluation.nightly.runs import Problem, Run
 from kinematify.evaluation.nightly.store import accept, load_nights, locked
 from tests.manipulation.furniture import write_drawer_cabinet
@@ -29,7 +29,7 @@ from tests.places import ROOT
 from tests.secret_cabinets import write_object
 
 if TYPE_CHECKING:
-    from kinematify.evaluation.nightly.run import NightResult
+    from kinematify.evaluation.nightly.run_night import NightResult
 
 SETTINGS = load_nightly()
 AXIS = Problem(id="axis hinge", check="axis", severity="error", text="off by 40 deg")
@@ -241,8 +241,8 @@ def test_an_arm_opens_what_is_named_and_the_share_is_kept(tmp_path: Path) -> Non
 
 _NIGHT = """
 from pathlib import Path
-from kinematify.evaluation.nightly.run import NightRequest, run_night
-from kinematify.config.nightly import NightlySettings
+from kinematify.evaluation.nightly.run_night import NightRequest, run_night
+from kinematify.config.nightly_settings import NightlySettings
 settings = NightlySettings.model_validate_json({settings!r})
 request = NightRequest(settings=settings, out=Path({out!r}), workers=2, infer="quick_inference:slow_star")
 run_night(request, lambda what, share: None)

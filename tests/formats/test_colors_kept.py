@@ -15,10 +15,10 @@ from PIL import Image
 from kinematify.assembly.load import load_assembly
 from kinematify.config import load_config
 from kinematify.contact.tree import KinematicTree
-from kinematify.formats.export import export
+from kinematify.formats.export_model import export
 from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
-from kinematify.model.scene import posed_meshes
+from kinematify.model.picture_scene import posed_meshes
 from kinematify.model.urdf import link_colors, write_urdf
 from kinematify.render.camera import fit_camera
 from kinematify.render.picture import PictureScene, render_scene

@@ -20,7 +20,7 @@ from kinematify.generate.request import from_category
 from kinematify.geometry.convex import signed_volume
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model as write_files
-from kinematify.pipeline.generate import true_model
+from kinematify.pipeline.blueprint_files import true_model
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import rotation_about

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from kinematify.config import load_config
-from kinematify.formats.export import export
+from kinematify.formats.export_model import export
 from kinematify.generate.procedural.materials import COLORS, MATERIALS, grain_coordinates, wood_grain
 from kinematify.generate.sentence import from_text
-from kinematify.pipeline.generate import write_blueprint
+from kinematify.pipeline.blueprint_files import write_blueprint
 from tests.sentences import said_of
 
 

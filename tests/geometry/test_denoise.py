@@ -9,9 +9,9 @@ import trimesh
 from benchmarks.degrade import voxels as voxels_of
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
-from kinematify.contact.build import build_contact_graph
+from kinematify.contact.build_graph import build_contact_graph
 from kinematify.geometry.surface import FACETED, PartSurface, part_surfaces
-from kinematify.joints.bearings.fit import fit_bearings
+from kinematify.joints.bearings.bearing_fit import fit_bearings
 
 CONFIG = load_config()
 

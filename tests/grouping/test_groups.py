@@ -15,7 +15,7 @@ from kinematify.assembly.part import Assembly, Part
 from kinematify.assembly.pieces import connected_sheets
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
-from kinematify.grouping.candidates import node_of_pieces
+from kinematify.grouping.piece_sets import node_of_pieces
 from kinematify.grouping.groups import (
     Group,
     Grouping,
@@ -28,7 +28,7 @@ from kinematify.grouping.groups import (
     unsure,
 )
 from kinematify.joints.candidate import JointEstimate, JointType
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.robot.mesh_file import RawMesh
 from tests.one_mesh import box, write_bin_with_lid
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.config import load_config
-from kinematify.contact.build import build_contact_graph
+from kinematify.contact.build_graph import build_contact_graph
 from kinematify.contact.tree import KinematicTree
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.bearings.fit import fit_bearings
+from kinematify.joints.bearings.bearing_fit import fit_bearings
 from kinematify.joints.candidate import SLIDE, TURN
 from kinematify.joints.choice.decide import estimate_joints
-from kinematify.joints.features.scene import joint_scene, part_frames
+from kinematify.joints.features.edge_scene import joint_scene, part_frames
 from kinematify.joints.features.slide_cues import rank_slides
 from kinematify.joints.features.turn_cues import rank_turns
 from kinematify.joints.features.workspace import PartCache
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointEstimate
     from kinematify.joints.features.ranking import Ranked
-    from kinematify.joints.features.scene import JointScene
+    from kinematify.joints.features.edge_scene import JointScene
     from tests.known import KnownObject
 
 CONFIG = load_config()

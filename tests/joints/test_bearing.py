@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
-from kinematify.contact.build import build_contact_graph
+from kinematify.contact.build_graph import build_contact_graph
 from kinematify.generate.procedural.solids import bore, box, cylinder
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.bearings.evidence import contact_centroid, contact_sides, thin, whole_side
-from kinematify.joints.bearings.fit import fit_bearings, normal_pair_lines
+from kinematify.joints.bearings.bearing_evidence import contact_centroid, contact_sides, thin, whole_side
+from kinematify.joints.bearings.bearing_fit import fit_bearings, normal_pair_lines
 from kinematify.joints.bearings.line import Line, Lines, join
-from kinematify.joints.bearings.refine import (
+from kinematify.joints.bearings.refine_lines import (
     across_axis,
     circle_rows,
     line_frames,
@@ -35,7 +35,7 @@ from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
     from kinematify.config import BearingConfig
-    from kinematify.joints.bearings.evidence import Sides
+    from kinematify.joints.bearings.bearing_evidence import Sides
     from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
     from tests.known import KnownJoint, KnownObject
 

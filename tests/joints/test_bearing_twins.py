@@ -10,12 +10,12 @@ import numpy as np
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
-from kinematify.contact.build import build_contact_graph
+from kinematify.contact.build_graph import build_contact_graph
 from kinematify.generate.procedural.solids import box, cylinder, union
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.bearings.evidence import contact_sides
-from kinematify.joints.bearings.fit import fit_edge
-from kinematify.joints.bearings.twins import shared_by_twins
+from kinematify.joints.bearings.bearing_evidence import contact_sides
+from kinematify.joints.bearings.bearing_fit import fit_edge
+from kinematify.joints.bearings.congruent_contacts import shared_by_twins
 
 if TYPE_CHECKING:
     from kinematify.joints.bearings.scores import EdgeBearing

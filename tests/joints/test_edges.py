@@ -38,7 +38,7 @@ from kinematify.joints.choice.edges import (
     shipped_edge_weights,
 )
 from kinematify.joints.features.pins import EdgePins
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from tests.joints.joint_scenes import evidence
 from tests.known import known_object, turning
 

@@ -15,7 +15,7 @@ from tests.joints.joint_scenes import CONFIG, scene_of
 from tests.known import known_object, sliding
 
 if TYPE_CHECKING:
-    from kinematify.joints.features.scene import JointScene
+    from kinematify.joints.features.edge_scene import JointScene
 
 GAP = 3e-4
 X = np.array([1.0, 0.0, 0.0])

@@ -8,8 +8,8 @@ from manifold3d import Manifold
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
-from kinematify.contact.build import build_contact_graph
-from kinematify.generate.procedural.pieces.bearings import barrel
+from kinematify.contact.build_graph import build_contact_graph
+from kinematify.generate.procedural.pieces.bearing_pieces import barrel
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.features.journal import Journal, facing_faces, find_journal

@@ -12,7 +12,7 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.generate.sentence import from_text
-from kinematify.joints.features.scene import joint_scene, part_frames
+from kinematify.joints.features.edge_scene import joint_scene, part_frames
 from kinematify.joints.features.type_cues import WEIGHTS, type_cues, type_odds
 from kinematify.joints.features.workspace import PartCache
 from kinematify.robot.joint_type import JointType

@@ -10,7 +10,7 @@ import pytest
 from kinematify import infer
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.pieces.bearings import barrel
+from kinematify.generate.procedural.pieces.bearing_pieces import barrel
 from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.joints.choice import limits
 from kinematify.joints.choice.limits import find_range

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.generate.procedural.pieces.bearings import fork
+from kinematify.generate.procedural.pieces.bearing_pieces import fork
 from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.joints.choice.opening import clockwise_sign, swing_sign
 from tests.joints.joint_scenes import infer_joints, scene_of

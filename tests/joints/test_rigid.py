@@ -9,10 +9,10 @@ import trimesh
 from benchmarks.fit.fragmentation import with_pieces_broken_off
 from kinematify.assembly.part import Assembly, Part
 from kinematify.assembly.truth import GroundTruth
-from kinematify.contact.build import build_contact_graph
+from kinematify.contact.build_graph import build_contact_graph
 from kinematify.contact.tree import KinematicTree
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.bearings.fit import fit_bearings
+from kinematify.joints.bearings.bearing_fit import fit_bearings
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.joints.choice.decide import estimate_joints
 from tests.joints.joint_scenes import CONFIG

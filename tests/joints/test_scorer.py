@@ -14,7 +14,7 @@ from kinematify.joints.choice import scorer as scorer_module
 from kinematify.joints.choice.decide import edge_features
 from kinematify.joints.choice.judge import judge
 from kinematify.joints.choice.scorer import shipped_scorer
-from kinematify.joints.features.scene import part_frames
+from kinematify.joints.features.edge_scene import part_frames
 from kinematify.joints.features.workspace import PartCache, point_cloud
 from tests.joints.joint_scenes import CONFIG, evidence
 from tests.objects import BUILDERS

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinematify.generate.procedural.solids import box
-from kinematify.joints.features.sweep import Sweep, moving_points, sweep_slides, sweep_turns
+from kinematify.joints.features.motion_test import Sweep, moving_points, sweep_slides, sweep_turns
 from tests.joints.joint_scenes import CONFIG, scene_of
 from tests.known import known_object, sliding
 from tests.objects import BUILDERS

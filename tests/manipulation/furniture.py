@@ -11,7 +11,7 @@ from kinematify.config.validation import load_settings
 from kinematify.geometry.scene import read_scene
 from kinematify.manipulation.execute import Motion
 from kinematify.manipulation.grasp import Grasp, search_grasps
-from kinematify.manipulation.robot import TaskRobot, builtin_robot
+from kinematify.manipulation.manipulator import TaskRobot, builtin_robot
 from kinematify.robot.read import read_robot
 
 SETTINGS = load_settings()

@@ -12,7 +12,7 @@ from PIL import Image
 from kinematify.manipulation.execute import Execution, Loaded, Motion, execute, load, timed
 from kinematify.manipulation.film import write_film
 from kinematify.manipulation.grip import grip_piece
-from kinematify.manipulation.request import Hold
+from kinematify.manipulation.plan_request import Hold
 from tests.manipulation import furniture
 
 SETTINGS = furniture.SETTINGS

@@ -12,7 +12,7 @@ from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
 from kinematify.geometry.overlap import OverlapQueries
 from kinematify.geometry.scene import read_scene, relative
-from kinematify.manipulation.robot import GRASP_LINK, TaskRobot, builtin_robot, user_robot
+from kinematify.manipulation.manipulator import GRASP_LINK, TaskRobot, builtin_robot, user_robot
 from kinematify.robot.read import read_robot
 from tests.places import BENCH
 

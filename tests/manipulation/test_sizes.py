@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kinematify.errors import InputError
-from kinematify.manipulation.sizes import SIZES, category_of, is_normalised, sizing, write_scaled
+from kinematify.manipulation.real_size import SIZES, category_of, is_normalised, sizing, write_scaled
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from tests.manipulation import furniture

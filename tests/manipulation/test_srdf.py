@@ -13,10 +13,10 @@ from kinematify.cli.app import run
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
 from kinematify.geometry.overlap import OverlapQueries
-from kinematify.geometry.rest import DepthAllowance
+from kinematify.geometry.rest_pairs import DepthAllowance
 from kinematify.geometry.scene import read_scene
 from kinematify.geometry.together import looked_at, random_rows
-from kinematify.manipulation.robot import builtin_robot
+from kinematify.manipulation.manipulator import builtin_robot
 from kinematify.manipulation.srdf import DisableReason, disabled_pairs, write_srdf
 from kinematify.robot.read import read_robot
 from kinematify.validation.geometry.look import allowed_pairs

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kinematify.cli.app import run
-from kinematify.manipulation.robot import builtin_robot
+from kinematify.manipulation.manipulator import builtin_robot
 from tests.manipulation.furniture import write_drawer_cabinet
 
 if TYPE_CHECKING:

@@ -14,19 +14,19 @@ from benchmarks.study import RECORDS
 from kinematify.assembly.part import Assembly, Part
 from kinematify.cli.app import run
 from kinematify.config import load_config
-from kinematify.contact.build import build_contact_graph
+from kinematify.contact.build_graph import build_contact_graph
 from kinematify.errors import InputError
 from kinematify.evaluation.metrics import Prediction
-from kinematify.evaluation.record import load_report
+from kinematify.evaluation.result_record import load_report
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.paper.cavl import _bounded
 from kinematify.paper.sdf import field_gaps
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 from kinematify.pipeline.stages import rank_trees
 from kinematify.robot.joint_type import JointType
-from kinematify.topology.evidence import EdgeEvidence
+from kinematify.topology.edge_evidence import EdgeEvidence
 from tests.objects import BUILDERS
 from tests.topology.topology_objects import graph_of, stat
 

@@ -12,15 +12,15 @@ import pytest
 
 from benchmarks.linkages import linkage
 from kinematify.cli.inferred import describe
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.linkages import SharedAxis, close_chains
 from kinematify.pipeline.record import write_inference
 from kinematify.robot.linkage import loop_gaps
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import joint_ends
-from kinematify.view.record import shown_with
-from kinematify.view.scene import ViewScene
+from kinematify.view.inference_view import shown_with
+from kinematify.view.viewer_scene import ViewScene
 from tests.household import edge_door, four_bars
 
 if TYPE_CHECKING:

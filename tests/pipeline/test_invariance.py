@@ -12,7 +12,7 @@ from benchmarks.studies.invariance import Change, differences_of, differing
 from kinematify.assembly.load import load_assembly
 from kinematify.generate.procedural.solids import cylinder
 from kinematify.pipeline.heading import heading_of, turned
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from tests.known import known_object, turning
 from tests.objects import BUILDERS
 

@@ -13,7 +13,7 @@ import pytest
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.errors import InputError
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.record import inference_record, write_inference
 from kinematify.robot.joint_type import JointType

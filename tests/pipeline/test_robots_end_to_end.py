@@ -13,11 +13,11 @@ import pytest
 
 from kinematify.config import load_config
 from kinematify.evaluation.datasets import CONDITIONS, find_objects
-from kinematify.evaluation.job import Job, run_job
+from kinematify.evaluation.benchmark_job import Job, run_job
 from tests.places import BENCH
 
 if TYPE_CHECKING:
-    from kinematify.evaluation.job import JobResult
+    from kinematify.evaluation.benchmark_job import JobResult
     from kinematify.evaluation.metrics import ObjectScore
 
 REST = next(condition for condition in CONDITIONS if condition.name == "rest")

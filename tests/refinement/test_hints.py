@@ -11,7 +11,7 @@ import pytest
 from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointEstimate
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.inference import Inference
 from kinematify.refinement.hints import Hint, parse_hints, with_hints
 from kinematify.robot.joint_type import JointType

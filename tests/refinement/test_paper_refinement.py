@@ -10,7 +10,7 @@ import pytest
 from kinematify.config import Config, load_config
 from kinematify.paper.cavl import FailedMotions
 from kinematify.paper.joints import NOISE, PaperJoints, noise_of
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.inference import Inference
 from kinematify.refinement import refine
 from tests.objects import BUILDERS

@@ -23,14 +23,14 @@ from kinematify.contact.tree import KinematicTree
 from kinematify.errors import InputError
 from kinematify.evaluation.metrics import Prediction
 from kinematify.joints.candidate import JointCandidate, JointEstimate
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.record import file_hashes, write_inference
 from kinematify.refinement import loop, refine
 from kinematify.refinement.choose import Chooser, Trial
 from kinematify.refinement.folder import open_model_folder, read_record
 from kinematify.refinement.hints import parse_hints, with_hints
-from kinematify.refinement.plan import Plan
+from kinematify.refinement.joint_plan import Plan
 from kinematify.refinement.simulate import Simulator
 from kinematify.robot.joint_type import JointType
 from kinematify.simulation.engines import ENGINES

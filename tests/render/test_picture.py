@@ -12,7 +12,7 @@ from PIL import Image
 from kinematify.config import load_config
 from kinematify.geometry.rays import RayScene
 from kinematify.model.preview import draw_pair, render_preview, render_story
-from kinematify.model.scene import (
+from kinematify.model.picture_scene import (
     GLYPH_COLORS,
     best_azimuth,
     camera_for,

@@ -12,7 +12,7 @@ import pytest
 from benchmarks.corruption.bases import Base, built_base
 from benchmarks.corruption.cases import KINDS, write_case
 from kinematify.errors import KinematifyError
-from kinematify.manipulation.robot import builtin_robot
+from kinematify.manipulation.manipulator import builtin_robot
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Joint, Robot, forward_kinematics, rest_configuration, rigid_groups

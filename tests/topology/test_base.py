@@ -9,8 +9,8 @@ from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.geometry.part_stats import part_stats
 from kinematify.paper.trees import base_by_degree
-from kinematify.topology.base import rank_bases
-from kinematify.topology.evidence import EdgeEvidence
+from kinematify.topology.base_link import rank_bases
+from kinematify.topology.edge_evidence import EdgeEvidence
 from tests.topology.topology_objects import Machine, X, Y, Z, box, graph_of
 
 CONFIG = load_config().topology.base

@@ -8,12 +8,12 @@ import yourdfpy
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
-from kinematify.contact.build import find_clusters
+from kinematify.contact.build_graph import find_clusters
 from kinematify.contact.graph import pair
 from kinematify.geometry.part_stats import part_stats
 from kinematify.geometry.surface import PartSurface
-from kinematify.topology.base import rank_bases
-from kinematify.topology.evidence import EdgeEvidence
+from kinematify.topology.base_link import rank_bases
+from kinematify.topology.edge_evidence import EdgeEvidence
 from tests.places import BENCH
 
 ROBOTS = ("allegro", "fetch", "go2", "h1", "panda", "ur10e")

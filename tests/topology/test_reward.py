@@ -12,7 +12,7 @@ from kinematify.config import load_config
 from kinematify.geometry.part_stats import part_stats
 from kinematify.paper.trees import PaperReward, hierarchy, symmetry
 from kinematify.topology import reward as terms
-from kinematify.topology.evidence import EdgeEvidence
+from kinematify.topology.edge_evidence import EdgeEvidence
 from tests.topology.topology_objects import BOX_FACES, box, edge, graph_of, random_assembly, stat
 
 CONFIG = load_config().topology

@@ -16,7 +16,7 @@ from kinematify.contact.graph import ContactGraph, pair
 from kinematify.errors import InputError
 from kinematify.paper.trees import PaperReward
 from kinematify.pipeline.stages import rank_trees
-from kinematify.topology.evidence import EdgeEvidence, virtual_costs
+from kinematify.topology.edge_evidence import EdgeEvidence, virtual_costs
 from kinematify.topology.reward import TreeReward
 from kinematify.topology.search import (
     SearchProblem,

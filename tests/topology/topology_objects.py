@@ -9,7 +9,7 @@ import numpy as np
 from kinematify.assembly.part import Part
 from kinematify.contact.graph import ContactEdge, ContactGraph, ContactSamples, pair
 from kinematify.geometry.part_stats import PartStats, part_stats
-from kinematify.topology.evidence import EdgeEvidence
+from kinematify.topology.edge_evidence import EdgeEvidence
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -19,7 +19,7 @@ from kinematify.robot.transforms import rotation_about
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult, Finding
 from kinematify.validation.stage import Recorder, StageRequest
-from kinematify.validation.stages.evidence import run
+from kinematify.validation.stages.evidence_stage import run
 from kinematify.validation.summary import JointSummary
 from tests.known import KnownJoint, KnownObject
 

@@ -28,8 +28,8 @@ from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks.engine_loading import compare_with_file
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
 from kinematify.validation.stage import Recorder, StageRequest
-from kinematify.validation.stages import agreement as agreement_stage
-from kinematify.validation.stages import engine as engine_stage
+from kinematify.validation.stages import engine_agreement as agreement_stage
+from kinematify.validation.stages import run_engine as engine_stage
 from tests.places import BENCH
 from tests.validation.engine_models import Box, Model, Part, cabinet, prepared_request, tell
 

@@ -20,9 +20,9 @@ from kinematify.validation.as_loaded_context import AsLoadedContext
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.run import validate
-from kinematify.validation.run.as_loaded import across_engines, as_loaded_words, confirm_on_raw_model, with_refusals
+from kinematify.validation.run.loaded_findings import across_engines, as_loaded_words, confirm_on_raw_model, with_refusals
 from kinematify.validation.stage import StageRequest
-from kinematify.validation.stages import as_loaded
+from kinematify.validation.stages import loaded_file
 from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, tell
 
 ENGINES = ("mujoco", "pybullet")
@@ -43,7 +43,7 @@ def request_of(model: Model, folder: Path) -> StageRequest:
 
 
 def reported(model: Model, folder: Path, engine: str) -> FindingGroup:
-    return tell(partial(as_loaded.run, engine=engine), request_of(model, folder))
+    return tell(partial(loaded_file.run, engine=engine), request_of(model, folder))
 
 
 def collision(model: Model, name: str, *boxes: Box) -> Model:
@@ -108,7 +108,7 @@ def test_pinocchio_reads_joints_limits_and_overlaps(tmp_path: Path) -> None:
     (tmp_path / "model.urdf").write_text(text)
     request = replace(request_of(cabinet(), tmp_path), urdf=tmp_path / "model.urdf")
     (tmp_path / "model.urdf").write_text(text)
-    (refused,) = tell(partial(as_loaded.run, engine="pinocchio"), request).results["KV801"].findings
+    (refused,) = tell(partial(loaded_file.run, engine="pinocchio"), request).results["KV801"].findings
     assert "gone.obj" in refused.message
 
 
@@ -160,7 +160,7 @@ def test_what_only_the_flag_for_contacts_shows_is_a_warning_and_plain_pybullet_m
 
 def test_a_pair_that_stops_a_joint_is_in_contact_at_the_value_that_is_named(tmp_path: Path) -> None:
     context = AsLoadedContext(request=request_of(jamming(), tmp_path), engine="pybullet")
-    group = tell(partial(as_loaded.run, engine="pybullet"), context.request)
+    group = tell(partial(loaded_file.run, engine="pybullet"), context.request)
     (finding,) = group.results["KV804"].findings
     assert finding.q is not None
     overlaps = context.loaded.overlaps({**context.values, **finding.q})
@@ -190,7 +190,7 @@ def test_links_across_a_fixed_joint_do_not_jam_in_pybullet(tmp_path: Path) -> No
 def test_a_link_that_is_declared_not_to_collide_with_its_model_does_not(tmp_path: Path, declared: str) -> None:
     request = request_of(jamming(), tmp_path)
     request.urdf.write_text(request.urdf.read_text().replace("</robot>", f"{declared}</robot>"))
-    result = tell(partial(as_loaded.run, engine="pybullet"), request)
+    result = tell(partial(loaded_file.run, engine="pybullet"), request)
     assert result.results["KV804"].findings == ()
 
 
@@ -307,7 +307,7 @@ def test_a_joint_moves_as_far_as_exact_geometry_leaves_free(tmp_path: Path) -> N
     model = collision(cabinet(), "body", WALL)
     free = {"drawer_joint": (0.0, 0.14), "door_joint": (0.0, 0.3)}
     request = replace(request_of(model, tmp_path), free_travel=free)
-    result = tell(partial(as_loaded.run, engine="mujoco"), request)
+    result = tell(partial(loaded_file.run, engine="mujoco"), request)
     assert result.results["KV804"].status is Status.PASS
 
 
@@ -440,7 +440,7 @@ def test_what_an_engine_says_of_a_file_that_it_refuses_is_quoted_with_what_to_do
     door = tmp_path / name.replace("\\", "/")
     door.parent.mkdir(exist_ok=True)
     trimesh.creation.box((0.02, 0.3, 0.4)).export(door)
-    (finding,) = tell(partial(as_loaded.run, engine=engine), request).results["KV801"].findings
+    (finding,) = tell(partial(loaded_file.run, engine=engine), request).results["KV801"].findings
     assert quoted in finding.message
     assert remedy in finding.remedy
     assert "kinematify fix" in finding.remedy

@@ -14,7 +14,7 @@ from kinematify.simulation.configurations import agreement_configurations, link_
 from kinematify.simulation.prepared import URDF_FILE
 from kinematify.validation.checks import checks_of
 from kinematify.validation.finding import Blame, Severity, Status
-from kinematify.validation.stages import engine as engine_stage
+from kinematify.validation.stages import run_engine as engine_stage
 from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, prepared_request, tell
 
 IDS = {check.id for check in checks_of("KV9")}

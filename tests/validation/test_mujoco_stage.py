@@ -22,7 +22,7 @@ from kinematify.validation.checks.engine_stability import find_unstable
 from kinematify.validation.engine_context import RunEnd
 from kinematify.validation.finding import Blame, Finding, Severity, Status
 from kinematify.validation.stage import StageRequest
-from kinematify.validation.stages import engine as engine_stage
+from kinematify.validation.stages import run_engine as engine_stage
 from tests.places import BENCH
 from tests.validation.engine_models import (
     Box,

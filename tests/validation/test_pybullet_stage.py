@@ -17,7 +17,7 @@ from kinematify.simulation.prepared import URDF_FILE, load_prepared, prepare
 from kinematify.simulation.pybullet_engine import PybulletEngine
 from kinematify.validation.checks import checks_of
 from kinematify.validation.finding import Blame, Finding, Severity, Status
-from kinematify.validation.stages import engine as engine_stage
+from kinematify.validation.stages import run_engine as engine_stage
 from tests.places import BENCH
 from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, prepared_request, tell
 

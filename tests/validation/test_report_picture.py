@@ -12,7 +12,7 @@ from PIL import Image
 from kinematify.config.validation import load_settings
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
-from kinematify.validation.formats.picture import Drawing, drawing_of, shown_model
+from kinematify.validation.formats.report_picture import Drawing, drawing_of, shown_model
 
 GRIPPER = """<robot name="gripper">
   <link name="world"/>

@@ -14,7 +14,7 @@ from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box
 from kinematify.geometry.scene import read_scene
 from kinematify.model.urdf import write_urdf
-from kinematify.pipeline.generate import true_model
+from kinematify.pipeline.blueprint_files import true_model
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
 from kinematify.validation.finding import Blame, Severity

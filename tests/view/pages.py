@@ -6,8 +6,8 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from kinematify.robot.read import read_robot
-from kinematify.view.record import shown_with
-from kinematify.view.scene import ViewScene
+from kinematify.view.inference_view import shown_with
+from kinematify.view.viewer_scene import ViewScene
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

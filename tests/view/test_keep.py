@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from kinematify.errors import InputError
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 from kinematify.refinement.folder import read_record
 from kinematify.refinement.hints import Hint
@@ -17,8 +17,8 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.view.alternatives import JointAlternative
 from kinematify.view.keep import ModelFolder
-from kinematify.view.record import shown_with
-from kinematify.view.scene import ViewScene
+from kinematify.view.inference_view import shown_with
+from kinematify.view.viewer_scene import ViewScene
 from tests.objects import BUILDERS
 from tests.view.pages import candidates_in
 

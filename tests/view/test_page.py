@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot

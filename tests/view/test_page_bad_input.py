@@ -15,7 +15,7 @@ import trimesh
 from PIL import Image
 
 from kinematify.assembly.load import load_assembly
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 from tests.browser import opened
 from tests.objects import BUILDERS

@@ -21,7 +21,7 @@ from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.view.alternatives import JointAlternative, agreeing, described, distinct
 from kinematify.view.drawn import glb_of
-from kinematify.view.scene import ViewScene
+from kinematify.view.viewer_scene import ViewScene
 from tests.colored_objects import make_object, unlike
 from tests.view.pages import candidates_in
 

@@ -25,7 +25,7 @@ from kinematify.refinement.candidates import CandidateJoints, is_same
 from kinematify.robot.joint_type import JointType
 from kinematify.vision.ask import voter_record, with_types_first, with_votes
 from kinematify.vision.client import ADDRESS, ChatOracle, oracle_of
-from kinematify.vision.options import look_alike, offered, shuffled
+from kinematify.vision.motion_options import look_alike, offered, shuffled
 from kinematify.vision.pictures import joint_question
 from kinematify.vision.question import FIXED, NONE, UNSURE, Answer, JointQuestion, read_answer
 from kinematify.vision.screening import right_choices

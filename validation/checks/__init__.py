@@ -9,7 +9,7 @@ from kinematify.validation.check import REGISTRY, Check
 from kinematify.validation.checks import (  # noqa: F401 - each registers its checks
     agreement,
     as_loaded,
-    collision,
+    collision_geometry,
     contact_agreement,
     drives,
     engine_drive,
@@ -25,15 +25,15 @@ from kinematify.validation.checks import (  # noqa: F401 - each registers its ch
     file_text,
     file_tree,
     inertias,
-    limits,
+    declared_limits,
     loops,
-    masses,
+    declared_masses,
     meshes,
     motion,
     rest,
-    sizes,
+    unit_sizes,
     task,
-    together,
+    several_joints,
 )
 
 __all__ = ["CHECKS", "checks_of", "find_check"]

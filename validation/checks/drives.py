@@ -11,7 +11,7 @@ from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from kinematify.robot.robot import Joint
-    from kinematify.validation.asset.bodies import Physics
+    from kinematify.validation.asset.rigid_bodies import Physics
     from kinematify.validation.check import OpenCheck
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Inertial, Link
-    from kinematify.validation.asset.bodies import Body, Physics, Room
+    from kinematify.validation.asset.rigid_bodies import Body, Physics, Room
     from kinematify.validation.check import OpenCheck
 
 _ROUNDING = 1e-9

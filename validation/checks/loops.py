@@ -13,9 +13,9 @@ from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from kinematify.robot.linkage import Linkage
-    from kinematify.validation.asset.bodies import Physics
+    from kinematify.validation.asset.rigid_bodies import Physics
     from kinematify.validation.check import OpenCheck
-    from kinematify.validation.evidence.pins import SharedPin
+    from kinematify.validation.evidence.loop_pins import SharedPin
 
 
 _SAMPLES = 25

@@ -9,7 +9,7 @@ from kinematify.validation.finding import not_finished
 
 if TYPE_CHECKING:
     from kinematify.validation.as_loaded_context import AsLoadedContext
-    from kinematify.validation.asset.bodies import Physics
+    from kinematify.validation.asset.rigid_bodies import Physics
     from kinematify.validation.engine_context import EngineContext
 
 

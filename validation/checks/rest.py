@@ -10,7 +10,7 @@ from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.geometry.formatting import BARELY, SLIMMER, UNSEEN, configuration, in_document_order, length
 
 if TYPE_CHECKING:
-    from kinematify.geometry.rest import AtRest, Reason
+    from kinematify.geometry.rest_pairs import AtRest, Reason
     from kinematify.geometry.scene import Pair
     from kinematify.validation.check import OpenCheck
     from kinematify.validation.geometry.look import GeometryContext

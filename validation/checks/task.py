@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.manipulation.request import Failure, Hold
+from kinematify.manipulation.plan_request import Failure, Hold
 from kinematify.simulation.engines import engines_that_hold
 from kinematify.validation.check import FeedbackRow, check
 from kinematify.validation.finding import Blame, Severity

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from kinematify.joints.features.workspace import PartCache
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
-    from kinematify.validation.evidence.bodies import Bodies
+    from kinematify.validation.evidence.bodies_at_rest import Bodies
     from kinematify.validation.evidence.measure import JointMeasures
 
 _LINKAGE = 0.5  # `JointScene.mechanism` from which a pair belongs to a linkage rather than to furniture

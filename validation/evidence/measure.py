@@ -15,7 +15,7 @@ from kinematify.joints.bearings.line import Line
 from kinematify.joints.candidate import FIXED, GIVEN, SLIDE, TURN
 from kinematify.joints.choice.decide import edge_features
 from kinematify.joints.choice.judge import judge
-from kinematify.joints.features.scene import part_frames
+from kinematify.joints.features.edge_scene import part_frames
 from kinematify.joints.features.turn_cues import outwardness
 from kinematify.joints.features.workspace import PartCache
 from kinematify.robot.joint_type import JointType
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from kinematify.joints.choice.judge import Posterior
     from kinematify.joints.features.columns import Features
     from kinematify.robot.arrays import FloatArray
-    from kinematify.validation.evidence.bodies import Bodies, Pair
+    from kinematify.validation.evidence.bodies_at_rest import Bodies, Pair
 
     BoolArray = NDArray[np.bool_]
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.formats.content import (
+from kinematify.validation.formats.report_content import (
     Table,
     block_of,
     check_table,
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.validation.finding import Finding
-    from kinematify.validation.formats.content import FindingBlock
+    from kinematify.validation.formats.report_content import FindingBlock
     from kinematify.validation.run.outcome import Outcome
     from kinematify.validation.run.report import ValidationReport
     from kinematify.validation.summary import PairSummary, PairTable

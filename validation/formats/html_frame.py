@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kinematify.validation.formats.content import printable
+from kinematify.validation.formats.report_content import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

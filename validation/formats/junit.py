@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from lxml import etree
 
 from kinematify.validation.finding import Severity, Status
-from kinematify.validation.formats.content import family, lasting_title, measure, printable, where
+from kinematify.validation.formats.report_content import family, lasting_title, measure, printable, where
 from kinematify.validation.run.outcome import Unusable
 
 if TYPE_CHECKING:

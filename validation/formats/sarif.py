@@ -12,7 +12,7 @@ from urllib.parse import quote
 from kinematify import __version__
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
-from kinematify.validation.formats.content import (
+from kinematify.validation.formats.report_content import (
     configuration,
     family,
     follow_words,

@@ -16,7 +16,7 @@ from kinematify.geometry.convex import outermost, thickened
 from kinematify.geometry.scene import inverse, relative
 
 if TYPE_CHECKING:
-    from kinematify.geometry.rest import DepthAllowance
+    from kinematify.geometry.rest_pairs import DepthAllowance
     from kinematify.geometry.scene import Pair, Scene
     from kinematify.geometry.sweep import JointSweep, Sweeper
     from kinematify.robot.arrays import FloatArray

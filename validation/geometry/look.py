@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.geometry.overlap import OverlapQueries, boxes_meet
-from kinematify.geometry.rest import DepthAllowance, Reason
+from kinematify.geometry.rest_pairs import DepthAllowance, Reason
 from kinematify.geometry.scene import inverse, read_scene, relative, simplified, transformed, visible_shapes
 from kinematify.geometry.sweep import Sweeper
 from kinematify.geometry.together import looked_at, random_rows

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.config.validation import load_settings
 from kinematify.errors import DescriptionError
-from kinematify.manipulation.request import PriorFinding
+from kinematify.manipulation.plan_request import PriorFinding
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine
 from kinematify.validation.checks import CHECKS
@@ -23,7 +23,7 @@ from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
 from kinematify.validation.lines import with_lines
-from kinematify.validation.run.as_loaded import across_engines, confirm_on_raw_model, with_refusals
+from kinematify.validation.run.loaded_findings import across_engines, confirm_on_raw_model, with_refusals
 from kinematify.validation.run.causes import with_causes
 from kinematify.validation.run.opinions import evidence_before_blame
 from kinematify.validation.run.plan import (
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from kinematify.config.validation import ValidationSettings
-    from kinematify.manipulation.request import TaskRequest
+    from kinematify.manipulation.plan_request import TaskRequest
     from kinematify.robot.robot import Robot
     from kinematify.validation.check import Check
     from kinematify.validation.isolation import Stage, StageEnd

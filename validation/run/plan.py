@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.isolation import Stage
-from kinematify.validation.stages import agreement, as_loaded, asset, engine, evidence, geometry, prepare, task
+from kinematify.validation.stages import (
+    asset,
+    engine_agreement,
+    evidence_stage,
+    geometry,
+    loaded_file,
+    prepare,
+    robot_task,
+    run_engine,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
@@ -22,7 +31,7 @@ CheckKey = tuple[str, str | None]
 
 def asset_stage() -> Stage:
     """Meshes and declared physics; what comes later needs readable meshes."""
-    imports = ("kinematify.validation.asset.bodies", "kinematify.validation.asset.mesh_look")
+    imports = ("kinematify.validation.asset.rigid_bodies", "kinematify.validation.asset.mesh_look")
     return Stage(
         name="asset",
         run=asset.run,
@@ -44,9 +53,11 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
         ),
         Stage(
             name="evidence",
-            run=evidence.run,
+            run=evidence_stage.run,
             checks=keys(checks_of("KV34", "KV35")),
-            imports=tuple(f"kinematify.validation.evidence.{name}" for name in ("bodies", "case", "measure", "pins")),
+            imports=tuple(
+                f"kinematify.validation.evidence.{name}" for name in ("bodies_at_rest", "case", "measure", "loop_pins")
+            ),
         ),
     ]
     for name in (name for name in chosen if ENGINES[name].prepared):
@@ -54,7 +65,7 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
         stages.append(
             Stage(
                 name=name,
-                run=partial(engine.run, engine=name),
+                run=partial(run_engine.run, engine=name),
                 checks=checks,
                 after=("prepare",),
                 imports=("kinematify.validation.engine_context",),
@@ -69,7 +80,7 @@ def as_loaded_stages(chosen: Sequence[str]) -> list[Stage]:
     return [
         Stage(
             name=f"{name} as loaded",
-            run=partial(as_loaded.run, engine=name),
+            run=partial(loaded_file.run, engine=name),
             checks=tuple(key for key in keys(checks_of("KV8")) if key[1] == name),
             imports=("kinematify.validation.as_loaded_context",),
             library=_library(ENGINES[name]),
@@ -88,12 +99,12 @@ def agreement_stage() -> Stage:
     """Compares what the engines left; it comes after all of them, whether they ended well or not."""
     checks = tuple(key for key in keys(checks_of("KV6")) if key[1] is None)
     imports = ("kinematify.validation.engine_results",)
-    return Stage(name="agreement", run=agreement.run, checks=checks, imports=imports)
+    return Stage(name="agreement", run=engine_agreement.run, checks=checks, imports=imports)
 
 
 def task_stage() -> Stage:
     """A robot uses the object; it comes after all others, since it wants to know which joints they doubt."""
-    return Stage(name="task", run=task.run, checks=keys(checks_of("KV7")))
+    return Stage(name="task", run=robot_task.run, checks=keys(checks_of("KV7")))
 
 
 def needed(stages: Sequence[Stage], selected: Collection[str]) -> list[Stage]:

@@ -17,7 +17,7 @@ _GUARDS = checks_of("KV150", "KV151", "KV152")
 
 def run(request: StageRequest, recorder: Recorder) -> None:
     """Tell KV150 to KV159, and KV201 to KV243 where the meshes can be read."""
-    from kinematify.validation.asset.bodies import measure
+    from kinematify.validation.asset.rigid_bodies import measure
     from kinematify.validation.left_model import leave_model
 
     model = check_mesh_files(request, recorder)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from kinematify.manipulation.request import Failure, Hold
+    from kinematify.manipulation.plan_request import Failure, Hold
     from kinematify.validation.check import OpenCheck
 
 

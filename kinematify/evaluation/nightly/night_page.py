@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from kinematify.evaluation.nightly.compare import QUALITY, Class
+from kinematify.evaluation.nightly.comparison import QUALITY, Class
 from kinematify.evaluation.nightly.runs import AS_LOADED, OPENED
 from kinematify.evaluation.nightly.store import MODELS
 from kinematify.evaluation.nightly.validity import page_name
@@ -15,7 +15,7 @@ from kinematify.validation.formats.html_frame import badge, page, table, text
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
-    from kinematify.evaluation.nightly.compare import Change
+    from kinematify.evaluation.nightly.comparison import Change
     from kinematify.evaluation.nightly.runs import Run
     from kinematify.evaluation.nightly.store import Night
     from kinematify.validation.formats.html_frame import Cell

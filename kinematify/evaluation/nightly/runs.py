@@ -16,16 +16,16 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import TypeAdapter
 
-from kinematify.evaluation.summary import summarise
-from kinematify.manipulation.request import PULL
+from kinematify.evaluation.benchmark_summary import summarise
+from kinematify.manipulation.plan_request import PULL
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kinematify.config.nightly import NightlySettings
+    from kinematify.config.nightly_settings import NightlySettings
     from kinematify.config.validation import ValidationSettings
     from kinematify.evaluation.datasets import BenchObject, Condition
-    from kinematify.evaluation.job import JobResult
+    from kinematify.evaluation.benchmark_job import JobResult
     from kinematify.evaluation.metrics import JointScore, ObjectScore
 
 SCHEMA = 1

@@ -23,15 +23,15 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError
 
 from kinematify.errors import InputError, OutputError
-from kinematify.evaluation.nightly.compare import CHANGES
+from kinematify.evaluation.nightly.comparison import CHANGES
 from kinematify.evaluation.nightly.runs import RUN, SCHEMA
-from kinematify.evaluation.record import git_commit, replace_text
+from kinematify.evaluation.result_record import git_commit, replace_text
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from kinematify.evaluation.nightly.compare import Change
+    from kinematify.evaluation.nightly.comparison import Change
     from kinematify.evaluation.nightly.runs import Run, RunKey
 
 HEADER_FILE = "night.json"

@@ -16,7 +16,7 @@ from kinematify.generate.library.panels import drawer, leaf
 from kinematify.generate.library.steps import ARITHMETIC, MECHANISMS, SOLIDS, Step, StepRunner, public
 from kinematify.generate.procedural import layout
 from kinematify.generate.procedural.parameter import read_table
-from kinematify.generate.procedural.pieces import bearings, fronts, leaves
+from kinematify.generate.procedural.pieces import bearing_pieces, fronts, leaves
 from kinematify.generate.procedural.solids import X, Z, box
 from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.robot import Mimic
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 _RIM = 0.75  # height of a drawer's sides, share of the bay's
 _REVEAL = 0.002  # of a front towards its neighbours, besides the clearance
-_PIECES = (bearings, fronts, leaves)
+_PIECES = (bearing_pieces, fronts, leaves)
 
 
 def add_drawer(workshop: Workshop, name: str, parent: str, opening: Bay, fitting: Fitting) -> None:
@@ -101,7 +101,7 @@ _NAMES: Mapping[str, Any] = {
     **ARITHMETIC, **_FOUND, **public(layout), **SOLIDS,
     **{name: getattr(math, name) for name in ("sin", "cos", "tan", "hypot", "degrees", "copysign")},
     **{name: getattr(np, name) for name in ("diag", "zeros", "column_stack", "abs")},
-    "FRONT": bearings.FRONT, "float": float, "replace": replace, "mimic": _mimic,
+    "FRONT": bearing_pieces.FRONT, "float": float, "replace": replace, "mimic": _mimic,
     "rotation_about": rotation_about,
 }  # fmt: skip
 """What formulas of solids may name."""

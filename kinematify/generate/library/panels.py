@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from manifold3d import Manifold
 
-from kinematify.generate.procedural.pieces.bearings import barrel
+from kinematify.generate.procedural.pieces.bearing_pieces import barrel
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box
 
 if TYPE_CHECKING:

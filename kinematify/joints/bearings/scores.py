@@ -13,7 +13,7 @@ from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from kinematify.config import BearingConfig, RailConfig
-    from kinematify.joints.bearings.evidence import BearingSide, Generators, Sides
+    from kinematify.joints.bearings.bearing_evidence import BearingSide, Generators, Sides
     from kinematify.robot.arrays import FloatArray
 
 

@@ -12,7 +12,7 @@ from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
 from kinematify.joints.choice.judge import agreed, alike_edges, judge
 from kinematify.joints.choice.limits import find_range
 from kinematify.joints.features.columns import features_of
-from kinematify.joints.features.scene import joint_scene, part_frames
+from kinematify.joints.features.edge_scene import joint_scene, part_frames
 from kinematify.joints.features.workspace import PartCache
 from kinematify.joints.hypotheses.propose import propose
 from kinematify.robot.exact_faces import joined_faces

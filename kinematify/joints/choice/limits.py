@@ -14,7 +14,7 @@ import numpy as np
 
 from kinematify.joints.choice.opening import clockwise_sign, is_continuous, neutral_sign, turn_sign
 from kinematify.joints.features.frames import UP
-from kinematify.joints.features.sweep import Sweep, moving_points, slide_clearance, sweep_slides, sweep_turns
+from kinematify.joints.features.motion_test import Sweep, moving_points, slide_clearance, sweep_slides, sweep_turns
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_about
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from kinematify.config import JointsConfig
-    from kinematify.joints.features.scene import JointScene
+    from kinematify.joints.features.edge_scene import JointScene
     from kinematify.robot.arrays import FloatArray
 
 

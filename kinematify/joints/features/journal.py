@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from kinematify.joints.bearings.refine import across_axis
+from kinematify.joints.bearings.refine_lines import across_axis
 
 if TYPE_CHECKING:
     from kinematify.config import JournalConfig

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from kinematify.joints.candidate import Hypotheses
-    from kinematify.joints.features.scene import JointScene
+    from kinematify.joints.features.edge_scene import JointScene
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 

@@ -11,9 +11,9 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from kinematify.contact.graph import pair
-from kinematify.joints.bearings.refine import across_axis
+from kinematify.joints.bearings.refine_lines import across_axis
 from kinematify.joints.features.journal import facing_faces, find_journal
-from kinematify.joints.features.sweep import moving_points, sweep_turns
+from kinematify.joints.features.motion_test import moving_points, sweep_turns
 from kinematify.joints.features.workspace import PartCache
 
 if TYPE_CHECKING:

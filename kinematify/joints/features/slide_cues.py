@@ -8,14 +8,14 @@ import numpy as np
 
 from kinematify.joints.features.frames import UP
 from kinematify.joints.features.ranking import Ranked, cue_sum
-from kinematify.joints.features.scene import is_cap
-from kinematify.joints.features.sweep import moving_points, sweep_slides
+from kinematify.joints.features.edge_scene import is_cap
+from kinematify.joints.features.motion_test import moving_points, sweep_slides
 
 if TYPE_CHECKING:
     from kinematify.config import JointsConfig
     from kinematify.joints.candidate import Hypotheses
-    from kinematify.joints.features.scene import JointScene
-    from kinematify.joints.features.sweep import Sweep
+    from kinematify.joints.features.edge_scene import JointScene
+    from kinematify.joints.features.motion_test import Sweep
     from kinematify.robot.arrays import FloatArray
 
 

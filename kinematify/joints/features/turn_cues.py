@@ -15,14 +15,14 @@ from kinematify.joints.candidate import CENTRE, CORNER, HALF_WAY
 from kinematify.joints.features.frames import UP
 from kinematify.joints.features.measurements import turned_about
 from kinematify.joints.features.ranking import Ranked, cue_sum
-from kinematify.joints.features.sweep import moving_points, turn_paths
+from kinematify.joints.features.motion_test import moving_points, turn_paths
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from kinematify.config import JointsConfig
     from kinematify.joints.candidate import Hypotheses
-    from kinematify.joints.features.scene import JointScene
-    from kinematify.joints.features.sweep import Sweep
+    from kinematify.joints.features.edge_scene import JointScene
+    from kinematify.joints.features.motion_test import Sweep
     from kinematify.robot.arrays import FloatArray
 
 WEIGHTS = {

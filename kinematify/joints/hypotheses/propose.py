@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from kinematify.config import JointsConfig
     from kinematify.joints.bearings.line import Line
-    from kinematify.joints.features.scene import JointScene
+    from kinematify.joints.features.edge_scene import JointScene
     from kinematify.robot.arrays import FloatArray
 
 _SAME_DEG, _SAME_LINE = 2.0, 0.01  # lines this close, the second in diagonals of the child, are one

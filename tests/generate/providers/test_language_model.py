@@ -16,7 +16,7 @@ from kinematify.generate.procedural.blueprint_file import described_blueprint, r
 from kinematify.generate.procedural.language.compare import compare
 from kinematify.generate.procedural.language.parse import parse_any
 from kinematify.generate.providers.job import open_job
-from kinematify.generate.providers.judge import drawn_findings
+from kinematify.generate.providers.judge_blueprint import drawn_findings
 from kinematify.generate.providers.language_model import ADDRESS, KEY, MODEL, LanguageModel, language_model
 from kinematify.generate.providers.source import check_prompt
 from kinematify.robot.read import read_robot

@@ -1,0 +1,353 @@
+"""The model behind the viewer: where its bodies stand, what they touch, and which joints are tried instead."""
+
+from __future__ import annotations
+
+import colorsys
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.robot.appearance import Material, joined, plain, surfaces
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import (
+    forward_kinematics,
+    joint_values,
+    rest_configuration,
+    rigid_groups,
+)
+from kinematify.robot.transforms import joint_motion, rotation_about
+from kinematify.validation.formats.view_data import camera_turn
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from kinematify.geometry.overlap import OverlapQueries
+    from kinematify.geometry.rest_pairs import DepthAllowance
+    from kinematify.geometry.scene import Scene
+    from kinematify.render.picture import PosedMesh
+    from kinematify.robot.appearance import Appearance, Rgba, Surface
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.robot import Joint, RigidGroup, Robot
+    from kinematify.view.alternatives import JointAlternative
+
+_ARC_STEPS = 24
+_SWEEP = 36
+
+
+@dataclass(frozen=True, kw_only=True)
+class Touch:
+    """Two bodies whose surfaces meet in a configuration."""
+
+    pair: tuple[str, str]
+    """Top links of their groups."""
+    depth: float
+    """[m]."""
+    tolerated: bool
+    """They touch as deep at rest, or as deep as a bearing does."""
+
+
+class ViewScene:
+    """A model with the joints that are tried."""
+
+    def __init__(self, robot: Robot, read_solid: Callable[[], Robot] | None = None) -> None:
+        """Keep the robot; collisions are prepared when first asked for.
+
+        Args:
+            robot: What is seen.
+            read_solid: Reads the robot with its collision geometry; None: `robot` has it.
+        """
+        self.robot = robot
+        self._read_solid = read_solid or (lambda: robot)
+        self._tried: dict[str, JointAlternative] = {}
+
+    @cached_property
+    def groups(self) -> tuple[RigidGroup, ...]:
+        """Links that fixed joints hold together."""
+        return rigid_groups(self.robot)
+
+    @cached_property
+    def rest(self) -> dict[str, float]:
+        """Value of every joint at rest [rad or m]."""
+        return rest_configuration(self.robot)
+
+    @cached_property
+    def leaders(self) -> tuple[Joint, ...]:
+        """Joints that have a slider."""
+        return self.robot.leaders
+
+    @cached_property
+    def size(self) -> float:
+        """Diagonal of the box around the model at rest [m]."""
+        low, high = self.extent(self.rest)
+        return float(np.linalg.norm(high - low)) or 1.0
+
+    def extent(self, q: Mapping[str, float]) -> FloatArray:
+        """Return the corners of the model in a configuration, frame of the root link [m], shape (2, 3)."""
+        placed = self._placed(self.poses(q))
+        points = [vertices @ T[:3, :3].T + T[:3, 3] for T, (vertices, _) in placed if len(vertices)]
+        corners = np.concatenate(points) if points else np.zeros((1, 3))
+        return np.stack([corners.min(axis=0), corners.max(axis=0)])
+
+    @cached_property
+    def camera(self) -> tuple[FloatArray, FloatArray]:
+        """Where to look from, and at what, shape (3,) each [m]: towards the side to which parts move."""
+        center: FloatArray = self.extent(self.rest).mean(axis=0)
+        turn = camera_turn(self.robot, self.groups, list(self.meshes.values()), self.rest) + 0.5 * np.pi
+        eye = center + 1.0 * self.size * np.array([np.cos(turn), np.sin(turn), 0.5])
+        return eye, center
+
+    @cached_property
+    def meshes(self) -> dict[str, tuple[FloatArray, IntArray]]:
+        """Vertices (V, 3) and faces (F, 3) of every group, in the frame of its top link, keyed by that."""
+        return {group.top: self._mesh(group)[:2] for group in self.groups}
+
+    @cached_property
+    def surfaces(self) -> dict[str, tuple[Surface, ...]]:
+        """What is seen of every group by material, in the frame of its top link, keyed by that.
+
+        Where the model states no colour at all, every group has one of its own.
+        """
+        found = {}
+        for index, group in enumerate(self.groups):
+            vertices, faces, appearance = self._mesh(group)
+            if len(faces):
+                invented = Material().color if self._states_colors else _color(index)
+                found[group.top] = surfaces(vertices, faces, appearance or plain(invented, len(faces)))
+        return found
+
+    def posed(self, q: Mapping[str, float]) -> tuple[PosedMesh, ...]:
+        """Return what is seen of every group in a configuration, frame of the root link, for pictures."""
+        from kinematify.render.picture import PosedMesh  # noqa: PLC0415  # loads the ray caster
+
+        poses = self.poses(q)
+        found = []
+        for index, group in enumerate(self.groups):
+            vertices, faces, appearance = self._mesh(group)
+            if len(faces):
+                T = poses[group.top]
+                color = Material().color if self._states_colors else _color(index)
+                placed = vertices @ T[:3, :3].T + T[:3, 3]
+                found.append(PosedMesh(vertices=placed, faces=faces, color=np.array(color[:3]), appearance=appearance))
+        return tuple(found)
+
+    @cached_property
+    def _states_colors(self) -> bool:
+        return any(mesh.appearance is not None for link in self.robot.links for mesh in link.meshes)
+
+    @cached_property
+    def bounds(self) -> dict[str, FloatArray]:
+        """Lower and upper corner of every group at zero, frame of the root link [m], shape (2, 3) each."""
+        zero = self.poses({})
+        found = {}
+        for top, (vertices, _) in self.meshes.items():
+            if len(vertices):
+                placed = vertices @ zero[top][:3, :3].T + zero[top][:3, 3]
+                found[top] = np.stack([placed.min(axis=0), placed.max(axis=0)])
+        return found
+
+    def group_of(self, link: str) -> str:
+        """Top link of the group that holds a link."""
+        return next(group.top for group in self.groups if link in group.links)
+
+    def apart(self, share: float) -> dict[str, FloatArray]:
+        """Return how far every group is moved from the middle of all when the model is taken apart [m], shape (3,).
+
+        Args:
+            share: 0 for not at all; at 1 the middle of a group is twice as far from that of all.
+        """
+        middles = {top: corners.mean(axis=0) for top, corners in self.bounds.items()}
+        middle = np.mean(list(middles.values()), axis=0) if middles else np.zeros(3)
+        return {top: share * (own - middle) for top, own in middles.items()}
+
+    @cached_property
+    def ground(self) -> float:
+        """Height of the lowest point at rest, frame of the root link [m]."""
+        return float(self.extent(self.rest)[0, 2])
+
+    def range_of(self, joint: Joint) -> tuple[float, float]:
+        """Ends of a slider [rad or m]: the limits, or half a turn either way where there are none.
+
+        A joint that is tried as another type may turn by a quarter, or slide by half of the model's size, either way.
+        """
+        tried = self._tried.get(joint.name)
+        if tried is not None and tried.limits is not None:
+            return tried.limits
+        if tried is not None and tried.kind.turns != joint.kind.turns:
+            reach = 0.5 * math.pi if tried.kind.turns else 0.5 * self.size
+            return -reach, reach
+        if self.kind_of(joint) is JointType.CONTINUOUS or not math.isfinite(joint.upper - joint.lower):
+            return -math.pi, math.pi
+        return joint.lower, joint.upper
+
+    def kind_of(self, joint: Joint) -> JointType:
+        """Type of a joint as it is tried, or as in the file."""
+        tried = self._tried.get(joint.name)
+        return joint.kind if tried is None else tried.kind
+
+    def tried(self, joint: str) -> JointAlternative | None:
+        """What a joint is tried as; None: as the file says."""
+        return self._tried.get(joint)
+
+    def line_of(self, joint: Joint) -> tuple[FloatArray, FloatArray]:
+        """Axis and a point on it, as tried or as in the file, frame of the root link at zero [m], shape (3,) each."""
+        tried = self._tried.get(joint.name)
+        return self.line_in_file(joint) if tried is None else (tried.axis, tried.pivot)
+
+    def line_in_file(self, joint: Joint) -> tuple[FloatArray, FloatArray]:
+        """Axis and a point on it as in the file, frame of the root link at zero [m], shape (3,) each."""
+        T = self._zero[joint.child]
+        return T[:3, :3] @ joint.axis, T[:3, 3]
+
+    def try_joint(self, joint: str, alternative: JointAlternative | None) -> None:
+        """Move a joint as an alternative says; None: as the file says."""
+        if alternative is None:
+            self._tried.pop(joint, None)
+        else:
+            self._tried[joint] = alternative
+
+    def poses(self, q: Mapping[str, float]) -> dict[str, FloatArray]:
+        """Pose of every link in the frame of the root link, shape (4, 4) each.
+
+        Args:
+            q: Leader -> value [rad or m].
+        """
+        values = joint_values(self.robot, q)
+        poses: dict[str, FloatArray] = {self.robot.root: np.eye(4)}
+        for joint in self.robot.joints_downward:
+            motion = self._motion(joint, values[joint.name])
+            poses[joint.child] = poses[joint.parent] @ joint.T_parent_child @ motion
+        return poses
+
+    def prepare_collisions(self) -> None:
+        """Read the collision geometry, which `touches` does else when it is first asked.
+
+        Raises:
+            InputError: It cannot be read.
+        """
+        _ = self._collisions
+
+    def touches(self, q: Mapping[str, float]) -> list[Touch]:
+        """Pairs that meet in a configuration, those that are not tolerated first.
+
+        Args:
+            q: Leader -> value [rad or m].
+        """
+        from kinematify.geometry.scene import relative  # noqa: PLC0415  # as for `_collisions`
+
+        scene, overlap, allowance = self._collisions
+        poses = self.poses(q)
+        tops = [self.groups[body.group].top for body in scene.bodies]
+        placed = np.stack([poses[top] for top in tops])[None] if tops else np.zeros((1, 0, 4, 4))
+        found = []
+        for pair in scene.pairs:
+            T = relative(placed, pair)
+            if not (overlap.collide(pair, T)[0] or overlap.may_contain(pair, T)[0]):
+                continue
+            depth = float(overlap.depth(pair, T)[0])
+            tolerated = depth <= allowance.at_rest(pair) + allowance.tolerance(pair)
+            found.append(Touch(pair=(tops[pair[0]], tops[pair[1]]), depth=depth, tolerated=tolerated))
+        return sorted(found, key=lambda touch: (touch.tolerated, -touch.depth))
+
+    def free_range(self, joint: Joint) -> tuple[float, float]:
+        """Return how far a joint moves as it is tried until something collides, all others at rest [rad or m].
+
+        Looked for in `_SWEEP` steps from zero to half a turn, or by the model's size, in both directions.
+        """
+        turns = self.kind_of(joint).turns
+        reach = math.pi if turns else self.size
+        ends = []
+        for direction in (-1.0, 1.0):
+            free = 0.0
+            for step in range(1, _SWEEP + 1):
+                value = direction * reach * step / _SWEEP
+                if not all(touch.tolerated for touch in self.touches({**self.rest, joint.name: value})):
+                    break
+                free = value
+            ends.append(free)
+        if ends[0] == ends[1]:
+            return self.range_of(joint)
+        return ends[0], ends[1]
+
+    def glyph(self, joint: Joint) -> FloatArray:
+        """Line segments of a joint's axis and range in the frame of the joint at zero, shape (n, 2, 3) [m]."""
+        axis, pivot, kind = self._axis(joint)
+        if kind is JointType.FIXED:
+            return np.array([[pivot, pivot]])
+        reach = 0.18 * self.size
+        lower, upper = self.range_of(joint)
+        line = np.array([[pivot - reach * axis, pivot + reach * axis]])
+        if kind is JointType.PRISMATIC:
+            return np.array([[pivot + lower * axis, pivot + upper * axis], *self._ends(pivot, axis, lower, upper)])
+        side = _across(axis)
+        ring = [pivot + 0.5 * reach * (rotation_about(axis, a) @ side) for a in np.linspace(lower, upper, _ARC_STEPS)]
+        arc = np.stack([np.array(ring[:-1]), np.array(ring[1:])], axis=1)
+        spokes = np.array([[pivot, ring[0]], [pivot, ring[-1]]])
+        return np.concatenate([line, arc, spokes])
+
+    def _ends(self, pivot: FloatArray, axis: FloatArray, lower: float, upper: float) -> list[list[FloatArray]]:
+        """Short strokes across a slide's axis at both limits."""
+        stroke = 0.03 * self.size * _across(axis)
+        return [[pivot + end * axis - stroke, pivot + end * axis + stroke] for end in (lower, upper)]
+
+    def _axis(self, joint: Joint) -> tuple[FloatArray, FloatArray, JointType]:
+        """Axis and a point on it in the joint's frame, and the type, as tried or as in the file."""
+        tried = self._tried.get(joint.name)
+        if tried is None:
+            return joint.axis, np.zeros(3), joint.kind
+        T_joint_root = np.linalg.inv(self._zero[joint.child])
+        return T_joint_root[:3, :3] @ tried.axis, T_joint_root[:3, :3] @ tried.pivot + T_joint_root[:3, 3], tried.kind
+
+    def _motion(self, joint: Joint, value: float) -> FloatArray:
+        if joint.name not in self._tried:
+            return joint.motion(value)
+        axis, pivot, kind = self._axis(joint)
+        return joint_motion(kind, axis, pivot, value)
+
+    @cached_property
+    def _zero(self) -> dict[str, FloatArray]:
+        return forward_kinematics(self.robot, {})
+
+    @cached_property
+    def _collisions(self) -> tuple[Scene, OverlapQueries, DepthAllowance]:
+        from kinematify.config.validation import load_settings  # noqa: PLC0415  # what is seen first needs none of these
+        from kinematify.geometry.overlap import OverlapQueries  # noqa: PLC0415
+        from kinematify.geometry.rest_pairs import DepthAllowance  # noqa: PLC0415
+        from kinematify.geometry.scene import read_scene  # noqa: PLC0415
+
+        scene = read_scene(self._read_solid(), load_settings().geometry)
+        overlap = OverlapQueries(scene)
+        return scene, overlap, DepthAllowance(scene, overlap)
+
+    def _mesh(self, group: RigidGroup) -> tuple[FloatArray, IntArray, Appearance | None]:
+        vertices, faces, start = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)], 0
+        looks: list[Appearance | None] = []
+        T_top_root = np.linalg.inv(self._zero[group.top])
+        for link in group.links:
+            T = T_top_root @ self._zero[link]
+            for mesh in self.robot.link_by_name[link].meshes:
+                vertices.append(mesh.vertices @ T[:3, :3].T + T[:3, 3])
+                faces.append(mesh.faces + start)
+                looks.append(mesh.appearance)
+                start += len(mesh.vertices)
+        return np.concatenate(vertices), np.concatenate(faces), joined(looks, [len(item) for item in faces[1:]])
+
+    def _placed(self, poses: Mapping[str, FloatArray]) -> list[tuple[FloatArray, tuple[FloatArray, IntArray]]]:
+        return [(poses[top], mesh) for top, mesh in self.meshes.items()]
+
+
+def _color(index: int) -> Rgba:
+    """A light grey for the root, then hues that differ from one body to the next, sRGB and opacity."""
+    if index == 0:
+        return 0.78, 0.77, 0.75, 1.0
+    return *colorsys.hls_to_rgb((0.08 + 0.61803398875 * index) % 1.0, 0.62, 0.5), 1.0
+
+
+def _across(axis: FloatArray) -> FloatArray:
+    """A unit direction perpendicular to an axis."""
+    other = np.eye(3)[int(np.argmin(np.abs(axis)))]
+    across = np.cross(axis, other)
+    unit: FloatArray = across / np.linalg.norm(across)
+    return unit

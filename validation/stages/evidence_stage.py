@@ -1,0 +1,63 @@
+"""The stage of the checks that hold each declared joint, and each pin without one, against the contact geometry."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from kinematify.validation.checks import checks_of
+
+if TYPE_CHECKING:
+    from kinematify.validation.stage import Recorder, StageRequest
+
+CONFIG = "evidence"
+"""The configuration of the scorers; coarser than that of the inference, for the joint is known already."""
+
+
+def run(request: StageRequest, recorder: Recorder) -> None:
+    """Judge every joint between two bodies with geometry; see `kinematify.validation.stage`."""
+    from kinematify.config import load_config
+    from kinematify.validation.evidence.bodies_at_rest import read_bodies
+    from kinematify.validation.evidence.case import JointCase, summary_of
+    from kinematify.validation.evidence.measure import measure_joints
+    from kinematify.validation.evidence.loop_pins import shared_pins
+    from kinematify.validation.left_model import model_of
+
+    of_joints, of_pins = checks_of("KV34"), checks_of("KV35")
+    checks = of_joints + of_pins
+    if not recorder.wants(*(check.id for check in checks)):
+        return
+    robot, seed = model_of(request), request.settings.seed
+    bodies = read_bodies(robot, load_config(CONFIG), seed=seed)
+    if bodies is None or not bodies.truth.joints:
+        recorder.skip(checks, "no joint moves a body with geometry against another one")
+        return
+    every = []
+    for measures in measure_joints(bodies, request.settings.evidence, seed=seed):
+        every.append(measures)
+        if request.remaining == 0.0:
+            break
+    cases = [
+        JointCase(bodies=bodies, measures=measures, settings=request.settings.evidence, every=every)
+        for measures in every
+    ]
+    left = len(bodies.truth.joints) - len(cases)
+    doubts: dict[str | None, set[str]] = defaultdict(set)
+    for check in of_joints:
+        with recorder.check(check.id) as result:
+            result.measured["joints"] = len(cases)
+            for case in cases:
+                check.run(result, case)
+            if left:
+                result.leave(f"{left} of the joints")
+        for finding in result.findings:
+            doubts[finding.joint].add(check.id)
+    pins = () if left else tuple(shared_pins(bodies, robot))
+    for check in of_pins:
+        with recorder.check(check.id) as result:
+            for pin in pins:
+                check.run(result, pin)
+            if left:
+                result.leave("the pins, and before that some of the joints")
+    for case in cases:
+        recorder.summarise(summary_of(robot, case, doubts[case.measures.joint.source]))
