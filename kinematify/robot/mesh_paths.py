@@ -21,6 +21,8 @@ CAD_SUFFIXES = (".step", ".stp")
 """Formats whose surfaces are turned into triangles; an assembly may be one, the mesh of a link not."""
 _SHOWN = 3
 _MANIFEST_BYTES = 100_000
+_LEVELS = 4
+"""Folders above a document that may be its package under another name: ``urdf/robots/arm/`` is the deepest seen."""
 _NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 """Of a package in its `package.xml`."""
 
@@ -47,6 +49,41 @@ def find_mesh(filename: str, folder: Path, package_dirs: Sequence[Path], where: 
             "Put the file there, or name the folder that holds the package with --package-dir."
         )
     return found
+
+
+def near_mesh(filename: str, folder: Path, package_dirs: Sequence[Path]) -> Path | None:
+    """Return the one file that a name which leads to none may mean; None without one, or with several.
+
+    Letters in another case anywhere in the path, or the same end of the path in a folder beside or above the document.
+    """
+    tail = filename.replace("\\", "/").split("://")[-1]
+    words = [word for word in tail.split("/") if word not in ("", ".", "..")]
+    above = [folder, *folder.parents][:_LEVELS]
+    try:
+        asked = [path for path in mesh_candidates(filename, folder, package_dirs, "") if len(path.parts) > 1]
+    except DescriptionError:
+        asked = []
+    for path in (*asked, *(place / Path(*words[-depth:]) for depth in (2, 1) if words[-depth:] for place in above)):
+        found = _in_any_case(path)
+        if len(found) == 1:
+            return found[0]
+    return None
+
+
+def _in_any_case(path: Path) -> list[Path]:
+    """Files whose path differs from one in the case of letters only."""
+    known = [Path(path.anchor)]
+    for word in path.parts[1:] if path.anchor else path.parts:
+        exact = [place / word for place in known if word == ".." or os.path.lexists(place / word)]
+        known = exact or [item for place in known for item in _children(place) if item.name.lower() == word.lower()]
+    return [item for item in known if _is_file(item)]
+
+
+def _children(folder: Path) -> list[Path]:
+    try:
+        return sorted(folder.iterdir())
+    except OSError:
+        return []
 
 
 def mesh_candidates(filename: str, folder: Path, package_dirs: Sequence[Path], where: str) -> list[Path]:
@@ -85,8 +122,8 @@ def _package_candidates(package: str, inside: str, folder: Path, package_dirs: S
             candidates.append(place / inside)
         candidates.append(place / package / inside)
     candidates += [place / inside for place in _ros_packages(package)]
-    # Single exported robots keep the package's tree but not its name.
-    return candidates + [place / inside for place in (*package_dirs, folder)]
+    # Clones and single exported robots keep the package's tree but not its name.
+    return candidates + [place / inside for place in (*package_dirs, *above[:_LEVELS])]
 
 
 def _ros_packages(package: str) -> list[Path]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,6 +30,10 @@ _SUBDIVISIONS = 4
 """Of an icosphere: 5,120 faces, 0.1 % of the radius inside the sphere."""
 
 
+class NoShape(DescriptionError):
+    """An element has no geometry that can be read."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class GeometrySource:
     """Where the geometry of one document is looked up; every mesh file is read once."""
@@ -38,27 +42,44 @@ class GeometrySource:
     """Folder of the document."""
     package_dirs: tuple[Path, ...]
     """Folders that are packages, or hold them."""
-    cache: dict[Path, RawMesh]
+    cache: dict[Path, RawMesh | str]
+    """Meshes by file; a sentence for one that cannot be used."""
     heeds_up_axis: bool = False
     """Whether meshes are turned upright whose files state that another axis than z points up."""
     appearance: bool = False
     """Whether materials of mesh files are read; they go before the colour that the document states."""
 
+    omitted: dict[str, None] = field(default_factory=dict)
+    """Elements without usable geometry, one sentence each, in order."""
+
     def shapes(self, link: _Element, tag: str) -> tuple[Shape, ...]:
         """Return all ``visual`` or ``collision`` elements of a link with their triangles.
 
-        Primitives with a length of zero represent no shape, and are omitted.
+        Primitives with a length of zero represent no shape. An element has none either if it states none or an unknown
+        one, or if its mesh is missing or cannot be read; `omitted` names it.
 
         Raises:
-            DescriptionError: An element has no geometry, an unknown one, bad numbers, or a mesh that is missing.
+            DescriptionError: A number is malformed.
         """
-        shapes = (self._shape(element, f"link {link.get('name')}") for element in link.findall(tag))
+        shapes = (self._usable(element, f"link {link.get('name')}") for element in link.findall(tag))
         return tuple(shape for shape in shapes if shape is not None)
+
+    def _usable(self, element: _Element, where: str) -> Shape | None:
+        try:
+            return self._shape(element, where)
+        except NoShape as error:
+            self.omitted[f"A {element.tag} is left out (line {line_of(element)}). {error}"] = None
+            return None
+
+    def is_usable(self, element: _Element) -> bool:
+        """True if a visual or collision has geometry that can be read, or is of a size of zero."""
+        before = len(self.omitted)
+        return self._usable(element, "it") is not None or len(self.omitted) == before
 
     def _shape(self, element: _Element, where: str) -> Shape | None:
         geometry = element.find("geometry")
         if geometry is None or len(geometry) != 1:
-            raise DescriptionError(
+            raise NoShape(
                 f"The {element.tag} of {where} has no geometry element with exactly one shape inside. Give it a mesh, "
                 "box, cylinder or sphere, or remove it."
             )
@@ -101,13 +122,16 @@ class GeometrySource:
             try:
                 self.cache[path] = merged(read_meshes(path, appearance=self.appearance), path.stem)
             except AssemblyError as error:
-                raise DescriptionError(f"The mesh of {where} cannot be used. {error}") from error
-        return self.cache[path]
+                self.cache[path] = str(error)
+        found = self.cache[path]
+        if isinstance(found, str):
+            raise NoShape(f"The mesh of {where} cannot be used. {found}")
+        return found
 
     @property
     def states_up_axis(self) -> bool:
         """Whether a mesh that was read states that another axis than z points up."""
-        return any(mesh.up for mesh in self.cache.values())
+        return any(mesh.up for mesh in self.cache.values() if not isinstance(mesh, str))
 
     def resolved(self, filename: str, where: str) -> Path:
         """Return the mesh file that a document names; see `kinematify.robot.mesh_paths.find_mesh`.
@@ -115,7 +139,10 @@ class GeometrySource:
         Raises:
             DescriptionError: It is nowhere; the message lists the places.
         """
-        return find_mesh(filename, self.folder, self.package_dirs, where)
+        try:
+            return find_mesh(filename, self.folder, self.package_dirs, where)
+        except DescriptionError as error:
+            raise NoShape(str(error)) from error
 
 
 def geometry_source(document: Path, package_dirs: Sequence[Path], *, appearance: bool = False) -> GeometrySource:
@@ -144,7 +171,7 @@ def primitive(
 
 def _primitive_size(shape: _Element, where: str) -> tuple[float, ...]:
     if shape.tag not in SIZES:
-        raise DescriptionError(
+        raise NoShape(
             f"The geometry of {where} is a <{shape.tag}>, which URDF does not have. Use a mesh, box, cylinder or "
             "sphere."
         )

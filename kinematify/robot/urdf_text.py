@@ -109,7 +109,12 @@ def parse_text(text: bytes) -> _Element:
     Raises:
         lxml.etree.XMLSyntaxError: It is not well-formed, or deeper or larger than the limits of the parser.
     """
-    return etree.fromstring(with_plain_declaration(text), _parser())
+    root = etree.fromstring(with_plain_declaration(text), _parser())
+    space = etree.QName(root).namespace
+    if space and etree.QName(root).localname == "robot":  # Drake's files state one, which every reader ignores
+        for element in root.iter(f"{{{space}}}*"):
+            element.tag = etree.QName(element).localname
+    return root
 
 
 def syntax_errors(text: bytes) -> list[tuple[int, str]]:

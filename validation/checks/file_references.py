@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections import defaultdict
 from dataclasses import dataclass
@@ -9,7 +10,7 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from kinematify.errors import DescriptionError
-from kinematify.robot.mesh_paths import MESH_SUFFIXES, find_mesh
+from kinematify.robot.mesh_paths import MESH_SUFFIXES, find_mesh, near_mesh
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
 from kinematify.validation.document import shown
@@ -32,6 +33,7 @@ class _Reference:
     link: str
     filename: str
     line: int
+    collides: bool
     path: Path | None
     """None where there is no such file."""
     fault: str
@@ -40,7 +42,8 @@ class _Reference:
 
 @check("KV141", title="Mesh files exist", fails="A mesh file is missing", severity=Severity.ERROR, blame=Blame.ASSET)
 def missing_files(result: OpenCheck, urdf: Urdf) -> None:
-    """Every file name leads to a file, through packages where it says so.
+    """Every file name leads to a file, through packages where it says so; for what is only seen it is a warning. All
+    else is checked without the element.
 
     Why it matters: The link is invisible and collides with nothing, or the model does not load.
 
@@ -48,18 +51,24 @@ def missing_files(result: OpenCheck, urdf: Urdf) -> None:
     """
     # what a link shows and collides with is often one file
     missing = {(item.link, item.filename): item for item in reversed([*_references(urdf)]) if item.path is None}
-    for reference in reversed(missing.values()):
+    felt = {(item.link, item.filename) for item in _references(urdf) if item.collides}
+    for key, reference in reversed(missing.items()):
         result.find(
             reference.fault,
-            _remedy(reference.filename, urdf.folder),
+            _remedy(reference.filename, urdf),
+            severity=None if key in felt else Severity.WARNING,
             link=reference.link,
             line=reference.line,
+            harmless=True,
         )
 
 
-def _remedy(filename: str, folder: Path) -> str:
+def _remedy(filename: str, urdf: Urdf) -> str:
     if "$(" in filename or "${" in filename:
         return "This is an expression of xacro: expand the file with `xacro FILE > robot.urdf`."
+    if near := near_mesh(filename, urdf.folder, urdf.package_dirs):
+        there = os.path.relpath(near, urdf.folder)
+        return f"There is {there}, with other letters or in another folder; `kinematify fix` writes that path."
     if filename.startswith(("package://", "model://")):
         package = filename.split("/")[2]
         return f"Name the folder of the package {package}, or the one that holds it, with --package-dir."
@@ -69,15 +78,7 @@ def _remedy(filename: str, folder: Path) -> str:
         return "This path is on the drive of a Windows machine: copy the mesh and write its path relative to the URDF."
     if filename.startswith(("/", "file:")):
         return "Absolute paths hold on one machine only: write the path relative to the URDF."
-    near = _same_but_for_case(folder / filename.replace("\\", "/"))
-    return f"Did you mean {near.name}? Every letter counts." if near else "Put the file there, or correct the path."
-
-
-def _same_but_for_case(path: Path) -> Path | None:
-    try:
-        return next((item for item in path.parent.iterdir() if item.name.lower() == path.name.strip().lower()), None)
-    except (OSError, ValueError):
-        return None
+    return "Put the file there, or correct the path; `kinematify fix` leaves the element out."
 
 
 @check(
@@ -88,7 +89,8 @@ def _same_but_for_case(path: Path) -> Path | None:
     blame=Blame.ASSET,
 )
 def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
-    """Every mesh is of a format that is read here; formats that MuJoCo does not read are a note.
+    """Every mesh is of a format that is read here; for what is only seen it is a warning. Formats that MuJoCo does not
+    read are a note.
 
     Why it matters: Each reader knows other formats; what it does not know it drops or refuses.
 
@@ -101,8 +103,10 @@ def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
             result.find(
                 f"The mesh {shown(reference.filename)} of the link {reference.link} is of no format that can be read.",
                 f"Convert it to one of {', '.join(MESH_SUFFIXES)}, for example with Blender.",
+                severity=None if reference.collides else Severity.WARNING,
                 link=reference.link,
                 line=reference.line,
+                harmless=True,
             )
         elif suffix not in _BY_ENGINES:
             converted[suffix].append(reference)
@@ -188,7 +192,10 @@ def _references(urdf: Urdf) -> Iterator[_Reference]:
             filename = mesh.get("filename") or ""
             if filename.strip():
                 path, fault = _found(filename, link, urdf)
-                yield _Reference(link=link, filename=filename, line=line_of(mesh), path=path, fault=fault)
+                collides = element.tag == "collision"
+                yield _Reference(
+                    link=link, filename=filename, line=line_of(mesh), collides=collides, path=path, fault=fault
+                )
 
 
 def _found(filename: str, link: str, urdf: Urdf) -> tuple[Path | None, str]:

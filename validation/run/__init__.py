@@ -22,6 +22,7 @@ from kinematify.validation.checks import CHECKS
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
+from kinematify.validation.left_model import has_model
 from kinematify.validation.lines import with_lines
 from kinematify.validation.run.loaded_findings import across_engines, confirm_on_raw_model, with_refusals
 from kinematify.validation.run.causes import with_causes
@@ -189,7 +190,7 @@ class _Run:
             self._explain_rest(Status.SKIPPED, not_finished("time ran out before the meshes were checked"))
             return
         request = replace(request, deadline=max(0.0, request.deadline - asset.seconds))
-        fault = self._fault_of_meshes()
+        fault = self._fault_of_meshes(request.work)
         if fault is not None:
             self._explain_rest(Status.BLOCKED, fault)
             return
@@ -305,12 +306,14 @@ class _Run:
             self._results[left[0]] = _fallen(left[0], end)
         self._explain(left, Status.BLOCKED, reason)
 
-    def _fault_of_meshes(self) -> str | None:
+    def _fault_of_meshes(self, work: Path) -> str | None:
         """Why no later stage may open the meshes; None if they may."""
         if (_LAST_GUARD, None) not in self._results:
             return "the meshes could not be checked, and no other stage may trip over them"
+        if has_model(work):
+            return None
         faults = [key[0] for key, result in self._results.items() if key[0] in _MESH_GUARDS and _has_error(result)]
-        return f"the meshes cannot be used, see {', '.join(faults)}" if faults else None
+        return f"the meshes cannot be used, see {', '.join(faults)}"
 
     def _missing(self) -> Iterable[CheckKey]:
         return [key for key in keys(list(self.checks.values())) if key not in self._results and key not in self._why]
