@@ -24,10 +24,11 @@ def _package_dirs(context: click.Context, _parameter: click.Parameter, given: tu
         if equals and not folder.is_dir():
             if not Path(place).is_dir() or name != Path(name).name:
                 raise click.BadParameter(f"{folder} names no folder. Give DIR, or NAME=DIR with the package's name.")
-            holder = context.with_resource(tempfile.TemporaryDirectory(prefix="kinematify-packages-"))
-            folder = Path(holder)
-            (folder / name).symlink_to(Path(place).resolve())
-        folders.append(folder)
+            holder = Path(context.with_resource(tempfile.TemporaryDirectory(prefix="kinematify-packages-")))
+            (holder / name).symlink_to(Path(place).resolve())
+            folders.append(holder)
+        else:
+            folders.append(folder)
     return tuple(folders)
 
 

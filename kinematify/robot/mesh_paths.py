@@ -20,6 +20,8 @@ MESH_SUFFIXES = (*GLTF_SUFFIXES, ".obj", ".stl", ".ply", ".off", ".3mf", ".dae")
 CAD_SUFFIXES = (".step", ".stp")
 """Formats whose surfaces are turned into triangles; an assembly may be one, the mesh of a link not."""
 _SHOWN = 3
+_PACKAGE_PATHS = ("ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH")
+"""Variables of the environment that name folders of packages."""
 _MANIFEST_BYTES = 100_000
 _LEVELS = 4
 """Folders above a document that may be its package under another name: ``urdf/robots/arm/`` is the deepest seen."""
@@ -128,10 +130,14 @@ def _package_candidates(package: str, inside: str, folder: Path, package_dirs: S
 
 def _ros_packages(package: str) -> list[Path]:
     """Places of a package in the workspaces that the environment names."""
-    sources = [Path(place) for place in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if place]
-    installed = [Path(place) for place in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if place]
+    sources = [place for name in _PACKAGE_PATHS for place in _environment_paths(name)]
+    installed = _environment_paths("AMENT_PREFIX_PATH")
     named = [place for place in sources if package in (place.name, _declared_name(place))]
     return [*named, *(place / package for place in sources), *(place / "share" / package for place in installed)]
+
+
+def _environment_paths(name: str) -> list[Path]:
+    return [Path(place) for place in os.environ.get(name, "").split(os.pathsep) if place]
 
 
 @lru_cache(maxsize=1024)

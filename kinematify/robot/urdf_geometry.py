@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 SIZES = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length"), "capsule": ("radius", "length")}
 """Attributes that hold the size of a primitive."""
@@ -89,7 +89,7 @@ class GeometrySource:
             size = _primitive_size(shape, where)
             if min(size) <= 0.0:
                 return None
-            built = replace(primitive(str(shape.tag), size, transform, color), line=line)
+            built = primitive(str(shape.tag), size, transform, color, line)
             looks = plain(color, len(built.mesh.faces)) if self.appearance and color else None
             return replace(built, mesh=replace(built.mesh, appearance=looks))
         mesh = self._mesh_file(shape, where)
@@ -156,6 +156,7 @@ def primitive(
     size: tuple[float, ...],
     T_link_shape: FloatArray,
     color: tuple[float, float, float, float] | None = None,
+    line: int = 0,
 ) -> Shape:
     """Return a box, cylinder, sphere or capsule with its triangles; the arguments are fields of `Shape`."""
     mesh = _tessellated(kind, size)
@@ -166,7 +167,21 @@ def primitive(
         size=size,
         T_link_shape=T_link_shape,
         color=color,
+        line=line,
     )
+
+
+def mesh_shape(
+    vertices: FloatArray,
+    faces: IntArray,
+    T_link_shape: FloatArray,
+    color: tuple[float, float, float, float] | None = None,
+    line: int = 0,
+) -> Shape:
+    """Return a mesh that comes from no file of its own, of one colour; vertices in the frame of the shape, (V, 3)."""
+    placed = np.asarray(vertices, dtype=np.float64) @ T_link_shape[:3, :3].T + T_link_shape[:3, 3]
+    looks = None if color is None else plain(color, len(faces))
+    return Shape(mesh=LinkMesh(vertices=placed, faces=faces, appearance=looks), color=color, line=line)
 
 
 def _primitive_size(shape: _Element, where: str) -> tuple[float, ...]:
@@ -175,6 +190,8 @@ def _primitive_size(shape: _Element, where: str) -> tuple[float, ...]:
             f"The geometry of {where} is a <{shape.tag}>, which URDF does not have. Use a mesh, box, cylinder or "
             "sphere."
         )
+    if absent := [name for name in SIZES[str(shape.tag)] if name not in shape.attrib]:
+        raise NoShape(f"The <{shape.tag}> of {where} states no {absent[0]}. Write it, or remove the element.")
     if shape.tag == "box":
         size = tuple(vector(shape, "size", None, where).tolist())
     else:

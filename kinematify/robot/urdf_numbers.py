@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 
+_COUNTS = {3: "three", 4: "four"}
 _SELF_COLLISION = ("selfCollide", "self_collide")
 """Elements by which Gazebo's extensions say whether a link collides with its own model."""
 
@@ -35,9 +36,10 @@ def vector(
         attribute: Name of the attribute.
         default: Value of an absent attribute; None if it must be there.
         where: The link or joint, for the message.
+        count: Of the numbers.
 
     Raises:
-        DescriptionError: The attribute is absent, or anything but three finite numbers.
+        DescriptionError: The attribute is absent, or anything but so many finite numbers.
     """
     text = element.get(attribute)
     if text is None and default is not None:
@@ -47,8 +49,8 @@ def vector(
         values = values * 3
     if len(values) != count:
         raise DescriptionError(
-            f"The attribute {attribute}={text!r} of <{element.tag}> in {where} must be {count} finite numbers. Correct "
-            "it."
+            f"The attribute {attribute}={text!r} of <{element.tag}> in {where} must be {_COUNTS[count]} finite "
+            "numbers. Correct it."
         )
     return np.array(values)
 

@@ -53,9 +53,12 @@ def missing_files(result: OpenCheck, urdf: Urdf) -> None:
     missing = {(item.link, item.filename): item for item in reversed([*_references(urdf)]) if item.path is None}
     felt = {(item.link, item.filename) for item in _references(urdf) if item.collides}
     for key, reference in reversed(missing.items()):
+        near = near_mesh(reference.filename, urdf.folder, urdf.package_dirs)
         result.find(
             reference.fault,
-            _remedy(reference.filename, urdf),
+            _remedy(reference.filename)
+            if near is None
+            else f"There is {os.path.relpath(near, urdf.folder)}; `kinematify fix` writes that path.",
             severity=None if key in felt else Severity.WARNING,
             link=reference.link,
             line=reference.line,
@@ -63,12 +66,9 @@ def missing_files(result: OpenCheck, urdf: Urdf) -> None:
         )
 
 
-def _remedy(filename: str, urdf: Urdf) -> str:
+def _remedy(filename: str) -> str:
     if "$(" in filename or "${" in filename:
         return "This is an expression of xacro: expand the file with `xacro FILE > robot.urdf`."
-    if near := near_mesh(filename, urdf.folder, urdf.package_dirs):
-        there = os.path.relpath(near, urdf.folder)
-        return f"There is {there}, with other letters or in another folder; `kinematify fix` writes that path."
     if filename.startswith(("package://", "model://")):
         package = filename.split("/")[2]
         return f"Name the folder of the package {package}, or the one that holds it, with --package-dir."
