@@ -174,7 +174,7 @@ class AsLoadedContext:
     def overlaps(self) -> tuple[Overlap, ...]:
         """At rest, the deepest first, of links that can move against each other: nothing pushes others apart."""
         body = dict(zip(self.mechanism.links, self.mechanism.body_of_link.tolist(), strict=True))
-        found = self.loaded.overlaps(self.values)
+        found = self.running.overlaps(self.values)
         return tuple(item for item in found if body[item.links[0]] != body[item.links[1]])
 
     @cached_property
@@ -250,7 +250,7 @@ class AsLoadedContext:
             values = dict(run.values)
             for name, ratio in self.ratios(travel).items():
                 values[name] = run.values[name] + ratio * (value - travel.rest)
-            found = self.between(travel, self.loaded.overlaps(values))
+            found = self.between(travel, self.running.overlaps(values))
             if found is not None:
                 return found, value
         return None

@@ -7,15 +7,9 @@ import difflib
 from kinematify.errors import InputError
 from kinematify.validation.check import REGISTRY, Check
 from kinematify.validation.checks import (  # noqa: F401 - each registers its checks
-    agreement,
     as_loaded,
     collision_geometry,
-    contact_agreement,
     drives,
-    engine_drive,
-    engine_loading,
-    engine_rest,
-    engine_stability,
     evidence,
     file_joints,
     file_names,

@@ -23,7 +23,7 @@ from kinematify.validation.formats.report_content import (
     title,
 )
 from kinematify.validation.formats.html_frame import badge, page, table, text
-from kinematify.validation.formats.html_motion import curves, show_button, viewer
+from kinematify.validation.formats.html_motion import show_button, viewer
 from kinematify.validation.run.outcome import Unusable, severity_counts
 
 if TYPE_CHECKING:
@@ -124,7 +124,6 @@ def _section(index: int, outcome: Outcome, picture: bytes, scene: str) -> str:
         _picture(picture),
         _table("Families", family_table(outcome), f"families-{index}", _COUNTS),
         _table("Joints", joint_table(outcome), f"joints-{index}") if outcome.joints else "",
-        curves(outcome),
         _pair_matrix(index, outcome.pairs),
         _pairs(index, outcome),
         _checks(index, outcome),

@@ -23,11 +23,10 @@ from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
 from kinematify.validation.lines import with_lines
-from kinematify.validation.run.loaded_findings import across_engines, confirm_on_raw_model, with_refusals
+from kinematify.validation.run.loaded_findings import across_engines, with_refusals
 from kinematify.validation.run.causes import with_causes
 from kinematify.validation.run.opinions import evidence_before_blame
 from kinematify.validation.run.plan import (
-    agreement_stage,
     as_loaded_stages,
     asset_stage,
     keys,
@@ -38,7 +37,7 @@ from kinematify.validation.run.plan import (
 from kinematify.validation.run.report import ValidationReport
 from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.stages.precheck import precheck
-from kinematify.validation.summary import JointCurve, JointSummary, PairTable
+from kinematify.validation.summary import JointSummary, PairTable
 from kinematify.validation.suppression import suppress
 
 if TYPE_CHECKING:
@@ -123,7 +122,7 @@ _LAST_GUARD = "KV152"
 _DOUBTS = frozenset(name for name, check in CHECKS.items() if check.doubts)
 """What the stage of a task wants to know of the joints: whether parent, axis, place, type and direction are right."""
 _LEEWAY = 20.0
-"""Processor time that the comparison of engines has at least, and the stage of a task to end what it is at [s]."""
+"""Processor time that the stage of a task has to end what it is at [s]."""
 
 
 def _checks(task: TaskRequest | None, engines: Sequence[str]) -> dict[str, Check]:
@@ -158,18 +157,15 @@ class _Run:
         self._progress = progress or (lambda stage, fraction: None)
         self._results: dict[CheckKey, CheckResult] = {}
         self._joints: dict[str, JointSummary] = {}
-        self._curves: list[JointCurve] = []
         self._pairs: PairTable | None = None
         self._why: dict[CheckKey, tuple[Status, str]] = {}
-        self._failures: dict[str, str] = {}
-        self._late: set[str] = set()
         self._started = time.perf_counter()
 
     def all(self, request: StageRequest, workers: int) -> None:
         """Run everything that can run."""
         if self.task is not None:
             request = replace(request, selected=request.selected | _DOUBTS)
-        later = needed(later_stages(self.engines), request.selected)
+        later = needed(later_stages(), request.selected)
         plain = [
             stage
             for stage in as_loaded_stages(self.engines)
@@ -202,7 +198,6 @@ class _Run:
             "the engine was not asked for",
         )
         self._load_plainly(plain, request, workers)
-        self._compare(request, self.engines)
         if self.task is not None:
             self._use(request, self.engines)
 
@@ -212,18 +207,6 @@ class _Run:
         for end in run_stages(stages, replace(request, free_travel=free), workers=workers):
             self._take_end(end)
             self._progress(end.stage.name, 0.95)
-
-    def _compare(self, request: StageRequest, engines: Sequence[str]) -> None:
-        """Hold the engines against each other; it is quick, and runs even where no time is left."""
-        request = replace(
-            request,
-            deadline=max(request.deadline, _LEEWAY),
-            engines=tuple(engines),
-            failures=self._failures,
-            late=frozenset(self._late),
-        )
-        for end in run_stages(needed([agreement_stage()], request.selected), request, workers=1):
-            self._take_end(end)
 
     def _use(self, request: StageRequest, engines: Sequence[str]) -> None:
         """Let a robot use the object; it has time of its own."""
@@ -257,9 +240,7 @@ class _Run:
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
         results = [self._result(key) for key in keys(list(self.checks.values()))]
         robot = _bodies(self.path)
-        results = evidence_before_blame(
-            confirm_on_raw_model(across_engines(with_refusals(with_lines(results, robot)), self.engines))
-        )
+        results = evidence_before_blame(across_engines(with_refusals(with_lines(results, robot)), self.engines))
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)
         checks = with_causes(checks, robot)
         facts = environment(
@@ -269,7 +250,6 @@ class _Run:
             model=str(self.path),
             checks=checks,
             joints=tuple(self._in_order(robot)),
-            curves=tuple(sorted(self._curves, key=lambda curve: curve.engine)),  # they come in as stages end
             pairs=self._pairs,
             environment=facts,
         )
@@ -282,8 +262,6 @@ class _Run:
     def _take(self, result: CheckResult | Summary) -> None:
         if isinstance(result, JointSummary):
             self._joints[result.joint] = _merged(self._joints.get(result.joint), result)
-        elif isinstance(result, JointCurve):
-            self._curves.append(result)
         elif isinstance(result, PairTable):
             self._pairs = result
         else:
@@ -294,14 +272,12 @@ class _Run:
             self._take(result)
         if end.failure is None:
             return
-        self._failures[end.stage.name] = end.failure
         left = [key for key in end.stage.checks if key not in self._results and key[0] in self.selected]
         reason = f"the stage {end.stage.name} {end.failure}"
         if end.late:
-            self._late.add(end.stage.name)
             self._explain(left, Status.SKIPPED, not_finished(reason))
             return
-        if left and not end.failure.startswith("did not run"):
+        if left:
             self._results[left[0]] = _fallen(left[0], end)
         self._explain(left, Status.BLOCKED, reason)
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from kinematify.validation.finding import CheckResult, Finding
     from kinematify.validation.run.causes import FindingGroup
-    from kinematify.validation.summary import JointCurve, JointSummary, PairTable
+    from kinematify.validation.summary import JointSummary, PairTable
 
 SCHEMA = 1
 
@@ -30,8 +30,6 @@ class ValidationReport:
     """Path as it was given."""
     checks: tuple[CheckResult, ...]
     joints: tuple[JointSummary, ...] = ()
-    curves: tuple[JointCurve, ...] = ()
-    """As the engines drove the joints, those that ran."""
     pairs: PairTable | None = None
     """None if the exact geometry was not looked at."""
     environment: Mapping[str, Any] = field(default_factory=dict)
