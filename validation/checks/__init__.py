@@ -9,6 +9,8 @@ from kinematify.validation.check import REGISTRY, Check
 from kinematify.validation.checks import (  # noqa: F401 - each registers its checks
     as_loaded,
     collision_geometry,
+    declared_limits,
+    declared_masses,
     drives,
     evidence,
     file_joints,
@@ -19,15 +21,13 @@ from kinematify.validation.checks import (  # noqa: F401 - each registers its ch
     file_text,
     file_tree,
     inertias,
-    declared_limits,
     loops,
-    declared_masses,
     meshes,
     motion,
     rest,
-    unit_sizes,
-    task,
     several_joints,
+    task,
+    unit_sizes,
 )
 
 __all__ = ["CHECKS", "checks_of", "find_check"]
