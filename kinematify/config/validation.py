@@ -245,8 +245,6 @@ class GeometrySettings(StageConfig):
     """Share of configurations in which a pair that always collides does so."""
     random_rows: int = 128  # a power of two, as Sobol points want
     """Quasi-random configurations of all joints."""
-    hull_planes: int = 96
-    """Directions in which a hull is kept where collision shapes are looked at as engines see them."""
     listed: int = 8
     """Pairs that one finding names."""
 

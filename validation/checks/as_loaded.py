@@ -11,7 +11,7 @@ from kinematify.robot.mesh_paths import GLTF_SUFFIXES
 from kinematify.simulation.engines import ENGINES
 from kinematify.simulation.raw_model import MovesFreely, Unloadable
 from kinematify.validation.check import CauseScope, FeedbackRow, OpenCheck, check
-from kinematify.validation.checks.follow import IN_ENGINES, NOT_A_BODY
+from kinematify.validation.checks.follow import AT_REST, NOT_A_BODY
 from kinematify.validation.checks.needs import late
 from kinematify.validation.finding import Blame, Severity
 
@@ -152,7 +152,7 @@ def _remedy_of_format(context: AsLoadedContext, message: str) -> str:
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     engines=_RUNNING,
-    follows={**IN_ENGINES, "KV802": CauseScope.PAIR},
+    follows={**AT_REST, "KV802": CauseScope.PAIR},
     needs=(not_loaded,),
 )
 def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -188,7 +188,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
     blame=Blame.PHYSICS,
     engines=_RUNNING,
     feedback=FeedbackRow.AS_LOADED,
-    follows={**IN_ENGINES, "KV802": CauseScope.CONTACT, "KV803": CauseScope.JOINT},
+    follows={**AT_REST, "KV802": CauseScope.CONTACT, "KV803": CauseScope.JOINT},
     needs=(not_loaded, nothing_moves, late),
 )
 def stays(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -286,7 +286,7 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
     blame=Blame.PHYSICS,
     engines=_RUNNING,
     feedback=FeedbackRow.AS_LOADED,
-    follows={**IN_ENGINES, "KV802": CauseScope.CONTACT, "KV803": CauseScope.CONTACT, "KV804": CauseScope.JOINT},
+    follows={**AT_REST, "KV802": CauseScope.CONTACT, "KV803": CauseScope.CONTACT, "KV804": CauseScope.JOINT},
     needs=(not_loaded, nothing_moves, late),
 )
 def moves(result: OpenCheck, context: AsLoadedContext) -> None:
