@@ -24,8 +24,8 @@ def test_a_check_is_explained_in_any_case(monkeypatch: pytest.MonkeyPatch, capsy
     add_checks(monkeypatch)
     text = said(capsys, "kv496")
     for part in (
-        "KV496  Doors & drawers of KV496",
-        FAMILIES["KV4"],
+        "KV896  Doors & drawers of KV896",
+        FAMILIES["KV8"],
         "error",
         "kinematics",
         "mujoco",

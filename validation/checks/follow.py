@@ -6,8 +6,6 @@ from kinematify.validation.check import CauseScope
 
 AT_REST = {"KV301": CauseScope.PAIR, "KV302": CauseScope.PAIR}
 """Two bodies are in each other as the file is."""
-ON_THE_WAY = {"KV312": CauseScope.JOINT, "KV310": CauseScope.JOINT, "KV311": CauseScope.JOINT}
-"""Exact geometry blocks a joint."""
 NOT_A_BODY = {
     "KV201": CauseScope.MODEL,
     "KV202": CauseScope.MODEL,
