@@ -55,7 +55,6 @@ def report_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("page")
     (folder / "door.urdf").write_text(_URDF)
     scene = view_data(read_robot(folder / "door.urdf", geometry="shown"), faces=1000, colors=_COLORS)
-    way = tuple(0.1 * k for k in range(16))
     pair = PairSummary(
         pair=("frame", "door"), reason="joined and in contact at rest", at_rest=0.0, tolerated=0.01,
         meets=(("hinge_1", 1.2, 0.03),),

@@ -167,6 +167,10 @@ class RawEngineModel(ABC):
     _file: Mapping[str, object]
     """What the code says of the file, by the names in the templates."""
 
+    def rename(self, path: str) -> None:
+        """Let the code open another file than the one that was loaded."""
+        self._file = {**self._file, "path": path}
+
     def lines_of_joints(self) -> str:
         """Return plain code of the engine that prints a joint in each line: its name, lower and upper limit."""
         return self.code.joints.format(**self._file, values=self._in_code(dict.fromkeys(self.joints, 0.0)))

@@ -68,15 +68,25 @@ def nothing_moves(context: AsLoadedContext) -> str | None:
 def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     """The untouched file, loaded with the engine's own defaults (`MjModel.from_xml_path`; `loadURDF` with a fixed
     base; `buildModelFromUrdf`), is there with every joint that moves, and with its limits. Like all of KV8xx it is an
-    error if it fails in every engine, or in one of those that `--engines` names, else a warning.
+    error if it fails in every engine, or in one of those that `--engines` names, else a warning. So is a file that an
+    engine opens only from a copy with absolute paths of its meshes; the other checks look at that copy then.
 
-    Why it matters: Everything else is said of a prepared copy; this is what users load.
+    Why it matters: This is what users load.
 
     Remedy: Do what the engine's message asks for. MuJoCo resolves no package:// and reads STL, OBJ and MSH only; it
     looks for meshes beside the file unless `<mujoco><compiler strippath="false"/></mujoco>` is in it.
     """
     if isinstance(context.loading, MovesFreely) and context.floats:
         return
+    if isinstance(context.bare, Unloadable) and not isinstance(context.loading, Unloadable):
+        result.find(
+            f"{context.title} does not open the file as it is: {context.bare}. It opens a copy with "
+            "absolute paths of the meshes, of which its other findings are.",
+            _remedy_of_loading(context, str(context.bare)),
+            severity=Severity.WARNING,
+            blame=Blame.ENGINE,
+            reproduction=context.bare.reproduction,
+        )
     if isinstance(context.loading, Unloadable):
         result.find(
             f"{context.title} does not open the file as it is: {context.loading}.",

@@ -31,7 +31,7 @@ def as_loaded_words(checks: Sequence[CheckResult]) -> str:
     parts = []
     for engine, opening in opened.items():
         title, found = ENGINES[engine].title, moved.get(engine)
-        if any(finding.joint is None for finding in opening.findings):
+        if "joints" not in opening.measured and opening.findings:
             parts.append(f"{title} does not open the file")
         elif found is not None and "right" in found.measured:
             joints = "" if parts and "joints move" in parts[0] else " joints move"
