@@ -13,9 +13,9 @@ from lxml import etree
 
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
-from kinematify.validation.formats.report_content import configuration, joint_range, measure, number, where
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.junit import as_junit
+from kinematify.validation.formats.report_content import configuration, joint_range, measure, number, where
 from kinematify.validation.formats.sarif import as_sarif
 from kinematify.validation.run.outcome import Outcome, Unusable, as_json_text
 from tests.reports import EVIL, add_checks, finding, full_report, report, result
@@ -227,7 +227,7 @@ def test_html_has_every_finding_once_and_filters_for_it() -> None:
     assert "They touch at rest." in page.text
     offered = {(a["name"], a["value"]) for tag, a in page.tags if tag == "input"}
     assert {("severity", str(card["data-severity"])) for card in cards} <= offered
-    assert {("blame", str(card["data-blame"])) for card in cards} <= offered
+    assert {("cause", str(card["data-cause"])) for card in cards} <= offered
     assert len(page.of_class("suppressed")) == 1
 
 
