@@ -65,7 +65,7 @@ def measured(name: str, text: str) -> Size:
 
 
 def packages(root: Path = ROOT) -> dict[str, Size]:
-    """Size of every package in a checkout by name, `product` among them; modules in `kinematify` itself count together."""
+    """Size of every package in a checkout by name, `product` among them; modules of `kinematify` itself are one."""
     found: dict[str, Size] = {"product": Size()}
     for path in sorted(path for top in TOPS for path in (root / top).rglob("*")):
         if path.suffix not in {".py", ".yaml", ".yml"} or not path.is_file() or "__pycache__" in path.parts:
