@@ -48,7 +48,7 @@ def test_json_of_several_models_is_a_line_each() -> None:
     assert [value["model"] for value in values] == ["models/door.urdf", "models/arm.xacro", "b.urdf"]
     assert [value["verdict"] for value in values] == ["fail", "unusable", "fail"]
     assert values[1]["error"] == UNUSABLE.message
-    assert {value["schema"] for value in values} == {1}
+    assert {value["schema"] for value in values} == {2}
 
 
 def suites(outcomes: list[Outcome]) -> Any:
