@@ -23,8 +23,8 @@ from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
 from kinematify.validation.lines import with_lines
-from kinematify.validation.run.loaded_findings import across_engines, confirm_on_raw_model, with_refusals
 from kinematify.validation.run.causes import with_causes
+from kinematify.validation.run.loaded_findings import across_engines, confirm_on_raw_model, with_refusals
 from kinematify.validation.run.opinions import evidence_before_blame
 from kinematify.validation.run.plan import (
     agreement_stage,
@@ -226,7 +226,7 @@ class _Run:
             self._take_end(end)
 
     def _use(self, request: StageRequest, engines: Sequence[str]) -> None:
-        """Let a robot use the object; it has time of its own."""
+        """Make a robot use the object; it has time of its own."""
         seconds = _task_seconds(request.settings)
         request = replace(request, deadline=seconds + _LEEWAY, suspects=self._suspects(), task_engines=tuple(engines))
         self._progress("task", 0.96)
@@ -357,7 +357,7 @@ def _has_error(result: CheckResult) -> bool:
 
 
 def _merged(before: JointSummary | None, now: JointSummary) -> JointSummary:
-    """What two stages know of one joint together."""
+    """Return what two stages know of one joint together."""
     if before is None:
         return now
     return replace(

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from kinematify.errors import ExitStatus
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
-from kinematify.validation.run.loaded_findings import as_loaded_words
 from kinematify.validation.run.causes import group_by_cause
+from kinematify.validation.run.loaded_findings import as_loaded_words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -69,7 +69,7 @@ class ValidationReport:
 
     @property
     def as_loaded(self) -> str:
-        """How many joints move in the untouched file, by engine; empty if no engine loaded it."""
+        """Return how many joints move in the untouched file, by engine; empty if no engine loaded it."""
         return as_loaded_words(self.checks)
 
     @property

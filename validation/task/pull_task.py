@@ -18,11 +18,11 @@ from kinematify.manipulation.execute import Execution, Loaded, execute, load
 from kinematify.manipulation.film import write_film
 from kinematify.manipulation.grasp import joint_at
 from kinematify.manipulation.kinematics import Arm
-from kinematify.manipulation.robot_place import object_box, standing_at
-from kinematify.manipulation.planning import PullPlan, depend, motion_of, plan_pull
-from kinematify.manipulation.plan_request import Failure, Hold
 from kinematify.manipulation.manipulator import robot_of
+from kinematify.manipulation.plan_request import Failure, Hold
+from kinematify.manipulation.planning import PullPlan, depend, motion_of, plan_pull
 from kinematify.manipulation.real_size import sizing, write_scaled
+from kinematify.manipulation.robot_place import object_box, standing_at
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.check import REGISTRY
@@ -93,7 +93,7 @@ class PullTask:
 
     @cached_property
     def plans(self) -> list[PullPlan]:
-        """What came of each joint, as long as there was time."""
+        """Return what came of each joint, as long as there was time."""
         found = []
         for joint in self.joints:
             if self.remaining <= 0.0:
@@ -109,7 +109,7 @@ class PullTask:
 
     @cached_property
     def worlds(self) -> list[Loaded]:
-        """What the engines load, for each plan that leads anywhere."""
+        """Return what the engines load, for each plan that leads anywhere."""
         model = self.request.work / OBJECT_FILE
         found = [motion_of(plan, self.arm.robot, model) for plan in self.plans]
         motions = [motion for motion in found if motion is not None]
