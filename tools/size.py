@@ -87,16 +87,12 @@ def ceilings(text: str) -> dict[str, Size]:
 
 
 def grown(before: dict[str, Size], now: dict[str, Size]) -> list[str]:
-    """Say which numbers of the product, benchmarks and tests are larger than before, one sentence each."""
-    return [
-        f"{name}: {new:,} {unit}, {old:,} before"
-        for name in ("product", "benchmarks", "tests")
-        if name in before and name in now
-        for unit, old, new in zip(
-            ("tokens", "classes", "bytes of YAML"), astuple(before[name]), astuple(now[name]), strict=True
-        )
-        if new > old
-    ]
+    """Say which numbers of the product are larger than before, one sentence each."""
+    if "product" not in before:
+        return []
+    units = ("tokens", "classes", "bytes of YAML")
+    numbers = zip(units, astuple(before["product"]), astuple(now["product"]), strict=True)
+    return [f"product: {new:,} {unit}, {old:,} before" for unit, old, new in numbers if new > old]
 
 
 def table(sizes: dict[str, Size]) -> str:
