@@ -32,7 +32,7 @@ class _Overlap:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _View:
-    """What one engine, or the exact geometry, sees."""
+    """Contacts that one engine, or the exact geometry, sees."""
 
     engine: str | None
     title: str
