@@ -5,7 +5,7 @@
         title="Zero lies within the limits",
         fails="Zero lies outside the limits",
         severity=Severity.NOTE,
-        blame=Blame.KINEMATICS,
+        cause=Cause.KINEMATICS,
     )
     def zero_outside(result: OpenCheck, physics: Physics) -> None:
         '''Zero is a value that the joint may take.
@@ -32,7 +32,7 @@ from kinematify.validation.finding import Finding, Severity, Status, not_finishe
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from kinematify.validation.finding import Blame
+    from kinematify.validation.finding import Cause
 
     CheckFunction = Callable[["OpenCheck", Any], None]
     Need = Callable[[Any], str | None]
@@ -50,7 +50,7 @@ _NOT_OURS = ("KV1", "KV2", "KV8")
 
 
 class FeedbackRow(StrEnum):
-    """What `kinematify refine` makes of a finding, a row of the table in `validation/run/feedback.py`."""
+    """Reaction of `kinematify refine` to a finding, a row of the table in `validation/run/feedback.py`."""
 
     AS_GIVEN = "none: the overlap is as given, no axis is the cause"
     INTO_PARENT = "against this line, this type and this parent; if one side is free, it is the opening one"
@@ -67,7 +67,7 @@ class FeedbackRow(StrEnum):
 
 
 class CauseScope(StrEnum):
-    """What a cause and what follows from it must both be about."""
+    """Subject that a cause and what follows from it must both be about."""
 
     MODEL = "the model"
     BODY = "a body in common"
@@ -88,8 +88,8 @@ class Check:
     """A few words that are true where it finds something."""
     severity: Severity
     """The worst that it reports, and what it reports where nothing else is said."""
-    blame: Blame
-    """What it usually blames."""
+    cause: Cause
+    """The usual cause."""
     engines: tuple[str, ...] = ()
     """Engines that it runs in; empty: none."""
     verifies: str
@@ -103,7 +103,7 @@ class Check:
     doubts: bool = False
     """Its findings put axis, place, type, parent or direction of a joint in doubt; a robot's task wants to know."""
     opinion: bool = False
-    """Its findings are what our own inference holds of the shapes; they blame nobody where no fact agrees."""
+    """Its findings are what our own inference holds of the shapes; they name no cause where no fact agrees."""
     follows: Mapping[str, CauseScope] = field(default_factory=dict)
     """Checks whose findings can be the cause of its own, and what both must be about; the first that fits is taken."""
     needs: tuple[Need, ...] = ()
@@ -143,7 +143,7 @@ class OpenCheck:
         remedy: str,
         *,
         severity: Severity | None = None,
-        blame: Blame | None = None,
+        cause: Cause | None = None,
         joint: str | None = None,
         link: str | None = None,
         pair: tuple[str, str] | None = None,
@@ -157,7 +157,7 @@ class OpenCheck:
     ) -> None:
         """Add a finding.
 
-        Severity, blame and engine are the check's unless given, see `Finding` for the rest.
+        Severity, cause and engine are the check's unless given, see `Finding` for the rest.
         """
         check = REGISTRY[self.id]
         names = [name for name in (joint, link, *(pair or ())) if name is not None]
@@ -167,7 +167,7 @@ class OpenCheck:
             Finding(
                 check=self.id,
                 severity=severity or check.severity,
-                blame=blame or check.blame,
+                cause=cause or check.cause,
                 message=message,
                 remedy=remedy,
                 joint=joint,
@@ -213,7 +213,7 @@ def check(
     title: str,
     fails: str,
     severity: Severity,
-    blame: Blame,
+    cause: Cause,
     engines: tuple[str, ...] = (),
     feedback: FeedbackRow | None = None,
     doubts: bool = False,
@@ -234,7 +234,7 @@ def check(
             title=title,
             fails=fails,
             severity=severity,
-            blame=blame,
+            cause=cause,
             engines=engines,
             feedback=feedback or (FeedbackRow.EXPORTER if id.startswith(_NOT_OURS) else None),
             doubts=doubts,

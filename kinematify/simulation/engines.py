@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class EngineEntry:
-    """What is known of an engine without loading it."""
+    """Entry of an engine, known without loading it."""
 
     name: str
     """As users write it; ``kinematify.simulation.NAME_engine`` has `load_raw`, and `open_world` if it `holds`."""

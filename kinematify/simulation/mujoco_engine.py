@@ -81,7 +81,7 @@ print(max(seen) - seen[0])
 
 
 class MujocoFile(RunningFile):
-    """See `RunningFile`: a file as `MjModel.from_xml_path` loads it."""
+    """Raw model: a file as `MjModel.from_xml_path` loads it."""
 
     code = Reproductions(
         joints=_JOINTS,
@@ -126,29 +126,29 @@ class MujocoFile(RunningFile):
         option.gravity[:] *= start.gravity
 
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         for done in range(every, count + 1, every):
             mujoco.mj_step(self._model, self._data, nstep=every)
             yield done
 
     def state(self) -> tuple[FloatArray, FloatArray]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         return self._data.qpos.copy(), self._data.qvel.copy()
 
     def set_state(self, q: FloatArray, v: FloatArray) -> None:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         self._data.qpos[:], self._data.qvel[:] = q, v
 
     def apply(self, joint: int, force: float) -> None:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         self._data.qfrc_applied[joint] = force
 
     def energy(self) -> tuple[float, float]:
-        """See `RunningFile`; of the state before the last step."""
+        """Implement `RunningFile`; of the state before the last step."""
         return float(self._data.energy[0]), float(self._data.energy[1])
 
     def touching(self) -> Iterator[tuple[str, str, float]]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         mujoco.mj_forward(self._model, self._data)
         for contact in self._data.contact:
             bodies = sorted(int(self._model.geom_bodyid[geom]) for geom in contact.geom)
@@ -163,7 +163,7 @@ class MujocoFile(RunningFile):
         return f"MuJoCo warns {', '.join(broken)}" if broken else None
 
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         self.begin(values, contacts=True)
         inverse = np.zeros((self._model.nv, self._model.nv))
         mujoco.mj_solveM(self._model, self._data, inverse, np.eye(self._model.nv))

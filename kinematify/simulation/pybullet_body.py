@@ -167,7 +167,7 @@ class PybulletBody:
             self.client.setJointMotorControl2(self.body, index, bullet.VELOCITY_CONTROL, force=0.0)
 
     def act(self, pairs: Iterable[tuple[int, int]], *, on: bool) -> None:
-        """Let the links of these pairs (indices in the document) act on each other, or not."""
+        """Make the links of these pairs (indices in the document) act on each other, or not."""
         for first, second in pairs:
             self.client.setCollisionFilterPair(
                 self.body, self.body, int(self.link[first]), int(self.link[second]), int(on)

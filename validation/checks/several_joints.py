@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.validation.check import CauseScope, check
-from kinematify.validation.finding import Blame, Severity, not_finished
+from kinematify.validation.finding import Cause, Severity, not_finished
 from kinematify.validation.geometry.formatting import configuration
 from kinematify.validation.geometry.mirror_pairs import twins_at_odds
 
@@ -26,7 +26,7 @@ def _two_joints(look: GeometryContext) -> str | None:
     title="Configurations of all joints are free",
     fails="Configurations of all joints collide",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     follows={"KV301": CauseScope.PAIR, "KV311": CauseScope.PAIR},
     needs=(lambda look: not_finished("time ran out before it") if look.random is None else None,),
 )
@@ -68,7 +68,7 @@ def free_configurations(result: OpenCheck, look: GeometryContext) -> None:
     title="Twins move alike",
     fails="Twins do not move alike",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     needs=(_two_joints,),
 )
 def unlike_twins(result: OpenCheck, look: GeometryContext) -> None:

@@ -1,4 +1,4 @@
-"""What the checks of the untouched file say together, over all engines that loaded it (KV8xx), and about others."""
+"""Joint result of the checks of the untouched file over all engines that loaded it (KV8xx)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
-from kinematify.validation.finding import Blame, Severity, Status
+from kinematify.validation.finding import Cause, Severity, Status
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -81,7 +81,7 @@ def with_refusals(checks: Sequence[CheckResult]) -> list[CheckResult]:
 def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> list[CheckResult]:
     """Make errors of the untouched file warnings where another engine has none, and say which.
 
-    What blames an engine and only one shows is a note then, and a warning where no other engine runs the file.
+    What is laid to an engine and only one shows is a note then, and a warning where no other engine runs the file.
 
     Args:
         checks: All results.
@@ -117,7 +117,7 @@ def _across(finding: Finding, errors: Sequence[Finding], ran: Mapping[str, set[s
     works = [entry.title for name, entry in ENGINES.items() if name in ran.get(finding.check, set()) - failing]
     if finding.severity is not Severity.ERROR:
         return finding
-    alone = finding.blame is Blame.ENGINE and not any(
+    alone = finding.cause is Cause.ENGINE and not any(
         other.check == finding.check and other.engine != finding.engine for other in errors
     )
     if not works:
