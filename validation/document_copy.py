@@ -25,6 +25,7 @@ _SHAPES = ("KV138", "KV139", "KV140", "KV141", "KV142", "KV150", "KV151", "KV152
 """Checks after whose errors a model is read without the shape that they name."""
 _JOINTS = ("KV127", "KV128", "KV130", "KV131", "KV134", "KV136", "KV137")
 """The same with a fixed joint in place of the one that they name."""
+_NO_LIMIT = "KV136"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,6 +58,8 @@ def readable_copy(request: StageRequest, errors: Iterable[Finding], name: str) -
     robot = parse_description(request.urdf)
     shapes, joints, only_visuals = set[str](), set[str](), True
     for finding in errors:
+        if finding.check == _NO_LIMIT and _turns(robot, finding.joint):
+            continue  # it is read as continuous
         if finding.check in _JOINTS and finding.joint is not None:
             _fix_joint(robot, finding.joint)
             joints.add(finding.joint)
@@ -82,7 +85,8 @@ def resolved_copy(request: StageRequest, name: str) -> Path:
     compiler = extension.find("compiler")
     compiler = etree.SubElement(extension, "compiler") if compiler is None else compiler
     compiler.set("strippath", "false")
-    compiler.attrib.pop("meshdir", None)
+    if "meshdir" in compiler.attrib:
+        del compiler.attrib["meshdir"]
     path = request.work / name
     _write_resolved(robot, request, path)
     return path
@@ -96,6 +100,10 @@ def _write_resolved(robot: _Element, request: StageRequest, path: Path) -> None:
         except DescriptionError:
             continue  # the text has been checked: what is missing was reported
     path.write_bytes(etree.tostring(robot, encoding="utf-8"))
+
+
+def _turns(robot: _Element, name: str | None) -> bool:
+    return any(joint.get("name") == name and joint.get("type") == "revolute" for joint in robot.findall("joint"))
 
 
 def _fix_joint(robot: _Element, name: str) -> None:
@@ -113,7 +121,7 @@ def _drop_shapes(robot: _Element, finding: Finding) -> set[str]:
         if link.get("name") != finding.link:
             continue
         shapes = [*link.findall("visual"), *link.findall("collision")]
-        named = [shape for shape in shapes if any(item.sourceline == finding.line for item in shape.iter())]
+        named = [shape for shape in shapes if finding.line in [element.sourceline for element in shape.iter()]]
         files = {mesh.get("filename") for shape in named for mesh in shape.iter("mesh")}
         for shape in shapes:
             if shape in named or {mesh.get("filename") for mesh in shape.iter("mesh")} & files:

@@ -146,6 +146,17 @@ class LeaderMechanism:
                 values[:, row] = joint.mimic.multiplier * values[:, column[joint.mimic.joint]] + joint.mimic.offset
         return values
 
+    def sweep(self, samples: int) -> FloatArray:
+        """Rows of leaders: rest, then each leader from end to end while the others rest.
+
+        Returns:
+            Shape (1 + leaders * samples, leaders) [rad or m].
+        """
+        rows = np.tile(self.rest, (1 + len(self.travels) * samples, 1))
+        for k, travel in enumerate(self.travels):
+            rows[1 + k * samples : 1 + (k + 1) * samples, k] = np.linspace(travel.lower, travel.upper, samples)
+        return rows
+
     @cached_property
     def _curved(self) -> tuple[int, ...]:
         """Rows of joints that follow along a curve, or mimic one that does, each after what it follows."""

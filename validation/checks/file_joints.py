@@ -199,8 +199,7 @@ def missing_limits(result: OpenCheck, urdf: Urdf) -> None:
                 + (', or write type="continuous".' if turns else "."),
                 joint=joint.name,
                 unit=unit,
-                line=line_of(joint.element),
-                harmless=turns,  # it is read as continuous
+                line=line_of(joint.element),  # it is read as continuous
             )
         elif limit.get("lower") is None and limit.get("upper") is None:
             result.find(

@@ -26,7 +26,7 @@ from kinematify.validation.isolation import load_imports, run_stages
 from kinematify.validation.lines import with_lines
 from kinematify.validation.run.causes import with_causes
 from kinematify.validation.run.loaded_findings import across_engines, with_refusals
-from kinematify.validation.run.opinions import demote_inference_findings
+from kinematify.validation.run.opinions import demote_inference_findings, join_facts
 from kinematify.validation.run.plan import (
     as_loaded_stages,
     asset_stage,
@@ -288,7 +288,9 @@ class _Run:
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
         results = [self._result(key) for key in keys(list(self.checks.values()))]
         robot = _bodies(self.path)
-        results = demote_inference_findings(across_engines(with_refusals(with_lines(results, robot)), self.engines))
+        results = demote_inference_findings(
+            join_facts(across_engines(with_refusals(with_lines(results, robot)), self.engines))
+        )
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)
         checks = with_causes(checks, robot)
         facts = environment(

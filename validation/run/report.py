@@ -73,7 +73,12 @@ class ValidationReport:
     @property
     def exit_status(self) -> int:
         """1 with an error, else 3 if a check was not finished, else 0."""
-        if self.verdict == "fail":
+        return self.status_at(Severity.ERROR)
+
+    def status_at(self, least: Severity) -> int:
+        """1 with a finding of at least a severity, else 3 if a check was not finished, else 0."""
+        order = list(Severity)
+        if any(order.index(finding.severity) <= order.index(least) for finding in self.counted):
             return ExitStatus.FAILURES
         return ExitStatus.FAULT if self.unfinished else ExitStatus.FINE
 
