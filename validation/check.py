@@ -154,15 +154,17 @@ class OpenCheck:
         unit: str | None = None,
         line: int | None = None,
         reproduction: str | None = None,
+        harmless: bool = False,
     ) -> None:
         """Add a finding.
 
-        Severity, cause and engine are the check's unless given, see `Finding` for the rest.
+        Severity, cause and engine are the check's unless given, see `Finding` for the rest; `harmless` is for an error
+        after which later stages may read the file all the same.
         """
         check = REGISTRY[self.id]
         names = [name for name in (joint, link, *(pair or ())) if name is not None]
         message, remedy = (_with_numbers_quoted(text, names) for text in (message, remedy))
-        self.harmful |= (severity or check.severity) is Severity.ERROR
+        self.harmful |= (severity or check.severity) is Severity.ERROR and not harmless
         self.findings.append(
             Finding(
                 check=self.id,

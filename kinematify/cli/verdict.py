@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import textwrap
 from collections import Counter
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -200,8 +202,9 @@ def _consequences(findings: Sequence[Finding]) -> list[str]:
 
 def _heading(block: FindingBlock, model: str) -> str:
     """File and line, as compilers name them, with severity, check and cause."""
-    line = block.findings[0].line
-    place = printable(model) if line is None else f"{printable(model)}:{line}"
+    line, path = block.findings[0].line, Path(model)
+    near = not path.is_absolute() or path.is_relative_to(Path.cwd())
+    place = printable(os.path.relpath(path) if near else path.name) + (f":{line}" if line else "")
     severity = click.style(block.severity.value, fg=_SEVERITY_COLORS[block.severity], bold=True)
     return f"{place}: {severity} {block.title} {block.cause}"
 

@@ -184,7 +184,7 @@ def test_no_report_is_longer_than_it_may_be(
     run(["validate", str(chest)])
     lines = capsys.readouterr().out.splitlines()
     assert 50 < len(lines) <= 60
-    shown = sum(line.startswith("error KV396") for line in lines)
+    shown = sum(line.startswith("chest.urdf:7: error KV396") for line in lines)
     assert f"{200 - shown} more findings: --all lists them." in lines
     run(["validate", str(chest), "--all"])
     text = capsys.readouterr().out
@@ -207,7 +207,8 @@ def test_what_follows_from_a_finding_is_reported_under_it(
 ) -> None:
     cause, code = finding(), "import mujoco\nmodel = mujoco.MjModel.from_xml_path('door.urdf')\nprint(model)"
     stops = [
-        finding(check="KV896", engine="mujoco", message="It stops.", cause=cause, reproduction=code) for _ in range(2)
+        finding(check="KV896", engine="mujoco", message="It stops.", follows_from=cause, reproduction=code)
+        for _ in range(2)
     ]
     answered["chest.urdf"] = report(result(cause), result(*stops, check="KV896", engine="mujoco"))
     run(["validate", str(chest)])

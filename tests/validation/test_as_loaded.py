@@ -84,24 +84,10 @@ def test_a_good_cabinet_passes(tmp_path: Path, engine: str) -> None:
     assert counts(result) == {"joints": 2.0, "right": 2.0}
 
 
-def test_pinocchio_reads_joints_limits_and_overlaps(tmp_path: Path) -> None:
+def test_pinocchio_reads_joints_and_limits(tmp_path: Path) -> None:
     good = reported(cabinet(), tmp_path, "pinocchio").results
-    assert {check: r.status for check, r in good.items()} == {"KV801": Status.PASS, "KV802": Status.PASS}
+    assert {check: r.status for check, r in good.items()} == {"KV801": Status.PASS}
     assert good["KV801"].measured == {"joints": 2.0, "read": 2.0}
-    before_the_door = Box(size=(0.02, 0.1, 0.1), at=(0.21, 0.25, 0.0))
-    (finding,) = (
-        reported(collision(cabinet(), "drawer", before_the_door), tmp_path, "pinocchio").results["KV802"].findings
-    )
-    assert finding.pair == ("door", "drawer")
-    assert finding.value == pytest.approx(0.015, abs=1e-6)
-    assert printed(finding.reproduction) == pytest.approx([0.015], abs=1e-6)
-    gone = tmp_path / "gone.obj"
-    text = cabinet().write(tmp_path).read_text().replace('<box size="0.02 0.3 0.4"/>', f'<mesh filename="{gone}"/>')
-    (tmp_path / "model.urdf").write_text(text)
-    request = replace(request_of(cabinet(), tmp_path), urdf=tmp_path / "model.urdf")
-    (tmp_path / "model.urdf").write_text(text)
-    (refused,) = tell(partial(loaded_file.run, engine="pinocchio"), request).results["KV801"].findings
-    assert "gone.obj" in refused.message
 
 
 @pytest.mark.parametrize("engine", ["mujoco"])  # PyBullet lets no link collide with its parent

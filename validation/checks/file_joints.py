@@ -198,6 +198,7 @@ def missing_limits(result: OpenCheck, urdf: Urdf) -> None:
                 f'Add <limit lower="..." upper="..." effort="..." velocity="..."/> with the range in {unit}'
                 + (', or write type="continuous".' if turns else "."),
                 joint=joint.name,
+                harmless=turns,  # it is read as continuous
                 unit=unit,
                 line=line_of(joint.element),  # it is read as continuous
             )

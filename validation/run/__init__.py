@@ -180,7 +180,10 @@ class _Run:
         self._progress("pre-check", 0.05)
         copy = self._readable(asset_request)
         if not usable and copy is None:
-            self._explain_rest(Status.BLOCKED, f"fix {self._ids(self._broken())} first: no engine may read the file")
+            self._explain_rest(
+                Status.BLOCKED,
+                f"the pre-check found errors that keep the file from being read: {self._ids(self._broken())}",
+            )
             return
         spent, late = self._read_meshes(asset_request, copy, [*later, *plain])
         if self._fault_of_meshes() is not None and not late and (again := self._readable(asset_request)) is not None:
@@ -194,7 +197,7 @@ class _Run:
         request = replace(request, deadline=max(0.0, request.deadline - spent))
         fault = self._fault_of_meshes() if copy is None else None
         if copy is not None and not copy.only_visuals:
-            fault = f"fix {self._ids(self._broken())} first: what collides or moves cannot be read"
+            fault = f"the pre-check found errors in what collides or moves: {self._ids(self._broken())}"
         if fault is not None:
             self._explain_rest(Status.BLOCKED, fault)
             return
