@@ -121,7 +121,9 @@ def _drop_shapes(robot: _Element, finding: Finding) -> set[str]:
         if link.get("name") != finding.link:
             continue
         shapes = [*link.findall("visual"), *link.findall("collision")]
-        named = [shape for shape in shapes if finding.line in [element.sourceline for element in shape.iter()]]
+        named = [
+            shape for shape in shapes if str(finding.line) in {str(element.sourceline) for element in shape.iter()}
+        ]
         files = {mesh.get("filename") for shape in named for mesh in shape.iter("mesh")}
         for shape in shapes:
             if shape in named or {mesh.get("filename") for mesh in shape.iter("mesh")} & files:
