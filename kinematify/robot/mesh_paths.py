@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 from functools import lru_cache
@@ -22,6 +23,8 @@ CAD_SUFFIXES = (".step", ".stp")
 _SHOWN = 3
 _PACKAGE_PATHS = ("ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH")
 """Variables of the environment that name folders of packages."""
+_NEAR, _MOST_BESIDE = 3, 300
+"""Folders above a document in which clones are looked for, and entries of each that are looked at."""
 _MANIFEST_BYTES = 100_000
 _LEVELS = 4
 """Folders above a document that may be its package under another name: ``urdf/robots/arm/`` is the deepest seen."""
@@ -108,7 +111,7 @@ def mesh_candidates(filename: str, folder: Path, package_dirs: Sequence[Path], w
 
 
 def _package_candidates(package: str, inside: str, folder: Path, package_dirs: Sequence[Path]) -> list[Path]:
-    """What is given comes first; then the folders above, by the name in their manifest, then by their own; then ROS.
+    """Find packages: given folders first; then those above, by the name in their manifest, then by their own; then ROS.
 
     ``--package-dir`` may be the package or its parent.
     """
@@ -119,6 +122,7 @@ def _package_candidates(package: str, inside: str, folder: Path, package_dirs: S
         if package in (given.name, _declared_name(given)):
             candidates.append(given / inside)
     candidates += [place / inside for place in above if _declared_name(place) == package]
+    candidates += [beside / inside for beside in _cloned_beside(folder, package)]
     for place in above:
         if place.name == package:
             candidates.append(place / inside)
@@ -126,6 +130,18 @@ def _package_candidates(package: str, inside: str, folder: Path, package_dirs: S
     candidates += [place / inside for place in _ros_packages(package)]
     # Clones and single exported robots keep the package's tree but not its name.
     return candidates + [place / inside for place in (*package_dirs, *above[:_LEVELS])]
+
+
+def _cloned_beside(folder: Path, package: str) -> list[Path]:
+    """Packages near a document by the name in their manifest: clones are often in folders of other names."""
+    found = []
+    for place in folder.parents[:_NEAR]:
+        try:
+            beside = sorted(item for item in itertools.islice(place.iterdir(), _MOST_BESIDE) if item.is_dir())
+        except OSError:
+            continue
+        found += [item for item in beside if item.name != package and _declared_name(item) == package]
+    return found
 
 
 def _ros_packages(package: str) -> list[Path]:

@@ -68,7 +68,7 @@ class GeometrySource:
         try:
             return self._shape(element, where)
         except NoShape as error:
-            self.omitted[f"A {element.tag} is left out (line {line_of(element)}). {error}"] = None
+            self.omitted[f"A {element.tag} is omitted (line {line_of(element)}). {error}"] = None
             return None
 
     def is_usable(self, element: _Element) -> bool:
@@ -130,7 +130,7 @@ class GeometrySource:
 
     @property
     def states_up_axis(self) -> bool:
-        """Whether a mesh that was read states that another axis than z points up."""
+        """True if a mesh that was read states that another axis than z points up."""
         return any(mesh.up for mesh in self.cache.values() if not isinstance(mesh, str))
 
     def resolved(self, filename: str, where: str) -> Path:

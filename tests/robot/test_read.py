@@ -221,7 +221,7 @@ def test_what_has_no_usable_geometry_is_left_out_with_a_note(tmp_path: Path, tag
     robot = read_robot(urdf(tmp_path, link("arm", f"{BOX}<{tag}>{inside}</{tag}>")))
     assert robot.links[0].has_geometry
     assert len(robot.notes) == 1
-    assert robot.notes[0].startswith(f"A {tag} is left out (line 1). ")
+    assert robot.notes[0].startswith(f"A {tag} is omitted (line 1). ")
     assert "link arm" in robot.notes[0]
     assert re.search(note, robot.notes[0])
 

@@ -14,7 +14,7 @@ from kinematify.robot.mesh_paths import MESH_SUFFIXES, find_mesh, near_mesh
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
 from kinematify.validation.document import shown
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -38,9 +38,11 @@ class _Reference:
     """None where there is no such file."""
     fault: str
     """Why there is none."""
+    collides: bool
+    """It belongs to a collision element."""
 
 
-@check("KV141", title="Mesh files exist", fails="A mesh file is missing", severity=Severity.ERROR, blame=Blame.ASSET)
+@check("KV141", title="Mesh files exist", fails="A mesh file is missing", severity=Severity.ERROR, cause=Cause.ASSET)
 def missing_files(result: OpenCheck, urdf: Urdf) -> None:
     """Every file name leads to a file, through packages where it says so; for what is only seen it is a warning. All
     else is checked without the element.
@@ -86,11 +88,11 @@ def _remedy(filename: str) -> str:
     title="Mesh formats can be read",
     fails="A mesh format cannot be read everywhere",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
-    """Every mesh is of a format that is read here; for what is only seen it is a warning. Formats that MuJoCo does not
-    read are a note.
+    """Every mesh is of a format that is read here, a warning where only a visual is not, which the other checks then do
+    without; formats that MuJoCo does not read are a note.
 
     Why it matters: Each reader knows other formats; what it does not know it drops or refuses.
 
@@ -126,7 +128,7 @@ def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
     title="Mesh files have names of their own",
     fails="Mesh files share a name",
     severity=Severity.NOTE,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def repeated_base_names(result: OpenCheck, urdf: Urdf) -> None:
     """No two different mesh files have the same name without folder and suffix.
@@ -159,7 +161,7 @@ def repeated_base_names(result: OpenCheck, urdf: Urdf) -> None:
     title="Mesh paths hold elsewhere",
     fails="Mesh paths hold on one machine only",
     severity=Severity.NOTE,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def bound_paths(result: OpenCheck, urdf: Urdf) -> None:
     """No mesh path is absolute or written with backslashes.
@@ -192,9 +194,13 @@ def _references(urdf: Urdf) -> Iterator[_Reference]:
             filename = mesh.get("filename") or ""
             if filename.strip():
                 path, fault = _found(filename, link, urdf)
-                collides = element.tag == "collision"
                 yield _Reference(
-                    link=link, filename=filename, line=line_of(mesh), collides=collides, path=path, fault=fault
+                    link=link,
+                    filename=filename,
+                    line=line_of(mesh),
+                    path=path,
+                    fault=fault,
+                    collides=element.tag == "collision",
                 )
 
 
