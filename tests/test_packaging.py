@@ -124,7 +124,7 @@ def declared(extra: str | None = None) -> set[str]:
 
 
 def test_the_doctor_knows_every_declared_package() -> None:
-    extras = ("bench", "cad", "view", "drake", "newton", "cloud", "ray")
+    extras = ("bench", "cad", "cloud", "drake", "newton", "paper", "pinocchio", "ray", "usd")
     assert set(MODULES) == declared().union(*map(declared, extras))
 
 
@@ -134,7 +134,7 @@ def test_every_import_of_the_package_is_declared() -> None:
     providers |= {"pydrake": {"drake"}}  # the name of its module is not its own
     providers |= {"newton": {"newton"}, "warp": {"newton"}}  # Newton brings Warp, and neither is part of `dev`
     providers |= {"manifold3d": {"manifold3d"}}  # a bare extension module, which the metadata does not list
-    extras = (None, "bench", "fit", "view", "drake", "newton", "ray", "rl")
+    extras = (None, "bench", "drake", "fit", "newton", "paper", "pinocchio", "ray", "rl", "usd")
     allowed = {normalised(name) for extra in extras for name in declared(extra)}
     missing = set()
     for folder, _, files in os.walk(ROOT / "kinematify", followlinks=True):

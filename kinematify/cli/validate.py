@@ -41,8 +41,7 @@ if TYPE_CHECKING:
 @click.option(
     "--engines",
     metavar="LIST",
-    default="mujoco,pybullet,pinocchio",
-    show_default=True,
+    show_default="all that are installed",
     help="Engines to run, separated by commas; drake can be added; none: only file and geometry.",
 )
 @click.option(
@@ -113,7 +112,7 @@ def command(
     package_dirs: tuple[Path, ...],
     checks: str | None,
     skip: str | None,
-    engines: str,
+    engines: str | None,
     suppress: Path | None,
     suggest_accept: Path | None,
     budget: float | None,
@@ -210,9 +209,11 @@ def _matching(patterns: str) -> frozenset[str]:
     return frozenset(check for check in CHECKS if any(fnmatchcase(check, pattern) for pattern in known))
 
 
-def _engines(words: str) -> tuple[str, ...]:
-    from kinematify.simulation.engines import ENGINES
+def _engines(words: str | None) -> tuple[str, ...]:
+    from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
 
+    if words is None:
+        return DEFAULT_ENGINES
     chosen = [word.strip().lower() for word in words.split(",")] if words.strip().lower() not in ("", "none") else []
     unknown = [word for word in chosen if word not in ENGINES]
     if unknown:

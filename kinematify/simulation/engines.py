@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from kinematify.errors import EnvironmentFault
-from kinematify.versions import package_versions
+from kinematify.versions import is_installed, not_installed, require
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -54,6 +54,11 @@ class EngineEntry:
     """True: it may be loaded only where what is printed goes to a file."""
 
     @property
+    def packages(self) -> tuple[str, ...]:
+        """Distributions that its module imports."""
+        return (self.package, "coal") if self.package == "pin" else (self.package,)
+
+    @property
     def module(self) -> str:
         """Name of its module."""
         return f"kinematify.simulation.{self.name}_engine"
@@ -80,8 +85,10 @@ _ENTRIES = (
 )
 ENGINES = {entry.name: entry for entry in _ENTRIES}
 """Keyed by name."""
-DEFAULT_ENGINES = tuple(name for name, engine in ENGINES.items() if engine.extra is None)
-"""Engines that every installation has; FCL and the exact geometry are always there."""
+DEFAULT_ENGINES = tuple(
+    name for name, engine in ENGINES.items() if engine.extra is None and is_installed(engine.package)
+)
+"""Engines that run unless others are asked for: those that are installed."""
 
 
 def engines_that_hold(hold: str) -> tuple[str, ...]:
@@ -95,14 +102,15 @@ def require_engine(name: str) -> None:
     Raises:
         EnvironmentFault: It is not installed.
     """
+    require(ENGINES[name].title, *ENGINES[name].packages)
+
+
+def why_not_run(name: str) -> str:
+    """Return the reason why an engine that was not among the chosen ones has no results."""
     engine = ENGINES[name]
-    if package_versions((engine.package,))[engine.package] == "missing":
-        raise EnvironmentFault(_missing(engine, f"the package {engine.package} is not installed"))
-
-
-def _missing(engine: EngineEntry, why: str) -> str:
-    install = f'pip install "kinematify[{engine.extra}]"' if engine.extra else "pip install kinematify"
-    return f"{engine.title} was asked for and cannot be loaded: {why}. Install it: {install}"
+    if is_installed(engine.package):
+        return "the engine was not asked for"
+    return not_installed(f"{engine.title} did not run: it", *engine.packages)
 
 
 def open_engine(name: str, settings: EngineSettings, log: Path) -> Engine:
@@ -154,5 +162,6 @@ def _class_of(name: str) -> type[Engine]:
     try:
         module = importlib.import_module(ENGINES[name].module)
     except ImportError as error:
-        raise EnvironmentFault(_missing(ENGINES[name], str(error))) from error
+        engine = ENGINES[name]
+        raise EnvironmentFault(f"{not_installed(engine.title, *engine.packages)} ({error})") from error
     return cast("type[Engine]", getattr(module, f"{name.capitalize()}Engine"))

@@ -434,17 +434,6 @@ def test_no_time_is_refused() -> None:
         refine(inferred("drawer"), seconds=0.0)
 
 
-def test_a_missing_engine_ends_with_its_own_status_and_changes_nothing(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    write_inference(mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0)), tmp_path / "out", preview=False)
-    before = file_hashes(tmp_path / "out")
-    monkeypatch.setitem(ENGINES, "pybullet", replace(ENGINES["pybullet"], package="absent"))
-    assert run(["refine", str(tmp_path / "out"), "--force", "--tier", "engines", "--no-preview"]) == 3
-    assert "PyBullet was asked for" in capsys.readouterr().err
-    assert file_hashes(tmp_path / "out") == before
-
-
 def test_ctrl_c_in_the_middle_of_a_trial_keeps_the_best_round_and_a_whole_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -17,14 +17,14 @@ from kinematify.config.validation import load_settings
 from kinematify.errors import DescriptionError
 from kinematify.manipulation.plan_request import PriorFinding
 from kinematify.robot.read import read_robot
-from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine
+from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine, why_not_run
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
 from kinematify.validation.lines import with_lines
-from kinematify.validation.run.loaded_findings import across_engines, confirm_on_raw_model, with_refusals
 from kinematify.validation.run.causes import with_causes
+from kinematify.validation.run.loaded_findings import across_engines, confirm_on_raw_model, with_refusals
 from kinematify.validation.run.opinions import evidence_before_blame
 from kinematify.validation.run.plan import (
     agreement_stage,
@@ -40,6 +40,7 @@ from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.stages.precheck import precheck
 from kinematify.validation.summary import JointCurve, JointSummary, PairTable
 from kinematify.validation.suppression import suppress
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -75,8 +76,8 @@ def validate(
         package_dirs: Where packages lie (``package://``).
         settings: Thresholds and budgets; the shipped ones if absent.
         selected: Ids of the checks to run; all if absent. Those of file and meshes always run, and their errors count.
-        engines: Of `kinematify.simulation.engines.ENGINES`; checks of others that every installation has are reported
-            as skipped.
+        engines: Of `kinematify.simulation.engines.ENGINES`; all that are installed if absent. Checks of others are
+            reported as skipped, with the reason.
         suppressions: Findings that do not count.
         task: What a robot is to do with the object (KV7xx); without one these checks are not in the report.
         workers: Processes at a time; as many as there are cores if absent.
@@ -87,10 +88,12 @@ def validate(
 
     Raises:
         InputError: `path` is not a URDF at all (missing, unreadable, binary, xacro, MJCF).
-        EnvironmentFault: An engine was asked for that is not installed.
+        EnvironmentFault: An engine was asked for that is not installed, or a task without what plans it.
     """
     for engine in engines:
         require_engine(engine)
+    if task is not None:
+        require("A robot arm", "pin", "coal", "ompl")
     chosen = tuple(engine for engine in ENGINES if engine in engines)
     checks = _checks(task, chosen)
     wanted = frozenset(checks) if selected is None else frozenset(checks) & frozenset(selected)
@@ -128,7 +131,7 @@ _LEEWAY = 20.0
 
 def _checks(task: TaskRequest | None, engines: Sequence[str]) -> dict[str, Check]:
     """Checks of the report; those of a task and of engines that not every installation has only when asked for."""
-    known = {None, *DEFAULT_ENGINES, *engines}
+    known = {None, *(name for name, engine in ENGINES.items() if engine.extra is None), *engines}
     return {
         name: replace(check, engines=tuple(engine for engine in check.engines if engine in known))
         for name, check in CHECKS.items()
@@ -196,11 +199,8 @@ class _Run:
         for number, end in enumerate(run_stages(later, request, workers=workers)):
             self._take_end(end)
             self._progress(end.stage.name, 0.15 + 0.8 * (number + 1) / len(later))
-        self._explain(
-            [key for key in self._missing() if key[1] in set(ENGINES) - set(self.engines)],
-            Status.SKIPPED,
-            "the engine was not asked for",
-        )
+        for name in set(ENGINES) - set(self.engines):
+            self._explain([key for key in self._missing() if key[1] == name], Status.SKIPPED, why_not_run(name))
         self._load_plainly(plain, request, workers)
         self._compare(request, self.engines)
         if self.task is not None:
