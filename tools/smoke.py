@@ -1,8 +1,8 @@
 """Try the installed package as a user does: `PYTHON tools/smoke.py`; a minute, nothing of a checkout is imported.
 
-A sentence, the example, the verdict of every engine that is installed and the reason of every other one, an environment,
-the viewer, and the message about a package that is missing. CI runs it with every Python, with the oldest and the newest
-MuJoCo and with the oldest version of every dependency.
+A sentence, the example, the verdict of every engine that is installed and the reason of every other one, an
+environment, the viewer, and the message about a package that is missing. CI runs it with every Python, with the oldest
+and the newest MuJoCo and with the oldest version of every dependency.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ for _ in range(20):
 assert env.observation_space.contains(observation), observation
 """
 VIEWER = """import kinematify
-with_window = kinematify.load("out/example").show(port=0)
-assert with_window.url.startswith("http://"), with_window.url
-with_window.close()
+window = kinematify.load("out/example").show(port=0)
+assert window.url.startswith("http://"), window.url
+window.close()
 """
 
 
@@ -54,7 +54,7 @@ def main() -> None:
         run("the viewer", [sys.executable, "-c", VIEWER])
         if find_spec("torch") is None:
             said = command("infer", str(EXAMPLE), "-o", "out/paper", "--config", "paper", status=2)
-            assert "torch" in said and " install " in said, said
+            assert " needs torch, not installed here. Run: " in said, said
     print(f"All of it works: {time.perf_counter() - start:.0f} s")
 
 
@@ -75,13 +75,13 @@ def run(name: str, words: list[str], *, status: int = 0) -> str:
 
 def check_engines(report: dict, required: set[str]) -> None:
     """An installed engine has results; one that is not says why, and which command installs it."""
-    checks = [check for model in report["models"] for check in model["checks"]]
+    checks = report["checks"]
     for engine, module in ENGINES.items():
         mine = [check for check in checks if check["engine"] == engine]
         ran = [check for check in mine if check["status"] in ("pass", "fail")]
         if find_spec(module) is None:
             assert engine not in required, f"{engine} is not installed"
-            assert all(" install " in check["reason"] for check in mine if not ran) and not ran, mine
+            assert all("not installed here" in check["reason"] for check in mine), mine
         else:
             assert ran, f"{engine} is installed and has no result: {mine}"
 

@@ -33,7 +33,6 @@ from kinematify.refinement.hints import parse_hints, with_hints
 from kinematify.refinement.joint_plan import Plan
 from kinematify.refinement.simulate import Simulator
 from kinematify.robot.joint_type import JointType
-from kinematify.simulation.engines import ENGINES
 from kinematify.validation.failure_rates import LINE, TYPE, shipped_rates
 from kinematify.validation.finding import Severity
 from tests.objects import BUILDERS
