@@ -5,7 +5,7 @@
         title="Zero lies within the limits",
         fails="Zero lies outside the limits",
         severity=Severity.NOTE,
-        blame=Blame.KINEMATICS,
+        cause=Cause.KINEMATICS,
     )
     def zero_outside(result: OpenCheck, physics: Physics) -> None:
         '''Zero is a value that the joint may take.
@@ -33,7 +33,7 @@ from kinematify.validation.finding import Finding, Severity, Status, not_finishe
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from kinematify.validation.finding import Blame
+    from kinematify.validation.finding import Cause
 
     CheckFunction = Callable[["OpenCheck", Any], None]
     Need = Callable[[Any], str | None]
@@ -59,7 +59,7 @@ _NOT_OURS = ("KV1", "KV2", "KV6", "KV8")
 
 
 class FeedbackRow(StrEnum):
-    """What `kinematify refine` makes of a finding, a row of the table in `validation/run/feedback.py`."""
+    """Reaction of `kinematify refine` to a finding, a row of the table in `validation/run/feedback.py`."""
 
     AS_GIVEN = "none: the overlap is as given, no axis is the cause"
     INTO_PARENT = "against this line, this type and this parent; if one side is free, it is the opening one"
@@ -80,7 +80,7 @@ class FeedbackRow(StrEnum):
 
 
 class CauseScope(StrEnum):
-    """What a cause and what follows from it must both be about."""
+    """Subject that a cause and what follows from it must both be about."""
 
     MODEL = "the model"
     BODY = "a body in common"
@@ -101,8 +101,8 @@ class Check:
     """A few words that are true where it finds something."""
     severity: Severity
     """The worst that it reports, and what it reports where nothing else is said."""
-    blame: Blame
-    """What it usually blames."""
+    cause: Cause
+    """The usual cause."""
     engines: tuple[str, ...] = ()
     """Engines that it runs in; empty: none."""
     verifies: str
@@ -116,7 +116,7 @@ class Check:
     doubts: bool = False
     """Its findings put axis, place, type, parent or direction of a joint in doubt; a robot's task wants to know."""
     opinion: bool = False
-    """Its findings are what our own inference holds of the shapes; they blame nobody where no fact agrees."""
+    """Its findings are what our own inference holds of the shapes; they name no cause where no fact agrees."""
     follows: Mapping[str, CauseScope] = field(default_factory=dict)
     """Checks whose findings can be the cause of its own, and what both must be about; the first that fits is taken."""
     prepared: bool = False
@@ -158,7 +158,7 @@ class OpenCheck:
         remedy: str,
         *,
         severity: Severity | None = None,
-        blame: Blame | None = None,
+        cause: Cause | None = None,
         joint: str | None = None,
         link: str | None = None,
         pair: tuple[str, str] | None = None,
@@ -173,7 +173,7 @@ class OpenCheck:
     ) -> None:
         """Add a finding.
 
-        Severity, blame and engine are the check's unless given, see `Finding` for the rest; `harmless` is for an error
+        Severity, cause and engine are the check's unless given, see `Finding` for the rest; `harmless` is for an error
         after which later stages may read the file all the same.
         """
         check = REGISTRY[self.id]
@@ -184,7 +184,7 @@ class OpenCheck:
             Finding(
                 check=self.id,
                 severity=severity or check.severity,
-                blame=blame or check.blame,
+                cause=cause or check.cause,
                 message=message,
                 remedy=remedy,
                 joint=joint,
@@ -230,7 +230,7 @@ def check(
     title: str,
     fails: str,
     severity: Severity,
-    blame: Blame,
+    cause: Cause,
     engines: tuple[str, ...] = (),
     feedback: FeedbackRow | None = None,
     doubts: bool = False,
@@ -252,7 +252,7 @@ def check(
             title=title,
             fails=fails,
             severity=severity,
-            blame=blame,
+            cause=cause,
             engines=engines,
             feedback=feedback or (FeedbackRow.EXPORTER if id.startswith(_NOT_OURS) else None),
             doubts=doubts,
@@ -274,7 +274,7 @@ def engine_check(
     title: str,
     fails: str,
     severity: Severity,
-    blame: Blame,
+    cause: Cause,
     feedback: FeedbackRow | None = None,
     follows: Mapping[str, CauseScope] | None = None,
     prepared: bool = False,
@@ -295,7 +295,7 @@ def engine_check(
                 title=title,
                 fails=fails,
                 severity=severity,
-                blame=blame,
+                cause=cause,
                 engines=(engine,),
                 feedback=feedback,
                 follows={family + name if len(name) == 2 else name: shared for name, shared in (follows or {}).items()},

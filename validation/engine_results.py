@@ -1,4 +1,4 @@
-"""What the engine stages left in the folder of a run, with the model it belongs to."""
+"""Results that the engine stages left in the folder of a run, with the model it belongs to."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _SMALLEST_MODEL = 0.01
 
 @dataclass(frozen=True, eq=False)
 class EngineResults:
-    """What is there to compare, read when a check first asks for it."""
+    """Results to compare, read when a check first asks for it."""
 
     request: StageRequest
     """Its folder holds what the stages left."""
@@ -55,7 +55,7 @@ class EngineResults:
 
     @cached_property
     def prepared(self) -> Prepared:
-        """What the engines loaded."""
+        """Return what the engines loaded."""
         return load_prepared(self.request.work)
 
     @cached_property
@@ -77,7 +77,7 @@ class EngineResults:
 
     @cached_property
     def engines(self) -> dict[str, EnginePoses]:
-        """What each engine left, keyed by engine; what does not fit the model is as good as absent."""
+        """Return what each engine left, keyed by engine; what does not fit the model is as good as absent."""
         found = {engine: read_poses(self.request.work, engine) for engine in self.chosen}
         return {engine: poses for engine, poses in found.items() if poses is not None and self._fits(poses)}
 

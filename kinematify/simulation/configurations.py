@@ -53,7 +53,7 @@ class Configurations:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EnginePoses:
-    """What one engine says of the rows of `Configurations`; the contract of `poses-ENGINE.npz`.
+    """Poses of one engine at the rows of `Configurations`; the contract of `poses-ENGINE.npz`.
 
     The base is fixed: the root link's frame is the world, gravity is `GRAVITY` along its -z. The matrices are those of
     the tree without mimic constraints: followers are degrees of freedom of their own. What an engine cannot tell is

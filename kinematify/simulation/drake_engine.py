@@ -78,7 +78,7 @@ class _Said(logging.Handler):
 
 
 class DrakeEngine:
-    """See `kinematify.simulation.engine.Engine`."""
+    """Implementation of `kinematify.simulation.engine.Engine`."""
 
     def __init__(self, settings: EngineSettings, log: Path) -> None:
         """Keep Drake's warnings."""
@@ -127,13 +127,13 @@ class _World:
 
     @cached_property
     def bodies(self) -> list[Any]:
-        """Of each link, None for lost ones."""
+        """Bodies of each link, None for lost ones."""
         plant = self.plant
         return [plant.GetBodyByName(name) if plant.HasBodyNamed(name) else None for name in self.names]
 
     @cached_property
     def joints(self) -> list[Any]:
-        """Of each of `LeaderMechanism.joints`, None for lost ones."""
+        """Joints of each of `LeaderMechanism.joints`, None for lost ones."""
         plant = self.plant
         found = [plant.GetJointByName(n) if plant.HasJointNamed(n) else None for n in self.mechanism.joints]
         return [joint if isinstance(joint, RevoluteJoint | PrismaticJoint) else None for joint in found]
@@ -168,16 +168,16 @@ class _World:
                 joint.set_translation_rate(self.plant_context, 0.0)
 
     def values(self) -> FloatArray:
-        """Of all joints [rad or m], shape (J,)."""
+        """Values of all joints [rad or m], shape (J,)."""
         return np.asarray(self.plant.GetPositions(self.plant_context)[self.positions])
 
     def poses(self) -> FloatArray:
-        """Of all links, shape (L, 4, 4)."""
+        """Poses of all links, shape (L, 4, 4)."""
         context = self.plant_context
         return np.array([self.plant.EvalBodyPoseInWorld(context, body).GetAsMatrix4() for body in self.bodies])
 
     def query(self) -> Any:
-        """What sees the shapes."""
+        """Return what sees the shapes."""
         return self.scene.get_query_output_port().Eval(self.scene.GetMyContextFromRoot(self.context))
 
     def touching(self) -> Iterator[tuple[int, int, float]]:
@@ -198,7 +198,7 @@ class _World:
         return frozenset((min(pair), max(pair)) for pair in pairs)
 
     def sunk(self) -> float:
-        """How deep a link is in the floor [m]; where none touches it, a little above."""
+        """Return how deep a link is in the floor [m]; where none touches it, a little above."""
         link_of = self.link_of_geometry
         pairs = self.query().ComputePointPairPenetration()
         depths = [pair.depth for pair in pairs if (pair.id_A in link_of) != (pair.id_B in link_of)]
@@ -218,7 +218,7 @@ class _World:
         return float(self.plant.CalcPotentialEnergy(context)), float(self.plant.CalcKineticEnergy(context))
 
     def act(self, pairs: Iterable[tuple[int, int]], *, on: bool) -> None:
-        """Let these pairs of links act on each other, or not."""
+        """Make these pairs of links act on each other, or not."""
         manager = self.scene.collision_filter_manager(self.scene.GetMyContextFromRoot(self.context))
         for first, second in pairs:
             sets = (GeometrySet(self.plant.GetCollisionGeometriesForBody(self.bodies[k])) for k in (first, second))
@@ -253,7 +253,7 @@ class _World:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DrakeModel:
-    """See `kinematify.simulation.engine.PhysicsModel`."""
+    """Implementation of `kinematify.simulation.engine.PhysicsModel`."""
 
     engine: DrakeEngine
     prepared: Prepared
@@ -316,7 +316,7 @@ class DrakeModel:
 
     @property
     def _names(self) -> tuple[str, ...]:
-        """Of the links in the document's order, as Drake knows them."""
+        """Names of the links in the document's order, as Drake knows them."""
         return tuple(f"{name} link" if name in _RESERVED else name for name in self.mechanism.links)
 
     @cached_property
@@ -335,7 +335,7 @@ class DrakeModel:
 
     @cached_property
     def loaded(self) -> LoadedRobot:
-        """What became of joints and masses."""
+        """Return what became of joints and masses."""
         world = self.looking
         joints = {
             name: LoadedJoint(
@@ -409,7 +409,7 @@ class DrakeModel:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DrakeSimulation:
-    """See `kinematify.simulation.engine.Simulation`."""
+    """Implementation of `kinematify.simulation.engine.Simulation`."""
 
     model: DrakeModel
     sweep: Touching
@@ -435,7 +435,7 @@ class DrakeSimulation:
         return self._free(world, count, targets=np.repeat(self._held[None], count, axis=0))
 
     def release(self, seconds: float, *, fine: bool = False) -> FreeRun:
-        """Let the model go."""
+        """Make the model go."""
         finer = FINER if fine else 1
         return self._free(
             self.model.world(ideal=True, finer=finer), finer * count_steps(seconds, self.step), every=finer
@@ -473,7 +473,7 @@ class DrakeSimulation:
         return run
 
     def drop(self) -> Dropped:
-        """Let the model fall on a floor."""
+        """Make the model fall on a floor."""
         settings, looking = self.model.engine.settings, self.model.looking
         looking.place(self.model.mechanism.values_at_rest)
         height = float(_corners(looking)[:, 2].min()) - settings.drop
@@ -573,7 +573,7 @@ _EARTH, _NOWHERE = (0.0, 0.0, -9.81), (0.0, 0.0, 0.0)
 
 
 class DrakeFile(RunningFile):
-    """See `RunningFile`: a file as `Parser` adds it to a plant with the default time step, its first link welded."""
+    """`RunningFile`: a file as `Parser` adds it to a plant with the default time step, its first link welded."""
 
     look_steps = 10
     code = Reproductions(
@@ -622,7 +622,7 @@ class DrakeFile(RunningFile):
         self.apply(0, 0.0)
 
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         return self._now.steps(count, self.time_step, every)
 
     @property
@@ -631,27 +631,27 @@ class DrakeFile(RunningFile):
         return self._now.complaint
 
     def state(self) -> tuple[FloatArray, FloatArray]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         plant, state = self._now.plant, self._now.state
         return np.array(plant.GetPositions(state)), np.array(plant.GetVelocities(state))
 
     def set_state(self, q: FloatArray, v: FloatArray) -> None:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         self._now.plant.SetPositionsAndVelocities(self._now.state, np.concatenate([q, v]))
 
     def apply(self, joint: int, force: float) -> None:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         forces = np.zeros(len(self.joints))
         forces[joint : joint + 1] = force
         self._now.plant.get_applied_generalized_force_input_port().FixValue(self._now.state, forces)
 
     def energy(self) -> tuple[float, float]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         plant, state = self._now.plant, self._now.state
         return float(plant.CalcPotentialEnergy(state)), float(plant.CalcKineticEnergy(state))
 
     def touching(self) -> Iterator[tuple[str, str, float]]:
-        """See `RunningFile`; of shapes that may touch; the signed distance of a pair is its depth."""
+        """Implement `RunningFile`; of shapes that may touch; the signed distance of a pair is its depth."""
         world = self._now
         query = world.scene.get_query_output_port().Eval(world.scene.GetMyContextFromRoot(world.context))
         for pair in query.ComputePointPairPenetration():
@@ -660,7 +660,7 @@ class DrakeFile(RunningFile):
             yield first, second, depth
 
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         self.begin(values, contacts=True)
         return np.asarray(1.0 / np.diagonal(np.linalg.inv(self._now.plant.CalcMassMatrix(self._now.state))))
 

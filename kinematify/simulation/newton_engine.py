@@ -97,7 +97,7 @@ _EVERYWHERE = 1e9
 
 
 class NewtonEngine:
-    """See `kinematify.simulation.engine.Engine`; it loads no prepared models."""
+    """Implementation of `kinematify.simulation.engine.Engine`; it loads no prepared models."""
 
     def __init__(self, settings: EngineSettings, log: Path) -> None:
         """Need nothing."""
@@ -120,7 +120,7 @@ class NewtonEngine:
 
 
 class NewtonFile(RunningFile):
-    """See `RunningFile`: a file as `ModelBuilder.add_urdf` loads it, its base fixed.
+    """Implementation of `RunningFile`: a file as `ModelBuilder.add_urdf` loads it, its base fixed.
 
     XPBD keeps joints by constraints on bodies in single precision: they give a little.
     """
@@ -176,7 +176,7 @@ class NewtonFile(RunningFile):
         self.set_state(start.q, start.v)
 
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         for done in range(1, count + 1):
             self._now.clear_forces()
             if self._touch:
@@ -188,26 +188,26 @@ class NewtonFile(RunningFile):
                 yield done
 
     def state(self) -> tuple[FloatArray, FloatArray]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         model = self._model
         newton.eval_ik(model, self._now, model.joint_q, model.joint_qd)
         return model.joint_q.numpy().astype(np.float64), model.joint_qd.numpy().astype(np.float64)
 
     def set_state(self, q: FloatArray, v: FloatArray) -> None:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         model = self._model
         model.joint_q.assign(q)
         model.joint_qd.assign(v)
         newton.eval_fk(model, model.joint_q, model.joint_qd, self._now)
 
     def apply(self, joint: int, force: float) -> None:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         forces = np.zeros(len(self.joints))
         forces[joint] = force
         self._control.joint_f.assign(forces)
 
     def energy(self) -> tuple[float, float]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         model, at, speed = self._model, self._now.body_q.numpy(), self._now.body_qd.numpy()
         mass, centre, tensor = model.body_mass.numpy(), model.body_com.numpy(), model.body_inertia.numpy()
         potential = kinetic = 0.0
@@ -219,7 +219,7 @@ class NewtonFile(RunningFile):
         return potential, kinetic
 
     def touching(self) -> Iterator[tuple[str, str, float]]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         if not self._touch:
             return
         self._pipeline.collide(self._now, self._contacts)
@@ -238,7 +238,7 @@ class NewtonFile(RunningFile):
                 yield first, second, depth
 
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         self.begin(values, contacts=True)
         count = len(self.joints)
         matrix = newton.eval_mass_matrix(self._model, self._now).numpy().astype(np.float64)[0, :count, :count]
@@ -249,5 +249,5 @@ class NewtonFile(RunningFile):
 
 
 def _name(label: str) -> str:
-    """Of a joint or link, without that of the model before it."""
+    """Name of a joint or link, without that of the model before it."""
     return label.partition("/")[2]

@@ -13,7 +13,7 @@ from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
 from kinematify.simulation.prepared import URDF_FILE
 from kinematify.validation.checks import checks_of
-from kinematify.validation.finding import Blame, Severity, Status
+from kinematify.validation.finding import Cause, Severity, Status
 from kinematify.validation.stages import run_engine as engine_stage
 from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, prepared_request, tell
 
@@ -66,7 +66,7 @@ def test_leaves_poses_inertias_and_torques_that_agree_with_the_kinematics(tmp_pa
 def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> None:
     result = reported(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
     (finding,) = result.results["KV905"].findings
-    assert (finding.severity, finding.blame) == (Severity.ERROR, Blame.KINEMATICS)
+    assert (finding.severity, finding.cause) == (Severity.ERROR, Cause.KINEMATICS)
     assert (finding.joint, finding.pair) == ("drawer_joint", ("body", "drawer"))
     assert finding.value == pytest.approx(0.005, abs=0.005)  # the room behind it
 

@@ -10,7 +10,7 @@ import numpy as np
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.check import CauseScope, check
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
@@ -29,7 +29,7 @@ _TINY = 1e-12
     title="Links stand where they should, in every engine",
     fails="Links stand elsewhere in an engine",
     severity=Severity.ERROR,
-    blame=Blame.ENGINE,
+    cause=Cause.ENGINE,
 )
 def poses_differ(result: OpenCheck, left: EngineResults) -> None:
     """Forward kinematics of MuJoCo, PyBullet, Pinocchio and Kinematify in the same configurations: zero, rest, both
@@ -134,7 +134,7 @@ def _tell_pose(
     title="Mass matrix: MuJoCo and Pinocchio agree",
     fails="Mass matrix: MuJoCo and Pinocchio differ",
     severity=Severity.WARNING,
-    blame=Blame.ENGINE,
+    cause=Cause.ENGINE,
 )
 def mass_matrices_differ(result: OpenCheck, left: EngineResults) -> None:
     """The joint-space inertia of the tree in the same configurations, entry by entry, relative to the inertias of the
@@ -171,7 +171,7 @@ def mass_matrices_differ(result: OpenCheck, left: EngineResults) -> None:
     title="Gravity torques: MuJoCo and Pinocchio agree",
     fails="Gravity torques: MuJoCo and Pinocchio differ",
     severity=Severity.WARNING,
-    blame=Blame.ENGINE,
+    cause=Cause.ENGINE,
 )
 def gravity_differs(result: OpenCheck, left: EngineResults) -> None:
     """The torques and forces that hold the model still, relative to the largest that the joint sees; more than
@@ -258,7 +258,7 @@ def _tell_dynamics(
     title="The model weighs the same everywhere",
     fails="The model weighs something else in an engine",
     severity=Severity.ERROR,
-    blame=Blame.ENGINE,
+    cause=Cause.ENGINE,
     follows={"KV201": CauseScope.MODEL, "KV202": CauseScope.MODEL},
 )
 def masses_differ(result: OpenCheck, left: EngineResults) -> None:

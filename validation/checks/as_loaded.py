@@ -14,7 +14,7 @@ from kinematify.validation.check import CauseScope, FeedbackRow, OpenCheck, chec
 from kinematify.validation.checks.engine_rest import FLOOR_OF_ENERGY, find_growth
 from kinematify.validation.checks.follow import IN_ENGINES, NOT_A_BODY
 from kinematify.validation.checks.needs import late
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -61,7 +61,7 @@ def nothing_moves(context: AsLoadedContext) -> str | None:
     title="As loaded: the engine opens the file",
     fails="As loaded: the engine does not open the file as it is",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
     engines=_ENGINES,
     follows={**dict.fromkeys(NOT_A_BODY, CauseScope.BODY), "KV138": CauseScope.MODEL},
 )
@@ -136,7 +136,7 @@ def _remedy_of_loading(context: AsLoadedContext, message: str) -> str:
 
 
 def _remedy_of_format(context: AsLoadedContext, message: str) -> str:
-    """What to do with a mesh in a format that the engine does not read."""
+    """Return what to do with a mesh in a format that the engine does not read."""
     given = _SUFFIX.findall(message)
     suffix = given[-1].lower() if given else "another format"
     other = ".obj" if context.engine == "drake" else ".obj or .stl"
@@ -151,7 +151,7 @@ def _remedy_of_format(context: AsLoadedContext, message: str) -> str:
     title="As loaded: nothing overlaps at rest",
     fails="As loaded: links overlap at rest",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     engines=_ENGINES,
     follows=IN_ENGINES,
     needs=(not_loaded,),
@@ -186,7 +186,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
     title="As loaded: left alone, joints stay in range and are not thrown",
     fails="As loaded: left alone, a joint leaves its range or is thrown",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     engines=_RUNNING,
     feedback=FeedbackRow.AS_LOADED,
     follows={**IN_ENGINES, "KV802": CauseScope.CONTACT},
@@ -220,7 +220,7 @@ def stays(result: OpenCheck, context: AsLoadedContext) -> None:
 
 
 def _leaves(context: AsLoadedContext, travel: Travel) -> bool:
-    """Whether contacts move a joint that nothing else moves, or it ends beyond its range."""
+    """True if contacts move a joint that nothing else moves, or it ends beyond its range."""
     return _thrown_by(context, travel) is not None or _beyond(context, travel) > context.still(travel)
 
 
@@ -232,7 +232,7 @@ def _leaves_plainly(context: AsLoadedContext, travel: Travel) -> bool:
 
 
 def _at_most_warning(context: AsLoadedContext, *, plainly: bool) -> Severity | None:
-    """What an engine shows only with a flag that its users have to ask for is no error."""
+    """Return what an engine shows only with a flag that its users have to ask for is no error."""
     return None if context.flag is None or plainly else Severity.WARNING
 
 
@@ -247,7 +247,7 @@ def _thrown_by(context: AsLoadedContext, travel: Travel) -> Overlap | None:
 
 
 def _beyond(context: AsLoadedContext, travel: Travel, run: RestRun | None = None) -> float:
-    """How far beyond its range a joint ends that was left alone [rad or m]; 0 without limits."""
+    """Return how far beyond its range a joint ends that was left alone [rad or m]; 0 without limits."""
     last = float(context.way(run or context.left_alone, travel)[-1])
     return max(travel.lower - last, last - travel.upper) if travel.limited else 0.0
 
@@ -284,7 +284,7 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
     title="As loaded: a hand moves each joint over its range",
     fails="As loaded: a hand cannot move a joint over its range",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     engines=_RUNNING,
     feedback=FeedbackRow.AS_LOADED,
     follows={**IN_ENGINES, "KV802": CauseScope.CONTACT, "KV803": CauseScope.CONTACT},
@@ -333,7 +333,7 @@ def _moving(
 
 
 def _free_without_contacts(context: AsLoadedContext, run: VelocityProbe) -> bool:
-    """Whether a push that fell short gets to the end where nothing touches."""
+    """True if a push that fell short gets to the end where nothing touches."""
     return run.without_contacts is not None and context.arrives(run, run.without_contacts)
 
 
@@ -362,7 +362,7 @@ def _find_short(result: OpenCheck, context: AsLoadedContext, run: VelocityProbe,
 
 
 def _severity(run: VelocityProbe) -> Severity | None:
-    """How bad it is that contacts keep a joint from its end: over half of the way it works, and it is a warning."""
+    """Return the severity of contacts that keep a joint from its end: a warning if it gets over half of the way."""
     if not run.free:
         return Severity.NOTE
     way = abs(run.end - run.travel.rest)
@@ -391,7 +391,7 @@ def _shown(value: float) -> str:
     title="As loaded: limits hold under load",
     fails="As loaded: a joint is pressed through its limit",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     engines=_RUNNING,
     follows={
         **dict.fromkeys(("KV221", "KV801"), CauseScope.JOINT),
@@ -436,7 +436,7 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
     title="As loaded: nothing gains energy",
     fails="As loaded: energy comes out of nothing",
     severity=Severity.ERROR,
-    blame=Blame.ENGINE,
+    cause=Cause.ENGINE,
     engines=_RUNNING,
     follows=NOT_A_BODY,
     needs=(not_loaded, nothing_moves, late),
@@ -458,7 +458,7 @@ def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
         result.find(
             f"Given a push and let go in {context.title}, the model comes apart: {run.complaint}.",
             "Give every moving link a plausible mass and inertia, and every joint a damping that is not negative.",
-            blame=Blame.PHYSICS,
+            cause=Cause.PHYSICS,
             reproduction=reproduction,
         )
         return

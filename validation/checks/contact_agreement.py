@@ -11,7 +11,7 @@ import numpy as np
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.check import CauseScope, check
 from kinematify.validation.checks.follow import IN_ENGINES
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
@@ -32,7 +32,7 @@ class _Overlap:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _View:
-    """What one engine, or the exact geometry, sees."""
+    """Contacts that one engine, or the exact geometry, sees."""
 
     engine: str | None
     title: str
@@ -53,7 +53,7 @@ class _Disagreement:
     title="Engines see the same collisions",
     fails="An engine sees a collision that the exact geometry does not have",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     follows={**IN_ENGINES, "KV802": CauseScope.PAIR},
     prepared=True,
 )

@@ -10,7 +10,7 @@ from kinematify.simulation.configurations import link_poses
 from kinematify.simulation.engine import Refused
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.check import CauseScope, FeedbackRow, check, engine_check
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -33,7 +33,7 @@ _LIMIT_SLACK = 1e-6
     title="Loads with the same joints, masses and limits",
     fails="Joints, masses or limits change on loading",
     severity=Severity.ERROR,
-    blame=Blame.ENGINE,
+    cause=Cause.ENGINE,
     feedback=FeedbackRow.EXPORTER,
     follows={"KV221": CauseScope.JOINT, "KV202": CauseScope.BODY},
 )
@@ -56,7 +56,7 @@ def loads(result: OpenCheck, context: EngineContext) -> None:
     title="Pinocchio loads the same model",
     fails="Pinocchio loads another model",
     severity=Severity.ERROR,
-    blame=Blame.ENGINE,
+    cause=Cause.ENGINE,
     engines=("pinocchio",),
     follows={"KV221": CauseScope.JOINT, "KV202": CauseScope.BODY},
 )
@@ -88,7 +88,7 @@ def _load(result: OpenCheck, context: EngineContext, same: float) -> None:
             "by a rounding error; all tensors were balanced for the other checks.",
             "Write the tensors with more digits, or make the largest moment a little smaller.",
             severity=Severity.WARNING,
-            blame=Blame.PHYSICS,
+            cause=Cause.PHYSICS,
         )
 
 
@@ -196,7 +196,7 @@ def _same(declared: float, found: float) -> bool:
     title="Poses agree over the range",
     fails="Poses differ over the range",
     severity=Severity.ERROR,
-    blame=Blame.ENGINE,
+    cause=Cause.ENGINE,
     feedback=FeedbackRow.EXPORTER,
 )
 def poses_agree(result: OpenCheck, context: EngineContext) -> None:

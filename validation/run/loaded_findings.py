@@ -1,4 +1,4 @@
-"""What the checks of the untouched file say together, over all engines that loaded it (KV8xx), and about others."""
+"""Joint result of the checks of the untouched file over all engines that loaded it (KV8xx)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Blame, Severity, Status
+from kinematify.validation.finding import Cause, Severity, Status
 from kinematify.versions import is_installed
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def with_refusals(checks: Sequence[CheckResult]) -> list[CheckResult]:
 def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> list[CheckResult]:
     """Make errors of the untouched file warnings where another engine has none, and say which.
 
-    What blames an engine and only one shows is a note then, and a warning where no other engine runs the file.
+    What is laid to an engine and only one shows is a note then, and a warning where no other engine runs the file.
 
     Args:
         checks: All results.
@@ -129,7 +129,7 @@ def confirm_on_raw_model(checks: Sequence[CheckResult]) -> list[CheckResult]:
     pairs = {frozenset(finding.pair) for finding in shown if finding.pair is not None}
 
     def worded(finding: Finding) -> Finding:
-        counts = finding.blame is not Blame.PHYSICS or finding.joint in joints - {None}
+        counts = finding.cause is not Cause.PHYSICS or finding.joint in joints - {None}
         if counts or finding.severity is Severity.NOTE or (finding.pair and frozenset(finding.pair) in pairs):
             return finding
         return replace(
@@ -152,7 +152,7 @@ def _across(finding: Finding, errors: Sequence[Finding], ran: Mapping[str, set[s
     works = [entry.title for name, entry in ENGINES.items() if name in ran.get(finding.check, set()) - failing]
     if finding.severity is not Severity.ERROR:
         return finding
-    alone = finding.blame is Blame.ENGINE and not any(
+    alone = finding.cause is Cause.ENGINE and not any(
         other.check == finding.check and other.engine != finding.engine for other in errors
     )
     if not works:
