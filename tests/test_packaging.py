@@ -150,9 +150,7 @@ def test_every_import_of_the_package_is_declared() -> None:
 
 def test_version_and_changelog_agree() -> None:
     versions = re.findall(r"^## \[(.+?)\]", (ROOT / "CHANGELOG.md").read_text("utf-8"), flags=re.MULTILINE)
-    assert versions[0] == "Unreleased"
-    released = versions[1:]
-    assert kinematify.__version__ in released or (not released and kinematify.__version__ == "0.1.0")
-    assert released == sorted(released, key=lambda text: [int(n) for n in text.split(".")], reverse=True)
+    assert versions[0] == kinematify.__version__
+    assert versions == sorted(versions, key=lambda text: [int(n) for n in text.split(".")], reverse=True)
     citation = (ROOT / "CITATION.cff").read_text("utf-8")
     assert re.search(rf"^version: {re.escape(kinematify.__version__)}$", citation, flags=re.MULTILINE)
