@@ -1,4 +1,4 @@
-"""Collect `changes/` into the changelog and set the version: `python -m tools.release 0.2.0` (`--show` only prints it)."""
+"""Collect `changes/` into the changelog and set the version: `python -m tools.release 0.2.0`; `--show` only prints."""
 
 from __future__ import annotations
 
