@@ -37,7 +37,6 @@ MODULES = {
     "lxml": ("lxml.etree", "URDF"),
     "pycollada": ("collada", "DAE meshes"),
     "pillow": ("PIL.Image", "pictures"),
-    "yourdfpy": ("yourdfpy", "a second reader of our URDF"),
     "usd-core": ("pxr.Usd", "export to USD"),
     "httpx": ("httpx", "generators behind a web service"),
     "mujoco": ("mujoco", "engine"),
