@@ -57,7 +57,10 @@ def readable_copy(request: StageRequest, errors: Iterable[Finding], name: str) -
         errors: Findings that keep the document from being read.
         name: Of the copy in the folder of the run.
     """
-    robot = parse_description(request.urdf)
+    try:
+        robot = parse_description(request.urdf)
+    except DescriptionError:  # the text is not well-formed, which a finding says
+        return None
     shapes, joints, only_visuals = set[str](), set[str](), True
     for finding in errors:
         if finding.check == _NO_LIMIT and _turns(robot, finding.joint):
