@@ -10,6 +10,7 @@ import numpy as np
 from lxml import etree
 
 from kinematify.errors import DescriptionError
+from kinematify.robot.description import form_of, read_foreign
 from kinematify.robot.joint_type import FREE_KINDS, JointType
 from kinematify.robot.linkage import with_closures
 from kinematify.robot.robot import (
@@ -25,10 +26,10 @@ from kinematify.robot.robot import (
 )
 from kinematify.robot.urdf_geometry import geometry_source
 from kinematify.robot.urdf_numbers import line_of, number, optional_number, origin_transform, vector
-from kinematify.robot.urdf_text import parse_description
+from kinematify.robot.urdf_text import parse_description, parse_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     from lxml.etree import _Element
@@ -41,9 +42,14 @@ if TYPE_CHECKING:
 
 
 def read_robot(
-    path: Path, *, package_dirs: Sequence[Path] = (), geometry: Geometry = "all", appearance: bool = False
+    path: Path,
+    *,
+    package_dirs: Sequence[Path] = (),
+    geometry: Geometry = "all",
+    appearance: bool = False,
+    arguments: Mapping[str, str] | None = None,
 ) -> Robot:
-    """Read a URDF; every mesh file is opened once.
+    """Read a URDF, xacro, MJCF, SDF or USD; every mesh file is opened once.
 
     ``package://NAME/...`` is looked up in `package_dirs` (each a package or a folder of packages), then in the folders
     above the URDF. Floating and planar joints represent a body that is free in the world: above the first geometry they
@@ -52,19 +58,33 @@ def read_robot(
     without usable geometry, such as a mesh that is missing, is left out. Each such reading is a note in the result.
 
     Args:
-        path: The URDF file.
+        path: The file.
         package_dirs: Where packages lie.
         geometry: ``shown`` leaves out the collision shapes of links that have visual ones, ``none`` opens no mesh file
             and gives links without any shapes.
-        appearance: Read materials, textures and colours too.
+        appearance: Read materials, textures and colours of a URDF's meshes too.
+        arguments: Of a xacro.
 
     Raises:
         DescriptionError: The file cannot be read, or is not a kinematic tree of single-axis joints. The message names
             the link or joint and says what to do.
     """
-    return parse_robot(
-        parse_description(path), path, geometry_source(path, package_dirs, appearance=appearance), geometry
-    )
+    source, form = geometry_source(path, package_dirs, appearance=appearance), form_of(path)
+    if form == "urdf":
+        return parse_robot(parse_description(path), path, source, geometry)
+    read = read_foreign(path, form, package_dirs, arguments or {})
+    if isinstance(read, str):
+        return parse_robot(parse_text(read.encode()), path, source, geometry)
+    robot: Robot = read
+    if geometry == "all":
+        return robot
+    return replace(robot, links=tuple(_without_hidden(link, geometry) for link in robot.links))
+
+
+def _without_hidden(link: Link, geometry: Geometry) -> Link:
+    if geometry == "none":
+        return replace(link, visuals=(), collisions=())
+    return replace(link, collisions=()) if link.visuals else link
 
 
 def parse_robot(element: _Element, path: Path, source: GeometrySource, geometry: Geometry = "all") -> Robot:
