@@ -242,7 +242,7 @@ def _physical_notes(read: Robot, model: Robot, inertials: dict[str, PreparedIner
     for before, joint in zip(read.joints, model.joints, strict=True):
         for key in _LOSSY:
             if getattr(before, key) != getattr(joint, key):
-                yield f"The {key} of the joint {joint.name} is below zero ({getattr(before, key):g}) and left out."
+                yield f"The {key} of the joint {joint.name} is below zero ({getattr(before, key):g}) and omitted."
 
 
 def _visuals(link: Link) -> tuple[Shape, ...]:
