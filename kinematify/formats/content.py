@@ -20,7 +20,7 @@ from kinematify.model.collision import collides_as_it_is, fit_collision
 from kinematify.model.masses import prepared_inertials
 from kinematify.model.simulable import lacks_drive
 from kinematify.robot.appearance import Material, plain, surfaces
-from kinematify.robot.joint_type import FREE_KINDS, JointType
+from kinematify.robot.joint_type import JointType
 from kinematify.robot.material_files import write_texture
 from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
 from kinematify.robot.read import read_robot
@@ -199,14 +199,13 @@ def _spelled(name: str, to: str) -> str:
 
 
 def _notes(read: Robot, model: Robot, settings: PrepareSettings, to: str) -> Iterable[str]:
+    yield from read.notes
     for what, items, others in (("link", read.links, model.links), ("joint", read.joints, model.joints)):
         for old, new in zip(items, others, strict=True):
             if old.name != new.name:
                 yield f"The {what} {old.name!r} is named {new.name!r}: its name is reserved, taken or not allowed here."
     for before, joint in zip(read.joints, model.joints, strict=True):
-        if before.declared_kind in FREE_KINDS:
-            yield f"The joint {joint.name} is {before.declared_kind} and written as fixed."
-        elif before.kind is not joint.kind:
+        if before.kind is not joint.kind:
             value = f"{joint_values(read, {})[before.name]:g} {'rad' if before.kind.turns else 'm'}"
             yield f"The joint {joint.name} follows a joint that is fixed, and is written as fixed at {value}."
         if to == "urdf" and lacks_drive(joint):

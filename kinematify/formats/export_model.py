@@ -13,6 +13,7 @@ from kinematify.formats.content import read_content
 from kinematify.formats.losses import losses
 from kinematify.formats.reopen import check_target
 from kinematify.model.output import urdf_of
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,6 +73,7 @@ def export(
     Raises:
         InputError: The model cannot be used, or there is no such format.
         OutputError: The file cannot be written.
+        EnvironmentFault: The package that writes the format is not installed.
         ExportError: The target refuses what was written, or reads another model in it.
     """
     if to not in FORMATS:
@@ -105,5 +107,7 @@ def _srdf(
 
 def _writer(to: str) -> Any:
     """The function that writes a format; its package is imported only when it is asked for."""
+    if to == "usd":
+        require("Writing USD", "usd-core")
     module, function = _WRITERS[to]
     return getattr(importlib.import_module(module), function)
