@@ -106,7 +106,8 @@ class AsLoadedContext:
     @cached_property
     def bare(self) -> RawEngineModel | Unloadable:
         """The file in the engine as it is, or what the engine says against it."""
-        return self._opened(self.request.urdf)
+        native = self.request.native if self.engine == "mujoco" else None
+        return self._opened(native or self.request.urdf)
 
     @cached_property
     def loading(self) -> RawEngineModel | Unloadable:

@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kinematify.simulation.engines import ENGINES
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kinematify.robot.description import Description
     from kinematify.robot.robot import Robot
     from kinematify.validation.finding import CheckResult, Finding
 
@@ -33,3 +36,26 @@ def with_lines(results: Sequence[CheckResult], robot: Robot | None) -> list[Chec
         return finding if finding.line or line is None else replace(finding, line=line)
 
     return [replace(result, findings=tuple(map(placed, result.findings))) for result in results]
+
+
+_OF_TEXT = ("KV104", "KV143", "KV144")
+"""Checks of the URDF's text, which say nothing about a file of another format."""
+
+
+def in_source(results: Sequence[CheckResult], description: Description) -> list[CheckResult]:
+    """Return the results with the lines of a file of another format, and with what engines opened in its place."""
+
+    def moved(finding: Finding) -> Finding:
+        links = (finding.link, *(finding.pair or ()))
+        named = [("joint", finding.joint or ""), *(("link", name or "") for name in links)]
+        line = next(
+            (description.lines[tag, name] for tag, name in named if name and (tag, name) in description.lines), 0
+        )
+        opens = finding.engine == "mujoco" and description.native
+        if finding.engine is None or opens:
+            return replace(finding, line=line or None)
+        title = ENGINES[finding.engine].title
+        said = f"{finding.message} ({title} was given the URDF of the {description.title}.)"
+        return replace(finding, line=line or None, message=said)
+
+    return [result.with_findings(() if result.check in _OF_TEXT else map(moved, result.findings)) for result in results]

@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
+from kinematify.robot.description import SUFFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-SUFFIX = ".urdf"
+_KINDS = ".urdf, .xacro, .mjcf, .sdf or .usd"
 _SHOWN_KINDS = 5
 
 
@@ -22,7 +23,8 @@ def find_models(words: Sequence[str]) -> tuple[Path, ...]:
     """Return the files that `words` represent, each once, in the order of the words and sorted within a word.
 
     Args:
-        words: A file is taken as it is, whatever its name; a folder represents all ``.urdf`` files below it (links to
+        words: A file is taken as it is, whatever its name; a folder represents all ``.urdf`` files below it, or the
+            descriptions of other formats where there is none (links to
             folders are not followed, so that loops of them do no harm); other words are patterns as in a shell, in
             which ``**`` represents any folders.
 
@@ -49,9 +51,9 @@ def _models_of(word: str) -> list[Path]:
 
 def _below(folder: Path) -> list[Path]:
     files = [Path(where, name) for where, _, names in os.walk(folder) for name in names]
-    models = sorted(file for file in files if file.suffix.lower() == SUFFIX and file.is_file())
+    models = _models_among(files)
     if not models:
-        raise InputError(f"The folder {folder} holds no {SUFFIX} file at any depth. {_described(files)}")
+        raise InputError(f"The folder {folder} holds no {_KINDS} file at any depth. {_described(files)}")
     return models
 
 
@@ -60,14 +62,20 @@ def _matching(pattern: str) -> list[Path]:
     models = [path for path in matches if path.is_file()]
     folders = [path for path in matches if path.is_dir()]
     for folder in folders if not models else ():
-        models += [file for file in sorted(folder.rglob("*" + SUFFIX)) if file.is_file()]
+        models += _models_among(folder.rglob("*"))
     if not models:
         raise InputError(
             f"Nothing matches the pattern {pattern}"
-            + (f" but {len(folders)} folders without any {SUFFIX} file. " if folders else ". ")
+            + (f" but {len(folders)} folders without any {_KINDS} file. " if folders else ". ")
             + "Give the pattern in quotes, with ** for folders at any depth, such as 'models/**/*.urdf'."
         )
     return models
+
+
+def _models_among(files: Iterable[Path]) -> list[Path]:
+    """The URDFs, or descriptions of other formats where there is none: macros of xacro and parts of scenes are none."""
+    known = sorted(file for file in files if file.suffix.lower() in SUFFIXES and file.is_file())
+    return [file for file in known if file.suffix.lower() == ".urdf"] or known
 
 
 def _described(files: Iterable[Path]) -> str:
@@ -76,8 +84,7 @@ def _described(files: Iterable[Path]) -> str:
     if not kinds:
         return "It is empty. Give the folder that holds the models."
     shown = ", ".join(f"{count} with {kind}" for kind, count in kinds.most_common(_SHOWN_KINDS))
-    xacro = " Expand each .xacro first: xacro FILE.xacro > FILE.urdf." if ".xacro" in kinds else ""
-    return f"It holds {sum(kinds.values())} other files ({shown}).{xacro} Give URDF files or their folder."
+    return f"It holds {sum(kinds.values())} other files ({shown}). Give descriptions or their folder."
 
 
 def _missing(path: Path) -> str:

@@ -29,7 +29,7 @@ class StageRequest:
     """Input of every stage; it crosses a process border, so it holds plain data only."""
 
     urdf: Path
-    """The file as the user gave it."""
+    """The file as the user gave it, or the URDF that represents it."""
     package_dirs: tuple[Path, ...]
     work: Path
     """Folder of this run: stages leave there what later ones need."""
@@ -45,6 +45,10 @@ class StageRequest:
     """Engines in which its plans are executed."""
     resolved: Path | None = None
     """A copy of the file with every mesh by its absolute path, for engines that find the meshes nowhere else."""
+    native: Path | None = None
+    """The file that MuJoCo opens in place of `urdf`."""
+    losses: tuple[str, ...] = ()
+    """What the file holds and `urdf` does not, one sentence each."""
     free_travel: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Range around rest in which nothing collides by exact geometry, of joints where it was measured [rad or m]."""
     suspects: Mapping[str, PriorFinding] = field(default_factory=dict)

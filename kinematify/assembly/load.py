@@ -17,6 +17,7 @@ from kinematify.assembly.pieces import baked, connected_sheets, labelled_parts
 from kinematify.assembly.scenes import one_object
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
+from kinematify.robot.description import SUFFIXES, form_of
 from kinematify.robot.lengths import length_text
 from kinematify.robot.mesh_file import RawMesh, merged, read_meshes
 from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES, MESH_SUFFIXES
@@ -158,13 +159,14 @@ def _given(path: Path, reading: _Reading) -> _Given:
     suffix = path.suffix.lower()
     if suffix == ".zip":
         return _archive(path, reading)
-    if suffix == ".urdf":
+    if suffix in SUFFIXES or (suffix == ".xml" and form_of(path) != "urdf"):
         _refuse_labels(path, reading)
         return _description(path, reading)
     if suffix in PART_SUFFIXES:
         return _single_file(path, reading)
     raise AssemblyError(
-        f"The file {path} is not an input that can be read. Give a folder or ZIP of mesh files, a URDF, or one of "
+        f"The file {path} is not an input that can be read. Give a folder or ZIP of mesh files, a description "
+        f"({', '.join(SUFFIXES)}), or one of "
         f"{', '.join(PART_SUFFIXES)}."
     )
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.options import examples, package_dirs_option
+from kinematify.cli.options import arguments_argument, examples, package_dirs_option
 
 
 @click.command(
@@ -21,6 +21,7 @@ from kinematify.cli.options import examples, package_dirs_option
     ),
 )
 @click.argument("model", type=click.Path(path_type=Path))
+@arguments_argument
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="Folder to make for the parts.")
 @click.option(
     "--pose",
@@ -37,6 +38,7 @@ from kinematify.cli.options import examples, package_dirs_option
 def command(
     *,
     model: Path,
+    arguments: dict[str, str],
     out: Path,
     pose: str,
     seed: int,
@@ -54,7 +56,7 @@ def command(
     from kinematify.model.output import urdf_of
     from kinematify.robot.read import read_robot
 
-    robot = read_robot(urdf_of(model), package_dirs=package_dirs, geometry="shown")
+    robot = read_robot(urdf_of(model, package_dirs, arguments), package_dirs=package_dirs, geometry="shown")
     erased = erase(robot, pose=pose, seed=seed, yaw_deg=yaw)
     truth = write_erased(erased, out, overwrite=force)
     for note in robot.notes:

@@ -7,7 +7,14 @@ from pathlib import Path
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.options import examples, force_file_option, listed, package_dirs_option, sampling_seed_option
+from kinematify.cli.options import (
+    arguments_argument,
+    examples,
+    force_file_option,
+    listed,
+    package_dirs_option,
+    sampling_seed_option,
+)
 from kinematify.cli.table import format_table
 
 
@@ -25,6 +32,7 @@ from kinematify.cli.table import format_table
     ),
 )
 @click.argument("model", type=click.Path(path_type=Path))
+@arguments_argument
 @click.option(
     "--to",
     "form",
@@ -45,6 +53,7 @@ from kinematify.cli.table import format_table
 def command(
     *,
     model: Path,
+    arguments: dict[str, str],
     form: str,
     out: Path,
     free: bool,
@@ -55,7 +64,7 @@ def command(
     package_dirs: tuple[Path, ...],
     seed: int | None,
 ) -> None:
-    """Write the URDF MODEL, or that of a model folder, in another format.
+    """Write MODEL, a URDF, xacro, MJCF, SDF, USD or a model folder, in another format.
 
     The answer lists what the format cannot express, and what was written instead.
 
@@ -81,7 +90,17 @@ def command(
     check_file(out, overwrite=force)
     joints = listed(gripper)
     settings = load_settings() if seed is None else load_settings(seed=seed)
-    done = export(model, form, out, free=free, tool=tool, gripper=joints, package_dirs=package_dirs, settings=settings)
+    done = export(
+        model,
+        form,
+        out,
+        free=free,
+        tool=tool,
+        gripper=joints,
+        package_dirs=package_dirs,
+        settings=settings,
+        arguments=arguments,
+    )
     if json_to == "-":
         write_answer(done.as_json(), json_to)
         return

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.options import examples, force_file_option, package_dirs_option
+from kinematify.cli.options import arguments_argument, examples, force_file_option, package_dirs_option
 from kinematify.cli.progress import progress_reporter
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     ),
 )
 @click.argument("model", type=click.Path(path_type=Path))
+@arguments_argument
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), metavar="FILE", help="File to write.")
 @click.option(
     "--all",
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
 def command(
     *,
     model: Path,
+    arguments: dict[str, str],
     out: Path,
     everything: bool,
     kinematics: bool,
@@ -52,7 +54,9 @@ def command(
     package_dirs: tuple[Path, ...],
     json_to: str | None,
 ) -> int:
-    """Write MODEL, a URDF or a model folder, as a URDF in which certain findings of `validate` are fixed.
+    """Write MODEL as a URDF in which certain findings of `validate` are fixed.
+
+    MODEL is a URDF, xacro, MJCF, SDF, USD or a model folder; what the URDF does not hold of it is listed.
 
     Links that jam or overlap by their collision geometry alone get boxes and convex pieces, carved by the motion; a
     mass or inertia that no engine can use becomes that of the geometry; of repeated elements the first stays. Mesh
@@ -72,9 +76,10 @@ def command(
     from kinematify.config.validation import load_settings
     from kinematify.model.output import check_file, urdf_of
     from kinematify.refinement.repair import fix_urdf
+    from kinematify.robot.description import notes_of
 
     check_file(out, overwrite=force)
-    model = urdf_of(model)
+    model = urdf_of(model, package_dirs, arguments)
     with progress_reporter() as progress:
         done = fix_urdf(
             model,
@@ -89,6 +94,8 @@ def command(
     if json_to is not None:
         write_answer(done.as_json(), json_to)
     if json_to != "-":
+        for note in notes_of(model):
+            click.echo(note)
         _say(done, model.name)
     return done.exit_status
 

@@ -42,6 +42,18 @@ package_dirs_option = click.option(
     help="Package, or folder of packages, for package:// paths, or the package NAME; may be given more than once.",
 )
 
+
+def _arguments(_context: click.Context, _parameter: click.Parameter, given: tuple[str, ...]) -> dict[str, str]:
+    """Arguments of a xacro, by name."""
+    wrong = next((word for word in given if not word.partition(":=")[0] or ":=" not in word), None)
+    if wrong is not None:
+        raise click.BadParameter(f"{wrong!r} is no NAME:=VALUE. Give one model, and arguments if it is a xacro.")
+    return {name: value for name, _, value in (word.partition(":=") for word in given)}
+
+
+arguments_argument = click.argument("arguments", nargs=-1, metavar="[NAME:=VALUE]...", callback=_arguments)
+"""What follows a xacro."""
+
 force_file_option = click.option("--force", is_flag=True, help="Replace the file of -o if it exists.")
 
 sampling_seed_option = click.option(

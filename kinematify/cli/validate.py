@@ -40,7 +40,7 @@ _QUICK = "KV1*,KV2*,KV30*,KV31*,KV32*,KV801,KV802,KV803,KV804"
         "kinematify validate cabinet.urdf --task pull --robot fetch.urdf --tool gripper_link --checks 'KV7*'",
     ),
 )
-@click.argument("models", nargs=-1, required=True, metavar="MODEL...")
+@click.argument("models", nargs=-1, required=True, metavar="MODEL... [NAME:=VALUE]...")
 @package_dirs_option
 @click.option("--checks", metavar="LIST", help="Only these: ids or patterns such as KV3*, separated by commas.")
 @click.option("--skip", metavar="LIST", help="All but these.")
@@ -156,8 +156,9 @@ def command(
 ) -> int:
     """Check URDFs: the file, declared physics, collision along the motion, joints, engines and their agreement.
 
-    MODEL is a URDF file, a folder with URDF files at any depth, or a pattern in quotes. Nothing else is needed: no
-    ground truth, no second pose. `kinematify explain KV301` shows more about a check.
+    MODEL is a URDF, xacro, MJCF, SDF or USD file, a folder with URDF files at any depth, or a pattern in quotes;
+    NAME:=VALUE is an argument of the xacros. Nothing else is needed: no ground truth, no second pose.
+    `kinematify explain KV301` shows more about a check.
 
     Ends with 0 if no model has an error (warnings are allowed unless --fail-on says otherwise), with 1 if one has, with
     2 if one cannot be used, with 3 if there is no error and something that was asked for was not finished (the report
@@ -179,7 +180,8 @@ def command(
     )
     asked = options.request(files, _existing(package_dirs))
     run = ValidationRun(
-        models=find_models(models),
+        models=find_models([word for word in models if ":=" not in word]),
+        arguments=dict(word.split(":=", 1) for word in models if ":=" in word),
         package_dirs=_existing(package_dirs),
         selected=_selected(checks or (_QUICK if quick else None), skip),
         engines=("mujoco",) if quick else _engines(engines),

@@ -10,6 +10,7 @@ import click
 from kinematify.cli.options import say
 from kinematify.cli.verdict import describe, describe_listed, describe_table, describe_unused
 from kinematify.errors import ExitStatus, InputError
+from kinematify.robot.description import form_of
 from kinematify.validation.finding import Severity
 from kinematify.validation.run import validate
 from kinematify.validation.run.outcome import Unusable
@@ -38,6 +39,8 @@ class ValidationRun:
 
     models: tuple[Path, ...]
     package_dirs: tuple[Path, ...]
+    arguments: dict[str, str]
+    """Of xacros."""
     selected: frozenset[str]
     engines: tuple[str, ...]
     rules: tuple[Suppression, ...]
@@ -74,6 +77,7 @@ class ValidationRun:
             report = validate(
                 model,
                 package_dirs=self.package_dirs,
+                arguments=self.arguments if form_of(model) == "xacro" else None,
                 settings=self.settings,
                 selected=self.selected,
                 engines=self.engines,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kinematify.cli.options import complete_joints, examples, package_dirs_option
+from kinematify.cli.options import arguments_argument, complete_joints, examples, package_dirs_option
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,6 +29,7 @@ _SHOWN_TITLE = 60
     ),
 )
 @click.argument("model", type=click.Path(path_type=Path))
+@arguments_argument
 @click.option(
     "--joint",
     "joints",
@@ -52,6 +53,7 @@ _SHOWN_TITLE = 60
 def command(
     *,
     model: Path,
+    arguments: dict[str, str],
     joints: tuple[str, ...],
     values: tuple[float, ...],
     package_dirs: tuple[Path, ...],
@@ -59,7 +61,7 @@ def command(
     host: str,
     port: int,
 ) -> int:
-    """Show MODEL, a URDF or a model folder, until Ctrl-C.
+    """Show MODEL, a URDF, xacro, MJCF, SDF, USD or a model folder, until Ctrl-C.
 
     Sliders move the joints; axes and limits are drawn; what collides is red. Where inference.json lies beside the
     model, the candidates of each joint are named, can be tried, and "Keep this" writes the model with one of them and
@@ -67,13 +69,16 @@ def command(
     """
     from kinematify.errors import InputError
     from kinematify.model.output import urdf_of
+    from kinematify.robot.description import notes_of
     from kinematify.view.window import Window
 
     if len(joints) != len(values):
         raise InputError(f"There are {len(joints)} --joint and {len(values)} --q. Give one value for each joint.")
-    urdf = urdf_of(model)
+    urdf = urdf_of(model, package_dirs, arguments)
     findings = report or urdf.parent / "validation.json"
     sights = _sights(findings) if report is not None or findings.is_file() else []
+    for note in notes_of(urdf):
+        click.echo(note)
     window = Window(urdf, package_dirs=package_dirs, sights=sights, host=host, port=port)
     try:
         known = window.viewer.values
@@ -85,7 +90,7 @@ def command(
         window.viewer.set(dict(zip(joints, values, strict=True)))
         if port and window.port != port:
             click.echo(f"Port {port} is in use, so {window.port} is taken.")
-        click.echo(f"{window.url} shows {urdf.resolve()}; Ctrl-C ends it.")
+        click.echo(f"{window.url} shows {(urdf if model.is_dir() else model).resolve()}; Ctrl-C ends it.")
         window.run()
     except KeyboardInterrupt:
         click.echo("Closed.")

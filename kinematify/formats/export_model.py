@@ -13,10 +13,11 @@ from kinematify.formats.content import read_content
 from kinematify.formats.losses import losses
 from kinematify.formats.reopen import check_target
 from kinematify.model.output import urdf_of
+from kinematify.robot.description import notes_of
 from kinematify.versions import require
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from kinematify.config.validation import ValidationSettings
     from kinematify.formats.losses import Loss
@@ -57,11 +58,12 @@ def export(
     gripper: Sequence[str] = (),
     package_dirs: Sequence[Path] = (),
     settings: ValidationSettings | None = None,
+    arguments: Mapping[str, str] | None = None,
 ) -> Exported:
-    """Write a URDF in another format.
+    """Write a URDF, xacro, MJCF, SDF or USD in another format.
 
     Args:
-        model: The URDF file, or a model folder of `kinematify infer` or `generate`.
+        model: The file, or a model folder of `kinematify infer` or `generate`.
         to: One of `FORMATS`.
         out: File to write; meshes go into a folder beside it where the format names files.
         free: The root link floats instead of being fixed to the world (mjcf, usd, sdf).
@@ -69,6 +71,7 @@ def export(
         gripper: Joints of the fingers (srdf); found on the tool if not given.
         package_dirs: Where packages lie (``package://``).
         settings: Of decomposition, masses and pairs; the shipped ones if None.
+        arguments: Of a xacro.
 
     Raises:
         InputError: The model cannot be used, or there is no such format.
@@ -78,7 +81,7 @@ def export(
     """
     if to not in FORMATS:
         raise InputError(f"There is no format {to!r} to export to. Give one of {', '.join(FORMATS)}.")
-    urdf, path = urdf_of(Path(model)), Path(out)
+    urdf, path = urdf_of(Path(model), package_dirs, arguments), Path(out)
     chosen = load_settings() if settings is None else settings
     try:
         if to == "srdf":
@@ -88,7 +91,7 @@ def export(
         content = read_content(urdf, to, chosen, package_dirs=package_dirs)
         _writer(to)(content, path, free=free)
         check_target(content, to, path)
-        return Exported(path=path, notes=content.notes, lost=losses(content, to))
+        return Exported(path=path, notes=(*notes_of(urdf), *content.notes), lost=losses(content, to))
     except OSError as error:
         reason = error.strerror or str(error)
         raise OutputError(f"{path} cannot be written: {reason}. Give a file in a folder that exists.") from error

@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError, OutputError
+from kinematify.robot.description import urdf_for
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping, Sequence
 
 MODEL_FILE = "model.urdf"
 PREVIEW_FILE = "preview.png"
@@ -56,16 +57,21 @@ def write_model_folder(out: Path, write: Callable[[Path], None], *, overwrite: b
         raise
 
 
-def urdf_of(model: Path) -> Path:
-    """Return the URDF of a model folder, or the only one of another folder; a file is itself.
+def urdf_of(model: Path, package_dirs: Sequence[Path] = (), arguments: Mapping[str, str] | None = None) -> Path:
+    """Return the URDF of a model folder, or the only one of another folder; a URDF is itself.
+
+    Args:
+        model: The folder or file.
+        package_dirs: Where packages lie, for a file of another format, which a temporary URDF then represents.
+        arguments: Of a xacro.
 
     Raises:
-        InputError: There is no such file, or the folder has no URDF or several.
+        InputError: There is no such file, it cannot be read, or the folder has no URDF or several.
     """
     if not model.is_dir():
         if not model.is_file():
             raise InputError(f"There is no file {model}. Give a URDF, or a model folder that `kinematify infer` wrote.")
-        return model
+        return urdf_for(model, package_dirs, arguments)
     found = [model / MODEL_FILE] if (model / MODEL_FILE).is_file() else sorted(model.glob("*.urdf"))
     if len(found) != 1:
         what = f"{len(found)} URDF files ({', '.join(item.name for item in found[:3])})" if found else "no URDF file"

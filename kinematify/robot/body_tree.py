@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 WORLD = "world"
 """The link that represents the outside where a format fixes bodies to it."""
 _UPRIGHT = 1e-9
+_SHOWN = 4
 Edge = tuple[Joint, "FloatArray"]
 """A joint whose `T_parent_child` is the joint's frame in the parent body, with its frame in the child body; its axis is
 in the joint's frame."""
@@ -55,7 +56,7 @@ def tree_of(
     Raises:
         DescriptionError: There is no body.
     """
-    if not bodies:
+    if not any(body.name != WORLD or body.visuals or body.collisions for body in bodies):
         raise DescriptionError(f"The description {path} holds no body. Give a model with at least one.")
     notes = list(notes)
     bodies, edges = _without_empty_world(bodies, edges)
@@ -105,6 +106,16 @@ def tree_of(
         notes=tuple(notes),
     )
     return with_closures(robot) if robot.loops else robot
+
+
+def sentences(losses: Mapping[str, Sequence[str]]) -> list[str]:
+    """Return one sentence for each kind of thing that a file holds and a robot does not, with some of their names."""
+    found = []
+    for what, names in losses.items():
+        shown = ", ".join(name for name in names[:_SHOWN] if name)
+        more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+        found.append(f"Not read: {len(names)} {what}" + (f" ({shown}{more})." if shown else "."))
+    return found
 
 
 def _without_empty_world(bodies: Sequence[Link], edges: Sequence[Edge]) -> tuple[Sequence[Link], Sequence[Edge]]:

@@ -20,9 +20,11 @@ import numpy as np
 from lxml import etree
 
 from kinematify.errors import DescriptionError, EnvironmentFault, KinematifyError
+from kinematify.robot.mesh_paths import find_mesh
 from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
 from kinematify.robot.urdf_text import MAX_URDF_BYTES, parse_text
 from kinematify.robot.write import write_robot
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -39,6 +41,8 @@ _ROOT = re.compile(rb"<(?![?!])([\w.-]+:)?([\w.-]+)")
 _ROOTS = {b"mujoco": "mjcf", b"mujocoinclude": "mjcf", b"sdf": "sdf", b"gazebo": "sdf"}
 _NAMED = re.compile(r'<(link|joint)\s[^>]*?\bname\s*=\s*"([^"]+)"')
 _EXPRESSION = re.compile(r"\$[{(].*?[)}]")
+_OUR_NAME = re.compile(r"joint_\d+")
+_NOTES: dict[Path, tuple[str, ...]] = {}
 _EFFORT, _VELOCITY, _SLIDE = 1000.0, 100.0, 100.0
 """Of joints that state none in our URDF, without which engines refuse it [N m or N, rad/s or m/s, m]."""
 
@@ -56,6 +60,8 @@ class Description:
     """Line of `path` that declares a link or joint, by ``link`` or ``joint`` and its name; empty for a URDF."""
     notes: tuple[str, ...] = ()
     """What the file holds and the URDF does not, one sentence each."""
+    native: bool = False
+    """MuJoCo opens `path` itself, and has the same joints there."""
 
     @property
     def title(self) -> str:
@@ -123,6 +129,7 @@ def _read(path: Path, form: str, package_dirs: Sequence[Path], arguments: Mappin
 
         return read_mjcf(path)
     if form == "usd":
+        require("Reading USD", "usd-core")
         from kinematify.robot.usd_reader import read_usd  # noqa: PLC0415
 
         return read_usd(path)
@@ -156,21 +163,23 @@ def open_description(
     urdf = folder / f"{path.name.split('.')[0]}.urdf"
     read = read_foreign(path, form, package_dirs, arguments or {})
     if isinstance(read, str):
-        urdf.write_text(_with_whole_paths(read, path.resolve().parent), encoding="utf-8")
+        urdf.write_text(_with_whole_paths(read, path.resolve().parent, package_dirs), encoding="utf-8")
         return Description(path=path, form=form, urdf=urdf, lines=_xacro_lines(path, urdf))
     robot: Robot = read
     notes = list(robot.notes)
     joints = tuple(_complete(joint) for joint in robot.joints)
     changed = sum(one is not other for one, other in zip(joints, robot.joints, strict=True))
     if changed:
-        notes.append(
-            f"{changed} joints state no effort, speed or end; the URDF says {_EFFORT:g}, {_VELOCITY:g} and {_SLIDE:g} m."
-        )
+        made_up = f"{_EFFORT:g}, {_VELOCITY:g} and {_SLIDE:g} m"
+        notes.append(f"{changed} joints state no effort, speed or end; the URDF for engines says {made_up}.")
     links = tuple(_with_files(link, number, folder) for number, link in enumerate(robot.links))
     write_robot(replace(robot, links=links, joints=joints), urdf)
     lines = {("link", link.name): link.line for link in robot.links}
     lines |= {("joint", joint.name): joint.line for joint in robot.joints}
-    return Description(path=path, form=form, urdf=urdf, lines=lines, notes=tuple(notes))
+    # MuJoCo's own names and none of ours, and nothing that moves in other ways.
+    ours = any(joint.declared_kind in ("floating", "ball") or _OUR_NAME.fullmatch(joint.name) for joint in joints)
+    native = form == "mjcf" and not ours
+    return Description(path=path, form=form, urdf=urdf, lines=lines, notes=tuple(notes), native=native)
 
 
 def urdf_for(path: Path, package_dirs: Sequence[Path] = (), arguments: Mapping[str, str] | None = None) -> Path:
@@ -179,7 +188,14 @@ def urdf_for(path: Path, package_dirs: Sequence[Path] = (), arguments: Mapping[s
         return path
     folder = tempfile.mkdtemp(prefix="kinematify-description-")
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    return open_description(path, Path(folder), package_dirs, arguments).urdf
+    opened = open_description(path, Path(folder), package_dirs, arguments)
+    _NOTES[opened.urdf.resolve()] = opened.notes
+    return opened.urdf
+
+
+def notes_of(urdf: Path) -> tuple[str, ...]:
+    """Return what a URDF of `urdf_for` does not have of its source, one sentence each; nothing for other files."""
+    return _NOTES.get(urdf.resolve(), ())
 
 
 def _complete(joint: Joint) -> Joint:
@@ -213,16 +229,17 @@ def _with_files(link: Link, number: int, folder: Path) -> Link:
     )
 
 
-def _with_whole_paths(text: str, folder: Path) -> str:
-    """A URDF whose relative paths hold from anywhere."""
+def _with_whole_paths(text: str, folder: Path, package_dirs: Sequence[Path]) -> str:
+    """A URDF whose paths of files that are there hold from anywhere."""
     try:
         root = parse_text(text.encode())
     except etree.XMLSyntaxError:
         return text  # the reader of URDF says where
     for element in (*root.iter("mesh"), *root.iter("texture")):
-        name = element.get("filename") or ""
-        if name and "://" not in name and not Path(name).is_absolute():
-            element.set("filename", str(folder / name))
+        try:
+            element.set("filename", str(find_mesh(element.get("filename") or "", folder, package_dirs, "the xacro")))
+        except DescriptionError:
+            continue  # a finding will say so
     return etree.tostring(root, encoding="unicode")
 
 

@@ -119,9 +119,9 @@ def _package_candidates(package: str, inside: str, folder: Path, package_dirs: S
     candidates = []
     for given in package_dirs:
         candidates.append(given / package / inside)
-        if package in (given.name, _declared_name(given)):
+        if package in (given.name, declared_name(given)):
             candidates.append(given / inside)
-    candidates += [place / inside for place in above if _declared_name(place) == package]
+    candidates += [place / inside for place in above if declared_name(place) == package]
     candidates += [beside / inside for beside in _cloned_beside(folder, package)]
     for place in above:
         if place.name == package:
@@ -140,7 +140,7 @@ def _cloned_beside(folder: Path, package: str) -> list[Path]:
             beside = sorted(item for item in itertools.islice(place.iterdir(), _MOST_BESIDE) if item.is_dir())
         except OSError:
             continue
-        found += [item for item in beside if item.name != package and _declared_name(item) == package]
+        found += [item for item in beside if item.name != package and declared_name(item) == package]
     return found
 
 
@@ -148,7 +148,7 @@ def _ros_packages(package: str) -> list[Path]:
     """Places of a package in the workspaces that the environment names."""
     sources = [place for name in _PACKAGE_PATHS for place in _environment_paths(name)]
     installed = _environment_paths("AMENT_PREFIX_PATH")
-    named = [place for place in sources if package in (place.name, _declared_name(place))]
+    named = [place for place in sources if package in (place.name, declared_name(place))]
     return [*named, *(place / package for place in sources), *(place / "share" / package for place in installed)]
 
 
@@ -157,7 +157,7 @@ def _environment_paths(name: str) -> list[Path]:
 
 
 @lru_cache(maxsize=1024)
-def _declared_name(folder: Path) -> str | None:
+def declared_name(folder: Path) -> str | None:
     """Name of a package by its manifest; None where a folder has none."""
     try:
         with (folder / "package.xml").open("rb") as file:

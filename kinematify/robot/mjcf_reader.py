@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from kinematify.errors import DescriptionError
-from kinematify.robot.body_tree import WORLD, tree_of
+from kinematify.robot.body_tree import WORLD, sentences, tree_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Inertial, Joint, Link, LoopJoint, Mimic
 from kinematify.robot.transforms import joint_motion, rotation_from_quaternion
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from kinematify.robot.body_tree import Edge
     from kinematify.robot.robot import Robot, Shape
 
+Losses = dict[str, list[str]]
+"""Names of what is not read, by its kind."""
 _SEEN_GROUPS = 3
 """MuJoCo's viewer shows groups below it."""
 _GEOMS = mujoco.mjtGeom
@@ -50,15 +52,16 @@ def read_mjcf(path: Path) -> Robot:
     mujoco.mj_kinematics(model, data)
     names = [_called(model.body(k).name, "body", k) if k else WORLD for k in range(model.nbody)]
     lines = {kind: {item.id: _line(item) for item in getattr(spec, kind)} for kind in ("bodies", "joints", "geoms")}
-    notes = [
-        f"Not read: {len(found)} {what} of the MJCF."
+    losses = {
+        what: [str(getattr(item, "name", "")) for item in found]
         for kind, what in _UNHELD.items()
         if (found := getattr(spec, kind, ()))
-    ]
+    }
     bodies: list[Link] = []
     edges: list[Edge] = []
-    notes += _joint_notes(model)
-    mimics, shapes = _followers(model, notes), _shapes(model, lines["geoms"], notes)
+    notes = _joint_notes(model, losses)
+    mimics, shapes = _followers(model, losses), _shapes(model, lines["geoms"], losses)
+    loops = _loops(model, names, losses)
     for k, name in enumerate(names):
         above, line = _chain(model, k, names), lines["bodies"].get(k, 0)
         bodies += [Link(name=joint.child, line=line) for joint, _ in above[:-1]]
@@ -71,7 +74,7 @@ def read_mjcf(path: Path) -> Robot:
         ]
     poses = {name: _pose(data.xpos[k], data.xquat[k]) for k, name in enumerate(names)}
     title = spec.modelname or path.stem
-    return tree_of(title, path, bodies, edges, poses=poses, loops=_loops(model, names, notes), notes=notes)
+    return tree_of(title, path, bodies, edges, poses=poses, loops=loops, notes=[*notes, *sentences(losses)])
 
 
 def _called(name: str, kind: str, number: int) -> str:
@@ -116,7 +119,7 @@ def _chain(model: Any, body: int, names: list[str]) -> list[Edge]:
     return edges
 
 
-def _joint_notes(model: Any) -> list[str]:
+def _joint_notes(model: Any, losses: Losses) -> list[str]:
     """What joints are that ours are not."""
     notes = []
     for k in range(model.njnt):
@@ -124,7 +127,7 @@ def _joint_notes(model: Any) -> list[str]:
         if kind in _FREE:
             notes.append(f"The {_FREE[kind]} joint {name} is read as fixed.")
         elif model.jnt_stiffness[k].any():
-            notes.append(f"Not read: the spring of the joint {name}.")
+            losses.setdefault("springs of joints", []).append(name)
     several = [_called(model.body(k).name, "body", k) for k in range(model.nbody) if model.body_jntnum[k] > 1]
     if several:
         notes.append(f"Bodies with several joints are chains of links without mass: {', '.join(several)}.")
@@ -187,16 +190,15 @@ def _inertial(model: Any, body: int, line: int) -> Inertial | None:
     )
 
 
-def _shapes(model: Any, lines: dict[int, int], notes: list[str]) -> list[tuple[tuple[Shape, ...], tuple[Shape, ...]]]:
+def _shapes(model: Any, lines: dict[int, int], losses: Losses) -> list[tuple[tuple[Shape, ...], tuple[Shape, ...]]]:
     """What is seen and what collides of every body."""
     found: list[tuple[list[Shape], list[Shape]]] = [([], []) for _ in range(model.nbody)]
-    left: dict[str, int] = {}
     for k in range(model.ngeom):
         color = model.mat_rgba[model.geom_matid[k]] if model.geom_matid[k] >= 0 else model.geom_rgba[k]
         shape = _shape(model, k, tuple(map(float, color)), lines.get(k, 0))
         if shape is None:
             kind = _GEOMS(int(model.geom_type[k])).name.removeprefix("mjGEOM_").lower()
-            left[kind] = left.get(kind, 0) + 1
+            losses.setdefault(f"geoms of the type {kind}", []).append(model.geom(k).name)
             continue
         seen, felt = found[int(model.geom_bodyid[k])]
         collides = bool(model.geom_contype[k] or model.geom_conaffinity[k])
@@ -204,7 +206,6 @@ def _shapes(model: Any, lines: dict[int, int], notes: list[str]) -> list[tuple[t
             felt.append(shape)
         if model.geom_group[k] < _SEEN_GROUPS or not collides:
             seen.append(shape)
-    notes += [f"Not read: {count} geoms of the type {kind}." for kind, count in left.items()]
     return [(tuple(seen), tuple(felt)) for seen, felt in found]
 
 
@@ -235,7 +236,7 @@ def _equalities(model: Any, kind: Any) -> Iterator[int]:
     return (k for k in range(model.neq) if int(model.eq_type[k]) == int(kind) and model.eq_active0[k])
 
 
-def _followers(model: Any, notes: list[str]) -> dict[str, Mimic]:
+def _followers(model: Any, losses: Losses) -> dict[str, Mimic]:
     """Rules of the joints that follow another one along a line, by joint."""
     found = {}
     for k in _equalities(model, mujoco.mjtEq.mjEQ_JOINT):
@@ -243,26 +244,25 @@ def _followers(model: Any, notes: list[str]) -> dict[str, Mimic]:
         offset, slope, *curved = model.eq_data[k, :5].tolist()
         name = _called(model.joint(follower).name, "joint", follower)
         if leader < 0 or any(curved) or name in found:
-            notes.append(f"Not read: the equality {_called(model.equality(k).name, 'equality', k)} of joints.")
+            losses.setdefault("equalities of joints that are no line", []).append(name)
             continue
         start = _reference(model, follower) + offset - slope * _reference(model, leader)
         found[name] = Mimic(joint=_called(model.joint(leader).name, "joint", leader), multiplier=slope, offset=start)
     return found
 
 
-def _loops(model: Any, names: list[str], notes: list[str]) -> list[LoopJoint]:
+def _loops(model: Any, names: list[str], losses: Losses) -> list[LoopJoint]:
     """Bodies that share a point."""
     found = []
     for k in _equalities(model, mujoco.mjtEq.mjEQ_CONNECT):
         called = _called(model.equality(k).name, "equality", k)
         if int(model.eq_objtype[k]) != int(mujoco.mjtObj.mjOBJ_BODY):
-            notes.append(f"Not read: the equality {called} between sites.")
+            losses.setdefault("equalities between sites", []).append(called)
             continue
         links = (names[model.eq_obj1id[k]], names[model.eq_obj2id[k]])
         points = (model.eq_data[k, :3].copy(), model.eq_data[k, 3:6].copy())
         found.append(LoopJoint(name=called, links=links, points=points))
     others = (mujoco.mjtEq.mjEQ_WELD, mujoco.mjtEq.mjEQ_TENDON, mujoco.mjtEq.mjEQ_FLEX)
-    count = sum(1 for kind in others for _ in _equalities(model, kind))
-    if count:
-        notes.append(f"Not read: {count} equalities that weld bodies or hold tendons.")
+    for k in (k for kind in others for k in _equalities(model, kind)):
+        losses.setdefault("equalities that weld bodies or hold tendons", []).append(model.equality(k).name)
     return found

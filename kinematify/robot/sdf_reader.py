@@ -9,7 +9,7 @@ import numpy as np
 from lxml import etree
 
 from kinematify.errors import DescriptionError
-from kinematify.robot.body_tree import WORLD, tree_of
+from kinematify.robot.body_tree import WORLD, sentences, tree_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_paths import mesh_candidates
 from kinematify.robot.robot import Inertial, Joint, Link, Mimic
@@ -47,12 +47,18 @@ class _Model:
     """What is in a model and the models within it, by name with its scope."""
 
     source: GeometrySource
-    version: float
+    version: tuple[int, ...]
     links: dict[str, _Element] = field(default_factory=dict)
     joints: dict[str, _Element] = field(default_factory=dict)
     frames: dict[str, tuple[FloatArray, str | None, str]] = field(default_factory=dict)
     """Pose of a frame, the frame that it is relative to (None: the top), and what it is attached to."""
+    losses: dict[str, list[str]] = field(default_factory=dict)
+    """Names of what is not read, by its kind."""
     notes: list[str] = field(default_factory=list)
+
+    def lose(self, what: str, name: str) -> None:
+        """Keep that something is not read."""
+        self.losses.setdefault(what, []).append(name)
 
     def scope(self, name: str) -> str:
         """The model that something is in, with ``::`` at its end."""
@@ -99,10 +105,9 @@ def read_sdf(path: Path, source: GeometrySource) -> Robot:
     if not candidates:
         raise DescriptionError(f"The SDF {path} holds no model. Give one with a <model>.")
     chosen = max(candidates, key=lambda item: (len(item.findall(".//joint")), -candidates.index(item)))
-    model = _Model(source=source, version=float(document.get("version") or 1.0))
+    model = _Model(source=source, version=_version(document))
     if len(candidates) > 1:
-        others = [item.get("name") or "" for item in candidates if item is not chosen]
-        model.notes.append(f"Not read: {len(others)} other models of the SDF: {', '.join(others[:8])}.")
+        model.losses["other models"] = [item.get("name") or "" for item in candidates if item is not chosen]
     _collect(model, chosen, "", 0)
     edges = [edge for name, element in model.joints.items() for edge in _edges(model, name, element)]
     bodies = [_link(model, name, element) for name, element in model.links.items()]
@@ -111,8 +116,16 @@ def read_sdf(path: Path, source: GeometrySource) -> Robot:
     if any(joint.parent == WORLD for joint, _ in edges):
         bodies.insert(0, Link(name=WORLD))
     poses = {name: model.placed(name) for name in model.links} | {WORLD: np.eye(4)}
-    notes = [*model.notes, *source.omitted]
+    for tag in ("sensor", "plugin", "light", "gripper"):
+        for item in chosen.iter(tag):
+            model.lose(f"{tag}s", item.get("name") or "")
+    notes = [*model.notes, *sentences(model.losses), *source.omitted]
     return tree_of(chosen.get("name") or path.stem, path, bodies, edges, poses=poses, notes=notes)
+
+
+def _version(document: _Element) -> tuple[int, ...]:
+    words = (document.get("version") or "1.0").split(".")
+    return tuple(int(word) for word in words if word.isdecimal())
 
 
 def _collect(model: _Model, element: _Element, scope: str, depth: int) -> None:
@@ -127,7 +140,7 @@ def _collect(model: _Model, element: _Element, scope: str, depth: int) -> None:
         inner = _included(item, model.source, depth) if item.tag == "include" else item
         name = scope + ((item.findtext("name") if item.tag == "include" else None) or item.get("name") or "")
         if inner is None:
-            model.notes.append(f"Not read: the model {item.findtext('uri')!r}, which is not there.")
+            model.lose("included models that are not there", item.findtext("uri") or "")
             continue
         if item.tag == "include" and name == scope:
             name += inner.get("name") or "included"
@@ -202,7 +215,7 @@ def _edges(model: _Model, name: str, element: _Element) -> Iterator[Edge]:
     scope, declared = model.scope(name), element.get("type") or ""
     stated = [(element.findtext(tag) or "").strip() for tag in ("parent", "child")]
     if declared == "gearbox" or not all(stated):
-        model.notes.append(f"Not read: the joint {name} ({declared or 'without a type'}).")
+        model.lose(f"joints of the type {declared!r}", name)
         return
     parent, child = (model.body(WORLD if end == WORLD else scope + end) for end in stated)
     kind = _KINDS.get(declared, JointType.FIXED)
@@ -236,7 +249,9 @@ def _turning(model: _Model, joint: Joint, axis: _Element, T_top_joint: FloatArra
     scope, xyz = model.scope(joint.name), axis.find("xyz")
     direction = np.array(_values(xyz, 3, (0.0, 0.0, 1.0)))
     frame = None if xyz is None else xyz.get("expressed_in")
-    if frame is None and (model.version < 1.5 or axis.findtext("use_parent_model_frame", "").strip() in ("1", "true")):
+    if frame is None and (
+        model.version < (1, 5) or axis.findtext("use_parent_model_frame", "").strip() in ("1", "true")
+    ):
         frame = _MODEL
     if frame:
         direction = T_top_joint[:3, :3].T @ model.placed(scope + frame)[:3, :3] @ direction
@@ -247,8 +262,8 @@ def _turning(model: _Model, joint: Joint, axis: _Element, T_top_joint: FloatArra
         _values(axis.find(f"limit/{key}"), 1, (sign * np.inf,))[0] for key, sign in (("lower", -1), ("upper", 1))
     )
     limited = max(-lower, upper) < _ENDLESS and joint.declared_kind != "continuous"
-    if axis.find("dynamics/spring_stiffness") is not None:
-        model.notes.append(f"Not read: the spring of the joint {joint.name}.")
+    if any(_values(axis.find("dynamics/spring_stiffness"), 1, (0.0,))):
+        model.lose("springs of joints", joint.name)
     mimic = axis.find("mimic")
     if mimic is not None:
         slope, offset, start = (_values(mimic.find(key), 1, (0.0,))[0] for key in ("multiplier", "offset", "reference"))
@@ -314,7 +329,7 @@ def _shape(model: _Model, link: str, element: _Element) -> Shape | None:
     }
     if shape is None or kind not in (*sizes, "mesh") or shape.find("submesh") is not None:
         what = f"{kind} with a submesh" if kind == "mesh" else kind
-        model.notes.append(f"Not read: a {element.tag} of the link {link} ({what}), line {line}.")
+        model.lose(f"{element.tag}s of the shape {what}", f"{link}, line {line}")
         return None
     made = etree.Element(str(element.tag))
     etree.SubElement(made, "origin", xyz=numbers(T[:3, 3]), rpy=numbers(rpy_of(T[:3, :3])))

@@ -32,8 +32,6 @@ _BEGINNINGS = {
     b"glTF": "a GLB mesh",
     b"PK\x03\x04": "a ZIP archive (perhaps a 3MF mesh or a USDZ scene)",
     b"\x1f\x8b": "a file packed with gzip",
-    b"PXR-USDC": "a binary USD scene",
-    b"#usda": "a USD scene",
     b"\x7fELF": "a program",
     b"\x89PNG": "a picture",
     b"%PDF": "a PDF document",
@@ -42,15 +40,11 @@ _BEGINNINGS = {
     b"OFF": "an OFF mesh",
 }
 _ROOTS = {
-    "mujoco": ("MJCF, the format of MuJoCo", "Convert it, for example with mjcf2urdf, and give the URDF."),
-    "sdf": ("SDF, the format of Gazebo", "Convert it, for example with `sdf2urdf`, and give the URDF."),
-    "gazebo": ("an old SDF file", "Convert it, for example with `sdf2urdf`, and give the URDF."),
     "COLLADA": ("a COLLADA mesh", "Give the URDF that uses the mesh."),
     "package": ("the manifest of a ROS package", "Give a .urdf file of the package."),
     "launch": ("a ROS launch file", "Give the URDF that it loads."),
     "html": ("a web page", "Download the raw file instead of the page that shows it."),
 }
-_XACRO = "Expand it first: `xacro {path} > robot.urdf` (pip install xacro, or ROS), and give robot.urdf."
 _WORDS = re.compile(rb"<(robot|link|joint)[\s>/]")
 
 
@@ -210,8 +204,6 @@ def _refuse_foreign_text(path: Path, text: bytes) -> None:
     kind = next((kind for start, kind in _BEGINNINGS.items() if text.startswith(start)), None)
     if kind is not None:
         raise DescriptionError(f"The file {path} is {kind}, not a URDF. Give the URDF that uses it.")
-    if b"<xacro:" in text:
-        raise DescriptionError(f"The file {path} is a xacro file, not a URDF. {_XACRO.format(path=path)}")
     if _WORDS.search(text.replace(b"\x00", b"")) is None:
         what = "a binary file" if b"\x00" in text[:1024] else "no XML with links and joints"
         raise DescriptionError(f"The file {path} is {what}, not a URDF. Give a URDF: XML that begins with <robot>.")
@@ -224,8 +216,6 @@ def _refuse_foreign_tree(path: Path, root: _Element) -> None:
         raise DescriptionError(f"The file {path} is {what}, not a URDF. {remedy}")
     if root.tag != "robot":
         raise DescriptionError(f"The file {path} begins with <{root.tag}>, not <robot>, so it is no URDF. Give a URDF.")
-    if any("xacro" in (etree.QName(element).namespace or "") for element in root.iter(etree.Element)):
-        raise DescriptionError(f"The file {path} is a xacro file, not a URDF. {_XACRO.format(path=path)}")
     tags = {element.tag for element in root}
     if "link" not in tags and tags & {"group", "disable_collisions", "group_state", "end_effector"}:
         raise DescriptionError(

@@ -11,7 +11,7 @@ import numpy as np
 from pxr import Usd, UsdGeom, UsdPhysics, UsdUtils
 
 from kinematify.errors import DescriptionError
-from kinematify.robot.body_tree import WORLD, tree_of
+from kinematify.robot.body_tree import WORLD, sentences, tree_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Inertial, Joint, Link, Mimic
 from kinematify.robot.transforms import rotation_from_quaternion
@@ -43,7 +43,9 @@ class _Stage:
     """The same of joints."""
     lines: dict[str, int]
     cache: Any = field(default_factory=lambda: UsdGeom.XformCache(Usd.TimeCode.Default()))
-    notes: dict[str, int] = field(default_factory=dict)
+    losses: dict[str, list[str]] = field(default_factory=dict)
+    """Names of what is not read, by its kind."""
+    notes: list[str] = field(default_factory=list)
 
     def scaled_pose(self, prim: Any) -> FloatArray:
         """Map from a prim's own coordinates to the world [m]."""
@@ -60,8 +62,9 @@ class _Stage:
             prim = prim.GetParent()
         return prim or None
 
-    def note(self, what: str) -> None:
-        self.notes[what] = self.notes.get(what, 0) + 1
+    def lose(self, what: str, name: str) -> None:
+        """Keep that something is not read."""
+        self.losses.setdefault(what, []).append(name)
 
 
 def read_usd(path: Path) -> Robot:
@@ -70,9 +73,11 @@ def read_usd(path: Path) -> Robot:
     Raises:
         DescriptionError: USD does not open it, it refers to files outside of its folder, or it holds no rigid body.
     """
-    _check_references(path)
     try:
+        _check_references(path)
         stage = Usd.Stage.Open(str(path))
+    except DescriptionError:
+        raise
     except Exception as error:  # pxr.Tf.ErrorException, which mypy does not know
         raise DescriptionError(f"USD does not open {path}: {' '.join(str(error).split())[:300]}") from error
     prims = [prim for prim in stage.Traverse(Usd.TraverseInstanceProxies()) if prim.HasAPI(UsdPhysics.RigidBodyAPI)]
@@ -104,7 +109,11 @@ def read_usd(path: Path) -> Robot:
         bodies.insert(0, Link(name=WORLD))
     poses = {read.bodies[prim.GetPath()]: read.pose(prim) for prim in prims} | {WORLD: np.eye(4)}
     top = stage.GetDefaultPrim()
-    notes = [what if count == 1 else f"{what} ({count} times)" for what, count in read.notes.items()]
+    lost = ("Camera", "PhysicsDistanceJoint")
+    for prim in stage.Traverse(Usd.TraverseInstanceProxies()):
+        if prim.GetTypeName() in lost or prim.GetTypeName().endswith("Light"):
+            read.lose(f"prims of the type {prim.GetTypeName()}", prim.GetName())
+    notes = [*read.notes, *sentences(read.losses)]
     return tree_of(top.GetName() if top else path.stem, path, bodies, ordered, poses=poses, notes=notes)
 
 
@@ -173,7 +182,7 @@ def _link(read: _Stage, prim: Any) -> Link:
         elif item.IsA(UsdGeom.Gprim):
             shape = _shape(read, item, T_body_world @ read.scaled_pose(item), line)
             if shape is None:
-                read.note(f"Not read: a {item.GetTypeName()} of the link {name}.")
+                read.lose(f"geometries of the type {item.GetTypeName()}", name)
                 continue
             if _collides(item, prim):
                 felt.append(shape)
@@ -198,7 +207,7 @@ def _inertial(read: _Stage, prim: Any, line: int) -> Inertial | None:
     api = UsdPhysics.MassAPI(prim) if prim.HasAPI(UsdPhysics.MassAPI) else None
     mass = float(api.GetMassAttr().Get() or 0.0) if api else 0.0
     if api is None or not mass > 0.0:
-        read.note("Bodies without a mass: engines compute it from density and colliders.")
+        read.lose("masses that engines compute from density and colliders", read.bodies[prim.GetPath()])
         return None
     diagonal = np.array(api.GetDiagonalInertiaAttr().Get() or (0.0, 0.0, 0.0), dtype=np.float64)
     scaled, rigid = read.scaled_pose(prim), read.pose(prim)
@@ -331,7 +340,7 @@ def _edge(read: _Stage, prim: Any) -> Edge | None:
         if prim.IsA(schema):
             return _moving(read, made, schema(prim), kind), T_child
     if declared != "fixed" and not joint.GetExcludeFromArticulationAttr().Get():
-        read.note(f"The joint {name} ({prim.GetTypeName()}) is read as fixed.")
+        read.notes.append(f"The joint {name} ({prim.GetTypeName()}) is read as fixed.")
     return made, T_child
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, Any
 
-from kinematify.errors import DescriptionError, EnvironmentFault
-from kinematify.robot.mesh_paths import mesh_candidates
+from kinematify.errors import DescriptionError
+from kinematify.robot.mesh_paths import declared_name, mesh_candidates
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,15 +29,10 @@ def expand_xacro(path: Path, package_dirs: Sequence[Path], arguments: Mapping[st
 
     Raises:
         DescriptionError: xacro does not expand it; the message is xacro's.
-        EnvironmentFault: The package xacro is not installed.
     """
-    try:
-        import xacro  # noqa: PLC0415 - for such files only
-        from xacro import substitution_args  # noqa: PLC0415
-    except ImportError as error:
-        raise EnvironmentFault(
-            f"{path} is a xacro file. Install the package that expands it: pip install xacro"
-        ) from error
+    import xacro  # noqa: PLC0415 - for such files only
+    from xacro import substitution_args  # noqa: PLC0415
+
     safe_eval = xacro.safe_eval
 
     def checked_eval(text: str, names: Any, local: Any = None) -> Any:
@@ -51,9 +46,10 @@ def expand_xacro(path: Path, package_dirs: Sequence[Path], arguments: Mapping[st
         return str(checked_eval(text, {**known, **values, **functions}))
 
     def found(resolved: str, command: str, words: Sequence[str], _context: Any) -> str:
-        tail = resolved.split(f"$({command})", 1)[1].split("$", 1)[0].lstrip("/")
+        tail = resolved.split(f"$({command})", 1)[1].split("$", 1)[0].strip("/")
         places = mesh_candidates(f"package://{words[0]}/{tail}", path.resolve().parent, package_dirs, "the xacro")
-        place = next((str(item) for item in places if item.exists()), None)
+        there = (item for item in places if item.exists() and (tail or words[0] in (item.name, declared_name(item))))
+        place = next(map(str, there), None)
         if place is None:
             raise substitution_args.SubstitutionException(
                 f"no package {words[0]} with {tail or 'anything'}; name its folder with --package-dir"

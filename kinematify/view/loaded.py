@@ -14,6 +14,7 @@ import numpy as np
 
 from kinematify.errors import DescriptionError, InputError
 from kinematify.model.output import urdf_of
+from kinematify.robot.description import notes_of
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.versions import require
@@ -31,17 +32,21 @@ _SLACK = 1e-6
 """Share of a limit by which a value may pass it: files round their limits to six digits."""
 
 
-def load(path: str | Path, *, package_dirs: Sequence[str | Path] = ()) -> LoadedModel:
-    """Open a URDF, or the model folder of `kinematify infer` or `generate`.
+def load(
+    path: str | Path, *, package_dirs: Sequence[str | Path] = (), arguments: Mapping[str, str] | None = None
+) -> LoadedModel:
+    """Open a URDF, xacro, MJCF, SDF or USD, or the model folder of `kinematify infer` or `generate`.
 
     Args:
         path: The file or the folder.
         package_dirs: Where packages lie (``package://``).
+        arguments: Of a xacro.
 
     Raises:
         InputError: There is no such file, or it cannot be read.
     """
-    return LoadedModel(urdf_of(Path(path)), tuple(map(Path, package_dirs)))
+    places = tuple(map(Path, package_dirs))
+    return LoadedModel(urdf_of(Path(path), places, arguments), places)
 
 
 class LoadedModel:
@@ -58,7 +63,7 @@ class LoadedModel:
         self.robot: Robot = read_robot(urdf, package_dirs=package_dirs, appearance=True)
         """Links, joints and meshes."""
         self._package_dirs = package_dirs
-        for note in self.robot.notes:
+        for note in (*notes_of(urdf), *self.robot.notes):
             warnings.warn(note, stacklevel=3)
 
     def __repr__(self) -> str:

@@ -16,7 +16,7 @@ from kinematify.validation.document import shown
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from lxml.etree import _Element
 
@@ -284,6 +284,24 @@ def quaternions(result: OpenCheck, urdf: Urdf) -> None:
             link=_owner(owner, "link"),
             joint=_owner(owner, "joint"),
         )
+
+
+@check(
+    "KV108",
+    title="The whole description is read",
+    fails="Something of the description is not read",
+    severity=Severity.NOTE,
+    cause=Cause.ASSET,
+)
+def losses(result: OpenCheck, unread: Sequence[str]) -> None:
+    """An MJCF, SDF or USD holds nothing that a URDF cannot say: each kind of thing that is not read is a note.
+
+    Why it matters: The model that is checked is the file without it.
+
+    Remedy: Nothing, unless the model depends on it; MuJoCo opens an MJCF itself for the checks of the file as loaded.
+    """
+    for sentence in unread:
+        result.find(sentence, "Check what depends on it in an engine that reads the format.")
 
 
 def _is_unturned(quaternion: list[float]) -> bool:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from kinematify.config.validation import load_settings
 from kinematify.errors import DescriptionError
 from kinematify.manipulation.plan_request import PriorFinding
+from kinematify.robot.description import open_description
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine, why_not_run
 from kinematify.validation.checks import CHECKS
@@ -24,7 +25,7 @@ from kinematify.validation.environment import environment
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
 from kinematify.validation.left_model import has_model
-from kinematify.validation.lines import with_lines
+from kinematify.validation.lines import in_source, with_lines
 from kinematify.validation.run.causes import with_causes
 from kinematify.validation.run.loaded_findings import across_engines, with_refusals
 from kinematify.validation.run.opinions import demote_inference_findings, join_facts
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import ValidationSettings
     from kinematify.manipulation.plan_request import TaskRequest
+    from kinematify.robot.description import Description
     from kinematify.robot.robot import Robot
     from kinematify.validation.check import Check
     from kinematify.validation.document_copy import DocumentCopy
@@ -68,19 +70,21 @@ def validate(
     engines: Sequence[str] = DEFAULT_ENGINES,
     suppressions: Sequence[Suppression] = (),
     task: TaskRequest | None = None,
+    arguments: Mapping[str, str] | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> ValidationReport:
-    """Check a URDF: file, declared physics, collision along the motion, joint evidence, engines and their agreement.
+    """Check a URDF, xacro, MJCF, SDF or USD: file, declared physics, collision along the motion, joints, engines.
 
     Args:
-        path: The URDF file.
+        path: The file.
         package_dirs: Where packages lie (``package://``).
         settings: Thresholds and budgets; the shipped ones if absent.
         selected: Ids of the checks to run; all if absent. Those of file and meshes always run, and their errors count.
         engines: Of `kinematify.simulation.engines.ENGINES`; all that are installed if absent. Checks of others are
             reported as skipped, with the reason.
         suppressions: Findings that do not count.
+        arguments: Of a xacro.
         task: What a robot is to do with the object (KV7xx); without one these checks are not in the report.
         workers: Processes at a time; as many as there are cores if absent.
         progress: Called with the stage that ended and the fraction done.
@@ -89,7 +93,7 @@ def validate(
         The report; after an interrupt a partial one that says so.
 
     Raises:
-        InputError: `path` is not a URDF at all (missing, unreadable, binary, xacro, MJCF).
+        InputError: `path` is no description at all (missing, unreadable, binary), or cannot be read.
         EnvironmentFault: An engine was asked for that is not installed, or a task without what plans it.
     """
     for engine in engines:
@@ -103,14 +107,19 @@ def validate(
     settings = settings or load_settings()
     try:
         with tempfile.TemporaryDirectory(prefix="kinematify-", ignore_cleanup_errors=True) as folder:
+            places = tuple(Path(item).absolute() for item in package_dirs)
+            description = open_description(run.path.absolute(), Path(folder), places, arguments)
+            run.description, run.robot = description, _bodies(description.urdf)
             request = StageRequest(
-                urdf=run.path.absolute(),
-                package_dirs=tuple(Path(item).absolute() for item in package_dirs),
+                urdf=description.urdf,
+                package_dirs=places,
                 work=Path(folder),
                 settings=settings,
                 selected=run.selected,
                 deadline=settings.budget.seconds,
                 task=task,
+                native=description.path if description.native else None,
+                losses=description.notes,
             )
             run.all(request, workers or os.cpu_count() or 1)
     except KeyboardInterrupt:
@@ -155,6 +164,8 @@ class _Run:
         self.checks = checks
         self.selected = selected
         self.interrupted = False
+        self.description: Description | None = None
+        self.robot: Robot | None = None
         self._progress = progress or (lambda stage, fraction: None)
         self._results: dict[CheckKey, CheckResult] = {}
         self._joints: dict[str, JointSummary] = {}
@@ -285,10 +296,12 @@ class _Run:
             self._explain_rest(Status.SKIPPED, "the run was interrupted")
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
         results = [self._result(key) for key in keys(list(self.checks.values()))]
-        robot = _bodies(self.path)
+        robot = self.robot
         results = demote_inference_findings(
             join_facts(across_engines(with_refusals(with_lines(results, robot)), self.engines))
         )
+        if self.description is not None and self.description.form != "urdf":
+            results = in_source(results, self.description)
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)
         checks = with_causes(checks, robot)
         facts = environment(settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from kinematify.validation.stage import Recorder, StageRequest
 
 _TEXT = ("KV101", "KV102")
+_WHOLE = "KV108"
 _SIZE = "KV103"
 _SHOWN = 50
 """Findings per check; what a thousand lines have in common is seen in the first fifty."""
@@ -39,7 +40,9 @@ def precheck(request: StageRequest, recorder: Recorder) -> bool:
     urdf = Urdf.of(source.robot, request, source.text)
     if _blocks(CHECKS[_SIZE], urdf, recorder):
         return False
-    others = [check for check in checks_of("KV10", "KV11", "KV12", "KV13", "KV14") if check.id not in (*_TEXT, _SIZE)]
+    _blocks(CHECKS[_WHOLE], request.losses, recorder)
+    done = (*_TEXT, _SIZE, _WHOLE)
+    others = [check for check in checks_of("KV10", "KV11", "KV12", "KV13", "KV14") if check.id not in done]
     blocked = [_blocks(check, urdf, recorder) for check in others]
     return not any(blocked)
 

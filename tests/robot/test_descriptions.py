@@ -1,0 +1,246 @@
+"""Descriptions of other formats: read as their own engines read them, and bounded where they are hostile."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pybullet
+import pytest
+from pybullet_utils.bullet_client import BulletClient
+
+from kinematify.errors import DescriptionError
+from kinematify.formats.export_model import export
+from kinematify.robot.description import form_of, open_description
+from kinematify.robot.read import read_robot
+from kinematify.robot.robot import Robot, forward_kinematics, joint_values, rest_configuration
+from kinematify.robot.transforms import rotation_from_rpy
+
+MJCF = """<mujoco model="crane">
+  <compiler angle="degree" eulerseq="zyx"/>
+  <default><geom rgba="0.2 0.4 0.6 1"/></default>
+  <worldbody>
+    <geom name="floor" type="plane" size="1 1 1"/>
+    <geom type="box" size="0.2 0.2 0.05"/>
+    <body name="mast" pos="0 0 0.1" euler="0 0 40">
+      <joint name="turn" axis="0 0 1" range="-90 90" damping="2" frictionloss="0.5"/>
+      <joint name="lift" type="slide" axis="0 0 1" pos="0.1 0 0" range="0 0.3" ref="0.1"/>
+      <geom type="cylinder" size="0.05 0.4" pos="0 0 0.4"/>
+      <body name="boom" pos="0.05 0 0.8">
+        <joint name="pitch" axis="0 1 1" pos="0.02 0.01 0" ref="15"/>
+        <geom type="capsule" fromto="0 0 0 0.6 0 0" size="0.03"/>
+        <geom type="ellipsoid" size="0.05 0.04 0.03" pos="0.6 0 0" contype="0" conaffinity="0" mass="0"/>
+        <body name="hook" pos="0.6 0 -0.1">
+          <joint name="swing" type="ball"/>
+          <geom type="sphere" size="0.04"/>
+        </body>
+        <body name="counter" pos="-0.1 0 0">
+          <joint name="follow" axis="0 1 0"/><geom type="box" size=".05 .05 .05"/>
+        </body>
+      </body>
+    </body>
+  </worldbody>
+  <equality><joint joint1="follow" joint2="pitch" polycoef="0.1 -2 0 0 0"/></equality>
+  <actuator><motor joint="turn" gear="5" ctrlrange="-2 2"/></actuator>
+  <sensor><jointpos joint="turn"/></sensor>
+</mujoco>
+"""
+
+
+def written(folder: Path, name: str, text: str) -> Path:
+    path = folder / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def center(robot: Robot, link: str, q: dict[str, float]) -> np.ndarray:
+    """Centre of mass of a link in the frame of the root."""
+    inertial = robot.link_by_name[link].inertial
+    assert inertial is not None
+    return (forward_kinematics(robot, q)[link] @ np.append(inertial.center_of_mass, 1.0))[:3]
+
+
+def test_an_mjcf_moves_as_in_mujoco_and_its_losses_are_listed(tmp_path: Path) -> None:
+    path = written(tmp_path, "crane.xml", MJCF)
+    robot, model = read_robot(path), mujoco.MjModel.from_xml_path(str(path))
+    data, draw = mujoco.MjData(model), np.random.default_rng(1)
+    for _ in range(4):
+        q = {name: float(draw.uniform(-0.5, 0.5)) for name in ("turn", "lift", "pitch")}
+        for name, value in joint_values(robot, q).items():
+            if name in ("turn", "lift", "pitch", "follow"):
+                data.joint(name).qpos = value
+        mujoco.mj_kinematics(model, data)
+        for name in ("mast", "boom", "hook", "counter"):
+            np.testing.assert_allclose(center(robot, name, q), data.body(name).xipos, atol=1e-6)
+            rotation = forward_kinematics(robot, q)[name][:3, :3]
+            np.testing.assert_allclose(rotation, data.body(name).xmat.reshape(3, 3), atol=1e-6)
+    turn, lift = robot.joint_by_name["turn"], robot.joint_by_name["lift"]
+    assert (turn.effort, turn.damping, turn.friction, turn.line) == (10.0, 2.0, 0.5, 8)
+    assert (lift.lower, lift.upper, lift.kind) == (0.0, 0.3, "prismatic")
+    assert robot.link_by_name["boom"].line == 11
+    assert len(robot.link_by_name["boom"].visuals) == 2
+    assert len(robot.link_by_name["boom"].collisions) == 1
+    said = " ".join(robot.notes)
+    for word in ("ball joint swing is read as fixed", "mast", "1 sensors", "type plane (floor)"):
+        assert word in said
+
+
+INERTIA = "<inertia><ixx>0.02</ixx><ixy>0</ixy><ixz>0</ixz><iyy>0.03</iyy><iyz>0</iyz><izz>0.04</izz></inertia>"
+SDF = """<sdf version="{version}"><model name="arm"><pose>1 2 3 0 0 1</pose>
+<link name="base"><inertial><mass>2</mass>{inertia}</inertial>
+  <collision name="c"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision></link>
+<link name="upper"><pose>0.1 0 0.2 0.3 0 0.5</pose><inertial><pose>0 0 0.1 0 0.2 0</pose><mass>1</mass>
+  {inertia}</inertial>
+  <visual name="v"><pose>0 0 0.1 0 0 0</pose><geometry><cylinder><radius>0.02</radius><length>0.2</length></cylinder>
+  </geometry><material><diffuse>1 0 0 1</diffuse></material></visual></link>
+<link name="tip"><pose>0.1 0.2 0.4 0 0 0</pose><inertial><mass>0.1</mass>{inertia}</inertial></link>
+<joint name="hinge" type="revolute"><parent>base</parent><child>upper</child><pose>0 0 -0.05 0 0 0.4</pose>
+  <axis><xyz>0 1 0</xyz><limit><lower>-1</lower><upper>2</upper><effort>7</effort></limit></axis></joint>
+<joint name="slide" type="prismatic"><parent>upper</parent><child>tip</child>
+  <axis><xyz>0 0 1</xyz><limit><lower>0</lower><upper>0.1</upper></limit></axis></joint>
+{more}</model></sdf>
+"""
+
+
+def test_an_sdf_moves_as_in_pybullet(tmp_path: Path) -> None:
+    text = SDF.format(version="1.6", more="", inertia=INERTIA)
+    text = text.replace("<pose>0 0 -0.05 0 0 0.4</pose>", "")  # PyBullet skips poses of joints
+    path = written(tmp_path, "arm.sdf", text)
+    robot, client = read_robot(path), BulletClient(pybullet.DIRECT)
+    (body,) = client.loadSDF(str(path))
+    joints = {client.getJointInfo(body, k)[1].decode(): k for k in range(client.getNumJoints(body))}
+    links = {client.getJointInfo(body, k)[12].decode(): k for k in joints.values()}
+    q = {"hinge": 0.7, "slide": 0.04}
+    for name, value in q.items():
+        client.resetJointState(body, joints[name], value)
+    (p, _), (t, _) = (
+        client.getLinkState(body, links[name], computeForwardKinematics=1)[:2] for name in ("upper", "tip")
+    )
+    turned = rotation_from_rpy(np.array([0.0, 0.0, 1.0]))  # the model's own pose
+    ours = turned @ (center(robot, "tip", q) - center(robot, "upper", q))
+    np.testing.assert_allclose(np.subtract(t, p), ours, atol=1e-6)
+    assert robot.joint_by_name["hinge"].effort == 7.0
+
+
+def test_frames_axes_and_losses_of_a_new_sdf(tmp_path: Path) -> None:
+    more = """<joint name="world_joint" type="fixed"><parent>world</parent><child>base</child></joint>
+<frame name="mount" attached_to="upper"><pose>0 0 0.3 0 0 0</pose></frame>
+<link name="pen"><pose relative_to="mount" degrees="true">0 0.1 0 0 0 90</pose></link>
+<joint name="spin" type="revolute"><parent>mount</parent><child>pen</child>
+  <axis><xyz expressed_in="__model__">0 0 1</xyz><mimic joint="hinge"><multiplier>2</multiplier><offset>0.5</offset>
+  <reference>0.1</reference></mimic></axis></joint>
+<joint name="joint_u" type="universal"><parent>pen</parent><child>wheel</child><axis><xyz>1 0 0</xyz></axis>
+  <axis2><xyz>0 1 0</xyz></axis2></joint><link name="wheel"><pose relative_to="pen">0 0 0.1 0 0 0</pose>
+  <visual name="p"><geometry><plane/></geometry></visual></link>"""
+    robot = read_robot(written(tmp_path, "arm.sdf", SDF.format(version="1.9", more=more, inertia=INERTIA)))
+    poses, spin = forward_kinematics(robot, {"hinge": 0.1, "spin": 0.0}), robot.joint_by_name["spin"]
+    assert spin.kind == "continuous"
+    assert spin.parent == "upper"
+    assert spin.mimic is not None
+    assert (spin.mimic.multiplier, spin.mimic.offset) == (2.0, pytest.approx(0.3))
+    at_zero = forward_kinematics(robot, {"hinge": 0.0}) | {}
+    T_upper_pen = np.linalg.inv(at_zero["upper"]) @ at_zero["upper"] @ spin.T_parent_child
+    assert poses.keys() == at_zero.keys()
+    # The axis is the model's z, seen from the pen, which is turned by the link and by 90 deg.
+    np.testing.assert_allclose(at_zero["upper"][:3, :3] @ T_upper_pen[:3, :3] @ spin.axis, [0, 0, 1], atol=1e-12)
+    assert [joint.parent for joint in robot.joints if joint.child == "wheel"] == ["joint_u_between"]
+    assert any("plane" in note for note in robot.notes)
+
+
+LINK = """<link name="{0}"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01"/>
+</inertial><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>"""
+JOINT = """<joint name="{0}_{1}" type="{2}"><parent link="{0}"/><child link="{1}"/>{3}<axis xyz="0.6 0 0.8"/>
+<limit lower="-0.5" upper="0.5" effort="3" velocity="2"/></joint>"""
+
+
+@pytest.mark.parametrize("form", ["mjcf", "sdf", "usd"])
+def test_an_export_reads_back_with_the_same_motion(tmp_path: Path, form: str) -> None:
+    origin = '<origin xyz="0.1 0.2 0.3" rpy="0.3 -0.2 1"/>'
+    links = "".join(map(LINK.format, "abcd"))
+    joints = [JOINT.format(*"ab", "revolute", origin), JOINT.format(*"bc", "prismatic", origin)]
+    joints.append(JOINT.format(*"cd", "revolute", f'{origin}<mimic joint="a_b" multiplier="-2" offset="0.1"/>'))
+    arm = written(tmp_path, "arm.urdf", f"<robot name='arm'>{links}{''.join(joints)}</robot>")
+    given = read_robot(arm)
+    suffix = {"mjcf": "xml", "sdf": "sdf", "usd": "usda"}[form]
+    out = tmp_path / f"again.{suffix}"
+    export(arm, form, out)
+    assert form_of(out) == form
+    again = read_robot(out)
+    assert [joint.name for joint in again.leaders] == [joint.name for joint in given.leaders]
+    for share in (0.0, 0.3):
+        q = {name: value + share * 0.2 for name, value in rest_configuration(given).items()}
+        one, other = forward_kinematics(given, q), forward_kinematics(again, q)
+        first = next(name for name in one if name in other)
+        for name in set(one) & set(other):
+            np.testing.assert_allclose(
+                np.linalg.inv(other[first]) @ other[name], np.linalg.inv(one[first]) @ one[name], atol=1e-6
+            )
+    opened = open_description(out, tmp_path)
+    assert len(read_robot(opened.urdf).joints) == len(again.joints)
+
+
+XACRO = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:arg name="side" default="left"/><xacro:property name="long" value="${0.2 * 2}"/>
+<xacro:include filename="$(find my_arm)/urdf/part.xacro"/>
+<link name="base"/>
+<xacro:part name="$(arg side)_arm" length="${long}"/>
+</robot>"""
+PART = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="part" params="name length">
+<link name="${name}"><visual><geometry><box size="0.1 0.1 ${length}"/></geometry></visual></link>
+<joint name="${name}_joint" type="fixed"><parent link="base"/><child link="${name}"/></joint>
+</xacro:macro></robot>"""
+
+
+def test_a_xacro_is_expanded_without_ros(tmp_path: Path) -> None:
+    package = tmp_path / "clone-of-my-arm"
+    written(package, "package.xml", "<package><name>my_arm</name></package>")
+    written(package, "urdf/part.xacro", PART)
+    path = written(package, "urdf/arm.urdf.xacro", XACRO)
+    robot = read_robot(path, arguments={"side": "right"})
+    assert [link.name for link in robot.links] == ["base", "right_arm"]
+    assert robot.links[1].visuals[0].size == (0.1, 0.1, 0.4)
+    opened = open_description(path, tmp_path, arguments={"side": "right"})
+    assert opened.lines["link", "base"] == 4
+    with pytest.raises(DescriptionError, match="no xacro"):
+        open_description(written(tmp_path, "a.urdf", "<robot/>"), tmp_path, arguments={"side": "right"})
+
+
+@pytest.mark.parametrize(
+    ("inside", "said"),
+    [
+        ("""<link name="$(eval open)"/>""", "open"),
+        ("""<link name="${().__class__.__base__.__subclasses__()}"/>""", "__class__"),
+        ("""<link name="${(lambda: ().__class__)()}"/>""", "__class__"),
+        ("""<link name="${[g.gi_frame for g in [(x for x in [1])]]}"/>""", "gi_frame"),
+        ("""<link name="$(find nowhere)"/>""", "nowhere"),
+        ("""<xacro:include filename="hostile.urdf.xacro"/>""", "hostile"),
+    ],
+)
+def test_a_hostile_xacro_runs_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, inside: str, said: str) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{inside}</robot>'
+    with pytest.raises(DescriptionError, match=said):
+        read_robot(written(tmp_path, "hostile.urdf.xacro", text))
+    assert [item.name for item in tmp_path.iterdir()] == ["hostile.urdf.xacro"]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("a.usda", '#usda 1.0\ndef "a" (references = @../other/b.usda@) {}\n', "outside"),
+        ("a.usda", '#usda 1.0\ndef Xform "a" {}\n', "no rigid body"),
+        ("a.usda", "#usda 1.0\ndef def def", "does not open"),
+        ("a.xml", "<mujoco><include file='a.xml'/></mujoco>", "MuJoCo does not read"),
+        ("a.xml", "<mujoco/>", "no body"),
+        ("a.sdf", '<!DOCTYPE sdf [<!ENTITY a "b">]><sdf><model/></sdf>', "DOCTYPE"),
+        ("a.sdf", "<sdf version='1.9'><world name='w'/></sdf>", "no model"),
+        ("a.sdf", "<sdf version='1.9'><model><link name='a'><pose relative_to='a'/></link></model></sdf>", "itself"),
+        ("a.sdf", "<sdf version='1.9'><model><link name='a'><pose>1 nan 0 0 0 0</pose></link></model></sdf>", "finite"),
+    ],
+)
+def test_what_cannot_be_read_is_refused_by_name(tmp_path: Path, name: str, text: str, said: str) -> None:
+    written(tmp_path, "other/b.usda", '#usda 1.0\ndef "b" {}\n')
+    with pytest.raises(DescriptionError, match=said):
+        read_robot(written(tmp_path, f"here/{name}", text))
