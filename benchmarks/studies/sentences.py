@@ -7,7 +7,7 @@ something impossible is built. Objects are measured; what was understood does no
 before the parser saw the sentences. Each list was tried once before it was looked at; words and objects were added
 after that, so only the column "first try" is held-out.
 
-At the first try 11 to 38 of 60 were right in the early lists, whose other nouns were refused; of the last list 27 of 40.
+At the first try 11 to 38 of 60 were right in the early lists, whose other nouns were refused; of the last one 27 of 40.
 What is not right moved from refused to listed: the object is built, and what it lacks is said. Silently wrong at the
 first try were up to 10 of 60 once objects were composed, and 2 to 7 of 40 since. Lists written without sight of the
 library are harder than those written beside it.
