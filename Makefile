@@ -20,12 +20,13 @@ TORCH := $(shell sed -n 's/.*"\(torch==[0-9.]*\)".*/\1/p' pyproject.toml)
 # Named after the content of pyproject.toml: while that does not change there is nothing to do.
 STAMP := $(VENV)/.setup-$(shell cksum < pyproject.toml | tr ' ' '-')
 
-.PHONY: help setup demo test check lint format types bench docs pictures clean
+.PHONY: help setup demo test goldens check lint format types bench docs pictures clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make demo     one sentence -> URDF -> verdict, and its joints inferred again, in out/cabinet/"
 	@echo "make test     run the tests (ARGS=... for pytest)"
+	@echo "make goldens  compare what the code makes with the committed sample"
 	@echo "make check    lint, types and the tests of the packages that differ from BASE=main; for every change"
 	@echo "make lint     ruff: rules and format"
 	@echo "make format   let ruff fix what it can"
@@ -68,7 +69,10 @@ pictures: setup
 	$(IN_VENV) tools.draw_gallery docs
 
 test: setup
-	OMP_NUM_THREADS=1 $(IN_VENV) pytest -n $(JOBS) --dist worksteal $(ARGS)
+	OMP_NUM_THREADS=1 $(IN_VENV) pytest -n $(JOBS) --dist worksteal --durations=25 $(ARGS)
+
+goldens: setup
+	OMP_NUM_THREADS=1 $(IN_VENV) benchmarks.goldens check --sample --jobs $(JOBS)
 
 check: lint types
 	tests=$$($(IN_VENV) tools.affected_tests $(BASE)) && OMP_NUM_THREADS=1 $(IN_VENV) pytest -q -n $(JOBS) \

@@ -11,7 +11,7 @@ import numpy as np
 from kinematify.model.collision_pieces import Method
 from kinematify.robot.mechanism import LeaderMechanism, sweep_rows
 from kinematify.robot.read import read_robot
-from kinematify.simulation.configurations import EnginePoses, agreement_configurations, write_poses
+from kinematify.simulation.configurations import pose_configurations
 from kinematify.simulation.contacts import touching
 from kinematify.simulation.drive import drive_all
 from kinematify.simulation.engines import open_engine
@@ -124,14 +124,14 @@ class EngineContext:
 
     @cached_property
     def rows(self) -> Configurations:
-        """Where all engines are compared."""
-        return agreement_configurations(self.declared, self.request.settings.agreement, self.request.settings.seed)
+        """Where poses are compared."""
+        return pose_configurations(self.declared, self.settings, self.request.settings.seed)
 
     @cached_property
     def seen(self) -> Measured:
         """What the engine says along the sweep of every joint."""
         rows = self.mechanism.sweep(self.settings.sweep_samples)
-        return self.model.measure(self.mechanism.all_values(rows), dynamic=1)
+        return self.physics.measure(self.mechanism.all_values(rows))
 
     @cached_property
     def sweep(self) -> Touching:
@@ -148,7 +148,7 @@ class EngineContext:
     def servos(self) -> Servos:
         """One for each leader."""
         seen, resistance = self.seen, self.physics.resistance
-        return servos(self.mechanism, seen.inertia[0], seen.gravity, resistance, self.settings)
+        return servos(self.mechanism, seen.inertia, seen.gravity, resistance, self.settings)
 
     @cached_property
     def simulation(self) -> Simulation:
@@ -224,26 +224,6 @@ class EngineContext:
         end = self.simulation.drop()
         self.ends.append(RunEnd(when="it was dropped", speed=end.speed, warnings=end.warnings))
         return end
-
-    def leave_poses(self, seen: Measured) -> None:
-        """Leave what the engine says of `rows` for the checks that compare engines."""
-        rows, loaded, contacts = self.rows, self.model.loaded, seen.contacts if self.entry.runs else None
-        write_poses(
-            self.request.work,
-            self.entry.name,
-            EnginePoses(
-                links=rows.links,
-                joints=rows.joints,
-                q=rows.q,
-                T_world_link=seen.T_world_link,
-                masses=np.array([loaded.masses.get(name, np.nan) for name in rows.links]),
-                total_mass=loaded.total_mass,
-                mass_matrix=seen.inertia,
-                gravity=seen.gravity[: rows.dynamic],
-                contacts=None if contacts is None else np.column_stack([contacts.row, contacts.links]),
-                contact_depth=None if contacts is None else contacts.depth,
-            ),
-        )
 
     def travel(self, driven: Driven) -> Travel:
         """Return the way of the joint that is driven."""

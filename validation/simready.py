@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 ANSWERED: Mapping[str, tuple[str, tuple[str, ...]]] = {
     "DJ_001": ("Drives and the state at the start fit the limits", ("KV137", "KV222", "KV223")),
     "DJ_002": ("Joints have a state that can be read and set", ("KV401", "KV402")),
-    "DJ_003": ("Frames of a joint meet in its state", ("KV402", "KV601")),
+    "DJ_003": ("Frames of a joint meet in its state", ("KV402",)),
     "DJ_004": ("A joint is driven or follows another", ("KV127", "KV223")),
     "DJ_005": ("Joints have a velocity limit", ("KV223",)),
     "DJ_006": ("Values of drives are plausible", ("KV220", "KV224", "KV226")),

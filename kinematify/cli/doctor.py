@@ -43,8 +43,6 @@ MODULES = {
     "pybullet": ("pybullet", "engine"),
     "pin": ("pinocchio", "engine"),
     "coal": ("coal", "engine"),
-    "drake": ("pydrake.multibody.plant", "engine"),
-    "newton": ("newton", "engine"),
     "ompl": ("ompl.base", "motion planning"),
     "gymnasium": ("gymnasium", "environments"),
     "click": ("click", "command line"),

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     metavar="LIST",
     default="mujoco,pybullet,pinocchio",
     show_default=True,
-    help="Engines to run, separated by commas; drake can be added; none: only file and geometry.",
+    help="Engines to run, separated by commas; none: only file and geometry.",
 )
 @click.option(
     "--suppress", type=click.Path(path_type=Path), metavar="FILE", help="YAML list of accepted findings with reasons."
@@ -135,7 +135,7 @@ def command(
     sarif: Path | None,
     html: Path | None,
 ) -> int:
-    """Check URDFs: the file, declared physics, collision along the motion, joints, engines and their agreement.
+    """Check URDFs: the file, declared physics, collision along the motion, joints, and behaviour in engines.
 
     MODEL is a URDF file, a folder with URDF files at any depth, or a pattern in quotes. Nothing else is needed: no
     ground truth, no second pose. `kinematify explain KV301` shows more about a check.

@@ -348,6 +348,10 @@ class EngineSettings(StageConfig):
     """Difference of a link's position, fraction of the model's size."""
     pose_deg: float = 0.01
     """Difference of a link's orientation [deg]."""
+    pose_rows: int = 32  # poses are smooth functions of the joints: more rows found nothing new
+    """Quasi-random configurations beside zero, rest and the ends of every joint in which poses are compared."""
+    pose_end_rows: int = 128  # 64 joints have their ends for themselves; the largest known robots have about 60
+    """Configurations at most for the ends of the joints; joints share them where there are more."""
     contact_depth: float = 0.002  # 2 mm on an object of 1 m: what contacts of engines give way by
     """Overlap that does not count, fraction of the model's size."""
     sweep_samples: int = 25  # an obstacle gets deeper from sample to sample: 4 % of the range finds a board in the way
@@ -429,33 +433,6 @@ class AsLoadedSettings(StageConfig):
     """Growth of energy, fraction of the largest kinetic energy."""
 
 
-class AgreementSettings(StageConfig):
-    """KV6xx: agreement of engines."""
-
-    random_rows: int = 32  # poses are smooth functions of the joints: more rows found nothing new
-    """Quasi-random configurations beside zero, rest and the ends of every joint."""
-    end_rows: int = 128  # 64 joints have their ends for themselves; the largest known robots have about 60
-    """Configurations at most for the ends of the joints; joints share them where there are more."""
-    dynamic_rows: int = 10  # zero, rest and 8 points: a wrong inertia shows in almost every configuration
-    """Configurations with mass matrix and gravity torques."""
-    dynamic_numbers: int = 4000000  # 32 MB per engine
-    """Entries of all mass matrices together at most; large models have fewer configurations."""
-    position: float = 1.0e-4  # engines agree to 1e-9; others allow 2 cm, which hides a slipped decimal
-    """Distance between two engines' poses of one link that is an error, fraction of the model's size."""
-    angle: float = 1.0e-4  # the same; others allow 10 deg
-    """The same for the angle between them [rad]."""
-    mass_error: float = 1.0e-4  # masses are copied, not computed
-    """Relative difference of a mass that is an error."""
-    mass_matrix: float = 1.0e-3  # inertias are turned and diagonalised on the way: 1e-7 on all known robots
-    """Relative difference of an entry of the mass matrix that is a warning."""
-    gravity: float = 1.0e-3
-    """Relative difference of a gravity torque that is a warning."""
-    contact_depth: float = 0.005  # hulls and margins of engines differ by 1 to 3 mm
-    """Overlap in one engine that the other should see too [m]."""
-    contact_share: float = 0.005  # and by more on large models, where convex pieces represent curved shapes
-    """The same as a fraction of the model's size; the larger of the two counts."""
-
-
 class ValidationSettings(StageConfig):
     """All families."""
 
@@ -471,7 +448,6 @@ class ValidationSettings(StageConfig):
     evidence: EvidenceSettings = section()
     engines: EngineSettings = section()
     as_loaded: AsLoadedSettings = section()
-    agreement: AgreementSettings = section()
     task: TaskSettings = section()
 
 

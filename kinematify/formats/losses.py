@@ -56,7 +56,7 @@ _COUNTS: Mapping[str, Callable[[Robot], int]] = {
 
 TREATMENT: Mapping[str, Mapping[str, str]] = {
     "urdf": {
-        "closed loops": "drake:ball_constraint, which Drake closes; readers of trees alone ignore it",
+        "closed loops": "drake:ball_constraint; readers of trees alone ignore it",
         "materials and textures": "in the OBJ files; the URDF has one mean colour a shape",
     },
     "mjcf": {

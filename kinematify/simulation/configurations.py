@@ -1,13 +1,7 @@
-"""The configurations in which all engines are compared, and the file in which each leaves what it computed there.
-
-Every engine stage calls `agreement_configurations` (same answer everywhere), fills an `EnginePoses` and leaves it with
-`write_poses`; `validation/agreement.py` compares them. An engine's own names, orders and merged links stay inside its
-stage: what is written is in the order of the document.
-"""
+"""The configurations in which the kinematics of all engines are compared with that of the file."""
 
 from __future__ import annotations
 
-import zipfile
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -17,10 +11,8 @@ from kinematify.robot.arrays import read_only
 from kinematify.robot.robot import joint_ends, joint_values, rest_configuration
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    from kinematify.config.validation import AgreementSettings
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.config.validation import EngineSettings
+    from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
 
 GRAVITY = 9.81
@@ -40,8 +32,6 @@ class Configurations:
     """Every joint that is not fixed, followers included, in the order of the document."""
     q: FloatArray
     """Joint values [rad or m], shape (n, j): zero, rest, a Latin hypercube, then the ends of every joint. Read-only."""
-    dynamic: int
-    """Mass matrices and gravity torques are computed for the first so many rows only."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "q", read_only(self.q, np.float64))
@@ -51,41 +41,7 @@ class Configurations:
         return dict(zip(self.joints, self.q[row].tolist(), strict=True))
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class EnginePoses:
-    """What one engine says of the rows of `Configurations`; the contract of `poses-ENGINE.npz`.
-
-    The base is fixed: the root link's frame is the world, gravity is `GRAVITY` along its -z. The matrices are those of
-    the tree without mimic constraints: followers are degrees of freedom of their own. What an engine cannot tell is
-    None.
-    """
-
-    links: tuple[str, ...]
-    """As in `Configurations`."""
-    joints: tuple[str, ...]
-    """As in `Configurations`."""
-    q: FloatArray
-    """As in `Configurations`, shape (n, j)."""
-    T_world_link: FloatArray
-    """Pose of every link's frame (not of its centre of mass), shape (n, L, 4, 4); NaN for links the engine lost."""
-    masses: FloatArray | None = None
-    """Mass of every link as the engine has it [kg], shape (L,); NaN for links it lost or merged into others."""
-    total_mass: float | None = None
-    """Of everything it loaded [kg]."""
-    mass_matrix: FloatArray | None = None
-    """Joint-space inertia over `joints`, shape (k, j, j), k = `Configurations.dynamic`; NaN for joints it lost."""
-    gravity: FloatArray | None = None
-    """Torques and forces at the joints that hold the model still [N m or N], shape (k, j); NaN for joints it lost.
-    A positive value pushes the joint upwards in its own coordinate (MuJoCo: `qfrc_bias` at zero velocity; Pinocchio:
-    `computeGeneralizedGravity`)."""
-    contacts: IntArray | None = None
-    """Row, link, link (smaller index first) of every pair of links that touches or overlaps, shape (c, 3), each once;
-    links are indices into `links`. Links that fixed joints join, and links without collision shapes, are omitted."""
-    contact_depth: FloatArray | None = None
-    """Deepest point of each of `contacts` [m], positive where they overlap, shape (c,)."""
-
-
-def agreement_configurations(robot: Robot, settings: AgreementSettings, seed: int) -> Configurations:
+def pose_configurations(robot: Robot, settings: EngineSettings, seed: int) -> Configurations:
     """Return the same rows in every process: zero, rest, quasi-random ones, and both ends of every joint.
 
     Args:
@@ -101,8 +57,8 @@ def agreement_configurations(robot: Robot, settings: AgreementSettings, seed: in
         [
             np.zeros((1, len(leaders))),
             middle[None],
-            spread_rows(lower, upper, settings.random_rows, seed),
-            _at_ends(middle, lower, upper, settings.end_rows),
+            spread_rows(lower, upper, settings.pose_rows, seed),
+            _at_ends(middle, lower, upper, settings.pose_end_rows),
         ]
     )
     joints = tuple(joint.name for joint in robot.joints if joint.kind != "fixed")
@@ -110,7 +66,6 @@ def agreement_configurations(robot: Robot, settings: AgreementSettings, seed: in
         links=tuple(link.name for link in robot.links),
         joints=joints,
         q=_with_followers(robot, [joint.name for joint in leaders], joints, values),
-        dynamic=min(len(values), settings.dynamic_rows, max(2, settings.dynamic_numbers // max(1, len(joints) ** 2))),
     )
 
 
@@ -149,26 +104,3 @@ def link_poses(robot: Robot, rows: Configurations) -> FloatArray:
         values = rows.q[:, column[joint.name]] if joint.name in column else np.zeros(len(rows.q))
         poses[:, index[joint.child]] = poses[:, index[joint.parent]] @ joint.T_parent_child @ joint.motions(values)
     return poses
-
-
-def write_poses(work: Path, engine: str, poses: EnginePoses) -> None:
-    """Leave what an engine computed for the agreement checks."""
-    arrays = {name: np.asarray(value) for name, value in vars(poses).items() if value is not None}
-    with (work / f"poses-{engine}.npz").open("wb") as file:
-        np.savez(file, allow_pickle=False, **arrays)
-
-
-def read_poses(work: Path, engine: str) -> EnginePoses | None:
-    """Return what an engine left, or None where it left nothing or was cut off while writing."""
-    try:
-        # NumPy leaves a file open that it cannot read, unless it was opened here.
-        with (work / f"poses-{engine}.npz").open("rb") as opened, np.load(opened, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile):
-        return None
-    return EnginePoses(
-        links=tuple(arrays.pop("links").tolist()),
-        joints=tuple(arrays.pop("joints").tolist()),
-        total_mass=float(arrays.pop("total_mass")) if "total_mass" in arrays else None,
-        **arrays,
-    )

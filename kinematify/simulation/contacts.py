@@ -28,10 +28,6 @@ class Contacts:
     """Deepest point [m], shape (c,)."""
 
 
-NO_CONTACTS = Contacts(row=np.zeros(0, dtype=np.int64), links=np.zeros((0, 2), dtype=np.int64), depth=np.zeros(0))
-"""What an engine sees that sees none."""
-
-
 def deepest(row: IntArray, links: IntArray, depth: FloatArray) -> Contacts:
     """Keep the deepest contact of every pair in every row.
 

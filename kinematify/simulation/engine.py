@@ -70,11 +70,11 @@ class Measured:
     T_world_link: FloatArray
     """The root's frame is the world, shape (n, L, 4, 4); NaN for links that the engine lost."""
     contacts: Contacts
-    """None in an engine that only computes."""
+    """Of links that move against each other."""
     gravity: FloatArray
     """Torques and forces that hold the model still [N m or N], shape (n, J)."""
     inertia: FloatArray
-    """Mass matrices of the first `dynamic` rows, shape (k, J, J)."""
+    """Mass matrix of the first row, shape (J, J)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -181,21 +181,19 @@ class EngineModel(Protocol):
     def complete(self) -> bool:
         """True if no link and no joint was lost."""
 
-    def measure(self, values: FloatArray, *, dynamic: int) -> Measured:
-        """Set the model to every row and look.
+    @property
+    def size(self) -> float:
+        """Of the model [m]."""
 
-        Args:
-            values: Of all joints [rad or m], shape (n, J).
-            dynamic: Mass matrices are kept for the first so many rows.
-        """
+    def poses(self, values: FloatArray) -> FloatArray:
+        """Return T_world_link in every row of values of all joints (n, J), shape (n, L, 4, 4); NaN for lost links."""
 
 
 class PhysicsModel(EngineModel, Protocol):
     """A model in an engine that sees contacts and runs."""
 
-    @property
-    def size(self) -> float:
-        """Of the model [m]."""
+    def measure(self, values: FloatArray) -> Measured:
+        """Set the model to every row of values of all joints [rad or m], shape (n, J), and look."""
 
     @property
     def resistance(self) -> FloatArray:

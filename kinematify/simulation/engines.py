@@ -29,14 +29,10 @@ class EngineEntry:
     """As it is written in messages."""
     package: str
     """Distribution that brings it."""
-    extra: str | None = None
-    """Extra of Kinematify that installs it; None: every installation has it."""
     family: str
     """First characters of the ids of its checks of the prepared model."""
     runs: bool = True
     """False: it only computes; it sees no contacts and never runs."""
-    prepared: bool = True
-    """False: it loads raw files only, and has no checks but KV8xx."""
     most_joints: int | None = None
     """Larger models are not given to it."""
     inflation: float = 0.0
@@ -74,13 +70,11 @@ _ENTRIES = (
         holds=("weld",),  # its hulls slip out of fingers that hold by friction
         prints_when_loaded=True,
     ),
-    EngineEntry(name="drake", title="Drake", package="drake", extra="drake", family="KV9"),
     EngineEntry(name="pinocchio", title="Pinocchio", package="pin", family="KV6", runs=False),
-    EngineEntry(name="newton", title="Newton", package="newton", extra="newton", family="", prepared=False),
 )
 ENGINES = {entry.name: entry for entry in _ENTRIES}
 """Keyed by name."""
-DEFAULT_ENGINES = tuple(name for name, engine in ENGINES.items() if engine.extra is None)
+DEFAULT_ENGINES = tuple(ENGINES)
 """Engines that every installation has; FCL and the exact geometry are always there."""
 
 
@@ -101,8 +95,7 @@ def require_engine(name: str) -> None:
 
 
 def _missing(engine: EngineEntry, why: str) -> str:
-    install = f'pip install "kinematify[{engine.extra}]"' if engine.extra else "pip install kinematify"
-    return f"{engine.title} was asked for and cannot be loaded: {why}. Install it: {install}"
+    return f"{engine.title} was asked for and cannot be loaded: {why}. Install it: pip install kinematify"
 
 
 def open_engine(name: str, settings: EngineSettings, log: Path) -> Engine:

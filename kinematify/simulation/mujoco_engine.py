@@ -142,17 +142,21 @@ class MujocoModel:
         """None: MuJoCo lets each pair have the depth that it has at rest."""
         return frozenset()
 
-    def measure(self, values: FloatArray, *, dynamic: int) -> Measured:
+    def poses(self, values: FloatArray) -> FloatArray:
+        """Where every link is in every row."""
+        return self.measure(values).T_world_link
+
+    def measure(self, values: FloatArray) -> Measured:
         """Set the model to every row and look."""
-        return measure(self.measuring, values, dynamic=dynamic, threads=self.engine.threads)
+        return measure(self.measuring, values, threads=self.engine.threads)
 
     def contacts(self, values: FloatArray) -> Contacts:
         """Contacts in every row."""
-        return self.measure(values, dynamic=0).contacts
+        return self.measure(values).contacts
 
     def simulation(self, sweep: Touching, seen: Measured, servos: Servos) -> MujocoSimulation:
         """Compile the models for runs."""
-        return MujocoSimulation(model=self, sweep=sweep, servos=servos, inertia=np.diag(seen.inertia[0]))
+        return MujocoSimulation(model=self, sweep=sweep, servos=servos, inertia=np.diag(seen.inertia))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -293,7 +297,7 @@ class MujocoSimulation:
     def _fastest(self, runs: Sequence[_Run]) -> list[float]:
         """Largest speed of a link's frame in each run, around the step with most motion [m/s]."""
         rows = np.concatenate([_around_fastest(run, self.inertia) for run in runs])
-        places = self.model.measure(rows, dynamic=0).T_world_link[..., :3, 3]
+        places = self.model.poses(rows)[..., :3, 3]
         moved = np.linalg.norm(places[1::2] - places[::2], axis=2)
         return [float(most) / self.step for most in moved.max(axis=1)]
 

@@ -263,40 +263,39 @@ def released(model: mujoco.MjModel) -> mujoco.MjModel:
     return free
 
 
-def measure(loaded: CompiledModel, values: FloatArray, *, dynamic: int, threads: int) -> Measured:
+def measure(loaded: CompiledModel, values: FloatArray, *, threads: int) -> Measured:
     """Set the model to every row and look.
 
     Args:
         loaded: Complete (`CompiledModel.complete`).
         values: Values of all joints [rad or m], shape (n, J).
-        dynamic: Mass matrices are kept for the first so many rows.
         threads: MuJoCo computes outside of Python's lock.
     """
     chunks = np.array_split(np.arange(len(values)), min(threads, 1 + len(values) // _ROWS_PER_THREAD))
     if len(chunks) == 1:
-        parts = [_measure_rows(loaded, values, chunks[0], dynamic)]
+        parts = [_measure_rows(loaded, values, chunks[0])]
     else:
         with ThreadPoolExecutor(len(chunks)) as pool:
-            parts = list(pool.map(lambda rows: _measure_rows(loaded, values, rows, dynamic), chunks))
+            parts = list(pool.map(lambda rows: _measure_rows(loaded, values, rows), chunks))
     row, links, depth = (np.concatenate([part[k] for part in parts]) for k in (1, 2, 3))
     return Measured(
         T_world_link=np.concatenate([part[0] for part in parts]),
         contacts=deepest(row, links, depth),
         gravity=np.concatenate([part[4] for part in parts]),
-        inertia=np.concatenate([part[5] for part in parts]),
+        inertia=parts[0][5],
     )
 
 
 _Part = tuple["FloatArray", "IntArray", "IntArray", "FloatArray", "FloatArray", "FloatArray"]
 
 
-def _measure_rows(loaded: CompiledModel, values: FloatArray, rows: IntArray, dynamic: int) -> _Part:
+def _measure_rows(loaded: CompiledModel, values: FloatArray, rows: IntArray) -> _Part:
     model, data = loaded.model, mujoco.MjData(loaded.model)
     configurations = np.tile(data.qpos, (len(rows), 1))
     configurations[:, loaded.qpos] = values[rows]
     turns, places = np.empty((len(rows), model.nbody, 9)), np.empty((len(rows), model.nbody, 3))
     gravity, counts = np.zeros((len(rows), model.nv)), np.zeros(len(rows), dtype=np.int64)
-    matrices: list[FloatArray] = []
+    inertia = np.zeros((len(loaded.joint), len(loaded.joint)))
     found: list[tuple[IntArray, FloatArray]] = []
     for k, row in enumerate(rows):
         data.qpos[:] = configurations[k]
@@ -306,14 +305,13 @@ def _measure_rows(loaded: CompiledModel, values: FloatArray, rows: IntArray, dyn
         if data.ncon:
             contact = data.contact
             found.append((contact.geom.copy(), -contact.dist))
-        if row < dynamic:
-            matrices.append(_mass_matrix(loaded, data))
-    bodies, size = loaded.body, len(loaded.joint)
+        if row == 0:
+            inertia = _mass_matrix(loaded, data)
+    bodies = loaded.body
     poses = np.tile(np.eye(4), (len(rows), len(bodies), 1, 1))
     poses[..., :3, :3], poses[..., :3, 3] = turns[:, bodies].reshape(len(rows), -1, 3, 3), places[:, bodies]
     geoms, depth = (np.concatenate([item[k] for item in found] or [np.zeros(0)]) for k in range(2))
     links = loaded.link_of_body[model.geom_bodyid][geoms.reshape(-1, 2).astype(np.int64)]
-    inertia = np.array(matrices).reshape(len(matrices), size, size)
     return poses, np.repeat(rows, counts), links, depth, gravity[:, loaded.dof], inertia
 
 

@@ -1,4 +1,4 @@
-"""Pinocchio, which only computes: where every link stands, mass matrix, gravity torques, and overlaps of raw files."""
+"""Pinocchio, which only computes: where every link is, and overlaps of raw files."""
 
 from __future__ import annotations
 
@@ -11,9 +11,7 @@ import numpy as np
 import pinocchio as pin
 from lxml import etree
 
-from kinematify.simulation.configurations import GRAVITY
-from kinematify.simulation.contacts import NO_CONTACTS
-from kinematify.simulation.engine import LoadedJoint, LoadedRobot, Measured, Refused
+from kinematify.simulation.engine import LoadedJoint, LoadedRobot, Refused
 from kinematify.simulation.raw_model import MovesFreely, RawEngineModel, Reproductions, Unloadable, deepest_first
 
 if TYPE_CHECKING:
@@ -21,10 +19,13 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config.validation import EngineSettings
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.prepared import Prepared
     from kinematify.simulation.raw_model import Overlap
+
+_SMALLEST = 0.01
+"""Smaller models are compared as if they had this size [m]."""
 
 
 class PinocchioEngine:
@@ -50,7 +51,6 @@ class PinocchioEngine:
             model = pin.buildModelFromXML(etree.tostring(robot, encoding="unicode"))
         except ValueError as error:
             raise Refused(str(error)) from error
-        model.gravity.linear = np.array([0.0, 0.0, -GRAVITY])
         return PinocchioModel(model=model, mechanism=mechanism)
 
     def messages(self) -> list[str]:
@@ -105,35 +105,26 @@ class PinocchioModel:
         links = all(model.existFrame(name, pin.FrameType.BODY) for name in mechanism.links)
         return links and all(model.existJointName(name) for name in mechanism.joints)
 
-    def measure(self, values: FloatArray, *, dynamic: int) -> Measured:
-        """Set the model to every row and look; what it has lost is NaN."""
+    @cached_property
+    def size(self) -> float:
+        """Extent of the frames of all links at zero, at least 1 cm [m]."""
+        places = self.poses(np.zeros((1, len(self.mechanism.joints))))[0, :, :3, 3]
+        return max(float(np.linalg.norm(np.ptp(places, axis=0))), _SMALLEST)
+
+    def poses(self, values: FloatArray) -> FloatArray:
+        """Where every link is in every row; what the engine has lost is NaN."""
         model, data, mechanism = self.model, self.model.createData(), self.mechanism
         frames = {
             link: model.getFrameId(name, pin.FrameType.BODY)
             for link, name in enumerate(mechanism.links)
             if model.existFrame(name, pin.FrameType.BODY)
         }
-        velocity = np.array(
-            [
-                model.joints[model.getJointId(name)].idx_v if model.existJointName(name) else -1
-                for name in mechanism.joints
-            ],
-            dtype=np.int64,
-        )
         T_world_link = np.full((len(values), len(mechanism.links), 4, 4), np.nan)
-        gravity = np.zeros_like(values)
-        matrices = []
         for row, q_joints in enumerate(values):
-            q = self._configuration(q_joints)
-            pin.framesForwardKinematics(model, data, q)
+            pin.framesForwardKinematics(model, data, self._configuration(q_joints))
             for link, frame in frames.items():
                 T_world_link[row, link] = data.oMf[frame].homogeneous
-            gravity[row] = np.append(pin.computeGeneralizedGravity(model, data, q), np.nan)[velocity]
-            if row < dynamic:
-                upper = np.triu(pin.crba(model, data, q))
-                matrices.append(_picked(upper + np.triu(upper, 1).T, velocity))
-        inertia = np.array(matrices).reshape(len(matrices), values.shape[1], values.shape[1])
-        return Measured(T_world_link=T_world_link, contacts=NO_CONTACTS, gravity=gravity, inertia=inertia)
+        return T_world_link
 
     def _configuration(self, values: FloatArray) -> FloatArray:
         q = pin.neutral(self.model)
@@ -143,13 +134,6 @@ class PinocchioModel:
                 # A joint that turns without end is a point on the unit circle.
                 q[joint.idx_q : joint.idx_q + joint.nq] = (np.cos(value), np.sin(value)) if joint.nq == 2 else value
         return np.asarray(q)
-
-
-def _picked(matrix: FloatArray, indices: IntArray) -> FloatArray:
-    """Rows and columns in the order of the document, NaN for joints that the engine lost."""
-    padded = np.pad(matrix, (0, 1), constant_values=np.nan)
-    picked: FloatArray = padded[np.ix_(indices, indices)]
-    return picked
 
 
 _OPEN = """import coal, numpy as np, pinocchio as pin

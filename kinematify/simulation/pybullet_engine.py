@@ -133,25 +133,26 @@ class PybulletModel:
         self.looking.place(self.looking.mechanism.values_at_rest)
         return frozenset((min(a, b), max(a, b)) for _, a, b, depth in self.looking.contacts(0) if depth > 0.0)
 
-    def measure(self, values: FloatArray, *, dynamic: int) -> Measured:
+    def poses(self, values: FloatArray) -> FloatArray:
+        """Where every link is in every row."""
+        return self.measure(values).T_world_link
+
+    def measure(self, values: FloatArray) -> Measured:
         """Set the model to every row and look."""
         looking = self.looking
         gravity = np.zeros_like(values)
-        matrices: list[FloatArray] = []
         found: list[tuple[int, int, int, float]] = []
         states: list[list[tuple[tuple[float, ...], ...]]] = []
         for row, q in enumerate(values):
             looking.place(q)
             found += looking.contacts(row)
-            if row < dynamic:
-                matrices.append(looking.mass_matrix(q) if len(q) else np.zeros((0, 0)))
             states.append(looking.link_states())
             gravity[row] = looking.gravity(q) if len(q) else 0.0
         return Measured(
             T_world_link=_link_transforms(looking, states),
             contacts=looking.corrected(found),
             gravity=gravity,
-            inertia=np.array(matrices).reshape(len(matrices), values.shape[1], values.shape[1]),
+            inertia=looking.mass_matrix(values[0]) if values.shape[1] else np.zeros((0, 0)),
         )
 
     def contacts(self, values: FloatArray) -> Contacts:

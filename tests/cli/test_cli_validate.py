@@ -25,9 +25,9 @@ from kinematify.validation.run.report import ValidationReport
 from kinematify.validation.run.suppression_file import load_suppressions
 from tests.reports import add_checks, finding, full_report, report, result
 
-USUAL = [check for check in CHECKS.values() if not check.id.startswith(("KV7", "KV9"))]
-USUAL_KEYS = tuple(key for key in keys(USUAL) if key[1] not in ("drake", "newton"))
-"""KV7 runs only with --task, KV9 only with Drake, KV8 in Drake and Newton only with --engines."""
+USUAL = [check for check in CHECKS.values() if not check.id.startswith("KV7")]
+USUAL_KEYS = tuple(keys(USUAL))
+"""KV7 runs only with --task."""
 INERTIAL = """<inertial><origin xyz="{x} 0 {z}"/><mass value="2"/>
       <inertia ixx="0.05" iyy="0.05" izz="0.08" ixy="0" ixz="0" iyz="0"/></inertial>"""
 SHAPE = '<{tag}><origin xyz="{x} 0 {z}"/><geometry><box size="0.4 0.4 {high}"/></geometry></{tag}>'

@@ -74,10 +74,10 @@ def test_to_pybullet_closes_the_loops(model: Path) -> None:
 
 
 def test_each_engine_keeps_the_loop_closed_over_the_range(model: Path) -> None:
-    asked = ["KV413", "KV513", "KV913"]
-    report = validate(model / "model.urdf", selected=asked, engines=("mujoco", "pybullet", "drake"))
+    asked = ["KV413", "KV513"]
+    report = validate(model / "model.urdf", selected=asked, engines=("mujoco", "pybullet"))
     ran = [item for item in report.checks if item.check in asked]
-    assert len(ran) == 3
+    assert len(ran) == 2
     assert {item.status.name for item in ran} == {"PASS"}, [item.message for item in report.findings]
     assert all(item.measured["widest_gap"] > 0.0 for item in ran)
 

@@ -7,7 +7,6 @@ import sys
 import time
 from dataclasses import replace
 from functools import partial
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -31,7 +30,7 @@ from kinematify.validation.stages import loaded_file
 from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, tell
 
 ENGINES = ("mujoco", "pybullet")
-each_engine = pytest.mark.parametrize("engine", [*ENGINES, "drake"])
+each_engine = pytest.mark.parametrize("engine", ENGINES)
 WALL = Box(size=(0.02, 0.64, 0.4), at=(0.35, 0.0, 0.0))
 """In front of the cabinet: the drawer gets 135 mm far, the door hits it too."""
 
@@ -84,17 +83,6 @@ def test_a_good_cabinet_passes(tmp_path: Path, engine: str) -> None:
     result = reported(cabinet(), tmp_path, engine)
     assert {check: r.findings for check, r in result.results.items() if r.status is not Status.PASS} == {}
     assert counts(result) == {"joints": 2.0, "right": 2.0}
-
-
-@pytest.mark.skipif(find_spec("newton") is None, reason="Newton is not installed: pip install 'kinematify[newton]'")
-def test_newton_loads_moves_and_rests_what_others_do(tmp_path: Path) -> None:
-    result = reported(jamming(), tmp_path, "newton")
-    assert counts(result) == {"joints": 2.0, "right": 1.0}
-    (finding,) = (item for item in result.results["KV804"].findings if item.severity is Severity.ERROR)
-    assert (finding.joint, set(finding.pair or ())) == ("door_joint", {"drawer", "door"})
-    assert printed(finding.reproduction) == pytest.approx([finding.value], abs=1e-4)
-    passed = {check for check, item in result.results.items() if item.status is Status.PASS}
-    assert {"KV801", "KV803", "KV805", "KV806"} <= passed
 
 
 def test_pinocchio_reads_joints_limits_and_overlaps(tmp_path: Path) -> None:
@@ -261,7 +249,7 @@ def test_what_turns_without_end_has_no_limits_to_hold(tmp_path: Path, engine: st
     assert result.results["KV805"].status is Status.PASS
 
 
-@pytest.mark.parametrize("engine", ENGINES)  # Drake reads negative damping as none
+@each_engine
 def test_negative_damping_gains_energy_as_the_code_of_the_report_shows(tmp_path: Path, engine: str) -> None:
     result = reported(cabinet().with_part("drawer", extra='<dynamics damping="-5"/>'), tmp_path, engine)
     (finding,) = result.results["KV806"].findings

@@ -14,7 +14,6 @@ from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Blame, Severity, Status
 from kinematify.validation.isolation import _EVERY_STAGE
 from kinematify.validation.run.plan import (
-    agreement_stage,
     as_loaded_stages,
     asset_stage,
     keys,
@@ -66,7 +65,6 @@ def test_every_check_but_those_of_the_text_is_reported_by_one_stage() -> None:
         asset_stage(),
         *later_stages(ENGINES),
         *as_loaded_stages(ENGINES),
-        agreement_stage(),
         task_stage(),
     ]
     reported = [key for stage in stages for key in stage.checks]
@@ -127,7 +125,7 @@ def test_the_example_of_contributing_is_the_code() -> None:
 
 
 def test_what_workers_have_imported_beforehand_is_there() -> None:
-    stages = [asset_stage(), *later_stages(list(ENGINES)), *as_loaded_stages(list(ENGINES)), agreement_stage()]
+    stages = [asset_stage(), *later_stages(list(ENGINES)), *as_loaded_stages(list(ENGINES))]
     names = {*_EVERY_STAGE, *(name for stage in stages for name in stage.imports)}
     assert [name for name in names if importlib.util.find_spec(name) is None] == []  # the server would not say so
 

@@ -11,9 +11,7 @@ import pytest
 import trimesh
 
 from kinematify.config.validation import load_settings
-from kinematify.simulation.configurations import read_poses
 from kinematify.validation.checks import CHECKS, checks_of
-from kinematify.validation.engine_results import EXACT
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.stages.geometry import run
@@ -356,21 +354,6 @@ def test_a_leg_that_reaches_the_body_after_half_a_turn_needs_no_limits(
                at=(0.55, 0.0, 0.0), axis=(0.0, 1.0, 0.0), limits=limits)  # fmt: skip
     assert ("KV312" in found(beam(leg), tmp_path)) is is_reported
     assert any(note.check == "KV312" for note in notes(beam(leg), tmp_path, "KV312")), "it is said all the same"
-
-
-def test_contacts_are_left_for_the_comparison_with_engines(tmp_path: Path) -> None:
-    model = cabinet().with_part("drawer", limits=(-0.05, 0.3))
-    request = request_for(model, tmp_path)
-    tell(run, request)
-    left = read_poses(request.work, EXACT)
-    assert left is not None
-    assert left.contacts is not None
-    assert left.contact_depth is not None
-    names = [{left.links[first], left.links[second]} for _, first, second in left.contacts.tolist()]
-    assert names == [{"body", "drawer"}] * len(names)
-    values = left.q[left.contacts[:, 0], left.joints.index("drawer_joint")]
-    assert values.max() < -0.004  # 5 mm are free behind the drawer
-    assert left.contact_depth.max() > 0.015
 
 
 RING = """<robot name="ring">

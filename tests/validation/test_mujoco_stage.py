@@ -13,7 +13,6 @@ import pytest
 from kinematify.config.validation import load_settings
 from kinematify.robot.mechanism import LeaderMechanism, sweep_rows
 from kinematify.robot.read import read_robot
-from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
 from kinematify.simulation.prepared import URDF_FILE, load_prepared, prepare
 from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import checks_of
@@ -71,23 +70,6 @@ def test_good_cabinet_passes_every_check(tmp_path: Path) -> None:
     assert skipped == {"KV413": "no loop joint closes a chain"}
     assert not any(r.findings for r in result.results.values())
     assert result.results["KV405"].measured["arrived"] == 4
-
-
-def test_leaves_poses_that_agree_with_the_kinematics(tmp_path: Path) -> None:
-    request = prepared_request(cabinet(), tmp_path)
-    tell(run, request)
-    poses = read_poses(tmp_path, "mujoco")
-    robot = read_robot(request.urdf)
-    rows = agreement_configurations(robot, request.settings.agreement, request.settings.seed)
-    assert poses is not None
-    np.testing.assert_array_equal(poses.q, rows.q)
-    np.testing.assert_allclose(poses.T_world_link, link_poses(robot, rows), atol=1e-12)
-    assert poses.mass_matrix is not None
-    np.testing.assert_allclose(poses.mass_matrix[0, 0, 0], 2.0)  # a drawer of 2 kg that slides
-    assert poses.masses is not None
-    np.testing.assert_allclose(poses.masses, [20.0, 2.0, 2.0])
-    assert poses.contacts is not None
-    assert poses.contacts.shape[1] == 3
 
 
 def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> None:
@@ -371,4 +353,3 @@ def test_only_what_was_asked_for_is_reported(tmp_path: Path) -> None:
     request = replace(prepared_request(cabinet(), tmp_path), selected=frozenset({"KV402", "KV411"}))
     result = tell(run, request)
     assert set(result.results) == {"KV402", "KV411"}
-    assert read_poses(tmp_path, "mujoco") is not None

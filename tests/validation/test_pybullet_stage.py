@@ -12,7 +12,6 @@ import trimesh
 from kinematify.config.validation import load_settings
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
-from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
 from kinematify.simulation.prepared import URDF_FILE, load_prepared, prepare
 from kinematify.simulation.pybullet_engine import PybulletEngine
 from kinematify.validation.checks import checks_of
@@ -56,22 +55,6 @@ def test_good_cabinet_passes_every_check(tmp_path: Path) -> None:
     skipped = {check: r.reason for check, r in result.results.items() if r.status is not Status.PASS}
     assert skipped == {"KV513": "no loop joint closes a chain"}
     assert result.results["KV505"].measured["arrived"] == 4
-
-
-def test_leaves_poses_inertias_and_torques_that_agree_with_the_kinematics(tmp_path: Path) -> None:
-    request = prepared_request(cabinet(), tmp_path)
-    tell(run, request)
-    poses = read_poses(tmp_path, "pybullet")
-    robot = read_robot(request.urdf)
-    rows = agreement_configurations(robot, request.settings.agreement, request.settings.seed)
-    assert poses is not None
-    np.testing.assert_allclose(poses.T_world_link, link_poses(robot, rows), atol=1e-6)
-    assert poses.masses is not None
-    np.testing.assert_allclose(poses.masses, [20.0, 2.0, 2.0])  # that of the fixed base too
-    assert poses.mass_matrix is not None
-    np.testing.assert_allclose(np.diag(poses.mass_matrix[0]), [2.0, 0.05])  # a slide of 2 kg, a door about its centre
-    assert poses.gravity is not None
-    np.testing.assert_allclose(poses.gravity, 0.0, atol=1e-9)
 
 
 def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> None:
@@ -221,14 +204,14 @@ def test_margin_of_hulls_is_not_counted(tmp_path: Path, offset: float, depth: fl
 def test_inertias_of_heavy_models_are_not_refused(tmp_path: Path) -> None:
     # PyBullet's inverse dynamics compares tensors with their transposes to 2e-16 kg m^2.
     model = pendulum(mass=5000.0, inertia=(311.7, 417.3, 523.9), axis=(0.36, 0.48, 0.8))
-    result = reported(model, tmp_path)
-    assert not any(r.status is Status.BLOCKED for r in result.results.values())
-    poses = read_poses(tmp_path, "pybullet")
-    assert poses is not None
-    assert poses.mass_matrix is not None
+    request = prepared_request(model, tmp_path)
+    assert not any(r.status is Status.BLOCKED for r in tell(run, request).results.values())
+    robot = read_robot(request.urdf)
+    engine = PybulletEngine(settings=request.settings.engines, log=tmp_path / "log")
+    loaded = engine.load(load_prepared(tmp_path), LeaderMechanism(robot=robot))
     axis, lever = np.array([0.36, 0.48, 0.8]), np.array([0.2, 0.0, 0.0])
     expected = axis @ np.diag([311.7, 417.3, 523.9]) @ axis + 5000.0 * np.sum(np.cross(axis, lever) ** 2)
-    np.testing.assert_allclose(poses.mass_matrix.ravel(), expected, rtol=1e-6)
+    np.testing.assert_allclose(loaded.measure(np.zeros((1, 1))).inertia.ravel(), expected, rtol=1e-6)
 
 
 @pytest.mark.skipif(not PANDA.is_file(), reason="the benchmark objects are not there")

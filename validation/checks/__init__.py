@@ -7,10 +7,8 @@ import difflib
 from kinematify.errors import InputError
 from kinematify.validation.check import REGISTRY, Check
 from kinematify.validation.checks import (  # noqa: F401 - each registers its checks
-    agreement,
     as_loaded,
     collision_geometry,
-    contact_agreement,
     declared_limits,
     declared_masses,
     drives,

@@ -33,12 +33,11 @@ _TOUCHING = 1e-4
 """Contacts that are not as deep are no overlap that anybody sees [m]."""
 STILL = "does not move: "
 """Before the name of a joint: what KV804 measured of it, in the file loaded without flags."""
-_MESH_REFUSED = re.compile(r"no decoder found for mesh|invalid mesh filename extension|MakeConvexHull only applies to")
+_MESH_REFUSED = re.compile(r"no decoder found for mesh|invalid mesh filename extension")
 """What engines say of meshes in a format that they do not read."""
 _READS = {
     "mujoco": "OBJ, STL and MSH",
     "pybullet": "OBJ, STL and DAE",
-    "drake": "OBJ, VTK and glTF (.gltf)",
 }
 """Formats of meshes, by engine."""
 _SUFFIX = re.compile(r"\.(?:glb|gltf|stl|dae|ply|obj|3mf|off)\b", re.IGNORECASE)
@@ -139,8 +138,7 @@ def _remedy_of_format(context: AsLoadedContext, message: str) -> str:
     """What to do with a mesh in a format that the engine does not read."""
     given = _SUFFIX.findall(message)
     suffix = given[-1].lower() if given else "another format"
-    other = ".obj" if context.engine == "drake" else ".obj or .stl"
-    said = f"{context.title} reads {_READS[context.engine]} meshes, not {suffix}: export them as {other}"
+    said = f"{context.title} reads {_READS[context.engine]} meshes, not {suffix}: export them as .obj or .stl"
     if suffix in GLTF_SUFFIXES:
         return f"{said}; kinematify fix MODEL.urdf -o OUT.urdf writes such copies."
     return f"{said} and name those in the file."

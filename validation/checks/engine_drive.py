@@ -153,8 +153,6 @@ def loops_stay_closed(result: OpenCheck, context: EngineContext) -> None:
 
     PyBullet: By createConstraint; where <mimic> alone closes a loop, by the motors of the joints that follow.
 
-    Drake: By drake:ball_constraint, as the file states it.
-
     Why it matters: A linkage that comes apart under load is none.
 
     Remedy: Correct what KV230 names; give the links of the loop plausible masses: pins of links far lighter than their

@@ -1,4 +1,4 @@
-"""KV401, KV402 and their like: does an engine have what the file says, and does it put every link where it belongs?"""
+"""KV401, KV402, KV601, KV606 and their like: an engine has what the file says, and every link where it belongs."""
 
 from __future__ import annotations
 
@@ -15,10 +15,8 @@ from kinematify.validation.finding import Blame, Severity
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint, Robot
-    from kinematify.simulation.configurations import Configurations
     from kinematify.simulation.engine import LoadedJoint, LoadedRobot
     from kinematify.simulation.prepared import Prepared
     from kinematify.validation.check import OpenCheck
@@ -48,7 +46,7 @@ def loads(result: OpenCheck, context: EngineContext) -> None:
 
     Remedy: Fix what the engine's message names; write limits, masses and inertias in full.
     """
-    _load(result, context, context.settings.same)
+    _load(result, context)
 
 
 @check(
@@ -67,11 +65,11 @@ def pinocchio_loads(result: OpenCheck, context: EngineContext) -> None:
 
     Remedy: Write the joint or link that is named with plain decimal numbers and a unique name.
     """
-    _load(result, context, context.request.settings.agreement.mass_error)
+    _load(result, context)
 
 
-def _load(result: OpenCheck, context: EngineContext, same: float) -> None:
-    title = context.entry.title
+def _load(result: OpenCheck, context: EngineContext) -> None:
+    title, same = context.entry.title, context.settings.same
     try:
         loaded = context.model.loaded
     except Refused as refusal:
@@ -191,6 +189,14 @@ def _same(declared: float, found: float) -> bool:
     return declared == found or abs(declared - found) <= _LIMIT_SLACK * max(1.0, abs(declared))
 
 
+@check(
+    "KV601",
+    title="Poses agree over the range",
+    fails="Poses differ over the range",
+    severity=Severity.ERROR,
+    blame=Blame.ENGINE,
+    engines=("pinocchio",),
+)
 @engine_check(
     "02",
     title="Poses agree over the range",
@@ -201,44 +207,17 @@ def _same(declared: float, found: float) -> bool:
 )
 def poses_agree(result: OpenCheck, context: EngineContext) -> None:
     """At zero, at rest, at both ends of every joint and in quasi-random configurations every link is where the
-    file's kinematics put it, within engines.pose_distance of the model's size and engines.pose_deg.
+    file's kinematics put it, within engines.pose_distance of the model's size and engines.pose_deg. Engines that agree
+    with the file agree with each other.
 
-    Why it matters: A frame that the engine reads differently moves a part to another place without a message.
+    Why it matters: A frame that the engine reads differently moves a part to another place without a message, and a
+    policy that was trained in one engine fails in the next.
 
     Remedy: Write origins and axes as plain numbers, the axis as a unit vector; compare the frames of the link that
     the message names.
     """
-    seen = context.model.measure(context.rows.q, dynamic=context.rows.dynamic)
-    find_misplaced(
-        result,
-        context.rows,
-        ours=link_poses(context.declared, context.rows),
-        theirs=seen.T_world_link,
-        size=context.physics.size,
-        settings=context.settings,
-    )
-    context.leave_poses(seen)
-
-
-def find_misplaced(
-    result: OpenCheck,
-    rows: Configurations,
-    *,
-    ours: FloatArray,
-    theirs: FloatArray,
-    size: float,
-    settings: EngineSettings,
-) -> None:
-    """Add a finding for every link that an engine puts elsewhere.
-
-    Args:
-        result: Open, of the engine.
-        rows: The configurations.
-        ours: From `link_poses`.
-        theirs: The engine's, of the same shape.
-        size: Of the model [m].
-        settings: The differences that are errors.
-    """
+    rows, settings, size = context.rows, context.settings, context.model.size
+    ours, theirs = link_poses(context.declared, rows), context.model.poses(rows.q)
     distance = np.linalg.norm(ours[..., :3, 3] - theirs[..., :3, 3], axis=-1)
     # Frobenius norm of a difference of rotations: 2 sqrt(2) sin(angle / 2); exact for small angles, unlike the trace.
     chord = np.linalg.norm(ours[..., :3, :3] - theirs[..., :3, :3], axis=(-2, -1)) / np.sqrt(8.0)
@@ -249,7 +228,7 @@ def find_misplaced(
     for link in np.flatnonzero(share.max(axis=0) > 1.0).tolist():
         row = int(worst[link])
         result.find(
-            f"{ENGINES[result.engine or ''].title} puts the link {rows.links[link]} {distance[row, link] * 1e3:.3g} mm "
+            f"{context.entry.title} puts the link {rows.links[link]} {distance[row, link] * 1e3:.3g} mm "
             f"and {angle[row, link]:.3g} deg from where the file's kinematics put it.",
             f"Write origins and axes on the way to {rows.links[link]} as plain numbers, axes as unit vectors.",
             link=rows.links[link],

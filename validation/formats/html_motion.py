@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from kinematify.validation.summary import JointCurve, JointSummary
 
 _LINES = {"first": "solid line", "second": "dashed line", "third": "dotted line"}
-_STYLES = dict(zip((name for name, engine in ENGINES.items() if engine.runs and engine.prepared), _LINES, strict=False))
+_STYLES = dict(zip((name for name, engine in ENGINES.items() if engine.runs), _LINES, strict=False))
 _WIDTH = 275
 """Of a chart [px]: four stand side by side."""
 _STEPS = 200

@@ -27,7 +27,6 @@ from kinematify.validation.run.causes import with_causes
 from kinematify.validation.run.loaded_findings import across_engines, confirm_on_raw_model, with_refusals
 from kinematify.validation.run.opinions import evidence_before_blame
 from kinematify.validation.run.plan import (
-    agreement_stage,
     as_loaded_stages,
     asset_stage,
     keys,
@@ -68,7 +67,7 @@ def validate(
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> ValidationReport:
-    """Check a URDF: file, declared physics, collision along the motion, joint evidence, engines and their agreement.
+    """Check a URDF: file, declared physics, collision along the motion, joint evidence, and behaviour in engines.
 
     Args:
         path: The URDF file.
@@ -161,8 +160,6 @@ class _Run:
         self._curves: list[JointCurve] = []
         self._pairs: PairTable | None = None
         self._why: dict[CheckKey, tuple[Status, str]] = {}
-        self._failures: dict[str, str] = {}
-        self._late: set[str] = set()
         self._started = time.perf_counter()
 
     def all(self, request: StageRequest, workers: int) -> None:
@@ -202,7 +199,6 @@ class _Run:
             "the engine was not asked for",
         )
         self._load_plainly(plain, request, workers)
-        self._compare(request, self.engines)
         if self.task is not None:
             self._use(request, self.engines)
 
@@ -212,18 +208,6 @@ class _Run:
         for end in run_stages(stages, replace(request, free_travel=free), workers=workers):
             self._take_end(end)
             self._progress(end.stage.name, 0.95)
-
-    def _compare(self, request: StageRequest, engines: Sequence[str]) -> None:
-        """Hold the engines against each other; it is quick, and runs even where no time is left."""
-        request = replace(
-            request,
-            deadline=max(request.deadline, _LEEWAY),
-            engines=tuple(engines),
-            failures=self._failures,
-            late=frozenset(self._late),
-        )
-        for end in run_stages(needed([agreement_stage()], request.selected), request, workers=1):
-            self._take_end(end)
 
     def _use(self, request: StageRequest, engines: Sequence[str]) -> None:
         """Let a robot use the object; it has time of its own."""
@@ -262,9 +246,7 @@ class _Run:
         )
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)
         checks = with_causes(checks, robot)
-        facts = environment(
-            settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted, engines=self.engines
-        )
+        facts = environment(settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted)
         return ValidationReport(
             model=str(self.path),
             checks=checks,
@@ -294,11 +276,9 @@ class _Run:
             self._take(result)
         if end.failure is None:
             return
-        self._failures[end.stage.name] = end.failure
         left = [key for key in end.stage.checks if key not in self._results and key[0] in self.selected]
         reason = f"the stage {end.stage.name} {end.failure}"
         if end.late:
-            self._late.add(end.stage.name)
             self._explain(left, Status.SKIPPED, not_finished(reason))
             return
         if left and not end.failure.startswith("did not run"):

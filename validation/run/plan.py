@@ -10,7 +10,6 @@ from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.isolation import Stage
 from kinematify.validation.stages import (
     asset,
-    engine_agreement,
     evidence_stage,
     geometry,
     loaded_file,
@@ -49,7 +48,7 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
             name="geometry",
             run=geometry.run,
             checks=keys(checks_of("KV30", "KV31", "KV32", "KV33")),
-            imports=("kinematify.validation.geometry.look", "kinematify.validation.geometry.exact_contacts"),
+            imports=("kinematify.validation.geometry.look",),
         ),
         Stage(
             name="evidence",
@@ -60,7 +59,7 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
             ),
         ),
     ]
-    for name in (name for name in chosen if ENGINES[name].prepared):
+    for name in chosen:
         checks = tuple(key for key in keys(CHECKS.values()) if key[1] == name and not key[0].startswith(("KV7", "KV8")))
         stages.append(
             Stage(
@@ -92,14 +91,7 @@ def as_loaded_stages(chosen: Sequence[str]) -> list[Stage]:
 
 def _library(engine: EngineEntry) -> str | None:
     """What can be loaded once for all stages of an engine; none that may be missing."""
-    return None if engine.prints_when_loaded or engine.extra else engine.module
-
-
-def agreement_stage() -> Stage:
-    """Compares what the engines left; it comes after all of them, whether they ended well or not."""
-    checks = tuple(key for key in keys(checks_of("KV6")) if key[1] is None)
-    imports = ("kinematify.validation.engine_results",)
-    return Stage(name="agreement", run=engine_agreement.run, checks=checks, imports=imports)
+    return None if engine.prints_when_loaded else engine.module
 
 
 def task_stage() -> Stage:
@@ -108,9 +100,7 @@ def task_stage() -> Stage:
 
 
 def needed(stages: Sequence[Stage], selected: Collection[str]) -> list[Stage]:
-    """Return the stages that tell a selected check, with those that they come after; the agreement needs all."""
-    if any(check.id in selected for check in checks_of("KV6")):
-        return list(stages)
+    """Return the stages that tell a selected check, with those that they come after."""
     wanted = [stage for stage in stages if any(check in selected for check, _ in stage.checks)]
     names = {stage.name for stage in wanted} | {name for stage in wanted for name in stage.after}
     return [stage for stage in stages if stage.name in names]

@@ -1,4 +1,4 @@
-"""The stage of one engine: load, pose, contacts at rest, hold, drive, push, release, drop; and `poses-ENGINE.npz`."""
+"""The stage of one engine: load, pose, contacts at rest, hold, drive, push, release, drop."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ if TYPE_CHECKING:
     from kinematify.validation.engine_context import EngineContext
     from kinematify.validation.stage import Recorder, StageRequest
 
-_LOAD, _POSES, _REST = "01", "02", "03"
+_LOAD, _REST = "01", "03"
 _GATHERING = ("07", "10")
 """Numbers of the checks that look at all runs; these come last."""
-_ORDER = (_LOAD, _POSES, _REST, "04", "08", "12", "05", "06", "09", "13", "11", *_GATHERING)
-_PINOCCHIO = "KV606"
+_ORDER = (_LOAD, "02", _REST, "04", "08", "12", "05", "06", "09", "13", "11", *_GATHERING)
+_LOADS, _AGREES = "KV606", "KV601"
+"""Of an engine that only computes."""
 
 
 def run(request: StageRequest, recorder: Recorder, *, engine: str) -> None:
@@ -39,11 +40,15 @@ def run(request: StageRequest, recorder: Recorder, *, engine: str) -> None:
 
 
 def _compute(context: EngineContext, recorder: Recorder) -> None:
-    """Load the model into an engine that only computes, and leave its poses."""
-    with recorder.check(_PINOCCHIO, context.entry.name) as result:
-        CHECKS[_PINOCCHIO].run(result, context)
-    if "model" in vars(context) and recorder.wants("KV601", "KV602", "KV603", "KV605"):
-        context.leave_poses(context.model.measure(context.rows.q, dynamic=context.rows.dynamic))
+    """Load the model into an engine that only computes, and compare its poses."""
+    name = context.entry.name
+    with recorder.check(_LOADS, name) as result:
+        CHECKS[_LOADS].run(result, context)
+    with recorder.check(_AGREES, name) as result:
+        if "model" in vars(context) and context.model.complete:
+            CHECKS[_AGREES].run(result, context)
+        else:
+            result.block(f"{context.entry.title} does not load the model as it is in the file ({_LOADS})")
 
 
 def _run(context: EngineContext, recorder: Recorder) -> None:
@@ -54,8 +59,8 @@ def _run(context: EngineContext, recorder: Recorder) -> None:
     gathering = recorder.wants(*(checks[number].id for number in _GATHERING))
     obstacle: str | None = None
     for number, check in checks.items():
-        # What no check wants is not recorded; the poses are always left, and those that gather need all runs.
-        if number not in {_LOAD, _POSES} and not gathering and not recorder.wants(check.id):
+        # What no check wants is not recorded; those that gather need all runs.
+        if number != _LOAD and not gathering and not recorder.wants(check.id):
             continue
         with recorder.check(check.id, entry.name) as result:
             if too_many:
