@@ -61,7 +61,7 @@ def content_digest(articulated_object: ArticulatedObject) -> str:
 
 
 def kept(folder: str, digest: str) -> dict[str, object] | None:
-    """What an earlier run has kept, or None."""
+    """Return what an earlier run has kept, or None."""
     with suppress(OSError, ValueError):
         found = json.loads((cache_folder().parent / folder / f"{digest}.json").read_text(encoding="utf-8"))
         return found if isinstance(found, dict) else None

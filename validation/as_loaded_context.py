@@ -1,4 +1,4 @@
-"""What the checks of the untouched file look at in one engine, computed when one of them first asks for it."""
+"""Context of the checks of the untouched file in one engine, computed when first asked for."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class AsLoadedContext:
 
     @property
     def title(self) -> str:
-        """Of the engine."""
+        """Title of the engine."""
         return ENGINES[self.engine].title
 
     @property
@@ -113,7 +113,7 @@ class AsLoadedContext:
 
     @property
     def floats(self) -> bool:
-        """Whether the file has a floating or planar joint."""
+        """True if the file has a floating or planar joint."""
         return any(joint.declared_kind in FREE_KINDS for joint in self.robot.joints)
 
     @property
@@ -147,7 +147,7 @@ class AsLoadedContext:
 
     @cached_property
     def travels(self) -> tuple[Travel, ...]:
-        """Of the joints that lead and that the engine moves."""
+        """Travels of the joints that lead and that the engine moves."""
         return tuple(travel for travel in self.mechanism.travels if travel.joint not in self.lost)
 
     @cached_property
@@ -192,7 +192,7 @@ class AsLoadedContext:
         return run.values[:, list(self.loaded.joints).index(travel.joint)]
 
     def still(self, travel: Travel) -> float:
-        """How far a joint may go that nothing moves [rad or m]."""
+        """Return how far a joint may go that nothing moves [rad or m]."""
         settings = self.settings
         return max(settings.still * travel.range, settings.still_angle if travel.turns else settings.still_length)
 
@@ -226,7 +226,7 @@ class AsLoadedContext:
         )
 
     def moves_plainly(self, run: VelocityProbe) -> bool:
-        """Whether a joint that a push did not bring to its end gets there as the file is loaded without flags.
+        """True if a joint that a push did not bring to its end gets there as the file is loaded without flags.
 
         By the push without contacts, or by the joint's own motor: engines answer pushes of light parts wrongly.
         """
@@ -257,7 +257,7 @@ class AsLoadedContext:
 
     @cached_property
     def inertias(self) -> dict[str, float]:
-        """What a force at each joint moves at rest [kg or kg m^2]."""
+        """Return what a force at each joint moves at rest [kg or kg m^2]."""
         return dict(zip(self.loaded.joints, self.running.inertias(self.values).tolist(), strict=True))
 
     @cached_property
@@ -274,7 +274,7 @@ class AsLoadedContext:
 
     @cached_property
     def _surfaces(self) -> Sweeper | None:
-        """What is visible in motion, for joints that fall short; None where it is what collides, swept already."""
+        """Return the visible surfaces in motion, for joints that fall short; None where they are what collides."""
         from kinematify.geometry.scene import read_scene, simplified, visible_shapes  # noqa: PLC0415 - for these only
         from kinematify.geometry.sweep import Sweeper  # noqa: PLC0415
         from kinematify.validation.left_model import model_of  # noqa: PLC0415
@@ -311,7 +311,7 @@ class AsLoadedContext:
         return self.settings.torque if travel.turns else self.settings.force
 
     def speed(self, travel: Travel) -> float:
-        """Of the hand [rad/s or m/s]."""
+        """Speed of the hand [rad/s or m/s]."""
         return self.settings.turning_speed if travel.turns else self.settings.sliding_speed
 
     def _push(self, travel: Travel, way: tuple[float, float], force: float, **more: float) -> Push:
@@ -367,7 +367,7 @@ class AsLoadedContext:
         return GRAVITY * float(sum(masses)) * self.size
 
     def arrives(self, run: VelocityProbe, farthest: float) -> bool:
-        """Whether a push got so far that the joint counts as moving to its end [rad or m]."""
+        """True if a push got so far that the joint counts as moving to its end [rad or m]."""
         travel, way = run.travel, abs(run.end - run.travel.rest)
         gone, stopped = abs(farthest - travel.rest), run.end not in (travel.lower, travel.upper)
         touching = self.settings.touch_angle if travel.turns else self.settings.touch_length

@@ -58,7 +58,7 @@ _NOT_OURS = ("KV1", "KV2", "KV6", "KV8")
 
 
 class FeedbackRow(StrEnum):
-    """What `kinematify refine` makes of a finding, a row of the table in `validation/run/feedback.py`."""
+    """Reaction of `kinematify refine` to a finding, a row of the table in `validation/run/feedback.py`."""
 
     AS_GIVEN = "none: the overlap is as given, no axis is the cause"
     INTO_PARENT = "against this line, this type and this parent; if one side is free, it is the opening one"
@@ -79,7 +79,7 @@ class FeedbackRow(StrEnum):
 
 
 class CauseScope(StrEnum):
-    """What a cause and what follows from it must both be about."""
+    """Subject that a cause and what follows from it must both be about."""
 
     MODEL = "the model"
     BODY = "a body in common"

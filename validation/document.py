@@ -1,4 +1,4 @@
-"""What all checks of the text are given: the document, and how they name its values and who answers for them."""
+"""Context of all checks of the text: the document, and how they name its values and who answers for them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the checks of one engine look at, computed when one of them first asks for it and kept for the others."""
+"""Context of the checks of one engine, computed when first asked for and kept for the others."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class RunEnd:
-    """How a run went on the whole."""
+    """End of a run."""
 
     when: str
     """As words that follow "while"."""
@@ -73,19 +73,19 @@ class EngineContext:
 
     @cached_property
     def prepared(self) -> Prepared:
-        """What the engine is given."""
+        """Return what the engine is given."""
         return load_prepared(self.request.work)
 
     @cached_property
     def surfaces(self) -> Scene:
-        """What the file declares to collide; engines do without, and only drives that are stopped ask for it."""
+        """Return what the file declares to collide; engines do without, and only drives that are stopped ask for it."""
         from kinematify.geometry.scene import read_scene  # noqa: PLC0415 - for these only
 
         return read_scene(self._whole, self.request.settings.geometry)
 
     @cached_property
     def visible_surfaces(self) -> Scene | None:
-        """What is visible; None where it is what collides."""
+        """Return what is visible; None where it is what collides."""
         from kinematify.geometry.scene import read_scene, simplified, visible_shapes  # noqa: PLC0415
 
         if not simplified(self._whole):
@@ -129,7 +129,7 @@ class EngineContext:
 
     @cached_property
     def seen(self) -> Measured:
-        """What the engine says along the sweep of every joint."""
+        """Return what the engine says along the sweep of every joint."""
         rows = self.mechanism.sweep(self.settings.sweep_samples)
         return self.physics.measure(self.mechanism.all_values(rows))
 

@@ -1,4 +1,4 @@
-"""What a check says: findings with their evidence, and the status of the check itself (design section 4)."""
+"""Findings of a check with their evidence, and the status of the check itself (design section 4)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Severity(StrEnum):
-    """How bad a finding is; an error makes the verdict ``fail``."""
+    """Severity of a finding; an error makes the verdict ``fail``."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -35,7 +35,7 @@ class Blame(StrEnum):
 
 
 class Status(StrEnum):
-    """What became of a check; skipped and blocked never count as passed."""
+    """Status of a check; skipped and blocked never count as passed."""
 
     PASS = "pass"
     FAIL = "fail"

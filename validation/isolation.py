@@ -67,7 +67,7 @@ class Stage:
 
 @dataclass(frozen=True, kw_only=True)
 class StageEnd:
-    """How a stage ended."""
+    """End of a stage."""
 
     stage: Stage
     results: tuple[CheckResult | Summary, ...]

@@ -1,4 +1,4 @@
-"""How a group of checks runs: in a process of its own, telling each result as soon as it is known.
+"""Stage of a run: a group of checks in a process of its own, telling each result as soon as it is known.
 
 A stage is a function `stage(request, recorder)`. What it has recorded before it crashes or is stopped is kept;
 the checks that it has not recorded become ``blocked``, or ``skipped`` as not finished where time ran out.
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class StageRequest:
-    """What every stage is given; it crosses a process border, so it holds plain data only."""
+    """Input of every stage; it crosses a process border, so it holds plain data only."""
 
     urdf: Path
     """The file as the user gave it."""

@@ -1,4 +1,4 @@
-"""What a stage tells besides its checks: what is known of joints and of pairs of bodies."""
+"""Facts that a stage tells besides its checks: what is known of joints and of pairs of bodies."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class JointSummary:
-    """What is known of one joint at the end."""
+    """Facts of one joint at the end."""
 
     joint: str
     kind: str
@@ -25,7 +25,7 @@ class JointSummary:
 
 @dataclass(frozen=True, kw_only=True)
 class JointCurve:
-    """How one engine drove a joint from rest to one end, at some looks on the way."""
+    """Drive of a joint by one engine from rest to one end, sampled on the way."""
 
     joint: str
     engine: str
@@ -43,7 +43,7 @@ class JointCurve:
 
 @dataclass(frozen=True, kw_only=True)
 class PairSummary:
-    """What the exact geometry knows of two bodies that touch, or that something is to be said of."""
+    """Facts of two bodies that touch, or that something is to be said of."""
 
     pair: tuple[str, str]
     """In the order of the document."""

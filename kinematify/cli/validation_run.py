@@ -34,7 +34,7 @@ PICTURE_SECONDS = 15.0
 
 @dataclass(kw_only=True)
 class ValidationRun:
-    """What was asked for, and what has come of it so far."""
+    """State of one run of `kinematify validate`: the request and the results."""
 
     models: tuple[Path, ...]
     package_dirs: tuple[Path, ...]

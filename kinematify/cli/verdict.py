@@ -1,4 +1,4 @@
-"""What `kinematify validate` says on a terminal: the verdict first, then what is wrong, the worst first."""
+"""Terminal output of `kinematify validate`: the verdict first, then what is wrong, the worst first."""
 
 from __future__ import annotations
 
@@ -99,14 +99,14 @@ def _height(blocks: Sequence[str]) -> int:
 
 
 def _notes(groups: Sequence[FindingGroup]) -> str:
-    """How many notes there are, by check."""
+    """Return how many notes there are, by check."""
     counts = Counter(item.finding.check for item in groups if item.finding.severity is Severity.NOTE)
     listed = ", ".join(f"{check}{f' ({count})' if count > 1 else ''}" for check, count in sorted(counts.items()))
     return _wrapped(f"{counted_words(counts.total(), 'note')}: {listed}.") if counts else ""
 
 
 def _more(report: ValidationReport) -> str:
-    """What the whole report has besides."""
+    """Return what the whole report has besides."""
     findings = [item.finding for item in report.groups if item.finding.suppressed is None]
     worst = next((found.check for severity in Severity for found in findings if found.severity is severity), "KV301")
     return f"--all: notes, places, consequences, code, joints, checks. kinematify explain {worst}: what it checks."
@@ -157,7 +157,7 @@ def _reasons(report: ValidationReport, *statuses: Status) -> str:
 
 
 def _short_text(block: FindingBlock) -> str:
-    """What is wrong, where else, what to do, and what follows from it."""
+    """Return what is wrong, where else, what to do, and what follows from it."""
     follows = f"{block.follows}." if block.follows else ""
     return _paragraphs(block, block.message, block.also, block.remedy, follows, _plain_call(block))
 
@@ -177,7 +177,7 @@ def _paragraphs(block: FindingBlock, *words: str) -> str:
 
 
 def _long_text(block: FindingBlock) -> str:
-    """What is wrong, what to do, what follows from it and the code that shows it; many places as a table."""
+    """Return what is wrong, what to do, what follows from it and the code that shows it; many places as a table."""
     many = len(block.findings) > 1
     example = f"For example: {block.message}" if many else block.message
     lines = [
@@ -191,7 +191,7 @@ def _long_text(block: FindingBlock) -> str:
 
 
 def _consequences(findings: Sequence[Finding]) -> list[str]:
-    """What follows from a finding, a paragraph each, with the code that shows the first in an engine."""
+    """Return what follows from a finding, a paragraph each, with the code that shows the first in an engine."""
     if not findings:
         return []
     lines = [_wrapped(f"{title(item)}: {printable(item.message)}", 4, 6) for item in findings]

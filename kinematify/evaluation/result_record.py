@@ -1,4 +1,4 @@
-"""What a run of the evaluation leaves: a JSON of one form for benchmark and studies, and the Markdown beside it.
+"""Records of the evaluation: a JSON of one form for benchmark and studies, and the Markdown beside it.
 
 What a result depends on stands in its header: the sources that gave it, as a hash, and the commit that they are at.
 """
@@ -90,7 +90,7 @@ _Key = TypeVar("_Key", bound="Hashable")
 
 @dataclass(frozen=True, kw_only=True)
 class Header:
-    """How the records came about."""
+    """Origin of the records: command, versions, time."""
 
     study: str
     """``bench``, or the name of a study."""

@@ -186,7 +186,7 @@ class Chooser:
         return plan.with_joint(best.joint), change
 
     def _lead_of(self, trial: Trial, first: Trial) -> float:
-        """What a candidate has to lead the chosen one by: more if it moves otherwise, most if it fixes no failure."""
+        """Return the lead that a candidate needs: more if it moves otherwise, most if it fixes no failure."""
         if first.against == 0.0 or trial.against > 0.0:
             return self.config.margin
         joint, old = trial.joint, first.joint
@@ -265,7 +265,7 @@ if TYPE_CHECKING:
 
 
 def vote(plan: Plan, graph: ContactGraph, chooser: Chooser) -> tuple[Plan, list[PlanChange]]:
-    """Let siblings that are congruent vote about their type.
+    """Make siblings that are congruent vote about their type.
 
     Args:
         plan: With what was chosen for each alone.

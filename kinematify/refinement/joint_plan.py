@@ -42,7 +42,7 @@ class Plan:
 
     @cached_property
     def signature(self) -> tuple[object, ...]:
-        """What two plans share that are the same for every purpose: tree, types, lines and ranges to 6 digits."""
+        """Return a key that equal plans share: tree, types, lines and ranges to 6 digits."""
         return self.tree.parents, tuple(_signature(joint) for joint in self.joints)
 
     def index(self, child: str) -> int:

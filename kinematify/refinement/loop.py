@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Refinement:
-    """What the loop leaves: the best answer, with the history of how it was found."""
+    """Result of the loop: the best answer, with the history of how it was found."""
 
     inference: Inference
     """The kept round as an inference; its `refinement` holds the history as plain data."""
@@ -134,7 +134,7 @@ class _Done:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Request:
-    """What `refine` was asked for."""
+    """Request to `refine`."""
 
     given: Inference
     rounds: int
@@ -161,7 +161,7 @@ class _Loop:
         self.sound_at = 0
 
     def in_time(self) -> bool:
-        """Whether there is time for one thing more."""
+        """True if there is time for one thing more."""
         return time.perf_counter() - self.started < self.request.seconds
 
     def run(self) -> None:
@@ -401,7 +401,7 @@ def _failed(verdict: MotionVerdict) -> list[str]:
 
 
 def _blamed(feedback: Feedback) -> list[str]:
-    """What is blamed, one phrase per part and decision."""
+    """Return what is blamed, one phrase per part and decision."""
     edges = [f"{signal.child}: parent" for signal in feedback.edges]
     lines = [f"{signal.child}: axis" for signal in feedback.lines]
     types = [f"{signal.child}: type" for signal in feedback.types]

@@ -73,7 +73,7 @@ class Look:
 
     @property
     def errors(self) -> int:
-        """How many there are that follow from no other finding."""
+        """Return how many there are that follow from no other finding."""
         return self._count(Severity.ERROR)
 
     @property
@@ -83,7 +83,7 @@ class Look:
 
     @property
     def moving(self) -> dict[str, int]:
-        """How many joints a hand moves in the file as it is, by engine."""
+        """Return how many joints a hand moves in the file as it is, by engine."""
         found = [check for check in self.report.checks if check.check == "KV804" and "right" in check.measured]
         return {check.engine: int(check.measured["right"]) for check in found if check.engine is not None}
 
@@ -234,7 +234,7 @@ def fix_urdf(
 
 
 class _Repairs:
-    """What was done to a editor, so that nothing is tried twice."""
+    """Repairs done to an editor, so that nothing is tried twice."""
 
     def __init__(
         self,
@@ -310,7 +310,7 @@ class _Repairs:
             ]
 
     def _to_carve(self, robot: Robot, found: Sequence[Finding], beside: set[str]) -> Iterator[str]:
-        """Of two links that meet those whose shapes are not what engines take them for; both where neither is."""
+        """Yield, of two links that meet, those whose shapes engines take for others; both where neither is."""
         if self._everything:
             yield from (link.name for link in robot.links if link.has_geometry)
             return
@@ -326,7 +326,7 @@ class _Repairs:
 
 
 def _only_under_a_flag(finding: Finding) -> bool:
-    """Whether plain loading does not show it."""
+    """True if plain loading does not show it."""
     return finding.check.startswith("KV8") and finding.engine is not None and bool(ENGINES[finding.engine].contact_flag)
 
 

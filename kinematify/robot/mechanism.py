@@ -1,4 +1,4 @@
-"""What a drive through the ranges needs to know of a tree: which joints lead, how far they go, what each one moves."""
+"""Mechanism of a tree: which joints lead, how far they go, what each one moves."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Travel:
 
     @property
     def unit(self) -> str:
-        """Of its values."""
+        """Unit of its values."""
         return "rad" if self.turns else "m"
 
 
@@ -60,7 +60,7 @@ class LeaderMechanism:
 
     @cached_property
     def travels(self) -> tuple[Travel, ...]:
-        """Of every joint that is neither fixed nor a follower, in the order of the document."""
+        """Travels of every joint that is neither fixed nor a follower, in the order of the document."""
         leaders = self.robot.leaders
         rest = {**rest_configuration(self.robot), **self.standing}
         lower, upper = joint_ends(leaders)
@@ -210,7 +210,7 @@ def sweep_rows(leader: int, samples: int) -> slice:
 
 @dataclass(frozen=True, kw_only=True)
 class LoopOpening:
-    """How far a shared pin comes apart when one joint moves alone."""
+    """Distance by which a shared pin comes apart when one joint moves alone."""
 
     joint: str
     """Leader that opens it most."""

@@ -69,7 +69,7 @@ def mesh_candidates(filename: str, folder: Path, package_dirs: Sequence[Path], w
 
 
 def _package_candidates(package: str, inside: str, folder: Path, package_dirs: Sequence[Path]) -> list[Path]:
-    """What is given comes first; then the folders above, by the name in their manifest, then by their own; then ROS.
+    """Find packages: given folders first; then those above, by the name in their manifest, then by their own; then ROS.
 
     ``--package-dir`` may be the package or its parent.
     """

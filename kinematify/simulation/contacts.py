@@ -120,7 +120,7 @@ def touching(
 
 
 def stand_in_error(prepared: Prepared, pair: tuple[str, str]) -> float:
-    """How much deeper the convex pieces of two links can be in each other than their declared surfaces [m].
+    """Return how much deeper the convex pieces of two links can be in each other than their declared surfaces [m].
 
     Infinite where one is the hull of a concave mesh: it fills hollows, in which the other may rightly be.
     """

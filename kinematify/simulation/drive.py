@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Driven:
-    """How one drive went."""
+    """Result of one drive."""
 
     drive: Drive
     reached: float
@@ -50,7 +50,7 @@ class Driven:
 
 @dataclass(frozen=True, kw_only=True)
 class DriveEnd:
-    """How a drive ended."""
+    """Reason why a drive ended."""
 
     drive: Drive
     fastest: float

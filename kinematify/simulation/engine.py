@@ -1,4 +1,4 @@
-"""What Kinematify asks of a physics engine.
+"""Interface of a physics engine.
 
 An engine loads the prepared copy of a model (`Engine.load`), looks at configurations of it (`EngineModel`), and runs it
 in time (`Simulation`). It also loads a file as users do (`Engine.load_raw`, see `raw_model`). An engine that only
@@ -51,7 +51,7 @@ class LoadedJoint:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LoadedRobot:
-    """What an engine made of `prepared.urdf`."""
+    """Model that an engine made of `prepared.urdf`."""
 
     joints: Mapping[str, LoadedJoint]
     """Joints that move, keyed by name."""
@@ -65,7 +65,7 @@ class LoadedRobot:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Measured:
-    """What an engine says of a table of configurations, one entry per row."""
+    """Measurements of a table of configurations, one entry per row."""
 
     T_world_link: FloatArray
     """The root's frame is the world, shape (n, L, 4, 4); NaN for links that the engine lost."""
@@ -155,7 +155,7 @@ class Engine(Protocol):
         """
 
     def messages(self) -> list[str]:
-        """What the engine itself has said so far, each message once."""
+        """Return what the engine itself has said so far, each message once."""
 
 
 class WorldEngine(Engine, Protocol):
@@ -175,7 +175,7 @@ class EngineModel(Protocol):
 
     @property
     def loaded(self) -> LoadedRobot:
-        """What became of joints and masses."""
+        """Return what became of joints and masses."""
 
     @property
     def complete(self) -> bool:
@@ -234,7 +234,7 @@ class Simulation(Protocol):
         """Hold the model by servos no stronger than `efforts` [N m or N], shape (leaders,)."""
 
     def release(self, seconds: float, *, fine: bool = False) -> FreeRun:
-        """Let the model go, without servos, damping and friction.
+        """Make the model go, without servos, damping and friction.
 
         Args:
             seconds: How long.
@@ -245,4 +245,4 @@ class Simulation(Protocol):
         """Drive a joint to an end, the others held, for each of `drives`; its servo is no stronger than it must be."""
 
     def drop(self) -> Dropped:
-        """Let the model fall on a floor from `EngineSettings.drop`, its joints held."""
+        """Make the model fall on a floor from `EngineSettings.drop`, its joints held."""

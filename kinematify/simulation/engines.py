@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class EngineEntry:
-    """What is known of an engine without loading it."""
+    """Entry of an engine, known without loading it."""
 
     name: str
     """As users write it; ``kinematify.simulation.NAME_engine`` holds the class ``NameEngine``, an `Engine`."""
@@ -44,8 +44,8 @@ class EngineEntry:
     contact_flag: str | None = None
     """Of its loader: without it links of one file pass through each other; None: they collide by default."""
     holds: tuple[str, ...] = ()
-    """What may connect a hand with a part (values of `kinematify.manipulation.plan_request.Hold`) where plans are
-    executed and environments run in it: its class is a `WorldEngine`."""
+    """Values of `kinematify.manipulation.plan_request.Hold`: connections of a hand with a part where plans are executed
+    and environments run in it: its class is a `WorldEngine`."""
     prints_when_loaded: bool = False
     """True: it may be loaded only where what is printed goes to a file."""
 

@@ -63,7 +63,7 @@ _TIME = re.compile(r" Time = ")
 
 
 class MujocoEngine:
-    """See `kinematify.simulation.engine.Engine`."""
+    """MuJoCo as `kinematify.simulation.engine.Engine`."""
 
     def __init__(self, settings: EngineSettings, log: Path) -> None:
         """Keep MuJoCo's messages, which else go into a file in the working directory."""
@@ -95,7 +95,7 @@ class MujocoEngine:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MujocoModel:
-    """See `kinematify.simulation.engine.PhysicsModel`."""
+    """Prepared model in MuJoCo."""
 
     engine: MujocoEngine
     source: ParsedModel
@@ -104,7 +104,7 @@ class MujocoModel:
 
     @property
     def loaded(self) -> LoadedRobot:
-        """What became of joints and masses."""
+        """Return what became of joints and masses."""
         model, mechanism = self.measuring.model, self.source.mechanism
         joints = {
             name: LoadedJoint(
@@ -128,7 +128,7 @@ class MujocoModel:
 
     @property
     def size(self) -> float:
-        """Of the model [m]."""
+        """Size of the model [m]."""
         return float(max(self.measuring.model.stat.extent, 1e-9))
 
     @property
@@ -161,7 +161,7 @@ class MujocoModel:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MujocoSimulation:
-    """See `kinematify.simulation.engine.Simulation`."""
+    """Simulation of a prepared model in MuJoCo."""
 
     model: MujocoModel
     sweep: Touching
@@ -207,7 +207,7 @@ class MujocoSimulation:
         return self._free(model, np.repeat(self._held[None], steps, axis=0))
 
     def release(self, seconds: float, *, fine: bool = False) -> FreeRun:
-        """Let the model go."""
+        """Make the model go."""
         free, finer = released(self._everything.model), FINER if fine else 1
         free.opt.timestep /= finer
         return self._free(free, np.zeros((finer * count_steps(seconds, self.step), free.nu)), every=finer)
@@ -256,7 +256,7 @@ class MujocoSimulation:
         return _run(self._everything, models, rest, control, threads=threads)
 
     def _more_meet(self, run: _Run, acting: tuple[int, ...]) -> bool:
-        """Whether pairs that did not act get too deep in a run, since held joints give way."""
+        """True if pairs that did not act get too deep in a run, since held joints give way."""
         found, sweep = self.model.contacts(run.q[: run.whole : _LOOK]), self.sweep
         bodies = np.sort(self._mechanism.body_of_link[found.links], axis=1)
         return any(
@@ -265,7 +265,7 @@ class MujocoSimulation:
         )
 
     def _force(self, drive: Drive, run: _Run, targets: FloatArray) -> FloatArray:
-        """Of the servo that drives, after every step, shape (steps,)."""
+        """Force of the servo that drives, after every step, shape (steps,)."""
         leader = drive.leader
         column = self._mechanism.joints.index(self._mechanism.travels[leader].joint)
         force = self.servos.stiffness[leader] * (targets - run.q[:, column])
@@ -273,7 +273,7 @@ class MujocoSimulation:
         return np.asarray(np.clip(force, -self.servos.force[leader], self.servos.force[leader]))
 
     def drop(self) -> Dropped:
-        """Let the model fall on a floor."""
+        """Make the model fall on a floor."""
         settings, measuring, rest = self.model.engine.settings, self.model.measuring, self._mechanism.values_at_rest
         lowest = _lowest_point(measuring.model, _data_of(measuring, _start_state(measuring, rest)))
         allowed = with_allowances(self._servoed, measuring, self.sweep)
@@ -463,7 +463,7 @@ print(max(seen) - seen[0])
 
 
 class MujocoFile(RunningFile):
-    """See `RunningFile`: a file as `MjModel.from_xml_path` loads it."""
+    """Raw model: a file as `MjModel.from_xml_path` loads it."""
 
     code = Reproductions(
         joints=_JOINTS,
@@ -508,29 +508,29 @@ class MujocoFile(RunningFile):
         option.gravity[:] *= start.gravity
 
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         for done in range(every, count + 1, every):
             mujoco.mj_step(self._model, self._data, nstep=every)
             yield done
 
     def state(self) -> tuple[FloatArray, FloatArray]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         return self._data.qpos.copy(), self._data.qvel.copy()
 
     def set_state(self, q: FloatArray, v: FloatArray) -> None:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         self._data.qpos[:], self._data.qvel[:] = q, v
 
     def apply(self, joint: int, force: float) -> None:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         self._data.qfrc_applied[joint] = force
 
     def energy(self) -> tuple[float, float]:
-        """See `RunningFile`; of the state before the last step."""
+        """Implement `RunningFile`; of the state before the last step."""
         return float(self._data.energy[0]), float(self._data.energy[1])
 
     def touching(self) -> Iterator[tuple[str, str, float]]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         mujoco.mj_forward(self._model, self._data)
         for contact in self._data.contact:
             bodies = sorted(int(self._model.geom_bodyid[geom]) for geom in contact.geom)
@@ -545,7 +545,7 @@ class MujocoFile(RunningFile):
         return f"MuJoCo warns {', '.join(broken)}" if broken else None
 
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         self.begin(values, contacts=True)
         inverse = np.zeros((self._model.nv, self._model.nv))
         mujoco.mj_solveM(self._model, self._data, inverse, np.eye(self._model.nv))

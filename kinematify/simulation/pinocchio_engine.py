@@ -29,7 +29,7 @@ _SMALLEST = 0.01
 
 
 class PinocchioEngine:
-    """See `kinematify.simulation.engine.Engine`; it has no settings and says nothing."""
+    """Pinocchio as `kinematify.simulation.engine.Engine`; it has no settings and says nothing."""
 
     def __init__(self, settings: EngineSettings, log: Path) -> None:
         """Need nothing."""
@@ -60,14 +60,14 @@ class PinocchioEngine:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PinocchioModel:
-    """See `kinematify.simulation.engine.EngineModel`."""
+    """Prepared model in Pinocchio."""
 
     model: pin.Model
     mechanism: LeaderMechanism
 
     @cached_property
     def loaded(self) -> LoadedRobot:
-        """What became of joints and masses."""
+        """Return what became of joints and masses."""
         model, joints = self.model, {}
         for name, joint in list(zip(model.names, model.joints, strict=True))[1:]:  # the first represents the world
             kind = joint.shortname()
@@ -82,7 +82,7 @@ class PinocchioModel:
 
     @property
     def _masses(self) -> dict[str, float]:
-        """Of each link: the frame of a fixed joint holds that of the link below; a body's first link has the rest."""
+        """Return the mass of each link: a fixed joint's frame holds that of the link below, the first link the rest."""
         model = self.model
         masses: dict[str, float] = {}
         rest = [float(inertia.mass) for inertia in model.inertias]
@@ -164,7 +164,7 @@ _CONVEX = 0.99
 
 
 class PinocchioFile(RawEngineModel):
-    """See `RawEngineModel`: a file as `buildModelFromUrdf` and `buildGeomFromUrdf` read it.
+    """Raw model: a file as `buildModelFromUrdf` and `buildGeomFromUrdf` read it.
 
     What a joint connects is not looked at for overlaps.
     """
@@ -197,7 +197,7 @@ class PinocchioFile(RawEngineModel):
             self.limits[name] = ends if joint.nq == 1 else (-np.inf, np.inf)
 
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
-        """See `RawEngineModel`; depths are of convex shapes, by distances: `computeCollisions` misses boxes."""
+        """Implement `RawEngineModel`; depths are of convex shapes, by distances: `computeCollisions` misses boxes."""
         model, geometry, q = self._model, self._geometry, self._configuration(values)
         seen = geometry.createData()
         pin.updateGeometryPlacements(model, model.createData(), geometry, seen, q)

@@ -1,4 +1,4 @@
-"""What the engine stages load: convex pieces, masses and inertias that engines can use, names and joints as they were.
+"""Prepared model of the engine stages: convex pieces, usable masses and inertias, names and joints as they were.
 
 `prepare` writes `prepared.urdf`, and `prepared.json`, which says what was changed to make the file loadable.
 """

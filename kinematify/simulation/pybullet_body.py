@@ -90,7 +90,7 @@ class PybulletBody:
 
     @cached_property
     def joint_infos(self) -> list[tuple[Any, ...]]:
-        """What PyBullet tells of each joint, by its index."""
+        """Return what PyBullet tells of each joint, by its index."""
         count = self.client.getNumJoints(self.body)
         return [self.client.getJointInfo(self.body, k) for k in range(count)]
 
@@ -246,12 +246,12 @@ class PybulletBody:
                 self.client.changeDynamics(self.body, index, linearDamping=0.0, angularDamping=0.0, jointDamping=0.0)
 
     def silence(self) -> None:
-        """Let no two links act on each other but those that `act` names."""
+        """Make no two links act on each other but those that `act` names."""
         for index in self.link.tolist():
             self.client.setCollisionFilterGroupMask(self.body, index, 0, 0)
 
     def act(self, pairs: Iterable[tuple[int, int]], *, on: bool) -> None:
-        """Let the links of these pairs (indices in the document) act on each other, or not."""
+        """Make the links of these pairs (indices in the document) act on each other, or not."""
         for first, second in pairs:
             self.client.setCollisionFilterPair(
                 self.body, self.body, int(self.link[first]), int(self.link[second]), int(on)

@@ -44,7 +44,7 @@ _UNLIMITED = 1e9
 
 @dataclass(frozen=True, eq=False)
 class PybulletEngine:
-    """See `kinematify.simulation.engine.Engine`; it says what it has to say in the log of its process."""
+    """PyBullet as `kinematify.simulation.engine.Engine`; it says what it has to say in the log of its process."""
 
     settings: EngineSettings
     log: Path
@@ -74,7 +74,7 @@ class PybulletEngine:
         return PybulletModel(engine=self, prepared=prepared, looking=fixed, masses=masses)
 
     def messages(self) -> list[str]:
-        """What it has printed, without what it always prints."""
+        """Return what it has printed, without what it always prints."""
         return list(dict.fromkeys(self._printed()))
 
     def _printed(self) -> list[str]:
@@ -88,7 +88,7 @@ class PybulletEngine:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PybulletModel:
-    """See `kinematify.simulation.engine.PhysicsModel`."""
+    """Prepared model in PyBullet."""
 
     engine: PybulletEngine
     prepared: Prepared
@@ -99,7 +99,7 @@ class PybulletModel:
 
     @cached_property
     def loaded(self) -> LoadedRobot:
-        """What became of joints and masses."""
+        """Return what became of joints and masses."""
         joints = {}
         for info in self.looking.joint_infos:
             if info[2] in {bullet.JOINT_REVOLUTE, bullet.JOINT_PRISMATIC}:
@@ -118,7 +118,7 @@ class PybulletModel:
 
     @property
     def size(self) -> float:
-        """Of the model [m]."""
+        """Size of the model [m]."""
         return self.looking.size
 
     @property
@@ -182,7 +182,7 @@ class PybulletModel:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PybulletSimulation:
-    """See `kinematify.simulation.engine.Simulation`."""
+    """Simulation of a prepared model in PyBullet."""
 
     model: PybulletModel
     sweep: Touching
@@ -218,7 +218,7 @@ class PybulletSimulation:
         return free_run(run, run.steps(count), count)
 
     def release(self, seconds: float, *, fine: bool = False) -> FreeRun:
-        """Let the model go."""
+        """Make the model go."""
         world, finer = self._free_world, FINER if fine else 1
         world.client.setPhysicsEngineParameter(fixedTimeStep=self.step / finer)
         run, count = _Run(self.model, world), finer * count_steps(seconds, self.step)
@@ -246,7 +246,7 @@ class PybulletSimulation:
         return result
 
     def drop(self) -> Dropped:
-        """Let the model fall on a floor."""
+        """Make the model fall on a floor."""
         body, settings = self.model.world(fixed=False), self.model.engine.settings
         client = body.client
         body.act(self.model.ignored_pairs, on=False)
@@ -305,7 +305,7 @@ class _Run:
             yield step
 
     def values(self) -> FloatArray:
-        """Of all joints [rad or m], shape (J,)."""
+        """Values of all joints [rad or m], shape (J,)."""
         return np.array(self._q)
 
     def fastest(self) -> float:

@@ -99,7 +99,7 @@ _MOTOR = 240.0
 
 
 class PybulletFile(MotorFile):
-    """See `RunningFile`: a file as `loadURDF` loads it, its base fixed, its motors as they are.
+    """Raw model: a file as `loadURDF` loads it, its base fixed, its motors as they are.
 
     Contacts of links are those of `URDF_USE_SELF_COLLISION`, but for links that fixed joints alone hold together, for
     those of neighbours (as `URDF_MERGE_FIXED_LINKS` has it), and for links that the file declares not to collide with
@@ -159,29 +159,29 @@ class PybulletFile(MotorFile):
         return _LoadedWorld(self._path, contacts=contacts, seen=seen, root=self._root, passing=self._passing)
 
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         for done in range(1, count + 1):
             self._now.client.stepSimulation()
             if done % every == 0:
                 yield done
 
     def state(self) -> tuple[FloatArray, FloatArray]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         states = self._now.client.getJointStates(self._now.body, self._places)
         return np.array([state[0] for state in states]), np.array([state[1] for state in states])
 
     def set_state(self, q: FloatArray, v: FloatArray) -> None:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         self._now.client.resetJointStatesMultiDof(
             self._now.body, self._places, q[:, None].tolist(), v[:, None].tolist()
         )
 
     def apply(self, joint: int, force: float) -> None:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         self._now.client.setJointMotorControl2(self._now.body, self._places[joint], bullet.TORQUE_CONTROL, force=force)
 
     def touching(self) -> Iterator[tuple[str, str, float]]:
-        """See `RunningFile`."""
+        """Implement `RunningFile`."""
         world = self._now
         world.client.performCollisionDetection()
         for contact in world.client.getContactPoints(world.body, world.body):
@@ -189,7 +189,7 @@ class PybulletFile(MotorFile):
             yield self._links[first], self._links[second], -contact[8]
 
     def energy(self) -> tuple[float, float]:
-        """See `RunningFile`; of all links but the base."""
+        """Implement `RunningFile`; of all links but the base."""
         world, links = self._now, [link for link in self._links if link != -1]
         states = world.client.getLinkStates(world.body, links, computeLinkVelocity=True, computeForwardKinematics=True)
         potential = kinetic = 0.0
@@ -201,12 +201,12 @@ class PybulletFile(MotorFile):
         return potential, float(kinetic)
 
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
-        """See `RunningFile`; the motors of the others hold them within a step."""
+        """Implement `RunningFile`; the motors of the others hold them within a step."""
         self.begin(values, contacts=True, released=())
         return np.array([self._inertia(self._now, k) for k in self._places])
 
     def _inertia(self, world: _LoadedWorld, joint: int) -> float:
-        """Of what hangs on a joint; PyBullet's own mass matrix fails where a tensor is unsymmetric by 1e-13."""
+        """Inertia of what hangs on a joint; PyBullet's own mass matrix fails where a tensor is unsymmetric by 1e-13."""
         info = world.client.getJointInfo(world.body, joint)
         frame = world.client.getLinkState(world.body, joint, computeForwardKinematics=True)
         axis = np.array(bullet.rotateVector(frame[5], info[13]))
@@ -223,7 +223,7 @@ class PybulletFile(MotorFile):
         return total
 
     def max_safe_force(self, values: Mapping[str, float]) -> FloatArray:
-        """See `RunningFile`.
+        """Implement `RunningFile`.
 
         Bullet lets no joint be faster than 100 rad/s within a step either, before motors hold the others: a joint that
         is light where those give way is thrown back by more.
@@ -240,7 +240,7 @@ class PybulletFile(MotorFile):
         return 0.5 * _FASTEST * torques / np.maximum(speeds, 1e-12)
 
     def motor(self, joint: str, values: Mapping[str, float], target: float, seconds: float) -> float:
-        """See `MotorFile`; the motors of the other joints hold them, gravity is off."""
+        """Implement `MotorFile`; the motors of the other joints hold them, gravity is off."""
         self.begin(values, contacts=False, gravity=False, released=())
         for name, k in self._index.items():
             wanted = target if name == joint else values[name]
@@ -270,7 +270,7 @@ def _chain(above: Mapping[int, int], link: int) -> list[int]:
 
 
 def _printed(load: Callable[[], object]) -> str:
-    """What PyBullet prints of a file while it refuses it; its exception does not say why."""
+    """Return what PyBullet prints of a file while it refuses it; its exception does not say why."""
     library, streams = ctypes.CDLL(None), (1, 2)
     kept = [os.dup(stream) for stream in streams]
     with tempfile.TemporaryFile() as file:

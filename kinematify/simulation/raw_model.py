@@ -52,7 +52,7 @@ class Overlap:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RestRun:
-    """What joints do when nothing is done."""
+    """Motion of joints without any action."""
 
     values: FloatArray
     """Of the joints in the order in which they were asked for [rad or m], shape (steps, joints)."""
@@ -62,7 +62,7 @@ class RestRun:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ReleaseRun:
-    """What becomes of the energy of a model that was given a push and let go."""
+    """Energy of a model that was given a push and let go."""
 
     energy: FloatArray
     """Potential and kinetic [J], shape (looks, 2), the first right after the push; ends where it is no number."""
@@ -108,7 +108,7 @@ class Push:
 
 @dataclass(frozen=True, kw_only=True)
 class Pushed:
-    """How far a push got."""
+    """Result of a push."""
 
     farthest: float
     """[rad or m]."""
@@ -120,7 +120,7 @@ class Pushed:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Start:
-    """How a run begins."""
+    """Start of a run."""
 
     q: FloatArray
     """Values of all joints [rad or m], shape (joints,)."""
@@ -199,7 +199,7 @@ class RunningFile(RawEngineModel):
 
     @property
     def complaint(self) -> str | None:
-        """What the engine says of the run since `begin`; None if nothing."""
+        """Return what the engine says of the run since `begin`; None if nothing."""
         return None
 
     @abstractmethod
@@ -254,7 +254,7 @@ class RunningFile(RawEngineModel):
 
     @abstractmethod
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
-        """What a force at each joint moves in a step of a push [kg or kg m^2], shape (joints,)."""
+        """Return what a force at each joint moves in a step of a push [kg or kg m^2], shape (joints,)."""
 
     def max_safe_force(self, values: Mapping[str, float]) -> FloatArray:
         """Largest force at each joint that the engine answers rightly [N or N m], shape (joints,)."""
@@ -265,7 +265,7 @@ class RunningFile(RawEngineModel):
         return np.array([values[name] for name in self.joints])
 
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
-        """See `RawEngineModel`."""
+        """Implement `RawEngineModel`."""
         self.begin(values, contacts=True, released=())
         return self._overlaps()
 
@@ -276,7 +276,7 @@ class RunningFile(RawEngineModel):
         return deepest_first(depths)
 
     def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> RestRun:
-        """Let go at `values`, with or without contacts among the links."""
+        """Make go at `values`, with or without contacts among the links."""
         self.begin(values, contacts=contacts)
         seen = [self.state()[0] for _ in self.steps(self._steps(seconds))]
         values_seen = np.array(seen).reshape(len(seen), len(self.joints))
@@ -284,7 +284,7 @@ class RunningFile(RawEngineModel):
         return RestRun(values=values_seen, complaint=self.complaint or (None if finite else NO_NUMBERS))
 
     def release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> ReleaseRun:
-        """Let go at `values` with `speeds` [rad/s or m/s], without motors and without contacts among the links."""
+        """Make go at `values` with `speeds` [rad/s or m/s], without motors and without contacts among the links."""
         self.begin(values, speeds, contacts=False, released=range(len(self.joints)))
         seen = [self.energy()]
         for _ in self.steps(self._steps(seconds), self.look_steps):
@@ -339,7 +339,7 @@ class RunningFile(RawEngineModel):
         return self.joints.index(joint)
 
     def _moved_in_code(self, push: Push) -> object:
-        """What a push moves as the code has it."""
+        """Return what a push moves as the code has it."""
         return [self._index_of(name) for name in push.moved]
 
 

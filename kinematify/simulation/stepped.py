@@ -31,7 +31,7 @@ class SteppedWorld(Protocol):
         """Why the last run ended early; empty if it went on to the end."""
 
     def values(self) -> FloatArray:
-        """Of all joints [rad or m], shape (J,)."""
+        """Values of all joints [rad or m], shape (J,)."""
 
     def energy(self) -> tuple[float, float]:
         """Potential and kinetic [J]."""

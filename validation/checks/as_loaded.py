@@ -135,7 +135,7 @@ def _remedy_of_loading(context: AsLoadedContext, message: str) -> str:
 
 
 def _remedy_of_format(context: AsLoadedContext, message: str) -> str:
-    """What to do with a mesh in a format that the engine does not read."""
+    """Return what to do with a mesh in a format that the engine does not read."""
     given = _SUFFIX.findall(message)
     suffix = given[-1].lower() if given else "another format"
     said = f"{context.title} reads {_READS[context.engine]} meshes, not {suffix}: export them as .obj or .stl"
@@ -218,7 +218,7 @@ def stays(result: OpenCheck, context: AsLoadedContext) -> None:
 
 
 def _leaves(context: AsLoadedContext, travel: Travel) -> bool:
-    """Whether contacts move a joint that nothing else moves, or it ends beyond its range."""
+    """True if contacts move a joint that nothing else moves, or it ends beyond its range."""
     return _thrown_by(context, travel) is not None or _beyond(context, travel) > context.still(travel)
 
 
@@ -230,7 +230,7 @@ def _leaves_plainly(context: AsLoadedContext, travel: Travel) -> bool:
 
 
 def _at_most_warning(context: AsLoadedContext, *, plainly: bool) -> Severity | None:
-    """What an engine shows only with a flag that its users have to ask for is no error."""
+    """Return what an engine shows only with a flag that its users have to ask for is no error."""
     return None if context.flag is None or plainly else Severity.WARNING
 
 
@@ -245,7 +245,7 @@ def _thrown_by(context: AsLoadedContext, travel: Travel) -> Overlap | None:
 
 
 def _beyond(context: AsLoadedContext, travel: Travel, run: RestRun | None = None) -> float:
-    """How far beyond its range a joint ends that was left alone [rad or m]; 0 without limits."""
+    """Return how far beyond its range a joint ends that was left alone [rad or m]; 0 without limits."""
     last = float(context.way(run or context.left_alone, travel)[-1])
     return max(travel.lower - last, last - travel.upper) if travel.limited else 0.0
 
@@ -331,7 +331,7 @@ def _moving(
 
 
 def _free_without_contacts(context: AsLoadedContext, run: VelocityProbe) -> bool:
-    """Whether a push that fell short gets to the end where nothing touches."""
+    """True if a push that fell short gets to the end where nothing touches."""
     return run.without_contacts is not None and context.arrives(run, run.without_contacts)
 
 
@@ -360,7 +360,7 @@ def _find_short(result: OpenCheck, context: AsLoadedContext, run: VelocityProbe,
 
 
 def _severity(run: VelocityProbe) -> Severity | None:
-    """How bad it is that contacts keep a joint from its end: over half of the way it works, and it is a warning."""
+    """Return the severity of contacts that keep a joint from its end: a warning if it gets over half of the way."""
     if not run.free:
         return Severity.NOTE
     way = abs(run.end - run.travel.rest)

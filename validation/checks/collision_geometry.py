@@ -50,7 +50,7 @@ def missing_collisions(result: OpenCheck, physics: Physics) -> None:
 
 
 def _uncovered(result: OpenCheck, physics: Physics, body: Body) -> None:
-    """What lies within the hull of its body is decoration, unless nearly all links of the file have collisions."""
+    """Report bare links; what is within the hull of its body is decoration, unless nearly all have some."""
     solid = {name for other in physics.bodies for name in other.rooms}
     exception = len(solid - set(physics.collision)) <= max(1.0, physics.settings.bare_minority * len(solid))
     felt = body.placed({name: physics.collision[name] for name in body.rooms if name in physics.collision})
@@ -70,7 +70,7 @@ def _uncovered(result: OpenCheck, physics: Physics, body: Body) -> None:
 
 
 def _stands_out(body: Body, name: str, felt: Room) -> float:
-    """How far a link projects from the hull of what its body collides with, fraction of the link's diagonal."""
+    """Return how far a link projects from the hull of what its body collides with, fraction of the link's diagonal."""
     placed = body.placed({name: body.rooms[name]})
     if placed is None or placed.diagonal == 0.0:
         return 0.0

@@ -44,7 +44,7 @@ def missing_drives(result: OpenCheck, physics: Physics) -> None:
 
 
 def _lacking(joint: Joint) -> str:
-    """What a joint has not, as words that follow its name."""
+    """Return what a joint has not, as words that follow its name."""
     if not joint.has_limit:
         # Continuous joints may do without a limit; PyBullet then has no bound on force and speed.
         return "" if joint.declared_kind == "continuous" else "has no <limit>, so no effort and no velocity"

@@ -235,7 +235,7 @@ def _find_blocked(result: OpenCheck, context: EngineContext, driven: Driven) -> 
 
 
 def _surfaces(context: EngineContext, driven: Driven, pair: tuple[str, str], *, until: float) -> tuple[bool, bool]:
-    """Whether the declared surfaces of two links meet on the way from rest to where the pieces are deepest.
+    """Test whether the declared surfaces of two links meet on the way from rest to where the pieces are deepest.
 
     Returns:
         For those that collide; and for what is visible too, since collision shapes are often stubs or swollen.
@@ -253,13 +253,13 @@ def _surfaces(context: EngineContext, driven: Driven, pair: tuple[str, str], *, 
 
 
 def _buried(context: EngineContext, index: int) -> bool:
-    """Whether a pair is in each other at rest already, as shapes are that represent a joint roughly."""
+    """True if a pair is in each other at rest already, as shapes are that represent a joint roughly."""
     sweep = context.drives.sweep
     return bool(sweep.at_rest[index] > sweep.tolerance)
 
 
 def _severity(context: EngineContext, index: int, *, certain: bool) -> Severity:
-    """How bad it is that a pair stops a joint.
+    """Return how bad it is that a pair stops a joint.
 
     By default, MuJoCo lets neighbours pass each other but for those of a root that is fixed to the world, and PyBullet
     all of them. Of other pairs the exact geometry knows whether another joint clears the way (KV311). What has no

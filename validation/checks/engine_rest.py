@@ -161,7 +161,7 @@ def step_is_small_enough(result: OpenCheck, context: EngineContext) -> None:
     needs=(no_geometry, late),
 )
 def settles_on_the_floor(result: OpenCheck, context: EngineContext) -> None:
-    """Let go of engines.drop above a plane with its joints held, the model comes to rest within engines.drop_seconds
+    """Make go of engines.drop above a plane with its joints held, the model comes to rest within engines.drop_seconds
     and sinks in by less than engines.sink, that times its size in metres where it is larger than 1 m.
 
     Why it matters: An object that sinks, trembles or rolls away cannot be placed in a scene.
@@ -288,7 +288,7 @@ def _find_passive_escape(result: OpenCheck, context: EngineContext, released: Fl
 
 
 def escape_limit(travel: Travel, settings: EngineSettings) -> float:
-    """How far beyond its limit a joint may get [rad or m]: a share of its range, and no less than what is visible."""
+    """Return the excess allowed beyond a limit [rad or m]: a share of the range, and no less than what is visible."""
     return max(settings.escape * travel.range, _VISIBLE_ANGLE if travel.turns else _VISIBLE_LENGTH)
 
 

@@ -394,7 +394,7 @@ def unusual_range(result: OpenCheck, case: JointCase) -> None:
 
 
 def _turns_round(lower: float, upper: float, settings: EvidenceSettings) -> bool:
-    """Whether a range is a whole turn or more, mostly to one side; wrists go as far to both."""
+    """True if a range is a whole turn or more, mostly to one side; wrists go as far to both."""
     span = upper - lower
     return bool(np.degrees(span) >= settings.whole_turn and abs(lower + upper) > settings.lopsided * span)
 

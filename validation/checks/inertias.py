@@ -244,7 +244,7 @@ class _Misfit:
 
     @property
     def factor(self) -> float:
-        """How far the two are apart, above 1."""
+        """Return how far the two are apart, above 1."""
         return max(self.radius / self.farthest, self.farthest / self.radius)
 
 

@@ -151,7 +151,7 @@ def into_others(result: OpenCheck, motion: JointMotion) -> None:
 
 
 def _folds(motion: JointMotion, meeting: Meeting) -> bool:
-    """Whether a chain of joints reaches itself, and not at once.
+    """True if a chain of joints reaches itself, and not at once.
 
     One body carries the other with others between them, or both stand on limbs of their own.
     """
@@ -310,7 +310,7 @@ def _limit(motion: JointMotion, end: str, value: float) -> str:
 
 
 def _shorter(motion: JointMotion, end: str, value: float) -> str:
-    """What to do where a joint is stopped early: a limit there, unless hardly any range would be left."""
+    """Return what to do where a joint is stopped early: a limit there, unless hardly any range would be left."""
     if motion.left < _CRIPPLED:
         return "Correct the joint's axis or place, or the shapes of the two; a limit there would leave little range."
     return f"{_limit(motion, end, value)}; if the part should go farther, its axis or its place is wrong."
@@ -321,7 +321,7 @@ def _value(motion: JointMotion, value: float) -> str:
 
 
 def _words(motion: JointMotion, meeting: Meeting) -> str:
-    """What meets, how deep and where."""
+    """Return what meets, how deep and where."""
     first, second = motion.look.links_at(meeting.pair, {motion.sweep.leader: meeting.at})
     place = _value(motion, meeting.at)
     if meeting.passed:

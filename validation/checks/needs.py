@@ -1,4 +1,4 @@
-"""What several checks need, each as the reason why there is nothing to look at, or None."""
+"""Needs of several checks, each as the reason why there is nothing to look at, or None."""
 
 from __future__ import annotations
 

@@ -202,7 +202,7 @@ def _finding(block: FindingBlock, anchor: str, button: str) -> str:
 
 
 def _consequences(block: FindingBlock) -> str:
-    """What follows from a finding, folded up; nothing if nothing does."""
+    """Return what follows from a finding, folded up; nothing if nothing does."""
     items = "".join(
         f'<li><a href="#check-{item.check}">{text(title(item))}</a>: {text(item.message)}'
         f"{_code(item.reproduction or '')}</li>"
@@ -307,7 +307,7 @@ def _checks(index: int, report: ValidationReport) -> str:
 
 
 def _explained(outcomes: Sequence[Outcome]) -> str:
-    """What each check looks at of which a finding is shown."""
+    """Return what each check looks at of which a finding is shown."""
     found = {f.check for outcome in outcomes if not isinstance(outcome, Unusable) for f in outcome.findings}
     checks = [CHECKS[name] for name in sorted(found)]
     if not checks:

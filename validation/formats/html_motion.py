@@ -1,4 +1,4 @@
-"""What moves, in a page: the object with a slider per joint, and how each engine drove the joints."""
+"""Moving parts of a page: the object with a slider per joint, and how each engine drove the joints."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What engines see of the motion that take the convex hull of every collision mesh, for KV332.
+"""Convex hulls of collision meshes in motion, as engines see them, for KV332.
 
 Of a hull only its faces matter: a point is as deep in it as the nearest of them is far, exactly.
 """
@@ -56,7 +56,7 @@ class _Hull:
 
     @cached_property
     def radius(self) -> float:
-        """Of that sphere [m]."""
+        """Radius of that sphere [m]."""
         return float(np.linalg.norm(self.points - self.middle, axis=1).max())
 
     def reached(self, other: _Hull, T: FloatArray) -> FloatArray:
@@ -99,7 +99,7 @@ class HullView:
         return found
 
     def blocked(self, sweep: JointSweep, samples: int) -> HullMeeting | None:
-        """Of the pairs of one joint whose hulls are in the way where their surfaces are clear, the deepest."""
+        """Return the deepest pair of one joint whose hulls are in the way where their surfaces are clear."""
         low, high = (side.declared for side in sweep.sides)
         free_low, free_high = sweep.free
         values = np.linspace(max(low, free_low), min(high, free_high), samples)

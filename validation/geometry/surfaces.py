@@ -1,4 +1,4 @@
-"""What the declared surfaces say of a way on which convex pieces collide.
+"""Declared surfaces on a path on which convex pieces collide.
 
 Pieces close what is narrower than their tolerance: a lever in a slit of a millimetre of play is stopped by pieces that
 represent no surface at all, and as deep as the wall is thick.
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def surfaces_meet(scene: Scene, links: tuple[str, str], leaders: FloatArray, *, tolerance: float) -> bool:
-    """Whether two links get into each other by their declared surfaces as well, beyond what they are at rest.
+    """True if two links get into each other by their declared surfaces as well, beyond what they are at rest.
 
     Args:
         scene: The model as it is in the file; what is measured of a body is kept in it.

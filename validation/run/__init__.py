@@ -210,7 +210,7 @@ class _Run:
             self._progress(end.stage.name, 0.95)
 
     def _use(self, request: StageRequest, engines: Sequence[str]) -> None:
-        """Let a robot use the object; it has time of its own."""
+        """Make a robot use the object; it has time of its own."""
         seconds = _task_seconds(request.settings)
         request = replace(request, deadline=seconds + _LEEWAY, suspects=self._suspects(), task_engines=tuple(engines))
         self._progress("task", 0.96)
@@ -337,7 +337,7 @@ def _has_error(result: CheckResult) -> bool:
 
 
 def _merged(before: JointSummary | None, now: JointSummary) -> JointSummary:
-    """What two stages know of one joint together."""
+    """Return what two stages know of one joint together."""
     if before is None:
         return now
     return replace(

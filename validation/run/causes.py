@@ -89,7 +89,7 @@ def _cause(finding: Finding, findings: Sequence[Finding], subjects: _Subjects) -
 
 
 class _Subjects:
-    """What findings are about, by bodies: engines and checks name different links of one body."""
+    """Subjects of findings, by bodies: engines and checks name different links of one body."""
 
     def __init__(self, robot: Robot | None) -> None:
         groups = () if robot is None else rigid_groups(robot)
@@ -97,7 +97,7 @@ class _Subjects:
         self._joints = {} if robot is None else robot.joint_by_name
 
     def share(self, cause: Finding, finding: Finding, shared: CauseScope) -> bool:
-        """Whether two findings are both about what a cause and its consequence must share."""
+        """True if two findings are both about what a cause and its consequence must share."""
         if shared is CauseScope.MODEL:
             return True
         if shared is CauseScope.CONTACT and finding.pair is None:

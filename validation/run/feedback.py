@@ -86,7 +86,7 @@ class UnfixableFinding:
 
 @dataclass(frozen=True, kw_only=True)
 class Feedback:
-    """What the failures of one model say about the decisions behind it."""
+    """Feedback of the failures of one model on the decisions behind it."""
 
     edges: tuple[EdgeSignal, ...] = ()
     lines: tuple[JointSignal, ...] = ()
@@ -95,7 +95,7 @@ class Feedback:
     left: tuple[UnfixableFinding, ...] = ()
 
     def __bool__(self) -> bool:
-        """Whether the search has something to act on."""
+        """True if the search has something to act on."""
         return bool(self.edges or self.lines or self.types or self.ranges)
 
     def against(self, child: str) -> float:
@@ -106,7 +106,7 @@ class Feedback:
         return max(_worst_of_each(self.lines, child), _worst_of_each(self.types, child))
 
     def has_error(self, child: str) -> bool:
-        """Whether an error, not only warnings, speaks against the joint of a part."""
+        """True if an error, not only warnings, speaks against the joint of a part."""
         return any(item.error for item in (*self.lines, *self.types) if item.child == child)
 
     def failed_at(self, child: str) -> frozenset[float]:
@@ -120,7 +120,7 @@ class Feedback:
 
 
 def only_collision_meets(finding: Finding) -> bool:
-    """Whether the exact geometry saw no visible parts meet, so that nothing speaks against the joint."""
+    """True if the exact geometry saw no visible parts meet, so that nothing speaks against the joint."""
     return finding.blame is Blame.PHYSICS and finding.check.startswith("KV3")
 
 
@@ -191,7 +191,7 @@ class _Case:
     left: list[UnfixableFinding] = field(default_factory=list)
 
     def has(self, *checks: str, joint: str | None = None) -> bool:
-        """Whether one of the checks found something that counts, of one joint if it is given."""
+        """True if one of the checks found something that counts, of one joint if it is given."""
         return any(
             item.check in checks and item.severity is not Severity.NOTE and (joint is None or item.joint == joint)
             for item in self.findings
@@ -366,7 +366,7 @@ def _out_of_guide(case: _Case, finding: Finding, joint: Joint) -> None:
 
 
 def _upwards(finding: Finding) -> bool:
-    """Whether the joint was above zero where the failure was seen."""
+    """True if the joint was above zero where the failure was seen."""
     return (finding.q or {}).get(finding.joint or "", 0.0) >= 0.0
 
 

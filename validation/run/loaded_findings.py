@@ -1,4 +1,4 @@
-"""What the checks of the untouched file say together, over all engines that loaded it (KV8xx), and about others."""
+"""Joint result of the checks of the untouched file over all engines that loaded it (KV8xx)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What became of each model of a run over several: a report, or the reason why there is none."""
+"""Outcome of each model of a run over several: a report, or the reason why there is none."""
 
 from __future__ import annotations
 

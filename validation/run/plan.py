@@ -14,8 +14,8 @@ from kinematify.validation.stages import (
     geometry,
     loaded_file,
     prepare,
-    robot_task,
     run_engine,
+    task_run,
 )
 
 if TYPE_CHECKING:
@@ -90,13 +90,13 @@ def as_loaded_stages(chosen: Sequence[str]) -> list[Stage]:
 
 
 def _library(engine: EngineEntry) -> str | None:
-    """What can be loaded once for all stages of an engine; none that may be missing."""
+    """Return what can be loaded once for all stages of an engine; none that may be missing."""
     return None if engine.prints_when_loaded else engine.module
 
 
 def task_stage() -> Stage:
     """A robot uses the object; it comes after all others, since it wants to know which joints they doubt."""
-    return Stage(name="task", run=robot_task.run, checks=keys(checks_of("KV7")))
+    return Stage(name="task", run=task_run.run, checks=keys(checks_of("KV7")))
 
 
 def needed(stages: Sequence[Stage], selected: Collection[str]) -> list[Stage]:

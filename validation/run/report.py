@@ -69,7 +69,7 @@ class ValidationReport:
 
     @property
     def as_loaded(self) -> str:
-        """How many joints move in the untouched file, by engine; empty if no engine loaded it."""
+        """Return how many joints move in the untouched file, by engine; empty if no engine loaded it."""
         return as_loaded_words(self.checks)
 
     @property

@@ -93,7 +93,7 @@ class PullTask:
 
     @cached_property
     def plans(self) -> list[PullPlan]:
-        """What came of each joint, as long as there was time."""
+        """Return what came of each joint, as long as there was time."""
         found = []
         for joint in self.joints:
             if self.remaining <= 0.0:
@@ -109,7 +109,7 @@ class PullTask:
 
     @cached_property
     def worlds(self) -> list[Loaded]:
-        """What the engines load, for each plan that leads anywhere."""
+        """Return what the engines load, for each plan that leads anywhere."""
         model = self.request.work / OBJECT_FILE
         found = [motion_of(plan, self.arm.robot, model) for plan in self.plans]
         motions = [motion for motion in found if motion is not None]
