@@ -5,7 +5,7 @@
         title="Zero lies within the limits",
         fails="Zero lies outside the limits",
         severity=Severity.NOTE,
-        blame=Blame.KINEMATICS,
+        cause=Cause.KINEMATICS,
     )
     def zero_outside(result: OpenCheck, physics: Physics) -> None:
         '''Zero is a value that the joint may take.
@@ -33,7 +33,7 @@ from kinematify.validation.finding import Finding, Severity, Status, not_finishe
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from kinematify.validation.finding import Blame
+    from kinematify.validation.finding import Cause
 
     CheckFunction = Callable[["OpenCheck", Any], None]
     Need = Callable[[Any], str | None]
@@ -100,8 +100,8 @@ class Check:
     """A few words that are true where it finds something."""
     severity: Severity
     """The worst that it reports, and what it reports where nothing else is said."""
-    blame: Blame
-    """What it usually blames."""
+    cause: Cause
+    """The usual cause."""
     engines: tuple[str, ...] = ()
     """Engines that it runs in; empty: none."""
     verifies: str
@@ -115,7 +115,7 @@ class Check:
     doubts: bool = False
     """Its findings put axis, place, type, parent or direction of a joint in doubt; a robot's task wants to know."""
     opinion: bool = False
-    """Its findings are what our own inference holds of the shapes; they blame nobody where no fact agrees."""
+    """Its findings are what our own inference holds of the shapes; they name no cause where no fact agrees."""
     follows: Mapping[str, CauseScope] = field(default_factory=dict)
     """Checks whose findings can be the cause of its own, and what both must be about; the first that fits is taken."""
     prepared: bool = False
@@ -157,7 +157,7 @@ class OpenCheck:
         remedy: str,
         *,
         severity: Severity | None = None,
-        blame: Blame | None = None,
+        cause: Cause | None = None,
         joint: str | None = None,
         link: str | None = None,
         pair: tuple[str, str] | None = None,
@@ -172,7 +172,7 @@ class OpenCheck:
     ) -> None:
         """Add a finding.
 
-        Severity, blame and engine are the check's unless given, see `Finding` for the rest; `harmless` is for an error
+        Severity, cause and engine are the check's unless given, see `Finding` for the rest; `harmless` is for an error
         after which later stages may read the file all the same.
         """
         check = REGISTRY[self.id]
@@ -183,7 +183,7 @@ class OpenCheck:
             Finding(
                 check=self.id,
                 severity=severity or check.severity,
-                blame=blame or check.blame,
+                cause=cause or check.cause,
                 message=message,
                 remedy=remedy,
                 joint=joint,
@@ -229,7 +229,7 @@ def check(
     title: str,
     fails: str,
     severity: Severity,
-    blame: Blame,
+    cause: Cause,
     engines: tuple[str, ...] = (),
     feedback: FeedbackRow | None = None,
     doubts: bool = False,
@@ -251,7 +251,7 @@ def check(
             title=title,
             fails=fails,
             severity=severity,
-            blame=blame,
+            cause=cause,
             engines=engines,
             feedback=feedback or (FeedbackRow.EXPORTER if id.startswith(_NOT_OURS) else None),
             doubts=doubts,
@@ -273,7 +273,7 @@ def engine_check(
     title: str,
     fails: str,
     severity: Severity,
-    blame: Blame,
+    cause: Cause,
     feedback: FeedbackRow | None = None,
     follows: Mapping[str, CauseScope] | None = None,
     prepared: bool = False,
@@ -294,7 +294,7 @@ def engine_check(
                 title=title,
                 fails=fails,
                 severity=severity,
-                blame=blame,
+                cause=cause,
                 engines=(engine,),
                 feedback=feedback,
                 follows={family + name if len(name) == 2 else name: shared for name, shared in (follows or {}).items()},

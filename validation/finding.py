@@ -19,7 +19,7 @@ class Severity(StrEnum):
     NOTE = "note"
 
 
-class Blame(StrEnum):
+class Cause(StrEnum):
     """Who can act on a finding."""
 
     KINEMATICS = "kinematics"
@@ -61,7 +61,7 @@ class Finding:
     check: str
     """Id, e.g. ``KV301``."""
     severity: Severity
-    blame: Blame
+    cause: Cause
     message: str
     """One or two sentences: what was found and what was expected."""
     remedy: str
@@ -84,7 +84,7 @@ class Finding:
     """Plain Python that shows it in the engine, without Kinematify."""
     suppressed: str | None = None
     """Reason given by the user for not counting it; it is still reported."""
-    cause: Finding | None = field(default=None, compare=False, repr=False)
+    follows_from: Finding | None = field(default=None, compare=False, repr=False)
     """Finding that it follows from and is reported under; it has no cause itself."""
 
     def __post_init__(self) -> None:

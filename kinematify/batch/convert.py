@@ -134,7 +134,7 @@ def _do_steps(
             (made / REPORT_FILE).write_text(as_json_text([report]), encoding="utf-8")
             _draw(report, model, conversion.settings, made)
         known["verdict"] = report.verdict
-        errors = [item for item in report.counted if item.severity is Severity.ERROR and item.cause is None]
+        errors = [item for item in report.counted if item.severity is Severity.ERROR and item.follows_from is None]
         known["errors"] = tuple(dict.fromkeys(map(_place_words, errors)))[:_ERRORS]
     if "export" in steps:
         with clock.stage("export", 0.0):

@@ -164,7 +164,7 @@ def _short_text(block: FindingBlock) -> str:
 
 def _plain_call(block: FindingBlock) -> str:
     """The call of an engine that shows a finding or what follows from it; its code goes on with `--all`."""
-    first = [item for item in block.consequences if item.cause is block.findings[0]]
+    first = [item for item in block.consequences if item.follows_from is block.findings[0]]
     codes = [item.reproduction for item in (block.findings[0], *first) if item.reproduction is not None]
     call = _CALL.search(codes[0]) if codes else None
     return "" if call is None else f"To see it: {call.group()} and what --all prints."

@@ -92,8 +92,8 @@ class Round:
     warnings: int = 0
     failed: tuple[str, ...] = ()
     """``CHECK joint`` of every error and warning about motion."""
-    blamed: tuple[str, ...] = ()
-    """What the feedback blames, one phrase each."""
+    suspected: tuple[str, ...] = ()
+    """What the feedback points to, one phrase each."""
     score: float = 0.0
     """Sum of the scores of the chosen candidates below the best ones, and of all log odds against them; 0 at best."""
     seconds: float = 0.0

@@ -21,7 +21,7 @@ from kinematify.robot.robot import Robot
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
 from kinematify.validation.checks import checks_of
 from kinematify.validation.checks.as_loaded import STILL
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 _ROUNDS = 3
 """Looks at the result at most: what a broken file hides is seen in the second, pieces that still meet in the third."""
 _CARVED = ("KV301", "KV302", "KV310", "KV311", "KV312", "KV332", "KV403", "KV405", "KV503", "KV505", "KV802", "KV804")
-"""Findings about collision geometry, if they blame physics and name two links."""
+"""Findings about collision geometry, if their cause is physics and they name two links."""
 _BESIDE = "KV241"
 """Collision geometry is beside what is seen."""
 _MASSLESS = "KV201"
@@ -315,7 +315,7 @@ class _Repairs:
             yield from (link.name for link in robot.links if link.has_geometry)
             return
         for finding in found:
-            if finding.check not in _CARVED or finding.blame is not Blame.PHYSICS or finding.pair is None:
+            if finding.check not in _CARVED or finding.cause is not Cause.PHYSICS or finding.pair is None:
                 continue
             if _only_under_a_flag(finding):
                 continue
@@ -370,12 +370,12 @@ def _reason(finding: Finding, repairs: _Repairs, *, kinematics: bool) -> str:
     joint = finding.joint or ""
     if repairs.joints is not None and joint in repairs.joints.left:
         return f"Left: {repairs.joints.left[joint]}."
-    if finding.check in _KINEMATICS and finding.blame is Blame.KINEMATICS and not kinematics:
+    if finding.check in _KINEMATICS and finding.cause is Cause.KINEMATICS and not kinematics:
         return "Left: fix --kinematics changes joints."
     if finding.check == _MASSLESS:
         return "Left: no mass is guessed unasked; --all writes that of the geometry."
     if finding.check in _CARVED and _only_under_a_flag(finding):
         return "Left: plain loading does not show it; --all carves all links."
-    if finding.check in _CARVED and finding.blame is Blame.PHYSICS:
+    if finding.check in _CARVED and finding.cause is Cause.PHYSICS:
         return "Left: the pieces cannot be carved further."
     return f"Left: no repair is certain. {finding.remedy}"

@@ -207,7 +207,8 @@ def test_what_follows_from_a_finding_is_reported_under_it(
 ) -> None:
     cause, code = finding(), "import mujoco\nmodel = mujoco.MjModel.from_xml_path('door.urdf')\nprint(model)"
     stops = [
-        finding(check="KV496", engine="mujoco", message="It stops.", cause=cause, reproduction=code) for _ in range(2)
+        finding(check="KV496", engine="mujoco", message="It stops.", follows_from=cause, reproduction=code)
+        for _ in range(2)
     ]
     answered["chest.urdf"] = report(result(cause), result(*stops, check="KV496", engine="mujoco"))
     run(["validate", str(chest)])

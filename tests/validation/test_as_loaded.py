@@ -17,7 +17,7 @@ from kinematify.config.validation import load_settings
 from kinematify.simulation.engines import DEFAULT_ENGINES
 from kinematify.validation.as_loaded_context import AsLoadedContext
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
+from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
 from kinematify.validation.run import validate
 from kinematify.validation.run.loaded_findings import (
     across_engines,
@@ -109,7 +109,7 @@ def test_pinocchio_reads_joints_limits_and_overlaps(tmp_path: Path) -> None:
 def test_a_drawer_that_jams_is_seen_by_the_code_of_the_report(tmp_path: Path, engine: str) -> None:
     result = reported(collision(cabinet(), "body", WALL), tmp_path, engine)
     (finding,) = (item for item in result.results["KV804"].findings if item.joint == "drawer_joint")
-    assert (finding.severity, finding.blame, finding.pair) == (Severity.ERROR, Blame.PHYSICS, ("body", "drawer"))
+    assert (finding.severity, finding.cause, finding.pair) == (Severity.ERROR, Cause.PHYSICS, ("body", "drawer"))
     assert finding.value == pytest.approx(0.145, abs=0.01)
     assert "mm deep in each other" in finding.message
     assert printed(finding.reproduction) == pytest.approx([0.145], abs=0.01)
@@ -344,7 +344,7 @@ def jam(engine: str) -> CheckResult:
     finding = Finding(
         check="KV804",
         severity=Severity.ERROR,
-        blame=Blame.PHYSICS,
+        cause=Cause.PHYSICS,
         message="It jams.",
         remedy="Mend it.",
         joint="drawer_joint",
@@ -370,7 +370,7 @@ def energy(engine: str, *, gains: bool) -> CheckResult:
     finding = Finding(
         check="KV806",
         severity=Severity.ERROR,
-        blame=Blame.ENGINE,
+        cause=Cause.ENGINE,
         engine=engine,
         message="It gains.",
         remedy="Mend it.",
@@ -391,7 +391,7 @@ def test_energy_that_one_engine_alone_makes_is_its_time_step() -> None:
 
 def stop(**about: object) -> CheckResult:
     """A drive that a prepared copy stops."""
-    fields = {"joint": "hinge", "pair": ("frame", "door"), "blame": Blame.PHYSICS, **about}
+    fields = {"joint": "hinge", "pair": ("frame", "door"), "cause": Cause.PHYSICS, **about}
     finding = Finding(check="KV405", severity=Severity.WARNING, message="It stops.", remedy="Mend it.", **fields)  # type: ignore[arg-type]
     return CheckResult(check="KV405", engine="mujoco", status=Status.FAIL, findings=(finding,))
 
@@ -405,7 +405,7 @@ def test_contacts_that_only_the_prepared_copy_shows_are_notes() -> None:
     other = CheckResult(check="KV805", engine="pybullet", status=Status.FAIL, findings=(pressed,))
     assert confirm_on_raw_model([stop(), fine, other])[0].status is Status.PASS
     jammed = jam("mujoco").findings[0].joint
-    for kept in ([stop()], [stop(joint=jammed), jam("mujoco")], [stop(blame=Blame.KINEMATICS), fine]):
+    for kept in ([stop()], [stop(joint=jammed), jam("mujoco")], [stop(cause=Cause.KINEMATICS), fine]):
         assert confirm_on_raw_model(kept) == kept
 
 
@@ -442,7 +442,7 @@ def test_what_an_engine_says_of_a_file_that_it_refuses_is_quoted_with_what_to_do
 def test_only_an_inertia_for_which_an_engine_refuses_the_file_is_said_to_be_refused() -> None:
     def noted(check: str, link: str, severity: Severity, engine: str | None = None) -> CheckResult:
         finding = Finding(
-            check=check, severity=severity, blame=Blame.PHYSICS, message="It is off.", remedy="", link=link
+            check=check, severity=severity, cause=Cause.PHYSICS, message="It is off.", remedy="", link=link
         )
         return CheckResult(check=check, engine=engine, status=Status.PASS, findings=(finding,))
 

@@ -10,7 +10,7 @@ from lxml import etree
 
 from kinematify.robot.read import read_robot
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
+from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.junit import as_junit
 from kinematify.validation.formats.sarif import as_sarif
@@ -33,7 +33,7 @@ ARM = """<robot name="arm">
 def found(check: str, severity: Severity = Severity.WARNING, **about: object) -> CheckResult:
     """A check with one finding."""
     engine = next(iter(CHECKS[check].engines), None)
-    fields = {"check": check, "severity": severity, "blame": Blame.PHYSICS, "engine": engine, **about}
+    fields = {"check": check, "severity": severity, "cause": Cause.PHYSICS, "engine": engine, **about}
     finding = Finding(message=f"Told by {check}.", remedy="Mend it.", **fields)  # type: ignore[arg-type]
     return CheckResult(check=check, engine=engine, status=Status.FAIL, findings=(finding,))
 

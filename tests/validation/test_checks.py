@@ -11,7 +11,7 @@ import pytest
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.check import ENGINE_FAMILIES, REGISTRY, FeedbackRow, OpenCheck, check, engine_check
 from kinematify.validation.checks import CHECKS, checks_of
-from kinematify.validation.finding import Blame, Severity, Status
+from kinematify.validation.finding import Cause, Severity, Status
 from kinematify.validation.isolation import _EVERY_STAGE
 from kinematify.validation.run.plan import (
     as_loaded_stages,
@@ -74,7 +74,7 @@ def test_every_check_but_those_of_the_text_is_reported_by_one_stage() -> None:
 
 @pytest.mark.usefixtures("registry")
 def test_a_check_needs_its_three_paragraphs() -> None:
-    decorate = check("KV398", title="t", fails="f", severity=Severity.NOTE, blame=Blame.ASSET)
+    decorate = check("KV398", title="t", fails="f", severity=Severity.NOTE, cause=Cause.ASSET)
     with pytest.raises(AssertionError, match="Why it matters"):
         decorate(documented)
     documented.__doc__ = (documented.__doc__ or "").replace("    It is about {engine}.\n\n", "")
@@ -96,7 +96,7 @@ def test_a_check_of_engines_is_registered_for_each_with_what_is_peculiar_to_it()
         Remedy: Mend it.
         """
 
-    engine_check("98", title="t", fails="f", severity=Severity.NOTE, blame=Blame.ENGINE, feedback=FeedbackRow.EXPORTER)(
+    engine_check("98", title="t", fails="f", severity=Severity.NOTE, cause=Cause.ENGINE, feedback=FeedbackRow.EXPORTER)(
         loads
     )
     assert REGISTRY["KV498"].verifies == "MuJoCo loads it."

@@ -48,7 +48,7 @@ def test_json_of_several_models_is_a_line_each() -> None:
     assert [value["model"] for value in values] == ["models/door.urdf", "models/arm.xacro", "b.urdf"]
     assert [value["verdict"] for value in values] == ["fail", "unusable", "fail"]
     assert values[1]["error"] == UNUSABLE.message
-    assert {value["schema"] for value in values} == {1}
+    assert {value["schema"] for value in values} == {2}
 
 
 def suites(outcomes: list[Outcome]) -> Any:
@@ -227,7 +227,7 @@ def test_html_has_every_finding_once_and_filters_for_it() -> None:
     assert "They touch at rest." in page.text
     offered = {(a["name"], a["value"]) for tag, a in page.tags if tag == "input"}
     assert {("severity", str(card["data-severity"])) for card in cards} <= offered
-    assert {("blame", str(card["data-blame"])) for card in cards} <= offered
+    assert {("cause", str(card["data-cause"])) for card in cards} <= offered
     assert len(page.of_class("suppressed")) == 1
 
 

@@ -1,4 +1,4 @@
-"""The MuJoCo stage: quiet on what is fine, and each kind of finding once, with the right joint, pair and blame."""
+"""The MuJoCo stage: quiet on what is fine, and each kind of finding once, with the right joint, pair and cause."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from kinematify.validation.checks import checks_of
 from kinematify.validation.checks.engine_rest import find_drop, find_growth
 from kinematify.validation.checks.engine_stability import find_unstable
 from kinematify.validation.engine_context import RunEnd
-from kinematify.validation.finding import Blame, Finding, Severity, Status
+from kinematify.validation.finding import Cause, Finding, Severity, Status
 from kinematify.validation.stage import StageRequest
 from kinematify.validation.stages import run_engine as engine_stage
 from tests.places import BENCH
@@ -75,7 +75,7 @@ def test_good_cabinet_passes_every_check(tmp_path: Path) -> None:
 def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> None:
     result = reported(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
     finding = only(result, "KV405")
-    assert (finding.severity, finding.blame) == (Severity.ERROR, Blame.KINEMATICS)
+    assert (finding.severity, finding.cause) == (Severity.ERROR, Cause.KINEMATICS)
     assert (finding.joint, finding.pair) == ("drawer_joint", ("body", "drawer"))
     assert finding.value == pytest.approx(0.01, abs=0.01)  # 5 mm of room, and what a contact gives way by
     assert finding.limit == 0.3
@@ -118,7 +118,7 @@ def test_stop_at_a_part_that_can_move_itself_is_a_note(tmp_path: Path) -> None:
     )
     result = reported(Model(parts=(*cabinet().parts, post)), tmp_path)
     (finding,) = result.results["KV405"].findings
-    assert (finding.severity, finding.blame) == (Severity.NOTE, Blame.KINEMATICS)
+    assert (finding.severity, finding.cause) == (Severity.NOTE, Cause.KINEMATICS)
     assert (finding.joint, finding.pair) == ("drawer_joint", ("drawer", "post"))
 
 
@@ -127,7 +127,7 @@ def test_stop_at_a_neighbour_whose_contacts_engines_leave_out_is_a_note(tmp_path
     parts = tuple(replace(part, parent="arm") if part.parent == "body" else part for part in cabinet().parts)
     model = Model(parts=(parts[0], arm, *parts[1:])).with_part("drawer", axis=(-1.0, 0.0, 0.0))
     (finding,) = reported(model, tmp_path).results["KV405"].findings
-    assert (finding.severity, finding.blame) == (Severity.NOTE, Blame.KINEMATICS)
+    assert (finding.severity, finding.cause) == (Severity.NOTE, Cause.KINEMATICS)
     assert (finding.joint, finding.pair) == ("drawer_joint", ("arm", "drawer"))
 
 
@@ -209,7 +209,7 @@ def test_inertia_at_the_edge_of_what_can_be_is_balanced(tmp_path: Path) -> None:
     urdf.write_text(text.replace('izz="0.05"', 'izz="0.10000001"'))
     result = tell(run, request)
     finding = only(result, "KV401")
-    assert (finding.severity, finding.blame) == (Severity.WARNING, Blame.PHYSICS)
+    assert (finding.severity, finding.cause) == (Severity.WARNING, Cause.PHYSICS)
     assert result.results["KV405"].status is Status.PASS
 
 
@@ -245,7 +245,7 @@ def test_follower_with_less_room_than_its_leader_stops_it_without_contact(tmp_pa
     follower = replace(pendulum().parts[1], name="short", at=(0.06, 0.3, 0.1), limits=(-1.0, 0.3), extra=mimic)
     result = reported(Model(parts=(*pendulum().parts, follower)), tmp_path)
     finding = only(result, "KV405")
-    assert (finding.joint, finding.pair, finding.blame) == ("rod_joint", None, Blame.PHYSICS)
+    assert (finding.joint, finding.pair, finding.cause) == ("rod_joint", None, Cause.PHYSICS)
 
 
 def test_soft_stop_is_reported(tmp_path: Path) -> None:

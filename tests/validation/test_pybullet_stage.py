@@ -15,7 +15,7 @@ from kinematify.robot.read import read_robot
 from kinematify.simulation.prepared import URDF_FILE, load_prepared, prepare
 from kinematify.simulation.pybullet_engine import PybulletEngine
 from kinematify.validation.checks import checks_of
-from kinematify.validation.finding import Blame, Finding, Severity, Status
+from kinematify.validation.finding import Cause, Finding, Severity, Status
 from kinematify.validation.stages import run_engine as engine_stage
 from tests.places import BENCH
 from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, prepared_request, tell
@@ -60,7 +60,7 @@ def test_good_cabinet_passes_every_check(tmp_path: Path) -> None:
 def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> None:
     result = reported(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
     finding = only(result, "KV505")
-    assert (finding.severity, finding.blame) == (Severity.ERROR, Blame.KINEMATICS)
+    assert (finding.severity, finding.cause) == (Severity.ERROR, Cause.KINEMATICS)
     assert (finding.joint, finding.pair) == ("drawer_joint", ("body", "drawer"))
     assert finding.value == pytest.approx(0.005, abs=0.012)  # the room behind it
     assert finding.limit == 0.3

@@ -17,7 +17,7 @@ from kinematify.model.urdf import write_urdf
 from kinematify.pipeline.blueprint_files import true_model
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.geometry.surfaces import surfaces_meet
 from kinematify.validation.run import validate
 from tests.known import known_object, sliding
@@ -59,4 +59,4 @@ def test_a_lever_that_only_pieces_stop_is_no_error(tmp_path: Path) -> None:
     stopped = [item for item in report.counted if item.check == "KV405"]
     assert stopped
     assert all("declared surfaces stay clear" in item.message for item in stopped)
-    assert {item.blame for item in stopped} == {Blame.PHYSICS}
+    assert {item.cause for item in stopped} == {Cause.PHYSICS}

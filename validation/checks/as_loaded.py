@@ -14,7 +14,7 @@ from kinematify.validation.check import CauseScope, FeedbackRow, OpenCheck, chec
 from kinematify.validation.checks.engine_rest import FLOOR_OF_ENERGY, find_growth
 from kinematify.validation.checks.follow import IN_ENGINES, NOT_A_BODY
 from kinematify.validation.checks.needs import late
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -60,7 +60,7 @@ def nothing_moves(context: AsLoadedContext) -> str | None:
     title="As loaded: the engine opens the file",
     fails="As loaded: the engine does not open the file as it is",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
     engines=_ENGINES,
     follows={**dict.fromkeys(NOT_A_BODY, CauseScope.BODY), "KV138": CauseScope.MODEL},
 )
@@ -149,7 +149,7 @@ def _remedy_of_format(context: AsLoadedContext, message: str) -> str:
     title="As loaded: nothing overlaps at rest",
     fails="As loaded: links overlap at rest",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     engines=_ENGINES,
     follows=IN_ENGINES,
     needs=(not_loaded,),
@@ -184,7 +184,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
     title="As loaded: left alone, joints stay in range and are not thrown",
     fails="As loaded: left alone, a joint leaves its range or is thrown",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     engines=_RUNNING,
     feedback=FeedbackRow.AS_LOADED,
     follows={**IN_ENGINES, "KV802": CauseScope.CONTACT},
@@ -282,7 +282,7 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
     title="As loaded: a hand moves each joint over its range",
     fails="As loaded: a hand cannot move a joint over its range",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     engines=_RUNNING,
     feedback=FeedbackRow.AS_LOADED,
     follows={**IN_ENGINES, "KV802": CauseScope.CONTACT, "KV803": CauseScope.CONTACT},
@@ -389,7 +389,7 @@ def _shown(value: float) -> str:
     title="As loaded: limits hold under load",
     fails="As loaded: a joint is pressed through its limit",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     engines=_RUNNING,
     follows={
         **dict.fromkeys(("KV221", "KV801"), CauseScope.JOINT),
@@ -434,7 +434,7 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
     title="As loaded: nothing gains energy",
     fails="As loaded: energy comes out of nothing",
     severity=Severity.ERROR,
-    blame=Blame.ENGINE,
+    cause=Cause.ENGINE,
     engines=_RUNNING,
     follows=NOT_A_BODY,
     needs=(not_loaded, nothing_moves, late),
@@ -456,7 +456,7 @@ def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
         result.find(
             f"Given a push and let go in {context.title}, the model comes apart: {run.complaint}.",
             "Give every moving link a plausible mass and inertia, and every joint a damping that is not negative.",
-            blame=Blame.PHYSICS,
+            cause=Cause.PHYSICS,
             reproduction=reproduction,
         )
         return

@@ -8,7 +8,7 @@ import numpy as np
 
 from kinematify.validation.check import check
 from kinematify.validation.checks.needs import something_collides
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from kinematify.config.validation import PhysicsSettings
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     title="Links have collision geometry",
     fails="A link has no collision geometry",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
 )
 def missing_collisions(result: OpenCheck, physics: Physics) -> None:
     """Every body with geometry has collision geometry, and so has each of its links that projects from the rest by
@@ -82,7 +82,7 @@ def _stands_out(body: Body, name: str, felt: Room) -> float:
     title="Collision geometry is where the visual geometry is",
     fails="Collision geometry is beside the visual geometry",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     needs=(something_collides,),
 )
 def displaced_collisions(result: OpenCheck, physics: Physics) -> None:
@@ -151,7 +151,7 @@ def _vector(values: FloatArray) -> str:
     title="Collision meshes are nearly convex",
     fails="A collision mesh is far from its hull",
     severity=Severity.NOTE,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     needs=(something_collides,),
 )
 def inflated_hulls(result: OpenCheck, physics: Physics) -> None:
@@ -187,7 +187,7 @@ def inflated_hulls(result: OpenCheck, physics: Physics) -> None:
     title="Collision geometry is light",
     fails="Collision geometry is heavy",
     severity=Severity.NOTE,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     needs=(something_collides,),
 )
 def heavy_collisions(result: OpenCheck, physics: Physics) -> None:

@@ -13,7 +13,7 @@ from kinematify.validation.check import CauseScope, FeedbackRow, engine_check
 from kinematify.validation.checks.engine_rest import escape_limit
 from kinematify.validation.checks.follow import IN_ENGINES, ON_THE_WAY
 from kinematify.validation.checks.needs import late, not_driven, nothing_closes, nothing_moves
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.geometry.formatting import BARELY, SLIMMER
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     title="Driven through its range, each joint reaches both ends",
     fails="Driven through its range, a joint stops early",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     feedback=FeedbackRow.NOT_REACHED,
     follows={**ON_THE_WAY, **IN_ENGINES, "KV804": CauseScope.JOINT, "KV225": CauseScope.JOINT},
     prepared=True,
@@ -65,7 +65,7 @@ def reaches_both_ends(result: OpenCheck, context: EngineContext) -> None:
     title="Driven joints press nothing together",
     fails="A driven joint presses links into each other",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     feedback=FeedbackRow.COLLISION,
     follows={**ON_THE_WAY, **IN_ENGINES, "05": CauseScope.PAIR, "KV804": CauseScope.JOINT},
     prepared=True,
@@ -100,7 +100,7 @@ def little_penetration(result: OpenCheck, context: EngineContext) -> None:
     title="Limits hold",
     fails="A limit gives way",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     feedback=FeedbackRow.UNSTABLE,
     follows={"KV221": CauseScope.JOINT, "KV207": CauseScope.BODY},
     needs=(not_driven,),
@@ -141,7 +141,7 @@ def limits_hold(result: OpenCheck, context: EngineContext) -> None:
     title="Driven, loops stay closed",
     fails="A loop opens while a joint is driven",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     follows={"KV230": CauseScope.MODEL},
     needs=(nothing_moves, nothing_closes, not_driven),
 )
@@ -203,7 +203,7 @@ def _find_blocked(result: OpenCheck, context: EngineContext, driven: Driven) -> 
             f"{stops} without contact, at a force of {driven.force:.3g} {'N m' if travel.turns else 'N'}.",
             "Check damping, friction and inertia of the joint, and the limits of joints that follow it.",
             severity=Severity.WARNING,
-            blame=Blame.PHYSICS,
+            cause=Cause.PHYSICS,
             **facts,  # type: ignore[arg-type]
         )
         return
@@ -228,7 +228,7 @@ def _find_blocked(result: OpenCheck, context: EngineContext, driven: Driven) -> 
         f"{stops}: {why}.",
         remedy,
         severity=_severity(context, index, certain=seen and travel.limited and not _buried(context, index)),
-        blame=Blame.KINEMATICS if seen else Blame.PHYSICS,
+        cause=Cause.KINEMATICS if seen else Cause.PHYSICS,
         pair=pair,
         **facts,  # type: ignore[arg-type]
     )
@@ -296,7 +296,7 @@ def _find_lag(result: OpenCheck, context: EngineContext, driven: Driven) -> None
         f"behind its command.",
         "Check damping, friction and inertia of the joint.",
         severity=Severity.NOTE,
-        blame=Blame.PHYSICS,
+        cause=Cause.PHYSICS,
         joint=travel.joint,
         value=driven.lag,
         limit=context.settings.tracking * travel.range,

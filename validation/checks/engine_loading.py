@@ -10,7 +10,7 @@ from kinematify.simulation.configurations import link_poses
 from kinematify.simulation.engine import Refused
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.check import CauseScope, FeedbackRow, check, engine_check
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,7 +31,7 @@ _LIMIT_SLACK = 1e-6
     title="Loads with the same joints, masses and limits",
     fails="Joints, masses or limits change on loading",
     severity=Severity.ERROR,
-    blame=Blame.ENGINE,
+    cause=Cause.ENGINE,
     feedback=FeedbackRow.EXPORTER,
     follows={"KV221": CauseScope.JOINT, "KV202": CauseScope.BODY},
 )
@@ -54,7 +54,7 @@ def loads(result: OpenCheck, context: EngineContext) -> None:
     title="Pinocchio loads the same model",
     fails="Pinocchio loads another model",
     severity=Severity.ERROR,
-    blame=Blame.ENGINE,
+    cause=Cause.ENGINE,
     engines=("pinocchio",),
     follows={"KV221": CauseScope.JOINT, "KV202": CauseScope.BODY},
 )
@@ -86,7 +86,7 @@ def _load(result: OpenCheck, context: EngineContext) -> None:
             "by a rounding error; all tensors were balanced for the other checks.",
             "Write the tensors with more digits, or make the largest moment a little smaller.",
             severity=Severity.WARNING,
-            blame=Blame.PHYSICS,
+            cause=Cause.PHYSICS,
         )
 
 
@@ -194,7 +194,7 @@ def _same(declared: float, found: float) -> bool:
     title="Poses agree over the range",
     fails="Poses differ over the range",
     severity=Severity.ERROR,
-    blame=Blame.ENGINE,
+    cause=Cause.ENGINE,
     engines=("pinocchio",),
 )
 @engine_check(
@@ -202,7 +202,7 @@ def _same(declared: float, found: float) -> bool:
     title="Poses agree over the range",
     fails="Poses differ over the range",
     severity=Severity.ERROR,
-    blame=Blame.ENGINE,
+    cause=Cause.ENGINE,
     feedback=FeedbackRow.EXPORTER,
 )
 def poses_agree(result: OpenCheck, context: EngineContext) -> None:

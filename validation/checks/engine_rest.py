@@ -11,7 +11,7 @@ from kinematify.simulation.contacts import stand_in_error, stand_in_reason
 from kinematify.validation.check import CauseScope, FeedbackRow, engine_check
 from kinematify.validation.checks.follow import IN_ENGINES, NOT_A_BODY
 from kinematify.validation.checks.needs import late, no_geometry, nothing_moves
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from kinematify.config.validation import EngineSettings
@@ -34,7 +34,7 @@ _TOLD_PAIRS = 8
     title="Starts without contact",
     fails="Links overlap when it starts",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     feedback=FeedbackRow.COLLISION,
     follows=IN_ENGINES,
     prepared=True,
@@ -74,7 +74,7 @@ def starts_without_contact(result: OpenCheck, context: EngineContext) -> None:
     title="Holds under gravity",
     fails="Does not hold under gravity",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     feedback=FeedbackRow.SINKS,
     follows={"KV226": CauseScope.JOINT, "KV221": CauseScope.JOINT},
     needs=(nothing_moves, late),
@@ -103,7 +103,7 @@ def holds_under_gravity(result: OpenCheck, context: EngineContext) -> None:
     title="Energy does not grow",
     fails="Energy grows",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     feedback=FeedbackRow.UNSTABLE,
     follows=NOT_A_BODY,
     needs=(nothing_moves, late),
@@ -134,7 +134,7 @@ def energy_does_not_grow(result: OpenCheck, context: EngineContext) -> None:
     title="The time step is small enough",
     fails="The time step is too large",
     severity=Severity.NOTE,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     feedback=FeedbackRow.EXPORTER,
     needs=(nothing_moves, late),
 )
@@ -156,7 +156,7 @@ def step_is_small_enough(result: OpenCheck, context: EngineContext) -> None:
     title="Settles on the floor",
     fails="Does not settle on the floor",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     feedback=FeedbackRow.SINKS,
     needs=(no_geometry, late),
 )

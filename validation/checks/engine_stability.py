@@ -14,7 +14,7 @@ from kinematify.simulation.engines import ENGINES
 from kinematify.validation.check import FeedbackRow, engine_check
 from kinematify.validation.checks.follow import NOT_A_BODY
 from kinematify.validation.checks.needs import late, nothing_moves
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,7 +31,7 @@ _TOLD = 10
     title="Stable",
     fails="Unstable",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     feedback=FeedbackRow.UNSTABLE,
     follows=NOT_A_BODY,
 )
@@ -56,7 +56,7 @@ def stable(result: OpenCheck, context: EngineContext) -> None:
     title="The engine warns of nothing",
     fails="The engine warns",
     severity=Severity.WARNING,
-    blame=Blame.ENGINE,
+    cause=Cause.ENGINE,
     feedback=FeedbackRow.EXPORTER,
     follows=NOT_A_BODY,
 )
@@ -79,7 +79,7 @@ def no_warnings(result: OpenCheck, context: EngineContext) -> None:
         result.find(
             f"{context.entry.title} says: {text[:300]}",
             "Begin with masses, inertias, overlaps and the names of links and joints.",
-            blame=Blame.PHYSICS,
+            cause=Cause.PHYSICS,
         )
 
 

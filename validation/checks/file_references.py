@@ -13,7 +13,7 @@ from kinematify.robot.mesh_paths import MESH_SUFFIXES, find_mesh
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
 from kinematify.validation.document import shown
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -38,7 +38,7 @@ class _Reference:
     """Why there is none."""
 
 
-@check("KV141", title="Mesh files exist", fails="A mesh file is missing", severity=Severity.ERROR, blame=Blame.ASSET)
+@check("KV141", title="Mesh files exist", fails="A mesh file is missing", severity=Severity.ERROR, cause=Cause.ASSET)
 def missing_files(result: OpenCheck, urdf: Urdf) -> None:
     """Every file name leads to a file, through packages where it says so.
 
@@ -85,7 +85,7 @@ def _same_but_for_case(path: Path) -> Path | None:
     title="Mesh formats can be read",
     fails="A mesh format cannot be read everywhere",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
     """Every mesh is of a format that is read here; formats that MuJoCo does not read are a note.
@@ -122,7 +122,7 @@ def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
     title="Mesh files have names of their own",
     fails="Mesh files share a name",
     severity=Severity.NOTE,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def repeated_base_names(result: OpenCheck, urdf: Urdf) -> None:
     """No two different mesh files have the same name without folder and suffix.
@@ -155,7 +155,7 @@ def repeated_base_names(result: OpenCheck, urdf: Urdf) -> None:
     title="Mesh paths hold elsewhere",
     fails="Mesh paths hold on one machine only",
     severity=Severity.NOTE,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def bound_paths(result: OpenCheck, urdf: Urdf) -> None:
     """No mesh path is absolute or written with backslashes.

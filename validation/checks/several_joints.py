@@ -8,7 +8,7 @@ import numpy as np
 
 from kinematify.validation.check import CauseScope, FeedbackRow, check
 from kinematify.validation.checks.follow import AT_REST
-from kinematify.validation.finding import Blame, Severity, not_finished
+from kinematify.validation.finding import Cause, Severity, not_finished
 from kinematify.validation.geometry.formatting import configuration, joint_value, length
 from kinematify.validation.geometry.mirror_pairs import twins_at_odds
 
@@ -29,7 +29,7 @@ def _two_joints(look: GeometryContext) -> str | None:
     title="Configurations of all joints are free",
     fails="Configurations of all joints collide",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     follows={"KV301": CauseScope.PAIR, "KV311": CauseScope.PAIR},
     needs=(lambda look: not_finished("time ran out before it") if look.random is None else None,),
 )
@@ -77,7 +77,7 @@ def _two_bodies_that_collide(look: GeometryContext) -> str | None:
     title="Engines' hulls leave the motion free",
     fails="Engines' hulls block a motion that the surfaces leave free",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     feedback=FeedbackRow.COLLISION,
     follows=AT_REST,
     prepared=True,
@@ -121,7 +121,7 @@ def hulls_block(result: OpenCheck, look: GeometryContext) -> None:
     title="Twins move alike",
     fails="Twins do not move alike",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     needs=(_two_joints,),
 )
 def unlike_twins(result: OpenCheck, look: GeometryContext) -> None:

@@ -9,7 +9,7 @@ import struct
 from typing import TYPE_CHECKING
 
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.formats.html_frame import badge, page, table, text
 from kinematify.validation.formats.html_motion import curves, show_button, viewer
 from kinematify.validation.formats.report_content import (
@@ -96,13 +96,13 @@ def _counts(report: ValidationReport) -> tuple[str, ...]:
 
 
 def _filters(outcomes: Sequence[Outcome]) -> str:
-    """Boxes for the severities and blames that occur; nothing where there is nothing to choose."""
+    """Boxes for the severities and causes that occur; nothing where there is nothing to choose."""
     findings = [finding for outcome in outcomes if not isinstance(outcome, Unusable) for finding in outcome.findings]
     if not findings:
         return ""
     severities = [item for item in Severity if any(finding.severity is item for finding in findings)]
-    blames = [item for item in Blame if any(finding.blame is item for finding in findings)]
-    boxes = [_box("severity", item.value) for item in severities] + [_box("blame", item.value) for item in blames]
+    causes = [item for item in Cause if any(finding.cause is item for finding in findings)]
+    boxes = [_box("severity", item.value) for item in severities] + [_box("cause", item.value) for item in causes]
     return f'<div class="filters">Show {"".join(boxes)}<span id="shown" class="faint"></span></div>'
 
 
@@ -188,7 +188,7 @@ def _finding(block: FindingBlock, anchor: str, button: str) -> str:
     severity = block.severity.value
     return (
         f'<div id="{anchor}" class="finding {severity}{" suppressed" if block.suppressed else ""}" '
-        f'data-severity="{severity}" data-blame="{finding.blame.value}">'
+        f'data-severity="{severity}" data-cause="{finding.cause.value}">'
         f'<p><strong>{severity} <a href="#check-{finding.check}">{text(block.title)}</a></strong> {block.cause} '
         f'<a class="faint" href="#{anchor}" aria-label="Link to this finding">#</a></p>'
         + (f'<p class="faint">{text(block.facts)}</p>' if block.facts else "")

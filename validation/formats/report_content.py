@@ -257,7 +257,7 @@ def block_of(group: Sequence[FindingGroup]) -> FindingBlock:
         findings=tuple(item.finding for item in group),
         severity=first.severity,
         title=_titled(first.check, CHECKS[first.check].fails, *(item.finding.engine for item in group)),
-        cause=f"(cause: {first.blame.value})",
+        cause=f"(cause: {first.cause.value})",
         facts="; ".join(fact for fact in _facts(first) if fact),
         message=first.message,
         also=f"Also: {others}." if (others := _others(group)) else "",
@@ -284,7 +284,7 @@ def blocks(
     for item in groups:
         finding = item.finding
         engine = None if where(finding) and not by_engine else finding.engine
-        key = (finding.check, engine, finding.severity, finding.blame, finding.suppressed)
+        key = (finding.check, engine, finding.severity, finding.cause, finding.suppressed)
         words = _pattern(finding) if alike or not where(finding) else ""
         grouped.setdefault((*key, words), []).append(item)
     apart = ([group] if len(group) >= together else [[item] for item in group] for group in grouped.values())

@@ -20,12 +20,12 @@ from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.environment import environment
-from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status, not_finished
+from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
 from kinematify.validation.lines import with_lines
 from kinematify.validation.run.causes import with_causes
 from kinematify.validation.run.loaded_findings import across_engines, confirm_on_raw_model, with_refusals
-from kinematify.validation.run.opinions import evidence_before_blame
+from kinematify.validation.run.opinions import demote_inference_findings
 from kinematify.validation.run.plan import (
     as_loaded_stages,
     asset_stage,
@@ -224,7 +224,7 @@ class _Run:
             for key, result in self._results.items()
             if key[0] in _DOUBTS
             for finding in result.findings
-            if finding.blame is Blame.KINEMATICS and finding.joint and finding.severity is not Severity.NOTE
+            if finding.cause is Cause.KINEMATICS and finding.joint and finding.severity is not Severity.NOTE
         ]
         found.sort(key=lambda finding: finding.severity is Severity.ERROR)
         return {
@@ -241,7 +241,7 @@ class _Run:
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
         results = [self._result(key) for key in keys(list(self.checks.values()))]
         robot = _bodies(self.path)
-        results = evidence_before_blame(
+        results = demote_inference_findings(
             confirm_on_raw_model(across_engines(with_refusals(with_lines(results, robot)), self.engines))
         )
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)
@@ -353,7 +353,7 @@ def _fallen(key: CheckKey, end: StageEnd) -> CheckResult:
     finding = Finding(
         check=check,
         severity=Severity.WARNING if engine is None else Severity.ERROR,
-        blame=Blame.ENGINE,
+        cause=Cause.ENGINE,
         engine=engine,
         message=f"The stage {end.stage.name} {end.failure} during this check or right before it.",
         remedy="Fix the other findings first and run again; if it stays, report it with the model.",

@@ -35,12 +35,12 @@ def group_by_cause(findings: Iterable[Finding]) -> tuple[FindingGroup, ...]:
     findings = tuple(findings)
     under: dict[int, list[Finding]] = {}
     for finding in findings:
-        if finding.cause is not None:
-            under.setdefault(id(finding.cause), []).append(finding)
+        if finding.follows_from is not None:
+            under.setdefault(id(finding.follows_from), []).append(finding)
     return tuple(
         FindingGroup(finding=finding, consequences=tuple(under.get(id(finding), ())))
         for finding in findings
-        if finding.cause is None
+        if finding.follows_from is None
     )
 
 
@@ -71,7 +71,7 @@ def with_causes(results: Sequence[CheckResult], robot: Robot | None) -> tuple[Ch
     for finding in findings:
         if id(finding) in above:
             cause = final[id(roots[id(finding)])]
-            final[id(finding)] = replace(finding, cause=cause, suppressed=finding.suppressed or cause.suppressed)
+            final[id(finding)] = replace(finding, follows_from=cause, suppressed=finding.suppressed or cause.suppressed)
     return tuple(replace(result, findings=tuple(final[id(item)] for item in result.findings)) for result in results)
 
 

@@ -1,4 +1,4 @@
-"""From findings to feedback: which decision each failure blames, as plain data (design section 5).
+"""From findings to feedback: which decision each failure points to, as plain data (design section 5).
 
 A failure seldom proves anything. Each signal carries a weight in log odds, the unit in which the inference adds up its
 own evidence (`failure_rates` measures it), and the search decides. Failures that are not the search's to fix are
@@ -17,7 +17,7 @@ from kinematify.robot.joint_type import JointType
 from kinematify.validation.check import ENGINE_FAMILIES, FeedbackRow
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.failure_rates import LINE, PARENT, RANGE, TYPE, shipped_rates
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -80,7 +80,7 @@ class UnfixableFinding:
 
     check: str
     joint: str | None
-    blame: str
+    cause: str
     reason: str
 
 
@@ -121,7 +121,7 @@ class Feedback:
 
 def only_collision_meets(finding: Finding) -> bool:
     """True if the exact geometry saw no visible parts meet, so that nothing speaks against the joint."""
-    return finding.blame is Blame.PHYSICS and finding.check.startswith("KV3")
+    return finding.cause is Cause.PHYSICS and finding.check.startswith("KV3")
 
 
 def _worst_of_each(signals: Iterable[JointSignal], child: str) -> float:
@@ -265,10 +265,10 @@ class _Case:
                 )
             )
 
-    def leave(self, finding: Finding, reason: str, blame: Blame | None = None) -> None:
+    def leave(self, finding: Finding, reason: str, cause: Cause | None = None) -> None:
         """Note that the search does nothing about a finding, and why."""
-        known = blame or finding.blame
-        self.left.append(UnfixableFinding(check=finding.check, joint=finding.joint, blame=known.value, reason=reason))
+        known = cause or finding.cause
+        self.left.append(UnfixableFinding(check=finding.check, joint=finding.joint, cause=known.value, reason=reason))
 
 
 def _route(case: _Case, finding: Finding) -> None:
@@ -279,7 +279,7 @@ def _route(case: _Case, finding: Finding) -> None:
     if row is FeedbackRow.AS_GIVEN:
         case.leave(finding, "they overlap as given; the cause is the cut of the parts, not an axis")
     elif row is FeedbackRow.COLLISION or only_collision_meets(finding):
-        case.leave(finding, "only collision geometry is in the way; decompose it", Blame.PHYSICS)
+        case.leave(finding, "only collision geometry is in the way; decompose it", Cause.PHYSICS)
     elif row is FeedbackRow.EXPORTER:
         case.leave(finding, "frames, masses or files disagree; that is for the exporter to fix")
     elif row in _ROWS and finding.joint is not None and finding.joint in case.joints:
@@ -380,8 +380,8 @@ def _type_doubted(case: _Case, finding: Finding, joint: Joint) -> None:
 
 def _not_reached(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV405 and KV505: a drive that gets stuck, unless hulls or a known contact explain it."""
-    if case.has("KV332", "KV403", "KV503", joint=finding.joint) or finding.blame is not Blame.KINEMATICS:
-        case.leave(finding, "only the hulls that engines collide are in the way", Blame.PHYSICS)
+    if case.has("KV332", "KV403", "KV503", joint=finding.joint) or finding.cause is not Cause.KINEMATICS:
+        case.leave(finding, "only the hulls that engines collide are in the way", Cause.PHYSICS)
     else:
         case.against_line(finding, joint, f"{finding.engine} cannot drive it to its end")
 
@@ -389,7 +389,7 @@ def _not_reached(case: _Case, finding: Finding, joint: Joint) -> None:
 def _unstable(case: _Case, finding: Finding, joint: Joint) -> None:
     """Escaped limits, explosions and energy: masses and overlaps first."""
     if case.has("KV201", "KV202", "KV204", "KV205", "KV207", "KV301", "KV302", "KV403", "KV503"):
-        case.leave(finding, "fix masses and overlaps at rest first", Blame.PHYSICS)
+        case.leave(finding, "fix masses and overlaps at rest first", Cause.PHYSICS)
     else:
         case.against_line(finding, joint, "unstable though masses and rest are fine")
 
@@ -406,7 +406,7 @@ def _as_loaded(case: _Case, finding: Finding, joint: Joint) -> None:
 def _no_way(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV703 to KV706: only what fails from several places of the robot speaks against the joint."""
     if finding.check != "KV706" and case.placements.get(finding.joint or "", 0.0) < case.config.placements:
-        case.leave(finding, "too few places of the robot were tried to name the joint as the cause", Blame.TASK)
+        case.leave(finding, "too few places of the robot were tried to name the joint as the cause", Cause.TASK)
     else:
         case.against_all(finding, joint, "no way leads through its range")
 

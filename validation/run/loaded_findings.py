@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Blame, Severity, Status
+from kinematify.validation.finding import Cause, Severity, Status
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -84,7 +84,7 @@ def with_refusals(checks: Sequence[CheckResult]) -> list[CheckResult]:
 def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> list[CheckResult]:
     """Make errors of the untouched file warnings where another engine has none, and say which.
 
-    What blames an engine and only one shows is a note then, and a warning where no other engine runs the file.
+    What is laid to an engine and only one shows is a note then, and a warning where no other engine runs the file.
 
     Args:
         checks: All results.
@@ -127,7 +127,7 @@ def confirm_on_raw_model(checks: Sequence[CheckResult]) -> list[CheckResult]:
     pairs = {frozenset(finding.pair) for finding in shown if finding.pair is not None}
 
     def worded(finding: Finding) -> Finding:
-        counts = finding.blame is not Blame.PHYSICS or finding.joint in joints - {None}
+        counts = finding.cause is not Cause.PHYSICS or finding.joint in joints - {None}
         if counts or finding.severity is Severity.NOTE or (finding.pair and frozenset(finding.pair) in pairs):
             return finding
         return replace(
@@ -150,7 +150,7 @@ def _across(finding: Finding, errors: Sequence[Finding], ran: Mapping[str, set[s
     works = [entry.title for name, entry in ENGINES.items() if name in ran.get(finding.check, set()) - failing]
     if finding.severity is not Severity.ERROR:
         return finding
-    alone = finding.blame is Blame.ENGINE and not any(
+    alone = finding.cause is Cause.ENGINE and not any(
         other.check == finding.check and other.engine != finding.engine for other in errors
     )
     if not works:

@@ -44,7 +44,7 @@ Outcome = ValidationReport | Unusable
 
 def severity_counts(report: ValidationReport) -> Mapping[Severity, int]:
     """Findings that count, by severity; what follows from another one does not count beside it."""
-    return Counter(finding.severity for finding in report.counted if finding.cause is None)
+    return Counter(finding.severity for finding in report.counted if finding.follows_from is None)
 
 
 def status_counts(report: ValidationReport) -> Mapping[Status, int]:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from kinematify.validation.run.causes import FindingGroup
     from kinematify.validation.summary import JointCurve, JointSummary, PairTable
 
-SCHEMA = 1
+SCHEMA = 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,7 +80,7 @@ class ValidationReport:
         return ExitStatus.FAULT if self.unfinished else ExitStatus.FINE
 
     def as_json(self) -> dict[str, Any]:
-        """The report as JSON values (design 2.3, schema 1); absent values and non-finite numbers are null."""
+        """The report as JSON values (schema 2); absent values and non-finite numbers are null."""
         return {
             "schema": SCHEMA,
             "model": self.model,
@@ -95,7 +95,8 @@ class ValidationReport:
     def _findings_json(self) -> list[dict[str, Any]]:
         place = {id(finding): number for number, finding in enumerate(self.findings)}
         return [
-            _finding_json(finding) | {"follows_from": None if finding.cause is None else place[id(finding.cause)]}
+            _finding_json(finding)
+            | {"follows_from": None if finding.follows_from is None else place[id(finding.follows_from)]}
             for finding in self.findings
         ]
 
@@ -116,7 +117,7 @@ def _finding_json(finding: Finding) -> dict[str, Any]:
     return {
         "check": finding.check,
         "severity": finding.severity.value,
-        "blame": finding.blame.value,
+        "cause": finding.cause.value,
         "joint": finding.joint,
         "link": finding.link,
         "pair": None if finding.pair is None else list(finding.pair),
