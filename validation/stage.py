@@ -32,7 +32,7 @@ class StageRequest:
     """The file as the user gave it."""
     package_dirs: tuple[Path, ...]
     work: Path
-    """Folder of this run: stages leave there what later ones need (`prepared.urdf`)."""
+    """Folder of this run: stages leave there what later ones need."""
     settings: ValidationSettings
     selected: frozenset[str]
     """Ids of the checks that the user wants."""
@@ -43,6 +43,8 @@ class StageRequest:
     """What a robot is to do with the object."""
     task_engines: tuple[str, ...] = ()
     """Engines in which its plans are executed."""
+    resolved: Path | None = None
+    """A copy of the file with every mesh by its absolute path, for engines that find the meshes nowhere else."""
     free_travel: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Range around rest in which nothing collides by exact geometry, of joints where it was measured [rad or m]."""
     suspects: Mapping[str, PriorFinding] = field(default_factory=dict)

@@ -6,15 +6,13 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from kinematify.simulation.engines import ENGINES
-from kinematify.validation.checks import CHECKS, checks_of
+from kinematify.validation.checks import checks_of
 from kinematify.validation.isolation import Stage
 from kinematify.validation.stages import (
     asset,
     evidence_stage,
     geometry,
     loaded_file,
-    prepare,
-    run_engine,
     task_run,
 )
 
@@ -40,10 +38,9 @@ def asset_stage() -> Stage:
     )
 
 
-def later_stages(chosen: Sequence[str]) -> list[Stage]:
-    """Everything that moves the model, the longest first; engines that were not chosen are omitted."""
-    stages = [
-        Stage(name="prepare", run=prepare.run, checks=(), imports=("kinematify.simulation.prepared",)),
+def later_stages() -> list[Stage]:
+    """What looks at the model without an engine, the longest first."""
+    return [
         Stage(
             name="geometry",
             run=geometry.run,
@@ -59,19 +56,6 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
             ),
         ),
     ]
-    for name in chosen:
-        checks = tuple(key for key in keys(CHECKS.values()) if key[1] == name and not key[0].startswith(("KV7", "KV8")))
-        stages.append(
-            Stage(
-                name=name,
-                run=partial(run_engine.run, engine=name),
-                checks=checks,
-                after=("prepare",),
-                imports=("kinematify.validation.engine_context",),
-                library=_library(ENGINES[name]),
-            )
-        )
-    return stages
 
 
 def as_loaded_stages(chosen: Sequence[str]) -> list[Stage]:
@@ -91,7 +75,7 @@ def as_loaded_stages(chosen: Sequence[str]) -> list[Stage]:
 
 def _library(engine: EngineEntry) -> str | None:
     """Return what can be loaded once for all stages of an engine; none that may be missing."""
-    return None if engine.prints_when_loaded else engine.module
+    return None if engine.prints_when_loaded or engine.extra else engine.module
 
 
 def task_stage() -> Stage:
@@ -100,10 +84,8 @@ def task_stage() -> Stage:
 
 
 def needed(stages: Sequence[Stage], selected: Collection[str]) -> list[Stage]:
-    """Return the stages that tell a selected check, with those that they come after."""
-    wanted = [stage for stage in stages if any(check in selected for check, _ in stage.checks)]
-    names = {stage.name for stage in wanted} | {name for stage in wanted for name in stage.after}
-    return [stage for stage in stages if stage.name in names]
+    """Return the stages that tell a selected check."""
+    return [stage for stage in stages if any(check in selected for check, _ in stage.checks)]
 
 
 def keys(checks: Iterable[Check]) -> tuple[CheckKey, ...]:

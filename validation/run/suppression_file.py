@@ -29,8 +29,8 @@ _KEYS = ("check", "where", "reason")
 _HEAD = "# Findings that do not count. Fix the model where one is right; where it is not, write why as its reason.\n"
 _SPECIAL = re.compile(r"([\[*?])")
 """Characters of names that mean something in a pattern."""
-_REMOVED = ("KV602", "KV603", "KV604", "KV605", "KV9??")
-"""Checks of earlier versions; a rule about one is read, and named as one that covers nothing."""
+_REMOVED = re.compile(r"KV[4569]\d\d$|KV332$")
+"""Checks of earlier releases: a rule that names one covers nothing, and is listed as such."""
 _FORM = "Each rule is `- check: KV302`, `where: NAME` (joint or link, * if omitted) and `reason: WHY`."
 
 
@@ -94,9 +94,8 @@ def _rule(rule: Any, name: str) -> Suppression:
         raise InputError(f"{name} has the unknown key {unknown[0]}. {_FORM}")
     check, reason = (_text(rule, key, name) for key in ("check", "reason"))
     where = _text(rule, "where", name) if "where" in rule else "*"
-    wanted = check.upper()
-    removed = any(fnmatchcase(wanted, gone) for gone in _REMOVED)
-    return Suppression(check=wanted if removed else known_pattern(check), reason=reason, where=where)
+    kept = check.strip().upper() if _REMOVED.match(check.strip().upper()) else known_pattern(check)
+    return Suppression(check=kept, reason=reason, where=where)
 
 
 def known_pattern(pattern: str) -> str:
