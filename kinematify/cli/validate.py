@@ -59,8 +59,7 @@ _QUICK = "KV1*,KV2*,KV30*,KV31*,KV32*,KV801,KV802,KV803,KV804"
 @click.option(
     "--engines",
     metavar="LIST",
-    default="mujoco,pybullet,pinocchio",
-    show_default=True,
+    show_default="all that are installed",
     help="Engines to run, separated by commas; none: only file and geometry.",
 )
 @click.option(
@@ -133,7 +132,7 @@ def command(
     skip: str | None,
     quick: bool,
     fail_on: str,
-    engines: str,
+    engines: str | None,
     suppress: Path | None,
     suggest_accept: Path | None,
     budget: float | None,
@@ -155,7 +154,7 @@ def command(
     sarif: Path | None,
     html: Path | None,
 ) -> int:
-    """Check URDFs: the file, declared physics, collision along the motion, joints, and behaviour in engines.
+    """Check URDFs: the file, declared physics, collision along the motion, joints, engines and their agreement.
 
     MODEL is a URDF file, a folder with URDF files at any depth, or a pattern in quotes. Nothing else is needed: no
     ground truth, no second pose. `kinematify explain KV301` shows more about a check.
@@ -232,9 +231,11 @@ def _matching(patterns: str) -> frozenset[str]:
     return frozenset(check for check in CHECKS if any(fnmatchcase(check, pattern) for pattern in known))
 
 
-def _engines(words: str) -> tuple[str, ...]:
-    from kinematify.simulation.engines import ENGINES
+def _engines(words: str | None) -> tuple[str, ...]:
+    from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
 
+    if words is None:
+        return DEFAULT_ENGINES
     chosen = [word.strip().lower() for word in words.split(",")] if words.strip().lower() not in ("", "none") else []
     unknown = [word for word in chosen if word not in ENGINES]
     if unknown:

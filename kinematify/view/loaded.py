@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.errors import DescriptionError, EnvironmentFault, InputError
+from kinematify.errors import DescriptionError, InputError
 from kinematify.model.output import urdf_of
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -206,7 +207,5 @@ def _colored(trimesh: Any, mesh: Any) -> Any:
 
 
 def _engine(module: str, package: str) -> Any:
-    try:
-        return importlib.import_module(module)
-    except ImportError as error:
-        raise EnvironmentFault(f"{module} is not installed. Run `pip install {package}`.") from error
+    require(f"A model of {module}", package)
+    return importlib.import_module(module)

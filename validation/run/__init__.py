@@ -17,7 +17,7 @@ from kinematify.config.validation import load_settings
 from kinematify.errors import DescriptionError
 from kinematify.manipulation.plan_request import PriorFinding
 from kinematify.robot.read import read_robot
-from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine
+from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine, why_not_run
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.document_copy import readable_copy, resolved_copy
 from kinematify.validation.environment import environment
@@ -40,6 +40,7 @@ from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.stages.precheck import precheck
 from kinematify.validation.summary import JointSummary, PairTable
 from kinematify.validation.suppression import suppress
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -76,8 +77,8 @@ def validate(
         package_dirs: Where packages lie (``package://``).
         settings: Thresholds and budgets; the shipped ones if absent.
         selected: Ids of the checks to run; all if absent. Those of file and meshes always run, and their errors count.
-        engines: Of `kinematify.simulation.engines.ENGINES`; checks of others that every installation has are reported
-            as skipped.
+        engines: Of `kinematify.simulation.engines.ENGINES`; all that are installed if absent. Checks of others are
+            reported as skipped, with the reason.
         suppressions: Findings that do not count.
         task: What a robot is to do with the object (KV7xx); without one these checks are not in the report.
         workers: Processes at a time; as many as there are cores if absent.
@@ -88,12 +89,14 @@ def validate(
 
     Raises:
         InputError: `path` is not a URDF at all (missing, unreadable, binary, xacro, MJCF).
-        EnvironmentFault: An engine was asked for that is not installed.
+        EnvironmentFault: An engine was asked for that is not installed, or a task without what plans it.
     """
     for engine in engines:
         require_engine(engine)
+    if task is not None:
+        require("A robot arm", "pin", "coal", "ompl")
     chosen = tuple(engine for engine in ENGINES if engine in engines)
-    checks = _checks(task, chosen)
+    checks = _checks(task)
     wanted = frozenset(checks) if selected is None else frozenset(checks) & frozenset(selected)
     run = _Run(path=Path(path), selected=wanted, progress=progress, task=task, engines=chosen, checks=checks)
     settings = settings or load_settings()
@@ -128,14 +131,9 @@ _LEEWAY = 20.0
 """Processor time that the stage of a task has to end what it is at [s]."""
 
 
-def _checks(task: TaskRequest | None, engines: Sequence[str]) -> dict[str, Check]:
-    """Checks of the report; those of a task and of engines that not every installation has only when asked for."""
-    known = {None, *DEFAULT_ENGINES, *engines}
-    return {
-        name: replace(check, engines=tuple(engine for engine in check.engines if engine in known))
-        for name, check in CHECKS.items()
-        if (task is not None or not name.startswith("KV7")) and known & {*(check.engines or (None,))}
-    }
+def _checks(task: TaskRequest | None) -> dict[str, Check]:
+    """Checks of the report; those of a task only when it was asked for."""
+    return {name: check for name, check in CHECKS.items() if task is not None or not name.startswith("KV7")}
 
 
 class _Run:
@@ -204,11 +202,8 @@ class _Run:
         for number, end in enumerate(run_stages(later, request, workers=workers)):
             self._take_end(end)
             self._progress(end.stage.name, 0.15 + 0.8 * (number + 1) / len(later))
-        self._explain(
-            [key for key in self._missing() if key[1] in set(ENGINES) - set(self.engines)],
-            Status.SKIPPED,
-            "the engine was not asked for",
-        )
+        for name in set(ENGINES) - set(self.engines):
+            self._explain([key for key in self._missing() if key[1] == name], Status.SKIPPED, why_not_run(name))
         self._load_plainly(plain, request, workers, request.urdf if copy is None else copy.path)
         if self.task is not None:
             self._use(request, self.engines)
@@ -296,9 +291,7 @@ class _Run:
         )
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)
         checks = with_causes(checks, robot)
-        facts = environment(
-            settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted, engines=self.engines
-        )
+        facts = environment(settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted)
         return ValidationReport(
             model=str(self.path),
             checks=checks,
