@@ -18,7 +18,6 @@ from kinematify.geometry.scene import read_scene
 from kinematify.model.collision import collides_as_it_is, fit_collision
 from kinematify.model.masses import prepared_inertials
 from kinematify.robot.appearance import Material, plain, surfaces
-from kinematify.robot.joint_type import FREE_KINDS
 from kinematify.robot.material_files import write_texture
 from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
 from kinematify.robot.read import read_robot
@@ -103,7 +102,7 @@ def read_content(urdf: Path, settings: ValidationSettings, *, package_dirs: Sequ
 
 def _notes(model: Robot, inertials: dict[str, PreparedInertial], *, made: bool) -> list[str]:
     weighed = [link.name for link in model.links if inertials[link.name].mass_added and link.has_geometry]
-    notes = []
+    notes = list(model.notes)
     if made:
         notes.append(
             "Not all meshes that collide are convex, as engines take them to be: what collides is the convex pieces "
@@ -112,9 +111,6 @@ def _notes(model: Robot, inertials: dict[str, PreparedInertial], *, made: bool) 
     if weighed:
         notes.append(f"{len(weighed)} links state no usable mass and weigh what their volume suggests: "
                      f"{', '.join(weighed[:4])}{', ...' if len(weighed) > 4 else ''}.")  # fmt: skip
-    free = [joint.name for joint in model.joints if joint.declared_kind in FREE_KINDS]
-    if free:
-        notes.append(f"Joints that are floating or planar are written as fixed: {', '.join(free)}.")
     return notes
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import tempfile
+import warnings
 from collections.abc import Mapping
 from numbers import Real
 from pathlib import Path
@@ -57,6 +58,8 @@ class LoadedModel:
         self.robot: Robot = read_robot(urdf, package_dirs=package_dirs, appearance=True)
         """Links, joints and meshes."""
         self._package_dirs = package_dirs
+        for note in self.robot.notes:
+            warnings.warn(note, stacklevel=3)
 
     def __repr__(self) -> str:
         """Name, file and joints that move."""
