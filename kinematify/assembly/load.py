@@ -274,7 +274,7 @@ def _single_file(path: Path, reading: _Reading) -> _Given:
     why = why_pieces(meshes, reading.config.weld) if len(meshes) > 1 and reading.pieces == "auto" else ""
     if why and len(connected_sheets(merged(meshes, path.stem), reading.config.weld)) > 1:
         warnings.append(
-            f"The {len(meshes)} nodes or groups of the file {why}: they are read as one mesh, whose pieces are grouped. "
+            f"The {len(meshes)} nodes or groups of the file {why}: they are read as one mesh, in pieces to be grouped. "
             "If each of them is a part, give --pieces keep."
         )
         meshes = [merged(meshes, path.stem)]
@@ -356,7 +356,7 @@ def _near_origin(meshes: Sequence[RawMesh]) -> tuple[Sequence[RawMesh], list[str
     centre[2] = low[2] if high[2] > low[2] else centre[2]
     away = length_text(float(np.linalg.norm(centre)))
     said = (
-        f"The object lies {away} from the origin, where engines lose its shape by rounding. The model is stored about its "
+        f"The object lies {away} from the origin, where engines round its shape off. The model is stored about its "
         f"own centre: add ({', '.join(f'{value:.10g}' for value in centre)}) m for the coordinates of the file."
     )
     return [mesh.moved(np.eye(3), -centre) for mesh in meshes], [said]
@@ -412,9 +412,6 @@ def _foot(points: FloatArray, axis: int, end: float) -> float:
     return float(np.prod(np.ptp(at_end[:, across], axis=0) / np.maximum(extent[across], 1e-300)))
 
 
-_CHUNK = 1 << 20
-
-
 def unpack(archive: Path, folder: Path, max_bytes: int) -> None:
     """Unpack a ZIP into an existing folder, keeping its subfolders.
 
@@ -430,9 +427,11 @@ def unpack(archive: Path, folder: Path, max_bytes: int) -> None:
         with zipfile.ZipFile(archive) as opened:
             entries = [entry for entry in opened.infolist() if not entry.is_dir()]
             for entry in entries:
+                entry.filename = entry.filename.replace("\\", "/")  # as some programs for Windows write it
                 _check_entry(archive, entry)
             _check_size(archive, sum(entry.file_size for entry in entries), max_bytes)
-            _extract(archive, opened, [entry for entry in entries if _is_wanted(entry.filename)], folder, max_bytes)
+            # zipfile reads no more of an entry than it declares.
+            opened.extractall(folder, [entry for entry in entries if _is_wanted(entry.filename)])
     # zipfile raises NotImplementedError where it does not know the compression, RuntimeError where one is encrypted.
     except (zipfile.BadZipFile, zipfile.LargeZipFile, EOFError, NotImplementedError, RuntimeError, OSError) as error:
         raise AssemblyError(
@@ -455,7 +454,7 @@ def check_packed_mesh(path: Path, max_bytes: int) -> None:
 
 
 def _check_entry(archive: Path, entry: zipfile.ZipInfo) -> None:
-    name = entry.filename.replace("\\", "/")
+    name = entry.filename
     outside = name.startswith("/") or ".." in name.split("/") or ":" in name.split("/")[0]
     if outside or stat.S_ISLNK(entry.external_attr >> 16):
         raise AssemblyError(
@@ -475,21 +474,5 @@ def _check_size(archive: Path, found: int, allowed: int) -> None:
 
 
 def _is_wanted(name: str) -> bool:
-    path = PurePosixPath(name.replace("\\", "/"))
     # Dot files and __MACOSX hold attributes of the machine that packed the archive.
-    hidden = any(word.startswith((".", "__MACOSX")) for word in path.parts)
-    return not hidden
-
-
-def _extract(
-    archive: Path, opened: zipfile.ZipFile, entries: Sequence[zipfile.ZipInfo], folder: Path, max_bytes: int
-) -> None:
-    total = 0
-    for entry in entries:
-        target = folder.joinpath(*PurePosixPath(entry.filename.replace("\\", "/")).parts)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with opened.open(entry) as source, target.open("wb") as sink:
-            while chunk := source.read(_CHUNK):
-                total += len(chunk)
-                _check_size(archive, total, max_bytes)  # what a file declares need not be true
-                sink.write(chunk)
+    return not any(word.startswith((".", "__MACOSX")) for word in PurePosixPath(name).parts)

@@ -1,8 +1,8 @@
 """glTF 2.0 files: one mesh per node with all its primitives and materials, one per joint of a skin.
 
 Read by itself because trimesh 5.2 reads less, and does not say so: sparse accessors as zeros, normalised integers
-without their scale, fans, skins, weights of morph targets, instances, and textures that are moved or use a second set of
-coordinates not at all. pygltflib would replace `json.loads` alone. DracoPy and meshopt decode what is compressed.
+without their scale, fans, skins, weights of morph targets, instances, and textures that are moved or use a second set
+of coordinates not at all. pygltflib would replace `json.loads` alone. DracoPy and meshopt decode what is compressed.
 """
 
 from __future__ import annotations

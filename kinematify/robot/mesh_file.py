@@ -88,9 +88,7 @@ def _guarded(path: Path, *, appearance: bool) -> tuple[RawMesh, ...]:
 
 _READERS = {
     ".obj": "kinematify.robot.obj_file:read_obj",
-    ".stl": "kinematify.robot.stl_file:read_stl",
-    ".ply": "kinematify.robot.ply_file:read_ply",
-    ".off": "kinematify.robot.ply_file:read_off",
+    **dict.fromkeys((".stl", ".ply", ".off"), "kinematify.robot.general_file:read_general"),
     ".3mf": "kinematify.robot.threemf_file:read_3mf",
     ".dae": "kinematify.robot.collada_file:read_collada",
     **dict.fromkeys(GLTF_SUFFIXES, "kinematify.robot.gltf_file:read_gltf"),

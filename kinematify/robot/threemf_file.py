@@ -60,7 +60,8 @@ def read_3mf(path: Path, *, appearance: bool = False) -> tuple[RawMesh, ...]:
     meshes: list[RawMesh] = []
     while items.MoveNext():
         item = items.GetCurrent()
-        meshes += content.meshes(item.GetObjectResource(), _matrix(item.GetObjectTransform()), ())
+        shown = item.GetObjectResource()
+        meshes += content.meshes(shown, _matrix(item.GetObjectTransform()), (), label=item.GetPartNumber())
     unit = _UNITS[int(model.GetUnit())]
     return tuple(replace(mesh, unit=unit, notes=tuple(content.unread)) for mesh in meshes)
 
@@ -146,13 +147,16 @@ class _Content:
     shown: int = 0
 
     def meshes(
-        self, item: Any, T_world_item: FloatArray, above: tuple[tuple[int, str], ...], owner: int = -1
+        self, item: Any, T_world_item: FloatArray, above: tuple[tuple[int, str], ...], owner: int = -1, label: str = ""
     ) -> Iterator[RawMesh]:
         """Meshes of an object and of its components, the latter named by the slicer or by their objects."""
         number, unique = item.GetModelResourceID(), item.GetUniqueResourceID()
         known = self.parts.get((owner, number)) or self.parts.get((number, -1)) or self.parts.get((number, number), [])
-        name = item.GetName() or (known[0].name if owner >= 0 and known else "") or f"object_{number}"
-        holders = (*above, (unique, name))
+        name = label or item.GetName() or (known[0].name if owner >= 0 and known else "") or f"object_{number}"
+        self.shown += 1
+        if self.shown > _MOST:
+            raise ValueError(f"it shows meshes more than {_MOST} times")
+        holders = (*above, (self.shown, name))
         if item.IsComponentsObject():
             whole = self.model.GetComponentsObjectByID(item.GetResourceID())
             for k in range(whole.GetComponentCount()):
@@ -161,9 +165,6 @@ class _Content:
                     part.GetObjectResource(), T_world_item @ _matrix(part.GetTransform()), holders, number
                 )
             return
-        self.shown += 1
-        if self.shown > _MOST:
-            raise ValueError(f"it shows meshes more than {_MOST} times")
         if not item.IsMeshObject() or int(item.GetType()) not in _SOLID:
             self.unread[f"the {_TYPES.get(int(item.GetType()), 'volume')} {name}"] = None
             return
@@ -175,7 +176,7 @@ class _Content:
                 self.unread[f"the {part.kind} {part.name}"] = None
                 continue
             own = mesh if part.first < 0 else compacted(mesh.of_faces(np.arange(part.first, part.last + 1)))
-            yield replace(own, name=part.name or name, holders=(*above, (unique, part.name or name)))
+            yield replace(own, name=part.name or name, holders=(*holders[:-1], (self.shown, part.name or name)))
 
     def _mesh(self, item: Any) -> RawMesh:
         mesh = self.model.GetMeshObjectByID(item.GetResourceID())
