@@ -92,9 +92,7 @@ def grown(before: dict[str, Size], now: dict[str, Size]) -> list[str]:
         f"{name}: {new:,} {unit}, {old:,} before"
         for name in ("product", *OUTSIDE)
         if name in before and name in now
-        for unit, old, new in zip(
-            ("tokens", "classes", "bytes of YAML"), astuple(before[name]), astuple(now[name]), strict=True
-        )
+        for unit, old, new in zip(("tokens", "classes", "bytes of YAML"), astuple(before[name]), astuple(now[name]), strict=True)
         if new > old
     ]
 

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     import viser
 
     from kinematify.robot.robot import Joint
-    from kinematify.view.inference_view import Shown, Sight
     from kinematify.view.keep import Kept
+    from kinematify.view.inference_view import Shown, Sight
     from kinematify.view.viewer_scene import Touch, ViewScene
 
 _AS_WRITTEN, _OWN = "as in the file", "-"

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint
-    from kinematify.view.inference_view import Shown, Sight
     from kinematify.view.keep import Kept, ModelFolder
+    from kinematify.view.inference_view import Shown, Sight
 
 _CHOSEN, _MARKED, _WRONG = (66, 133, 244), (245, 166, 35), (219, 40, 40)
 """Of the part whose joint is chosen, of what a finding is about, and of what collides."""

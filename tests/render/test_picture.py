@@ -11,6 +11,7 @@ from PIL import Image
 
 from kinematify.config import load_config
 from kinematify.geometry.rays import RayScene
+from kinematify.model.preview import draw_pair, render_preview, render_story
 from kinematify.model.picture_scene import (
     GLYPH_COLORS,
     best_azimuth,
@@ -22,7 +23,6 @@ from kinematify.model.picture_scene import (
     sliding_arrow,
     turning_arrow,
 )
-from kinematify.model.preview import draw_pair, render_preview, render_story
 from kinematify.model.urdf import link_colors, link_shades, tell_apart
 from kinematify.render.camera import fit_camera
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
