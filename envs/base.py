@@ -1,4 +1,4 @@
-"""What both environments share: keywords, the object, start of an episode, randomisation, pictures, bookkeeping."""
+"""Base of the environments: keywords, the object, start of an episode, randomisation, pictures, bookkeeping."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from gymnasium import spaces
 from gymnasium.utils import EzPickle
 
 from kinematify.envs.articulated_object import AUTO, ENGINES, held_links, shared_articulated_object, shared_target
-from kinematify.envs.joint_dynamics import draw, drawing
-from kinematify.envs.goal import Goal
 from kinematify.envs.env_picture import CameraView, Piece, Renderer, ViewerWindow, has_screen, require_screen
-from kinematify.envs.settings import load_settings
+from kinematify.envs.goal import Goal
+from kinematify.envs.joint_dynamics import draw, drawing
 from kinematify.envs.model_verdict import require_valid
+from kinematify.envs.settings import load_settings
 from kinematify.errors import InputError
 from kinematify.geometry.scene import transformed
 from kinematify.robot.robot import forward_kinematics
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.envs.articulated_object import ArticulatedObject, Target
-    from kinematify.envs.joint_dynamics import Draw
     from kinematify.envs.goal import Progress
+    from kinematify.envs.joint_dynamics import Draw
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.world import EngineWorld, ObjectState
 
@@ -225,10 +225,10 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     @abstractmethod
     def _observe(self, reading: ObjectState) -> NDArray[np.float32]:
-        """What is seen."""
+        """Observation of one step."""
 
     def _helped(self) -> float:
-        """What is rewarded beside opening, already weighted."""
+        """Reward beside opening, already weighted."""
         return 0.0
 
     # After a step.
@@ -312,7 +312,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     @property
     def _tint(self) -> dict[str, FloatArray]:
-        """What is added to the colour of each link; nothing before the first episode."""
+        """Tint added to the colour of each link; none before the first episode."""
         if self._draw is None:
             return {}
         return dict(zip(self.articulated_object.scene.mechanism.links, self._draw.color, strict=True))

@@ -29,7 +29,7 @@ def expert_for(env: gymnasium.Env[Any, Any]) -> HandExpert | ArmExpert:
 def record_demonstrations(
     env_id: str, name: str, *, seeds: Iterable[int] = range(100), only_successes: bool = True, **keywords: Any
 ) -> Any:
-    """Let the hand-written policy act, and write what happened.
+    """Record episodes of the hand-written policy.
 
     Args:
         env_id: One of `kinematify.envs.IDS`, with or without ``kinematify.envs:``.

@@ -41,7 +41,7 @@ from kinematify.config import StageConfig, load
 from kinematify.errors import EnvironmentFault, ExitStatus, InputError
 from kinematify.evaluation.datasets import bench_folder, example_robots
 from kinematify.evaluation.result_record import grouped, table
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -354,7 +354,7 @@ def verdict_on(model: PublishedModel) -> Record:
             {item["check"] for item in answered.get("checks", ()) if "not finished" in str(item["reason"])}
         ),
         "findings": [
-            {key: item[key] for key in ("check", "severity", "blame", "joint", "link", "pair", "message")}
+            {key: item[key] for key in ("check", "severity", "cause", "joint", "link", "pair", "message")}
             for item in counted
         ],
     }
@@ -428,14 +428,14 @@ def _verdict(judged: ExpertVerdicts, record: Record, finding: Record) -> str:
 def _confusion(records: Sequence[Record], judged: ExpertVerdicts) -> Iterator[tuple[str, ...]]:
     for (thing, seen), group in grouped(records, by=partial(kind_of, judged)).items():
         counts = Counter(
-            (finding["severity"], finding["blame"] == Blame.KINEMATICS, _verdict(judged, record, finding))
+            (finding["severity"], finding["cause"] == Cause.KINEMATICS, _verdict(judged, record, finding))
             for record in group
             for finding in record["findings"]
         )
         for severity, kinematic in product((Severity.ERROR, Severity.WARNING), (True, False)):
-            blame = "kinematics" if kinematic else "others"
+            cause = "kinematics" if kinematic else "others"
             numbers = (str(counts[severity, kinematic, verdict]) for verdict in _VERDICTS)
-            yield thing, seen, str(len(group)), f"{severity.value}s, {blame}", *numbers
+            yield thing, seen, str(len(group)), f"{severity.value}s, {cause}", *numbers
 
 
 def kind_of(judged: ExpertVerdicts, record: Record) -> tuple[str, str]:

@@ -1,4 +1,4 @@
-"""What is converted: files and folders on disks and in stores, by pattern, each with a name of its own."""
+"""Inputs of a batch: files and folders on disks and in stores, by pattern, each with a name of its own."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def _objects(fs: Any, place: str) -> list[str]:
 
 
 def _are_objects(fs: Any, files: Sequence[str]) -> bool:
-    """Whether mesh files are objects, not parts of one: each has several nodes, or they stand in each other."""
+    """True if mesh files are objects, not parts of one: each has several nodes, or they stand in each other."""
     counts, boxes = [], []
     with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
         for k in np.unique(np.linspace(0, len(files) - 1, _OPENED).astype(int)).tolist():
@@ -198,7 +198,7 @@ def absolute(fs: Any, place: str) -> str:
 
 
 def is_local(fs: Any) -> bool:
-    """Whether a file system is that of this machine."""
+    """True if a file system is that of this machine."""
     return "file" in (fs.protocol if isinstance(fs.protocol, tuple) else (fs.protocol,))
 
 
@@ -214,7 +214,7 @@ def _files(fs: Any, path: str) -> dict[str, str]:
 
 
 def _is_near(name: str) -> bool:
-    """Whether a file is named by its place from the one that names it."""
+    """True if a file is named by its place from the one that names it."""
     return not (name.startswith(("/", "data:")) or "://" in name)
 
 

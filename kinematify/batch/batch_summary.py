@@ -1,4 +1,4 @@
-"""What a batch came to: counts, times and failures, and a page with all objects."""
+"""Summary of a batch: counts, times and failures, and a page with all objects."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from statistics import fmean
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
+from kinematify.batch.batch_inputs import filesystem
 from kinematify.batch.convert import REPORT_FILE, THUMBNAIL_FILE, VIEW_FILE
 from kinematify.batch.manifest import read_manifests
 from kinematify.batch.run_batch import OBJECTS
-from kinematify.batch.batch_inputs import filesystem
 from kinematify.errors import OutputError
 from kinematify.validation.formats.html_frame import badge, page, table, text
 
@@ -39,7 +39,7 @@ def outcome_words(records: Sequence[ObjectRecord]) -> str:
 
 
 def step_rows(records: Sequence[ObjectRecord]) -> list[tuple[str, ...]]:
-    """How long each step took, over the objects that had it."""
+    """Return how long each step took, over the objects that had it."""
     seconds: dict[str, list[float]] = {}
     for record in records:
         for step, value in record.step_seconds.items():

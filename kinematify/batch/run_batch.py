@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinematify import __version__
+from kinematify.batch.batch_inputs import absolute, content_hash, filesystem, find_sources, is_local
 from kinematify.batch.convert import FORMATS, STEPS, Conversion, convert
 from kinematify.batch.manifest import Manifest, ObjectRecord
-from kinematify.batch.batch_inputs import absolute, content_hash, filesystem, find_sources, is_local
 from kinematify.errors import InputError, OutputError
 from kinematify.processes.pool import TaskFailure, WorkItem, run_tasks
 from kinematify.simulation.engines import DEFAULT_ENGINES
@@ -44,7 +44,7 @@ LIVES = 3
 
 @dataclass(frozen=True, kw_only=True)
 class BatchRequest:
-    """What to convert, and how."""
+    """Inputs and options of a batch."""
 
     patterns: tuple[str, ...]
     """As `find_sources` takes them."""
@@ -101,7 +101,7 @@ class BatchRequest:
 
 @dataclass(frozen=True, kw_only=True)
 class BatchResult:
-    """What has come of a run."""
+    """Result of a batch."""
 
     out: str
     """Absolute path or URL of the output."""
@@ -188,7 +188,7 @@ def _share(sources: Sequence[Source], share: tuple[int, int]) -> list[Source]:
 
 
 def _has_ended(source: Source, manifest: Manifest, conversion: Conversion, request: BatchRequest) -> bool:
-    """Whether an object has a record that stays."""
+    """True if an object has a record that stays."""
     record = manifest.records.get(source.place)
     if record is None or record.configuration != conversion.hash or record.status == "error":
         return False

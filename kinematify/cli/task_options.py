@@ -32,7 +32,7 @@ class TaskOptions:
     into: Path | None = None
 
     def request(self, files: ReportFiles, package_dirs: tuple[Path, ...]) -> TaskRequest | None:
-        """What the options ask for; the robot is read once, so that what is wrong with it is said at once.
+        """Return what the options ask for; the robot is read once, so that what is wrong with it is said at once.
 
         Raises:
             InputError: There is no such robot, tool or gripper.
@@ -43,8 +43,8 @@ class TaskOptions:
             return None
         if self.task == "pour" and (self.grasp or self.base):
             raise click.UsageError("--grasp and --base belong to --task pull. Leave them out.")
-        from kinematify.manipulation.plan_request import TaskRequest
         from kinematify.manipulation.manipulator import robot_of
+        from kinematify.manipulation.plan_request import TaskRequest
 
         request = TaskRequest(
             kind=self.task,

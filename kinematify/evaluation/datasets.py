@@ -30,7 +30,7 @@ DEFAULT_SETS = ("robots", "everyday")
 
 @dataclass(frozen=True, kw_only=True)
 class Condition:
-    """How an object is posed before its kinematics are erased."""
+    """Pose of an object before its kinematics are erased."""
 
     name: str
     pose: Literal["rest", "random"]

@@ -1,4 +1,4 @@
-"""What a run of the evaluation leaves: a JSON of one form for benchmark and studies, and the Markdown beside it.
+"""Records of the evaluation: a JSON of one form for benchmark and studies, and the Markdown beside it.
 
 What a result depends on stands in its header: the sources that gave it, as a hash, and the commit that they are at.
 """
@@ -32,7 +32,8 @@ if TYPE_CHECKING:
 _PACKAGE = Path(__file__).resolve().parents[1]
 NOT_INFERRING = (
     "batch", "cli", "configs", "envs", "generate", "manipulation", "refinement", "simulation", "validation", "view",
-    "vision", "evaluation/nightly", "evaluation/result_record.py", "evaluation/run_benchmark.py", "evaluation/benchmark_summary.py",
+    "vision", "evaluation/nightly", "evaluation/result_record.py", "evaluation/run_benchmark.py",
+    "evaluation/benchmark_summary.py",
 )  # fmt: skip
 """What neither infers nor scores; configurations count by their values."""
 
@@ -89,7 +90,7 @@ _Key = TypeVar("_Key", bound="Hashable")
 
 @dataclass(frozen=True, kw_only=True)
 class Header:
-    """How the records came about."""
+    """Origin of the records: command, versions, time."""
 
     study: str
     """``bench``, or the name of a study."""

@@ -1,4 +1,4 @@
-"""What goes into another format: the URDF's tree, what is seen, the pieces that collide, usable masses.
+"""Content of another format: the URDF's tree, what is seen, the pieces that collide, usable masses.
 
 The pieces are those that the file has. Engines take the hull of a mesh for the mesh, so that a drawer would be solid
 and its cabinet too: a file whose meshes are not convex gets the pieces that `kinematify fix` writes.
@@ -119,7 +119,7 @@ def _notes(model: Robot, inertials: dict[str, PreparedInertial], *, made: bool) 
 
 
 def _visuals(link: Link) -> tuple[Shape, ...]:
-    """What is seen: collision geometry where there is nothing else, as viewers do."""
+    """Return what is seen: collision geometry where there is nothing else, as viewers do."""
     shown = [
         shape
         for shape in link.visuals or link.collisions
@@ -129,7 +129,7 @@ def _visuals(link: Link) -> tuple[Shape, ...]:
 
 
 def shown_surfaces(shape: Shape) -> tuple[Surface, ...]:
-    """What is seen of a shape, cut into its materials; one that states none has its colour, or grey."""
+    """Return what is seen of a shape, cut into its materials; one that states none has its colour, or grey."""
     appearance = shape.mesh.appearance or plain(shape.color or GREY, len(shape.mesh.faces))
     return surfaces(shape.mesh.vertices, shape.mesh.faces, appearance)
 

@@ -32,7 +32,7 @@ FORMATS = tuple(_WRITERS)
 
 @dataclass(frozen=True, kw_only=True)
 class Exported:
-    """What was written."""
+    """Files that were written."""
 
     path: Path
     notes: tuple[str, ...]

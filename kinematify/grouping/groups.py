@@ -10,8 +10,8 @@ import numpy as np
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.errors import AssemblyError, InputError
-from kinematify.grouping.piece_sets import Candidate, measure_candidates, node_of_pieces, propose
 from kinematify.grouping.pair_measurements import measure_pieces
+from kinematify.grouping.piece_sets import Candidate, measure_candidates, node_of_pieces, propose
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.joints.choice.scorer import MOVING_WEIGHTS, PIECES_WEIGHTS, shipped_scorer
 from kinematify.robot.appearance import joined
@@ -60,7 +60,7 @@ class Grouping:
 
     @property
     def messages(self) -> tuple[str, ...]:
-        """What was made of the pieces, one sentence each."""
+        """Return what was made of the pieces, one sentence each."""
         count = sum(len(group.pieces) for group in self.groups)
         doubtful = [_said(group) for group in self.groups if group.moves is not None and group.moves < _DOUBTFUL]
         said = [f"The mesh is not segmented: {count} pieces were grouped into {len(self.groups)} rigid parts."]
@@ -107,7 +107,7 @@ _MOST_NAMED = 8
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PieceWeights:
-    """What was fitted to objects whose parts are known."""
+    """Weights fitted to objects whose parts are known."""
 
     pairs: Scorer
     """Which two pieces are one part."""

@@ -67,7 +67,7 @@ class Arm:
         return np.asarray(self._placement(q).homogeneous).copy()
 
     def jacobian(self, q: FloatArray) -> FloatArray:
-        """Of the tool, in its own frame, linear part first, shape (6, dof)."""
+        """Jacobian of the tool, in its own frame, linear part first, shape (6, dof)."""
         values = pin.neutral(self.model)
         values[self._rows] = q
         return np.asarray(pin.computeFrameJacobian(self.model, self._data, values, self._tool, pin.LOCAL))[
@@ -133,7 +133,7 @@ class Arm:
         return np.stack([np.asarray(self._placement(q).homogeneous) for q in self.samples])
 
     def distances(self, targets: FloatArray) -> FloatArray:
-        """How far the nearest sample is from poses (n, 4, 4): metres and half metres per radian, shape (n,)."""
+        """Return how far the nearest sample is from poses (n, 4, 4): metres and half metres per radian, shape (n,)."""
         return np.asarray(self._map.query(_features(targets, self.settings.radian))[0])
 
     @cached_property

@@ -17,10 +17,10 @@ from kinematify.errors import InputError
 from kinematify.geometry.overlap import OverlapQueries
 from kinematify.geometry.scene import read_scene, relative, visible_shapes
 from kinematify.manipulation.grasp import moved_bodies
-from kinematify.manipulation.robot_place import ObjectMotion, object_box
-from kinematify.manipulation.planning import Clearing, Freedom, JointPlanning, motion_of
 from kinematify.manipulation.plan_request import Failure
+from kinematify.manipulation.planning import Clearing, Freedom, JointPlanning, motion_of
 from kinematify.manipulation.real_size import sizing, write_scaled
+from kinematify.manipulation.robot_place import ObjectMotion, object_box
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Joint, Link, Robot, forward_kinematics, rest_configuration
@@ -208,7 +208,7 @@ def _moving(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PourPlan:
-    """What became of the plan."""
+    """Result of the plan."""
 
     motion: Motion | None
     """To be executed; None if there is no way to a grasp."""
@@ -271,7 +271,7 @@ def _planned(arm: Arm, pour: Pour, settings: ValidationSettings, seed: int) -> P
 
 
 def _meeting(scene: Scene, motion: ObjectMotion) -> str | None:
-    """What the cup itself runs into on its way."""
+    """Return what the cup itself runs into on its way."""
     overlap = OverlapQueries(scene)
     cups = {body for bodies in moved_bodies(scene, TILT) for body in bodies}
     for pair in scene.pairs:

@@ -1,4 +1,4 @@
-"""What the user should know of an inference, one sentence each."""
+"""Warnings of an inference, one sentence each."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import numpy as np
 
 from kinematify.contact.graph import pair
 from kinematify.joints.bearings.refine_lines import across_axis
-from kinematify.joints.choice.judge import alike_edges
 from kinematify.joints.choice.congruent_joints import TwinJoints
+from kinematify.joints.choice.judge import alike_edges
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ def _followed_twins(
 
 
 def _runs_along(joint: JointEstimate, line: BearingLine) -> bool:
-    """Whether a joint has the direction of a line, to 1 deg."""
+    """True if a joint has the direction of a line, to 1 deg."""
     return bool(abs(float(joint.axis @ line.axis)) > math.cos(math.radians(1.0)))
 
 
@@ -164,7 +164,7 @@ def cut_parts(assembly: Assembly, groups: Sequence[Sequence[int]], mains: Sequen
 
 
 class CompoundKind(StrEnum):
-    """What several joints are together."""
+    """Kind of a group of joints."""
 
     BALL = "ball"
     UNIVERSAL = "universal"

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointCandidate
-    from kinematify.joints.features.frames import BoxFrame
     from kinematify.joints.features.edge_scene import JointScene
+    from kinematify.joints.features.frames import BoxFrame
     from kinematify.paper.cavl import FailedMotions
     from kinematify.paper.joints import PaperJoints
 
@@ -159,7 +159,7 @@ class CandidateJoints:
 
 
 def is_same(joint: JointEstimate, candidate: JointCandidate) -> bool:
-    """Whether a candidate is the joint that was chosen: type, direction, and place for what turns."""
+    """True if a candidate is the joint that was chosen: type, direction, and place for what turns."""
     if joint.kind is JointType.FIXED or joint.kind.turns != candidate.kind.turns:
         return False
     if abs(float(joint.axis @ candidate.axis)) < _SAME:

@@ -83,7 +83,7 @@ class UrdfEditor:
 
     @property
     def changes(self) -> tuple[str, ...]:
-        """What is other than in the given file, one sentence each; paths as they were written last."""
+        """Return what is other than in the given file, one sentence each; paths as they were written last."""
         return (*self._changes, *self._path_changes)
 
     def say(self, sentence: str) -> None:
@@ -271,7 +271,7 @@ class UrdfEditor:
         return self.out
 
     def _settle_paths(self, document: _Element) -> None:
-        """Let paths of files mean the same from the new folder, for engines that know no packages.
+        """Make paths of files mean the same from the new folder, for engines that know no packages.
 
         Pieces have names beside the new file, and MuJoCo looks for all meshes in ``meshdir``, so that goes.
         """
@@ -305,7 +305,7 @@ class UrdfEditor:
             )
 
     def _path(self, name: str, folders: Sequence[Path], after: Path) -> str:
-        """What to write for a file; what is absolute, or found nowhere, stays."""
+        """Return what to write for a file; what is absolute, or found nowhere, stays."""
         found = None if Path(name).is_absolute() else self._found(name, folders)
         if found is None or ("://" not in name and "\\" not in name and found[0] == after):
             return name
@@ -327,7 +327,7 @@ class UrdfEditor:
 
 
 def _same(link: Link, before: Link) -> bool:
-    """Whether a link kept its primitives."""
+    """True if a link kept its primitives."""
     return [id(shape) for shape in link.collisions] == [id(shape) for shape in before.collisions]
 
 

@@ -52,7 +52,7 @@ _SILENT = (
 
 @dataclass(kw_only=True)
 class _Content:
-    """What has been read so far."""
+    """Content read so far."""
 
     appearance: bool
     """Whether materials, textures and colours are read."""

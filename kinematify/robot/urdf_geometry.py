@@ -107,7 +107,7 @@ class GeometrySource:
 
     @property
     def states_up_axis(self) -> bool:
-        """Whether a mesh that was read states that another axis than z points up."""
+        """True if a mesh that was read states that another axis than z points up."""
         return any(mesh.up for mesh in self.cache.values())
 
     def resolved(self, filename: str, where: str) -> Path:

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     import viser
 
     from kinematify.robot.robot import Joint
-    from kinematify.view.keep import Kept
     from kinematify.view.inference_view import Shown, Sight
+    from kinematify.view.keep import Kept
     from kinematify.view.viewer_scene import Touch, ViewScene
 
 _AS_WRITTEN, _OWN = "as in the file", "-"
@@ -40,7 +40,7 @@ _SIGHTS = 40
 
 
 class Actions(Protocol):
-    """What a person can do on the panel."""
+    """Actions of a person on the panel."""
 
     def take_pose(self, name: str) -> None:
         """Bring all joints into a pose."""
@@ -49,7 +49,7 @@ class Actions(Protocol):
         """Move a joint [rad or m] by its slider."""
 
     def play(self) -> None:
-        """Let the chosen joint go to and fro, or stop."""
+        """Make the chosen joint go to and fro, or stop."""
 
     def try_candidate(self, joint: str, number: int) -> None:
         """Move a joint as one of its candidates says, 0 for as in the file."""
@@ -85,7 +85,7 @@ class Actions(Protocol):
         """Show or hide a part."""
 
     def send_picture(self, client: Any) -> None:
-        """Let the page of a client make a picture."""
+        """Make the page of a client make a picture."""
 
     def send_film(self, client: Any) -> None:
         """Film the joints for a client."""
@@ -136,7 +136,7 @@ class Panel:
             self._add_view(parts)
 
     def has(self, joint: str) -> bool:
-        """Whether a joint has a slider."""
+        """True if a joint has a slider."""
         return joint in self._sliders
 
     def move(self, joint: str, value: float) -> float:
@@ -188,12 +188,12 @@ class Panel:
         self._keep.visible = offered and self._can_keep
 
     def forbid_keeping(self, forbidden: bool) -> None:  # while it is written
-        """Let the button that writes what is tried be pressed, or not."""
+        """Make the button that writes what is tried be pressed, or not."""
         self._keep.disabled = forbidden
 
     @property
     def status(self) -> str:
-        """What is said of collisions."""
+        """Return what is said of collisions."""
         return str(self._status.content)
 
     def show_status(self, said: str) -> None:
@@ -320,7 +320,7 @@ class Panel:
 
 
 def said_of(shown: Shown) -> str:
-    """How to begin, the joints to look at first, and where chains of joints close."""
+    """Return how to begin, the joints to look at first, and where chains of joints close."""
     said = ["Move a slider (arrow keys move it by 1 % of the range) or click a part."]
     if shown.doubtful:
         names = _plain(", ".join(shown.doubtful))
@@ -330,7 +330,7 @@ def said_of(shown: Shown) -> str:
 
 
 def said_of_kept(kept: Kept) -> str:
-    """What was written, and the command that does the same."""
+    """Return what was written, and the command that does the same."""
     warnings = "".join(f"\n\n{_plain(warning)}" for warning in kept.warnings)
     return f"Kept. The same from the command line:\n\n```\n{kept.command}\n```{warnings}"
 

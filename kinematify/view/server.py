@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint
-    from kinematify.view.keep import Kept, ModelFolder
     from kinematify.view.inference_view import Shown, Sight
+    from kinematify.view.keep import Kept, ModelFolder
 
 _CHOSEN, _MARKED, _WRONG = (66, 133, 244), (245, 166, 35), (219, 40, 40)
 """Of the part whose joint is chosen, of what a finding is about, and of what collides."""
@@ -45,7 +45,7 @@ _PICTURE = (1600, 1200)
 
 
 class ModelViewer:
-    """What is on the page and what it does; every client sees the same."""
+    """Page of a model: what it does; every client sees the same."""
 
     def __init__(
         self,
@@ -136,7 +136,7 @@ class ModelViewer:
 
     @property
     def status(self) -> str:
-        """What the page says of collisions."""
+        """Return what the page says of collisions."""
         return self._panel.status
 
     def run(self, stop: threading.Event) -> None:
@@ -184,7 +184,7 @@ class ModelViewer:
                 self._drawn.place(self._q, self._apart)
 
     def choose(self, joint: str) -> None:
-        """Let the part of a joint glow, and show what is known of the joint."""
+        """Make the part of a joint glow, and show what is known of the joint."""
         with self._lock:
             if self._chosen != joint and self._panel.has(joint):
                 self._chosen, self._marked = joint, frozenset()
@@ -370,7 +370,7 @@ class ModelViewer:
         self._panel.describe(joint, self._probability(joint))
 
     def _probability(self, joint: Joint) -> float | None:
-        """How likely the joint is as it is shown: as it is tried, or as in the file."""
+        """Return how likely the joint is as it is shown: as it is tried, or as in the file."""
         tried = self._scene.tried(joint.name)
         return self._shown.confidences.get(joint.child) if tried is None else tried.probability
 
@@ -409,7 +409,7 @@ class ModelViewer:
             self.choose(joint)
 
     def play(self) -> None:
-        """Let the chosen joint go to and fro, or stop."""
+        """Make the chosen joint go to and fro, or stop."""
         with self._lock:
             self._sweeping = None if self._sweeping == self._chosen else self._chosen
 
@@ -428,7 +428,7 @@ class ModelViewer:
             self._place()
 
     def send_picture(self, client: Any) -> None:
-        """Let the page of a client draw a picture from where it looks, and offer it there."""
+        """Make the page of a client draw a picture from where it looks, and offer it there."""
         width, height = _PICTURE
         pixels = client.get_render(height, width, transport_format="png")
         content = io.BytesIO()
@@ -477,7 +477,7 @@ class ModelViewer:
             self._glow()
 
     def _glow(self) -> None:
-        """Let parts glow that collide, that a finding is about, or whose joint is chosen."""
+        """Make parts glow that collide, that a finding is about, or whose joint is chosen."""
         chosen = self._chosen and self._scene.group_of(self._scene.robot.joint_by_name[self._chosen].child)
         for group in self._scene.groups:
             color = None

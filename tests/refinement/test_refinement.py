@@ -95,11 +95,11 @@ def test_a_drawer_along_the_wrong_axis_finds_the_right_one_again() -> None:
 
 
 def test_a_joint_that_nothing_speaks_against_but_the_shape_is_measured_and_replaced() -> None:
-    """It is no candidate, and no failure blames its line."""
+    """It is no candidate, and no failure points to its line."""
     right = joint_above(inferred("edge_door"), "door")
     tilted = right.axis + np.array([0.0, 0.6, 0.0])
     refinement = refine(with_joint(inferred("edge_door"), "door", axis=tilted, upper=0.1), seconds=60.0)
-    assert not {"door: axis", "door: type"} & set(refinement.history.rounds[0].blamed)
+    assert not {"door: axis", "door: type"} & set(refinement.history.rounds[0].suspected)
     assert refinement.history.rounds[0].score < -load_config().refine.lead_elsewhere
     found = joint_above(refinement.inference, "door")
     assert abs(float(found.axis @ right.axis)) == pytest.approx(1.0, abs=1e-3)
@@ -523,7 +523,7 @@ def test_what_only_fails_in_an_engine_is_tried_there_again() -> None:
     refinement = refine(blocked, tier="engines", rounds=1, settings=blind)
     first = refinement.history.rounds[0]
     assert first.motion_errors == 0
-    assert any(failed.startswith(("KV4", "KV5", "KV8")) for failed in first.failed)
+    assert any(failed.startswith("KV8") for failed in first.failed)
     found = joint_above(refinement.inference, "drawer")
     assert abs(float(found.axis @ right.axis)) == pytest.approx(1.0, abs=1e-3)
     assert refinement.history.rounds[refinement.history.kept].errors == 0

@@ -1,4 +1,4 @@
-"""What the checks of mesh files look at: each file opened once, its surface measured when first asked for."""
+"""Mesh files as the checks see them: each file opened once, its surface measured when first asked for."""
 
 from __future__ import annotations
 
@@ -77,5 +77,5 @@ class MeshContext:
 
     @cached_property
     def gaps(self) -> list[tuple[str, float, float]]:
-        """See `gaps_between`."""
+        """Implement `gaps_between`."""
         return list(gaps_between(self.model, self.extents))

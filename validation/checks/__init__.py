@@ -7,15 +7,11 @@ import difflib
 from kinematify.errors import InputError
 from kinematify.validation.check import REGISTRY, Check
 from kinematify.validation.checks import (  # noqa: F401 - each registers its checks
-    agreement,
     as_loaded,
     collision_geometry,
-    contact_agreement,
+    declared_limits,
+    declared_masses,
     drives,
-    engine_drive,
-    engine_loading,
-    engine_rest,
-    engine_stability,
     evidence,
     file_joints,
     file_names,
@@ -25,15 +21,13 @@ from kinematify.validation.checks import (  # noqa: F401 - each registers its ch
     file_text,
     file_tree,
     inertias,
-    declared_limits,
     loops,
-    declared_masses,
     meshes,
     motion,
     rest,
-    unit_sizes,
-    task,
     several_joints,
+    task,
+    unit_sizes,
 )
 
 __all__ = ["CHECKS", "checks_of", "find_check"]

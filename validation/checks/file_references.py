@@ -13,7 +13,7 @@ from kinematify.robot.mesh_paths import MESH_SUFFIXES, find_mesh
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
 from kinematify.validation.document import shown
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -36,9 +36,11 @@ class _Reference:
     """None where there is no such file."""
     fault: str
     """Why there is none."""
+    collides: bool
+    """It belongs to a collision element."""
 
 
-@check("KV141", title="Mesh files exist", fails="A mesh file is missing", severity=Severity.ERROR, blame=Blame.ASSET)
+@check("KV141", title="Mesh files exist", fails="A mesh file is missing", severity=Severity.ERROR, cause=Cause.ASSET)
 def missing_files(result: OpenCheck, urdf: Urdf) -> None:
     """Every file name leads to a file, through packages where it says so.
 
@@ -85,10 +87,11 @@ def _same_but_for_case(path: Path) -> Path | None:
     title="Mesh formats can be read",
     fails="A mesh format cannot be read everywhere",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
-    """Every mesh is of a format that is read here; formats that MuJoCo does not read are a note.
+    """Every mesh is of a format that is read here, a warning where only a visual is not, which the other checks then do
+    without; formats that MuJoCo does not read are a note.
 
     Why it matters: Each reader knows other formats; what it does not know it drops or refuses.
 
@@ -101,6 +104,7 @@ def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
             result.find(
                 f"The mesh {shown(reference.filename)} of the link {reference.link} is of no format that can be read.",
                 f"Convert it to one of {', '.join(MESH_SUFFIXES)}, for example with Blender.",
+                severity=Severity.ERROR if reference.collides else Severity.WARNING,
                 link=reference.link,
                 line=reference.line,
             )
@@ -122,7 +126,7 @@ def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
     title="Mesh files have names of their own",
     fails="Mesh files share a name",
     severity=Severity.NOTE,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def repeated_base_names(result: OpenCheck, urdf: Urdf) -> None:
     """No two different mesh files have the same name without folder and suffix.
@@ -155,7 +159,7 @@ def repeated_base_names(result: OpenCheck, urdf: Urdf) -> None:
     title="Mesh paths hold elsewhere",
     fails="Mesh paths hold on one machine only",
     severity=Severity.NOTE,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def bound_paths(result: OpenCheck, urdf: Urdf) -> None:
     """No mesh path is absolute or written with backslashes.
@@ -188,7 +192,14 @@ def _references(urdf: Urdf) -> Iterator[_Reference]:
             filename = mesh.get("filename") or ""
             if filename.strip():
                 path, fault = _found(filename, link, urdf)
-                yield _Reference(link=link, filename=filename, line=line_of(mesh), path=path, fault=fault)
+                yield _Reference(
+                    link=link,
+                    filename=filename,
+                    line=line_of(mesh),
+                    path=path,
+                    fault=fault,
+                    collides=element.tag == "collision",
+                )
 
 
 def _found(filename: str, link: str, urdf: Urdf) -> tuple[Path | None, str]:

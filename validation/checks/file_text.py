@@ -12,7 +12,7 @@ from kinematify.robot.urdf_numbers import line_of
 from kinematify.robot.urdf_text import has_doctype
 from kinematify.validation.check import check
 from kinematify.validation.document import shown
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -57,7 +57,7 @@ _DOCTYPE = re.compile(rb"<!(DOCTYPE|ENTITY)\b")
     title="The file is well-formed XML",
     fails="The file is not well-formed XML",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def syntax_problems(result: OpenCheck, source: UrdfText) -> None:
     """The XML parser reads the whole file.
@@ -80,7 +80,7 @@ def syntax_problems(result: OpenCheck, source: UrdfText) -> None:
     title="No DOCTYPE and no entities",
     fails="The file has a DOCTYPE or entities",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def doctype_problems(result: OpenCheck, source: UrdfText) -> None:
     """The file declares neither a DOCTYPE nor entities.
@@ -105,7 +105,7 @@ def doctype_problems(result: OpenCheck, source: UrdfText) -> None:
     title="The file stays within the caps",
     fails="The file is larger than the caps",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def cap_problems(result: OpenCheck, urdf: Urdf) -> None:
     """Elements, links and joints, and how deep links hang one below the other, stay below `max_elements`, `max_links`
@@ -141,7 +141,7 @@ def cap_problems(result: OpenCheck, urdf: Urdf) -> None:
     title="Lines and names are short enough",
     fails="Lines or names are too long",
     severity=Severity.WARNING,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def long_text(result: OpenCheck, urdf: Urdf) -> None:
     """No line is longer than `max_line_bytes`, no name longer than `max_name`.
@@ -179,7 +179,7 @@ def long_text(result: OpenCheck, urdf: Urdf) -> None:
     title="Elements stand once and in their place",
     fails="Elements are repeated or misplaced",
     severity=Severity.WARNING,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def displaced_elements(result: OpenCheck, urdf: Urdf) -> None:
     """Elements that may occur once in their parent occur once, and known elements are where URDF expects them.
@@ -226,7 +226,7 @@ def _displaced(result: OpenCheck, child: _Element, parent: _Element) -> None:
     )
 
 
-@check("KV106", title="Elements are known", fails="Elements are unknown", severity=Severity.NOTE, blame=Blame.ASSET)
+@check("KV106", title="Elements are known", fails="Elements are unknown", severity=Severity.NOTE, cause=Cause.ASSET)
 def unknown_elements(result: OpenCheck, urdf: Urdf) -> None:
     """Elements that neither URDF nor the usual extensions define are counted by kind.
 

@@ -9,9 +9,9 @@ from kinematify.errors import InputError
 from kinematify.manipulation.execute import Execution, Loaded, execute, load
 from kinematify.manipulation.film import write_film
 from kinematify.manipulation.kinematics import Arm
-from kinematify.manipulation.pour import PourPlan, Vessel, plan_pour, read_vessel
-from kinematify.manipulation.plan_request import Failure, Hold
 from kinematify.manipulation.manipulator import robot_of
+from kinematify.manipulation.plan_request import Failure, Hold
+from kinematify.manipulation.pour import PourPlan, Vessel, plan_pour, read_vessel
 from kinematify.simulation.engines import ENGINES, engines_that_hold
 from kinematify.validation.finding import Severity
 
@@ -47,14 +47,14 @@ class PourTask:
 
     @cached_property
     def planned(self) -> PourPlan:
-        """What became of the plan."""
+        """Return what became of the plan."""
         assert self._vessels is not None
         settings = self.request.settings
         return plan_pour(self.arm, *self._vessels, self.request.work, settings, seed=settings.seed)
 
     @cached_property
     def world(self) -> Loaded | None:
-        """What the engines load; None where there is no plan that could be executed."""
+        """Return what the engines load; None where there is no plan that could be executed."""
         motion = self.planned.motion
         return None if motion is None else load(motion, self.request.work, self.request.settings.prepare)
 
