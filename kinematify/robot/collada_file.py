@@ -92,12 +92,15 @@ def _piece(
     looks: dict[str, tuple[Material, tuple[str, ...]]] | None,
     path: Path,
 ) -> RawMesh:
-    """A set of polygons of one material, without shared corners; its materials where `looks` collects them."""
+    """A set of polygons of one material; its appearance where `looks` collects materials."""
     corners = np.asarray(piece.vertex_index).reshape(-1)
     sizes = np.asarray(piece.vcounts, dtype=np.int64) if isinstance(piece, Polylist) else np.full(len(corners) // 3, 3)
     places = triangle_places(np.asarray(piece.vertex, dtype=np.float64)[corners], sizes)
-    vertices = np.asarray(piece.vertex, dtype=np.float64)[corners[places]].reshape(-1, 3)
-    faces = np.arange(len(vertices)).reshape(-1, 3)
+    # Vertices in the order in which faces use them.
+    used, first, index = np.unique(corners[places].reshape(-1), return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    vertices = np.asarray(piece.vertex, dtype=np.float64)[used[order]]
+    faces = np.argsort(order)[index].reshape(-1, 3)
     found: Appearance | None = None
     bound = next((item.target for item in node.materials if item.symbol == piece.material), None)
     colors = piece.sources.get("COLOR")

@@ -1,7 +1,8 @@
-"""STL, PLY and OFF files, by trimesh; binary STL, which nearly all are, by numpy in a tenth of its time."""
+"""STL and PLY files, by trimesh, with polygons cut again; binary STL by numpy, without loading trimesh; OFF."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from kinematify.robot.polygons import triangle_places
 from kinematify.robot.raw_mesh import RawMesh
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from kinematify.robot.arrays import IntArray
@@ -34,6 +36,8 @@ def read_general(path: Path, *, appearance: bool = False) -> tuple[RawMesh, ...]
         corners = np.frombuffer(content, _TRIANGLE, offset=_HEADER)["corners"].reshape(-1, 3)
         faces = np.arange(3 * count, dtype=np.int64).reshape(-1, 3)
         return (RawMesh(name=path.name, vertices=corners.astype(np.float64), faces=faces),)
+    if suffix == ".off":
+        return (_off(path, content),)
     import trimesh  # noqa: PLC0415  # takes longer than reading a binary STL
 
     # Without `process` no vertex is merged, so that faces keep their order and labels per face stay valid.
@@ -43,33 +47,49 @@ def read_general(path: Path, *, appearance: bool = False) -> tuple[RawMesh, ...]
     meshes = []
     for name, item in scene.geometry.items():
         vertices, faces = np.asarray(item.vertices, dtype=np.float64), np.asarray(item.faces, dtype=np.int64)
-        polygons = _polygons(item, content if suffix == ".off" else b"")
-        looks = _appearance(item.visual, faces) if appearance else None
-        if max(map(len, polygons), default=3) > 3:
-            sizes = np.array([len(polygon) for polygon in polygons])
-            corners = np.concatenate(polygons).astype(np.int64)
-            faces = corners[triangle_places(vertices[corners], sizes)]
-            looks = _appearance(item.visual, faces) if appearance and item.visual.kind == "vertex" else None
-        meshes.append(RawMesh(name=str(name), vertices=vertices, faces=faces, appearance=looks))
+        mesh, polygons = RawMesh(name=str(name), vertices=vertices, faces=faces), _polygons(item)
+        ears = max(map(len, polygons), default=3) > 3 and item.visual.kind != "texture"
+        mesh = _cut(mesh, polygons) if ears else mesh
+        looks = (
+            _appearance(item.visual, mesh.faces) if appearance and (item.visual.kind != "face" or not ears) else None
+        )
+        meshes.append(replace(mesh, appearance=looks))
     empty = content == content[:80] + bytes(4) or (content.startswith(b"solid") and b"facet" not in content)
     if suffix == ".stl" and not meshes and not empty:
         raise ValueError("it is neither a binary STL of the length that it states nor a complete ASCII one")
     return tuple(meshes)
 
 
-def _polygons(item: Any, off: bytes) -> list[Any]:
-    """Corners of every polygon as the file has them; none where trimesh keeps no more than triangles."""
-    if off:
-        lines = [
-            words for line in off.decode("utf-8", "replace").splitlines() if (words := line.partition("#")[0].split())
-        ]
-        numbers = lines[0][1:] or lines.pop(1)
-        start = 1 + int(numbers[0])
-        return [np.array(line[1 : 1 + int(line[0])], dtype=np.int64) for line in lines[start : start + int(numbers[1])]]
+def _off(path: Path, content: bytes) -> RawMesh:
+    """An OFF with numbers in ASCII, at whose polygons of more than four corners trimesh 5.2 fails."""
+    words = (line.partition("#")[0].split() for line in content.decode("utf-8-sig", "replace").splitlines())
+    lines = [line for line in words if line]
+    if not lines or not lines[0][0].endswith("OFF"):
+        raise ValueError("it does not begin like an OFF")
+    count, polygons = map(int, (lines[0][1:] or lines.pop(1))[:2])
+    vertices = np.array([line[:3] for line in lines[1 : 1 + count]], dtype=np.float64).reshape(count, 3)
+    rows = [np.array(line, dtype=np.float64).astype(np.int64) for line in lines[1 + count :][:polygons]]
+    if len(rows) != polygons or any(len(row) <= row[0] for row in rows):
+        raise ValueError(f"it states {polygons} faces but has fewer")
+    return _cut(RawMesh(name=path.name, vertices=vertices, faces=_NONE), [row[1 : 1 + row[0]] for row in rows])
+
+
+_NONE = np.empty((0, 3), dtype=np.int64)
+
+
+def _cut(mesh: RawMesh, polygons: Sequence[Any]) -> RawMesh:
+    """The mesh with the triangles of polygons, each an array of vertices, as faces."""
+    corners = np.concatenate([np.empty(0), *polygons]).astype(np.int64)
+    sizes = np.array([len(polygon) for polygon in polygons], dtype=np.int64)
+    return replace(mesh, faces=corners[triangle_places(mesh.vertices[corners], sizes)])
+
+
+def _polygons(item: Any) -> Sequence[Any]:
+    """Vertices of every polygon of a PLY, which trimesh has cut into fans; none of other files."""
     data: Any = item.metadata.get("_ply_raw", {}).get("face", {}).get("data")
     names = data.dtype.names or () if isinstance(data, np.ndarray) else data or ()
     lists = next((data[name] for name in names if name.startswith("vertex_ind")), ())
-    return list(lists["f1"] if getattr(getattr(lists, "dtype", None), "names", None) else lists)
+    return lists["f1"] if getattr(getattr(lists, "dtype", None), "names", None) else lists
 
 
 def _appearance(visual: Any, faces: IntArray) -> Appearance | None:
