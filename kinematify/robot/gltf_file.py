@@ -17,10 +17,10 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from kinematify.errors import EnvironmentFault
 from kinematify.robot.appearance import Appearance, Material, joined, linear_of, painted, srgb_of
 from kinematify.robot.exact_faces import ExactFaces, joined_faces
 from kinematify.robot.raw_mesh import RawMesh, compacted, merged
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     import re
@@ -110,13 +110,8 @@ def _opened(path: Path) -> tuple[dict[str, Any], bytes]:
 
 
 def _decoder(package: str, extension: str) -> Any:
-    try:
-        return importlib.import_module(package)
-    except ImportError as error:
-        raise EnvironmentFault(
-            f"The glTF file is compressed with {extension}, which needs the package {package}, which is not installed. "
-            "Run `pip install 'kinematify[formats]'`, or export the file without compression."
-        ) from error
+    require(f"The extension {extension} of a glTF file (or export it without compression)", package)
+    return importlib.import_module(package)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

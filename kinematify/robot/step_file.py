@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import re
 import subprocess
 import sys
@@ -10,8 +9,8 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kinematify.errors import EnvironmentFault
 from kinematify.robot.gltf_file import read_gltf
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from kinematify.robot.raw_mesh import RawMesh
@@ -41,11 +40,7 @@ def read_step(path: Path, *, appearance: bool = False) -> tuple[RawMesh, ...]:
         EnvironmentFault: cascadio is not installed.
         ValueError: The file cannot be converted.
     """
-    if importlib.util.find_spec("cascadio") is None:
-        raise EnvironmentFault(
-            f"Reading {path} needs the package cascadio, which is not installed. Run `pip install kinematify[cad]`, or "
-            "export the model as GLB from the CAD program."
-        )
+    require(f"Reading {path} (or export it as GLB from the CAD program)", "cascadio")
     with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
         converted = Path(folder) / "converted.glb"
         # In a process of its own: OpenCASCADE writes to the terminal, and broken files have crashed it.
