@@ -47,7 +47,7 @@ def parts_of_holders(meshes: Sequence[RawMesh]) -> tuple[list[RawMesh], list[str
     groups: dict[tuple[int, str], list[int]] = {}
     for k, path in enumerate(paths):
         named = [node for node in path if count[node] < len(meshes) and not _GENERATED.fullmatch(node[1])]
-        own = not named or (named[-1] == path[-1] and not _is_split(meshes[k], named))
+        own = not named or (named[-1] == path[-1] and not _is_split(meshes[k], tuple(named)))
         holder = (-1 - k, "") if not named else named[-1] if own or named[-1] != path[-1] else named[-2]
         groups.setdefault(holder, []).append(k)
     result: list[tuple[int, RawMesh]] = []

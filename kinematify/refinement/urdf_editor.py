@@ -17,9 +17,9 @@ from kinematify.model.collision import fit_collision
 from kinematify.model.dynamics import with_dynamics
 from kinematify.model.masses import prepared_inertials
 from kinematify.robot.mesh_file import read_meshes
-from kinematify.robot.raw_mesh import merged
 from kinematify.robot.mesh_paths import GLTF_SUFFIXES, find_mesh, near_mesh
 from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
+from kinematify.robot.raw_mesh import merged
 from kinematify.robot.robot import Inertial, Robot
 from kinematify.robot.transforms import rpy_of
 from kinematify.robot.urdf_geometry import geometry_source

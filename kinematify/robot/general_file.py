@@ -88,8 +88,9 @@ def _polygons(item: Any) -> Sequence[Any]:
     """Vertices of every polygon of a PLY, which trimesh has cut into fans; none of other files."""
     data: Any = item.metadata.get("_ply_raw", {}).get("face", {}).get("data")
     names = data.dtype.names or () if isinstance(data, np.ndarray) else data or ()
-    lists = next((data[name] for name in names if name.startswith("vertex_ind")), ())
-    return lists["f1"] if getattr(getattr(lists, "dtype", None), "names", None) else lists
+    lists: Any = next((data[name] for name in names if name.startswith("vertex_ind")), ())
+    polygons: Sequence[Any] = lists["f1"] if getattr(getattr(lists, "dtype", None), "names", None) else lists
+    return polygons
 
 
 def _appearance(visual: Any, faces: IntArray) -> Appearance | None:

@@ -75,9 +75,9 @@ def read_gltf(path: Path, *, appearance: bool = False, unnamed: re.Pattern[str] 
     if needed:
         raise ValueError(f"it needs the extension {needed[0]}, which is not read; export it without")
     source = _GltfBuffers(document=document, binary=binary, folder=path.parent, loaded={})
-    for node in document.get("nodes", []) if unnamed is not None else ():
-        if unnamed.fullmatch(str(node.get("name", ""))):
-            del node["name"]
+    for node in document.get("nodes", []):
+        if unnamed is not None and unnamed.fullmatch(str(node.get("name", ""))):
+            node.pop("name", None)
     meshes = tuple(_nodes(document, source, _Materials(document, source) if appearance else None))
     unread = [f"the extension {name}" for name in document.get("extensionsUsed", ()) if not name.startswith(_READ)]
     for what in ("animations", "scenes"):
@@ -315,7 +315,8 @@ def _base_color(material: dict[str, Any]) -> tuple[list[float], dict[str, Any]]:
 def _nodes(document: dict[str, Any], source: _GltfBuffers, materials: _Materials | None) -> Iterator[RawMesh]:
     nodes = document.get("nodes", [])
     found: dict[int, tuple[FloatArray, tuple[tuple[int, str], ...]]] = {}
-    waiting = [(index, np.eye(4), ()) for index in reversed(_roots(document))]
+    top: tuple[tuple[int, str], ...] = ()
+    waiting = [(index, np.eye(4), top) for index in reversed(_roots(document))]
     while waiting:
         index, above, path = waiting.pop()
         if index in found:

@@ -32,7 +32,8 @@ def triangle_places(points: FloatArray, sizes: IntArray) -> IntArray:
     normals = crossed(
         points[triangles[:, 1]] - points[triangles[:, 0]], points[triangles[:, 2]] - points[triangles[:, 0]]
     )
-    whole = np.stack([np.bincount(polygon, normals[:, k], len(sizes)) for k in range(3)], axis=1)
+    sums = [np.bincount(polygon, normals[:, k], len(sizes)) for k in range(3)]
+    whole = np.array(sums, dtype=np.float64).T
     turned = (normals * whole[polygon]).sum(axis=1) < -_FLAT * lengths_of(normals) * lengths_of(whole)[polygon]
     for k in np.unique(polygon[turned]):
         corners = points[starts[k] : starts[k] + sizes[k]]

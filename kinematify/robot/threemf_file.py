@@ -129,7 +129,8 @@ def _slicer_parts(settings: list[bytes]) -> dict[tuple[int, int], list[_Part]]:
                 first=int(part.get("firstid", -1)),
                 last=int(part.get("lastid", -1)),
             )
-            key = int(part.getparent().get("id", -1)), int(part.get("id", -1))
+            holder = part.getparent()
+            key = -1 if holder is None else int(holder.get("id", -1)), int(part.get("id", -1))
             found.setdefault(key, []).append(made)
     return found
 
