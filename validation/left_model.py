@@ -74,6 +74,9 @@ def _thin(shape: Shape, most: int) -> Shape:
         return shape
     import fast_simplification  # noqa: PLC0415 - for large meshes only
 
-    vertices, faces = np.asarray(shape.mesh.vertices), np.asarray(shape.mesh.faces)
-    vertices, faces = fast_simplification.simplify(vertices.copy(), faces.copy(), target_count=most)
+    from kinematify.geometry.solid import merged_corners  # noqa: PLC0415
+
+    vertices, faces = merged_corners(np.asarray(shape.mesh.vertices), np.asarray(shape.mesh.faces))
+    if len(faces) > most:
+        vertices, faces = fast_simplification.simplify(vertices, faces, target_count=most)
     return replace(shape, mesh=LinkMesh(vertices=vertices.astype(np.float64), faces=faces.astype(np.int64)))
