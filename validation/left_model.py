@@ -30,6 +30,11 @@ def leave_model(model: Robot, work: Path, name: str = _LEFT) -> None:
     partly.replace(work / name)  # a stage that is stopped leaves no half of it
 
 
+def has_model(work: Path) -> bool:
+    """True if a stage of the run with this folder left the model."""
+    return (work / _LEFT).is_file()
+
+
 def model_of(request: StageRequest) -> Robot:
     """Read the model of a run: what an earlier stage left, or else the files.
 
