@@ -186,6 +186,7 @@ def command(
         selected=_selected(checks or (_QUICK if quick else None), skip),
         engines=("mujoco",) if quick else _engines(engines),
         fail_on=Severity(fail_on),
+        quick=quick,
         quiet=json_to == "-",
         rules=load_suppressions(suppress) if suppress is not None else (),
         settings=_settings(config, budget=budget, seed=seed, quick=quick),
