@@ -50,11 +50,13 @@ def thin_model_of(request: StageRequest) -> Robot:
     Raises:
         DescriptionError: As for `read_robot`.
     """
-    thin = _loaded(request.work / _THIN)
+    within_a_run = has_model(request.work)
+    thin = _loaded(request.work / _THIN) if within_a_run else None
     if thin is None:
         model, most = model_of(request), request.settings.geometry.most_faces
         thin = replace(model, links=tuple(_thin_link(link, most) for link in model.links))
-        leave_model(thin, request.work, _THIN)
+        if within_a_run:
+            leave_model(thin, request.work, _THIN)
     return thin
 
 
