@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 _CRIPPLED = 0.5
 """No remedy leaves a joint less of its range."""
 _GUIDED = 0.5
-"""Share of its length with which a sliding part stands beside what guides it."""
+"""Share of its length with which a sliding part is beside what guides it."""
 _LIMBS = 2
 """Bodies with more joints between them stand on limbs: two parts of a cabinet have two."""
 
@@ -268,7 +268,7 @@ def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
 )
 def out_of_guide(result: OpenCheck, motion: JointMotion) -> None:
     """A sliding part is still beside its parent at the end of its range: the travel is below geometry.guide of the
-    length along the axis that both share, visible or colliding, whichever is more. Of what stands beside its parent
+    length along the axis that both share, visible or colliding, whichever is more. Of what is beside its parent
     with less than half of its length, as the hook of a hoist does, the guide is not in the file.
 
     Why it matters: A drawer that is pulled out farther than it is long falls, but not in an engine.
