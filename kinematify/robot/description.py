@@ -22,7 +22,7 @@ from lxml import etree
 from kinematify.errors import DescriptionError, EnvironmentFault, KinematifyError
 from kinematify.robot.mesh_paths import find_mesh
 from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
-from kinematify.robot.urdf_text import MAX_URDF_BYTES, parse_text
+from kinematify.robot.urdf_text import MAX_URDF_BYTES, calls_xacro, parse_text
 from kinematify.robot.write import write_robot
 from kinematify.versions import require
 
@@ -80,9 +80,16 @@ def form_of(path: Path) -> str:
         return "usd"
     root = _ROOT.search(re.sub(rb"<!--.*?-->", b"", head, flags=re.DOTALL))
     name = b"" if root is None else root[2]
-    if name == b"robot" and (b"<xacro:" in head or path.suffix.lower() == ".xacro"):
+    if name == b"robot" and (path.suffix.lower() == ".xacro" or (b"xacro" in head and _is_unexpanded(path))):
         return "xacro"
     return _ROOTS.get(name, "urdf")
+
+
+def _is_unexpanded(path: Path) -> bool:
+    try:
+        return calls_xacro(parse_text(path.read_bytes()))
+    except (OSError, etree.XMLSyntaxError):
+        return False  # the reader of URDF says what is wrong
 
 
 def read_foreign(path: Path, form: str, package_dirs: Sequence[Path], arguments: Mapping[str, str]) -> Any:

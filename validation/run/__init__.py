@@ -68,6 +68,7 @@ def validate(
     settings: ValidationSettings | None = None,
     selected: Collection[str] | None = None,
     engines: Sequence[str] = DEFAULT_ENGINES,
+    named: bool = True,
     suppressions: Sequence[Suppression] = (),
     task: TaskRequest | None = None,
     arguments: Mapping[str, str] | None = None,
@@ -83,6 +84,7 @@ def validate(
         selected: Ids of the checks to run; all if absent. Those of file and meshes always run, and their errors count.
         engines: Of `kinematify.simulation.engines.ENGINES`; all that are installed if absent. Checks of others are
             reported as skipped, with the reason.
+        named: The user named the engines: what one of them shows is an error, even if others were not asked.
         suppressions: Findings that do not count.
         arguments: Of a xacro.
         task: What a robot is to do with the object (KV7xx); without one these checks are not in the report.
@@ -103,7 +105,9 @@ def validate(
     chosen = tuple(engine for engine in ENGINES if engine in engines)
     checks = _checks(task)
     wanted = frozenset(checks) if selected is None else frozenset(checks) & frozenset(selected)
-    run = _Run(path=Path(path), selected=wanted, progress=progress, task=task, engines=chosen, checks=checks)
+    run = _Run(
+        path=Path(path), selected=wanted, progress=progress, task=task, engines=chosen, named=named, checks=checks
+    )
     settings = settings or load_settings()
     try:
         with tempfile.TemporaryDirectory(prefix="kinematify-", ignore_cleanup_errors=True) as folder:
@@ -156,11 +160,12 @@ class _Run:
         progress: Progress | None,
         task: TaskRequest | None,
         engines: Sequence[str],
+        named: bool,
         checks: Mapping[str, Check],
     ) -> None:
         self.path = path
         self.task = task
-        self.engines = engines
+        self.engines, self.named = engines, named
         self.checks = checks
         self.selected = selected
         self.interrupted = False
@@ -298,7 +303,7 @@ class _Run:
         results = [self._result(key) for key in keys(list(self.checks.values()))]
         robot = self.robot
         results = demote_inference_findings(
-            join_facts(across_engines(with_refusals(with_lines(results, robot)), self.engines))
+            join_facts(across_engines(with_refusals(with_lines(results, robot)), self.engines, named=self.named))
         )
         if self.description is not None and self.description.form != "urdf":
             results = in_source(results, self.description)
