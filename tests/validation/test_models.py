@@ -55,7 +55,7 @@ def test_each_model_comes_once_and_in_order(folder: Path) -> None:
     [
         ("b.urd", r"no file or folder b\.urd\. Did you mean b\.urdf\?"),
         ("none/x.urdf", "no file or folder none/x.urdf"),
-        ("meshes", r"holds no \.urdf file at any depth\. It holds 2 other files \(2 with \.stl\)"),
+        ("meshes", r"holds no \.urdf, .* file at any depth\. It holds 2 other files \(2 with \.stl\)"),
         ("empty", "It is empty"),
         ("*.mjcf", r"Nothing matches the pattern \*\.mjcf"),
         ("emp*", "1 folders without any"),
@@ -66,10 +66,12 @@ def test_words_for_nothing_are_refused(folder: Path, word: str, message: str) ->
         find_models([word])
 
 
-def test_folders_of_xacro_say_how_to_expand_it(folder: Path) -> None:
-    (folder / "empty" / "arm.xacro").write_text("<robot/>")
-    with pytest.raises(InputError, match=r"1 with \.xacro\)\. Expand each"):
-        find_models(["empty"])
+def test_a_folder_without_a_urdf_represents_its_other_descriptions(folder: Path) -> None:
+    for name in ("arm.xacro", "arm.sdf"):
+        (folder / "empty" / name).write_text("<robot/>")
+    assert [path.name for path in find_models(["empty"])] == ["arm.sdf", "arm.xacro"]
+    (folder / "empty" / "arm.urdf").write_text("<robot/>")
+    assert [path.name for path in find_models(["empty"])] == ["arm.urdf"]
 
 
 def test_broken_links_circles_and_pipes_are_refused(folder: Path) -> None:

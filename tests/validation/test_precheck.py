@@ -82,7 +82,7 @@ def findings(results: list[CheckResult], *, notes: bool = False) -> list[Finding
 def test_a_clean_file_passes_every_check_once(tmp_path: Path) -> None:
     usable, results = check_text(tmp_path, CLEAN)
     assert usable
-    assert [result.check for result in results] == [check for check in CHECKS if check < "KV15"]
+    assert sorted(result.check for result in results) == [check for check in CHECKS if check < "KV15"]
     assert findings(results, notes=True) == []
 
 
@@ -254,12 +254,8 @@ FOREIGN = {
     "binary": (bytes(range(256)) * 20, "binary"),
     "glb": (b"glTF\x02\x00\x00\x00", "GLB"),
     "picture": (b"\x89PNG\r\n\x1a\n", "picture"),
-    "mjcf": (b"<mujoco><worldbody/></mujoco>", "MJCF"),
-    "sdf": (b'<sdf version="1.6"><model/></sdf>', "SDF"),
     "srdf": (b'<robot name="a"><disable_collisions link1="a" link2="b"/></robot>', "SRDF"),
     "web page": (b"<html><body/></html>", "web page"),
-    "xacro": (b'<robot xmlns:xacro="http://ros.org/wiki/xacro"><xacro:arm/></robot>', "xacro .*> robot.urdf"),
-    "xacro without a namespace": (b"<robot><xacro:arm/></robot>", "xacro .*> robot.urdf"),
     "json": (b'{"links": []}', "no XML"),
     "other xml": (b"<svg/>", "<svg>"),
 }
