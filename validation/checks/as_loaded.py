@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.mesh_paths import GLTF_SUFFIXES
-from kinematify.robot.robot import forward_kinematics
 from kinematify.simulation.engines import ENGINES
 from kinematify.simulation.raw_model import MovesFreely, Unloadable
 from kinematify.validation.check import CauseScope, FeedbackRow, OpenCheck, check
@@ -510,6 +509,8 @@ def puts_links_where_the_file_does(result: OpenCheck, context: AsLoadedContext) 
 
     Remedy: Write origins and axes as plain numbers, each axis as a unit vector, and a joint type that engines know.
     """
+    from kinematify.robot.robot import forward_kinematics  # noqa: PLC0415 - for this only
+
     above, worst = context.robot.joint_above, dict[str, tuple[float, float, dict[str, float]]]()
     for values in context.ends:
         ours = forward_kinematics(context.robot, values)
