@@ -52,8 +52,6 @@ MODULES = {
     "DracoPy": ("DracoPy", "glTF files compressed with Draco"),
     "meshopt": ("meshopt", "glTF files compressed with meshoptimizer"),
     "cascadio": ("cascadio", "STEP files"),
-    "DracoPy": ("DracoPy", "glTF compressed with Draco"),
-    "meshopt": ("meshopt", "glTF compressed with meshoptimizer"),
     "viser": ("viser", "viewer in the browser"),
     "example-robot-data": ("", "robots for `kinematify bench --data pip`"),
     "matplotlib": ("matplotlib", "plots of the benchmark"),
