@@ -395,4 +395,4 @@ def _reason(finding: Finding, repairs: _Repairs, *, kinematics: bool) -> str:
         return "Left: plain loading does not show it; --all carves all links."
     if finding.check in _CARVED and finding.cause is Cause.PHYSICS:
         return "Left: the pieces cannot be carved further."
-    return f"Left: no repair is certain. {finding.remedy}"
+    return f"Not repaired: no safe fix is known. {finding.remedy}"
