@@ -121,16 +121,18 @@ def describe_all(outcomes: Sequence[Outcome]) -> str:
 
 
 def describe_briefly(report: ValidationReport) -> str:
-    """The verdict of one model, every error in full, and the warnings by what they are about, a line each."""
+    """Every error of one model in full, the warnings by what they are about, a line each, and the verdict last."""
     groups = [item for item in report.groups if item.finding.suppressed is None]
     errors = blocks((item for item in groups if item.finding.severity is Severity.ERROR), alike=False)
     warnings: dict[tuple[str, str | None], list[FindingGroup]] = {}
     for item in groups:
         if item.finding.severity is Severity.WARNING:
             warnings.setdefault((item.finding.check, item.finding.engine), []).append(item)
-    lines = [_first_lines(report), *map(_line, errors)]
+    lines = [*map(_line, errors)]
     lines += [f"  {_heading(block_of(group))}{_times(len(group))}" for group in warnings.values()]
-    return "\n".join(lines)
+    loaded = report.as_loaded or "as loaded: not known, see what did not run"
+    lines += [_reasons(report, Status.BLOCKED), loaded, f"{_verdict(report)}: {summary_words(report)}"]
+    return "\n".join(filter(None, lines))
 
 
 def describe_unused(rules: Iterable[Suppression]) -> str:

@@ -45,7 +45,45 @@ def warnings_of(
         *_compound_joints(assembly, joints, graph, config.joints.compound),
         *_followed_twins(assembly, joints, bearings),
         *unlike_twins(assembly, graph, trees[0], joints, config),
+        *missed_linkages(assembly, graph, bearings, joints, config),
     )
+
+
+def missed_linkages(
+    assembly: Assembly,
+    graph: ContactGraph,
+    bearings: Mapping[Pair, EdgeBearing],
+    joints: Sequence[JointEstimate],
+    config: Config,
+) -> list[str]:
+    """Warn of parts that only parallel links carry, turning on one body, where no pins close a linkage."""
+    above = {joint.child: joint for joint in joints}
+    said = []
+    for part in above:
+        touched = {edge.a + edge.b - part for edge in graph.edges if part in (edge.a, edge.b) and not edge.bridge}
+        arms = [above[arm] for arm in sorted(touched) if arm in above and above[arm].kind.turns]
+        pins = [
+            arm
+            for arm in arms
+            if (found := bearings.get(pair(part, arm.child)))
+            and found.lines
+            and found.lines[0].score >= config.topology.pin_score
+        ]
+        if len(arms) < 2 or len(arms) < len(touched) or len(pins) > 1:
+            continue
+        if len({arm.parent for arm in arms}) == 1 and all(_parallel(arm, arms[0]) for arm in arms):
+            names = [assembly.names[arm.child] for arm in arms]
+            said.append(
+                f"{assembly.names[part]} touches {' and '.join(names)}, which turn about parallel axes: it may be part "
+                f"of a linkage that was not found. If it turns on them, give --hint {assembly.names[part]}:"
+                f"parent={names[0]} --hint {assembly.names[part]}=revolute; a loop joint to the others needs pins."
+            )
+    return said
+
+
+def _parallel(one: JointEstimate, other: JointEstimate | BearingLine) -> bool:
+    """True if two lines have one direction, to 1 deg."""
+    return bool(abs(float(one.axis @ other.axis)) > math.cos(math.radians(1.0)))
 
 
 def _doubtful_base(assembly: Assembly, trees: Sequence[KinematicTree], doubt: float) -> list[str]:
@@ -92,7 +130,7 @@ def _followed_twins(
     said = []
     for joint in joints:
         bearing = bearings.get(pair(joint.parent, joint.child))
-        if bearing is None or not bearing.follows or not _runs_along(joint, bearing.lines[0]):
+        if bearing is None or not bearing.follows or not _parallel(joint, bearing.lines[0]):
             continue
         models = [f"{assembly.names[one]} and {assembly.names[other]}" for one, other in bearing.follows]
         own = f"{assembly.names[joint.parent]} and {assembly.names[joint.child]}"
@@ -100,11 +138,6 @@ def _followed_twins(
     if not said:
         return []
     return [f"{'. '.join(said)}. By itself, the rough contact shows another line; what all twins show was taken."]
-
-
-def _runs_along(joint: JointEstimate, line: BearingLine) -> bool:
-    """True if a joint has the direction of a line, to 1 deg."""
-    return bool(abs(float(joint.axis @ line.axis)) > math.cos(math.radians(1.0)))
 
 
 _SAME_END, _SAME_PLACE = 0.1, 0.02  # shares of the wider range and of the part's diagonal within which joints are alike
