@@ -19,8 +19,8 @@ EVIL = "<b>&\"'\x00\x1b[31m\udcff"
 
 
 def add_checks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Put KV396 (no engine) and KV496 (MuJoCo) among the checks for one test."""
-    for name, engines in (("KV396", ()), ("KV496", ("mujoco",))):
+    """Put KV396 (no engine) and KV896 (MuJoCo) among the checks for one test."""
+    for name, engines in (("KV396", ()), ("KV896", ("mujoco",))):
         check = Check(
             id=name,
             title=f"Doors & drawers of {name}",
@@ -85,12 +85,12 @@ def full_report(**changes: object) -> ValidationReport:
     warning = finding(severity=Severity.WARNING, cause=Cause.PHYSICS, joint=None, link="door", q=None, value=math.inf)
     accepted = finding(joint="hinge_2", suppressed="the seal is soft")
     pair = finding(severity=Severity.NOTE, pair=("frame", "door"), joint=None, message="They touch at rest.")
-    crash = finding(check="KV496", engine="mujoco", joint=None, q=None, value=None, limit=None, unit=None, line=None)
+    crash = finding(check="KV896", engine="mujoco", joint=None, q=None, value=None, limit=None, unit=None, line=None)
     checks = (
         result(finding(), warning, accepted, pair),
         result(check="KV396", status=Status.SKIPPED, reason="it does not apply"),
-        result(crash, check="KV496", engine="mujoco", status=Status.BLOCKED, reason="the stage crashed"),
-        result(check="KV496", engine="mujoco", status=Status.BLOCKED, reason="no mesh"),
+        result(crash, check="KV896", engine="mujoco", status=Status.BLOCKED, reason="the stage crashed"),
+        result(check="KV896", engine="mujoco", status=Status.BLOCKED, reason="no mesh"),
         result(),
     )
     return report(*checks, **changes)  # type: ignore[arg-type]

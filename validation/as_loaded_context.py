@@ -17,6 +17,7 @@ from kinematify.simulation.raw_model import MovesFreely, Unloadable, velocity_pr
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+    from pathlib import Path
 
     from kinematify.config.validation import AsLoadedSettings
     from kinematify.geometry.sweep import Sweeper
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
     )
     from kinematify.validation.stage import StageRequest
 
+RESOLVED = "resolved.urdf"
+"""Name of the file in plain code where an engine does not find the meshes of the original."""
 _LEAST_SIZE = 0.01
 """Smaller models are looked at as if they had it [m]."""
 _SAME = 1e-6
@@ -101,11 +104,26 @@ class AsLoadedContext:
         return LeaderMechanism(robot=self.robot)
 
     @cached_property
+    def bare(self) -> RawEngineModel | Unloadable:
+        """The file in the engine as it is, or what the engine says against it."""
+        return self._opened(self.request.urdf)
+
+    @cached_property
     def loading(self) -> RawEngineModel | Unloadable:
-        """The file in the engine, or what the engine says against it."""
+        """The file in the engine, from a copy with absolute paths of meshes where it is not opened without."""
+        resolved = self.request.resolved
+        if not isinstance(self.bare, Unloadable) or isinstance(self.bare, MovesFreely) or resolved is None:
+            return self.bare
+        copy = self._opened(resolved)
+        if isinstance(copy, Unloadable):
+            return self.bare
+        copy.rename(RESOLVED)
+        return copy
+
+    def _opened(self, urdf: Path) -> RawEngineModel | Unloadable:
         try:
             root = self.mechanism.links[int(np.flatnonzero(self.mechanism.body_of_link == 0)[0])]
-            loaded = load_file(self.engine, self.request.urdf, root, self.request.package_dirs)
+            loaded = load_file(self.engine, urdf, root, self.request.package_dirs)
         except Unloadable as error:
             return error
         known = set(loaded.joints) <= set(self.mechanism.joints)
@@ -174,7 +192,7 @@ class AsLoadedContext:
     def overlaps(self) -> tuple[Overlap, ...]:
         """At rest, the deepest first, of links that can move against each other: nothing pushes others apart."""
         body = dict(zip(self.mechanism.links, self.mechanism.body_of_link.tolist(), strict=True))
-        found = self.loaded.overlaps(self.values)
+        found = self.running.overlaps(self.values)
         return tuple(item for item in found if body[item.links[0]] != body[item.links[1]])
 
     @cached_property
@@ -250,7 +268,7 @@ class AsLoadedContext:
             values = dict(run.values)
             for name, ratio in self.ratios(travel).items():
                 values[name] = run.values[name] + ratio * (value - travel.rest)
-            found = self.between(travel, self.loaded.overlaps(values))
+            found = self.between(travel, self.running.overlaps(values))
             if found is not None:
                 return found, value
         return None

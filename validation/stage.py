@@ -32,23 +32,19 @@ class StageRequest:
     """The file as the user gave it."""
     package_dirs: tuple[Path, ...]
     work: Path
-    """Folder of this run: stages leave there what later ones need (`prepared.urdf`, `poses-ENGINE.npz`)."""
+    """Folder of this run: stages leave there what later ones need."""
     settings: ValidationSettings
     selected: frozenset[str]
     """Ids of the checks that the user wants."""
     deadline: float
     """`time.process_time()` of the stage's process at which it should be over, which no other program's load changes; a
     stage that is late says what it omitted."""
-    engines: tuple[str, ...] = ()
-    """Engines that were asked for, for the stage that compares them."""
-    failures: Mapping[str, str] = field(default_factory=dict)
-    """Why stages before it did not end by themselves, keyed by stage."""
-    late: frozenset[str] = frozenset()
-    """Those of them that time ran out for."""
     task: TaskRequest | None = None
     """What a robot is to do with the object."""
     task_engines: tuple[str, ...] = ()
     """Engines in which its plans are executed."""
+    resolved: Path | None = None
+    """A copy of the file with every mesh by its absolute path, for engines that find the meshes nowhere else."""
     free_travel: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Range around rest in which nothing collides by exact geometry, of joints where it was measured [rad or m]."""
     suspects: Mapping[str, PriorFinding] = field(default_factory=dict)

@@ -24,24 +24,6 @@ class JointSummary:
 
 
 @dataclass(frozen=True, kw_only=True)
-class JointCurve:
-    """Drive of a joint by one engine from rest to one end, sampled on the way."""
-
-    joint: str
-    engine: str
-    upper: bool
-    """True towards the upper end."""
-    commanded: tuple[float, ...]
-    """[rad or m]."""
-    reached: tuple[float, ...]
-    """[rad or m]."""
-    force: tuple[float, ...]
-    """Of the servo [N m or N]."""
-    depth: tuple[float, ...]
-    """How much deeper than allowed any two links are in each other [m]."""
-
-
-@dataclass(frozen=True, kw_only=True)
 class PairSummary:
     """Facts of two bodies that touch, or that something is to be said of."""
 
@@ -67,5 +49,5 @@ class PairTable:
     """Those that touch at rest or meet on the way; all others stay clear in what was looked at."""
 
 
-Summary = JointSummary | JointCurve | PairTable
+Summary = JointSummary | PairTable
 """What a stage may tell besides its checks."""

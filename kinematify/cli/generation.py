@@ -74,7 +74,7 @@ class Generation:
             from kinematify.validation.run.plan import as_loaded_stages, asset_stage, later_stages
 
             # Its imports take a second, on another core than the inference.
-            start_server([asset_stage(), *later_stages(DEFAULT_ENGINES), *as_loaded_stages(DEFAULT_ENGINES)])
+            start_server([asset_stage(), *later_stages(), *as_loaded_stages(DEFAULT_ENGINES)])
         config = with_collision(self.config, self.collision)
         if self.inferred:
             from kinematify.pipeline.infer_assembly import infer

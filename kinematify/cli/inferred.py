@@ -89,7 +89,7 @@ def load_validation() -> None:
     from kinematify.validation.isolation import load_imports
     from kinematify.validation.run.plan import as_loaded_stages, asset_stage, later_stages, needed
 
-    later = needed(later_stages(DEFAULT_ENGINES), _checks())
+    later = needed(later_stages(), _checks())
     load_imports([asset_stage(), *later, *as_loaded_stages(DEFAULT_ENGINES)])
 
 

@@ -238,9 +238,7 @@ TIERS = (GEOMETRY, ENGINES, TASK)
 _TRIED = " tried"
 """After the name of a joint, in what KV705 measures."""
 _RUN = {
-    ENGINES: [
-        check.id for check in checks_of("KV4", "KV5", "KV8") if check.feedback not in (None, FeedbackRow.EXPORTER)
-    ],
+    ENGINES: [check.id for check in checks_of("KV8") if check.feedback not in (None, FeedbackRow.EXPORTER)],
     TASK: [check.id for check in checks_of("KV7") if check.severity is not Severity.NOTE],
 }
 """Checks that a dear tier runs beside those of the tiers before it: whose findings change what is chosen.

@@ -93,13 +93,6 @@ class LeaderMechanism:
         return np.array([bodies[name] for name in self.links], dtype=np.int64)
 
     @cached_property
-    def neighbours(self) -> frozenset[tuple[int, int]]:
-        """Pairs of bodies that a joint connects, smaller index first."""
-        body = dict(zip(self.links, self.body_of_link.tolist(), strict=True))
-        ends = [sorted((body[joint.parent], body[joint.child])) for joint in self.robot.joints]
-        return frozenset((a, b) for a, b in ends if a != b)
-
-    @cached_property
     def moved(self) -> BoolArray:
         """Which bodies a leader moves, its followers' included, shape (leaders, bodies)."""
         row = {name: np.abs(self.leads[k]) > 0.0 for k, name in enumerate(self.joints)}
@@ -161,7 +154,7 @@ class LeaderMechanism:
         """
         rows = np.tile(self.rest, (1 + len(self.travels) * samples, 1))
         for k, travel in enumerate(self.travels):
-            rows[sweep_rows(k, samples), k] = np.linspace(travel.lower, travel.upper, samples)
+            rows[1 + k * samples : 1 + (k + 1) * samples, k] = np.linspace(travel.lower, travel.upper, samples)
         return rows
 
     @cached_property
@@ -201,11 +194,6 @@ class LeaderMechanism:
         names = [travel.joint for travel in self.travels]
         rows = [joint_values(self.robot, dict(zip(names, row.tolist(), strict=True))) for row in leaders]
         return np.array([[row[name] for name in self.joints] for row in rows]).reshape(len(leaders), len(self.joints))
-
-
-def sweep_rows(leader: int, samples: int) -> slice:
-    """Where the sweep of a leader stands among the rows of `LeaderMechanism.sweep`."""
-    return slice(1 + leader * samples, 1 + (leader + 1) * samples)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 from functools import lru_cache
@@ -20,6 +21,8 @@ MESH_SUFFIXES = (*GLTF_SUFFIXES, ".obj", ".stl", ".ply", ".off", ".3mf", ".dae")
 CAD_SUFFIXES = (".step", ".stp")
 """Formats whose surfaces are turned into triangles; an assembly may be one, the mesh of a link not."""
 _SHOWN = 3
+_NEAR, _MOST_BESIDE = 3, 300
+"""Folders above a document in which clones are looked for, and entries of each that are looked at."""
 _MANIFEST_BYTES = 100_000
 _NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 """Of a package in its `package.xml`."""
@@ -80,6 +83,7 @@ def _package_candidates(package: str, inside: str, folder: Path, package_dirs: S
         if package in (given.name, _declared_name(given)):
             candidates.append(given / inside)
     candidates += [place / inside for place in above if _declared_name(place) == package]
+    candidates += [beside / inside for beside in _cloned_beside(folder, package)]
     for place in above:
         if place.name == package:
             candidates.append(place / inside)
@@ -87,6 +91,18 @@ def _package_candidates(package: str, inside: str, folder: Path, package_dirs: S
     candidates += [place / inside for place in _ros_packages(package)]
     # Single exported robots keep the package's tree but not its name.
     return candidates + [place / inside for place in (*package_dirs, folder)]
+
+
+def _cloned_beside(folder: Path, package: str) -> list[Path]:
+    """Packages near a document by the name in their manifest: clones are often in folders of other names."""
+    found = []
+    for place in folder.parents[:_NEAR]:
+        try:
+            beside = sorted(item for item in itertools.islice(place.iterdir(), _MOST_BESIDE) if item.is_dir())
+        except OSError:
+            continue
+        found += [item for item in beside if item.name != package and _declared_name(item) == package]
+    return found
 
 
 def _ros_packages(package: str) -> list[Path]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from kinematify.errors import EnvironmentFault
 from kinematify.versions import package_versions
@@ -12,9 +12,8 @@ from kinematify.versions import package_versions
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
+    from types import ModuleType
 
-    from kinematify.config.validation import EngineSettings
-    from kinematify.simulation.engine import Engine, WorldEngine
     from kinematify.simulation.raw_model import RawEngineModel
     from kinematify.simulation.world import EngineWorld, WorldSpec
 
@@ -24,32 +23,20 @@ class EngineEntry:
     """Entry of an engine, known without loading it."""
 
     name: str
-    """As users write it; ``kinematify.simulation.NAME_engine`` holds the class ``NameEngine``, an `Engine`."""
+    """As users write it; ``kinematify.simulation.NAME_engine`` has `load_raw`, and `open_world` if it `holds`."""
     title: str
     """As it is written in messages."""
     package: str
     """Distribution that brings it."""
     extra: str | None = None
     """Extra of Kinematify that installs it; None: every installation has it."""
-    family: str
-    """First characters of the ids of its checks of the prepared model."""
     runs: bool = True
     """False: it only computes; it sees no contacts and never runs."""
-    prepared: bool = True
-    """False: it loads raw files only, and has no checks but KV8xx."""
-    most_joints: int | None = None
-    """Larger models are not given to it."""
-    inflation: float = 0.0
-    """By which it makes meshes thicker [m]."""
-    keeps_energy: bool = True
-    """False: its integrator gains energy with its usual step, so energy is looked at with smaller ones."""
-    stops_late: bool = False
-    """True: a joint is stopped one step after it has passed its limit, and left where it is then."""
     contact_flag: str | None = None
     """Of its loader: without it links of one file pass through each other; None: they collide by default."""
     holds: tuple[str, ...] = ()
-    """Values of `kinematify.manipulation.plan_request.Hold`: connections of a hand with a part where plans are executed
-    and environments run in it: its class is a `WorldEngine`."""
+    """What may connect a hand with a part (values of `kinematify.manipulation.plan_request.Hold`) where plans are
+    executed and environments run in it."""
     prints_when_loaded: bool = False
     """True: it may be loaded only where what is printed goes to a file."""
 
@@ -60,23 +47,16 @@ class EngineEntry:
 
 
 _ENTRIES = (
-    EngineEntry(name="mujoco", title="MuJoCo", package="mujoco", family="KV4", holds=("weld", "contact")),
+    EngineEntry(name="mujoco", title="MuJoCo", package="mujoco", holds=("weld", "contact")),
     EngineEntry(
         name="pybullet",
         title="PyBullet",
         package="pybullet",
-        family="KV5",
-        most_joints=120,  # its tables end at 128 degrees of freedom per body; larger models overwrite its memory
-        inflation=1e-3,
-        keeps_energy=False,
-        stops_late=True,
         contact_flag="URDF_USE_SELF_COLLISION",
         holds=("weld",),  # its hulls slip out of fingers that hold by friction
         prints_when_loaded=True,
     ),
-    EngineEntry(name="drake", title="Drake", package="drake", extra="drake", family="KV9"),
-    EngineEntry(name="pinocchio", title="Pinocchio", package="pin", family="KV6", runs=False),
-    EngineEntry(name="newton", title="Newton", package="newton", extra="newton", family="", prepared=False),
+    EngineEntry(name="pinocchio", title="Pinocchio", package="pin", runs=False),
 )
 ENGINES = {entry.name: entry for entry in _ENTRIES}
 """Keyed by name."""
@@ -105,20 +85,6 @@ def _missing(engine: EngineEntry, why: str) -> str:
     return f"{engine.title} was asked for and cannot be loaded: {why}. Install it: {install}"
 
 
-def open_engine(name: str, settings: EngineSettings, log: Path) -> Engine:
-    """Load an engine's library.
-
-    Args:
-        name: Of `ENGINES`.
-        settings: Time step, servos and how long it runs.
-        log: File that this process prints into, where an engine speaks by printing.
-
-    Raises:
-        EnvironmentFault: It is not installed.
-    """
-    return _class_of(name)(settings, log)
-
-
 def open_world(name: str, spec: WorldSpec) -> EngineWorld:
     """Build a world that runs.
 
@@ -130,7 +96,8 @@ def open_world(name: str, spec: WorldSpec) -> EngineWorld:
         EnvironmentFault: The engine is not installed.
         Refused: It cannot load a model.
     """
-    return cast("type[WorldEngine]", _class_of(name)).open_world(spec)
+    world: EngineWorld = _module_of(name).open_world(spec)
+    return world
 
 
 def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> RawEngineModel:
@@ -146,13 +113,13 @@ def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = (
         EnvironmentFault: The engine is not installed.
         Unloadable: The engine does not open the file.
     """
-    return _class_of(name).load_raw(urdf, root, package_dirs)
+    loaded: RawEngineModel = _module_of(name).load_raw(urdf, root, package_dirs)
+    return loaded
 
 
-def _class_of(name: str) -> type[Engine]:
-    """The class of an engine; its library is imported here, one in a process."""
+def _module_of(name: str) -> ModuleType:
+    """The module of an engine; its library is imported here, one in a process."""
     try:
-        module = importlib.import_module(ENGINES[name].module)
+        return importlib.import_module(ENGINES[name].module)
     except ImportError as error:
         raise EnvironmentFault(_missing(ENGINES[name], str(error))) from error
-    return cast("type[Engine]", getattr(module, f"{name.capitalize()}Engine"))

@@ -24,6 +24,10 @@ PATIENCE = 0.8
 """Of a push, which has grown to its full force long before [s]."""
 
 
+class Refused(Exception):
+    """An engine does not build a world; the text is its own message."""
+
+
 class Unloadable(Exception):
     """An engine does not open a file; the message is the engine's."""
 
@@ -140,7 +144,7 @@ class Reproductions:
 
     joints: str
     """Prints a joint in each line: its name, lower and upper limit."""
-    overlap: str
+    overlap: str = ""
     """Prints how deep two links are in each other."""
     rest: str = ""
     """Repeats `RunningFile.rest`, and prints the least and the largest value of a joint."""
@@ -163,30 +167,17 @@ class RawEngineModel(ABC):
     _file: Mapping[str, object]
     """What the code says of the file, by the names in the templates."""
 
-    @abstractmethod
-    def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
-        """Pairs of links that overlap with the joints at `values` [rad or m], the deepest first."""
+    def rename(self, path: str) -> None:
+        """Let the code open another file than the one that was loaded."""
+        self._file = {**self._file, "path": path}
 
     def lines_of_joints(self) -> str:
         """Return plain code of the engine that prints a joint in each line: its name, lower and upper limit."""
         return self.code.joints.format(**self._file, values=self._in_code(dict.fromkeys(self.joints, 0.0)))
 
-    def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
-        """Return plain code of the engine that prints how deep two links are in each other with the joints at `values`.
-
-        Args:
-            links: Of an `Overlap`.
-            values: Of all joints [rad or m].
-        """
-        return self.code.overlap.format(**self._file, values=self._in_code(values), links=self._links_in_code(links))
-
     def _in_code(self, values: Mapping[str, float]) -> object:
         """Values of all joints as the code has them."""
         return [float(values[name]) for name in self.joints]
-
-    def _links_in_code(self, links: tuple[str, str]) -> object:
-        """Two links as the code has them."""
-        return links
 
 
 class RunningFile(RawEngineModel):
@@ -264,8 +255,21 @@ class RunningFile(RawEngineModel):
         """Values of all joints in the engine's order."""
         return np.array([values[name] for name in self.joints])
 
+    def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
+        """Return plain code of the engine that prints how deep two links are in each other with the joints at `values`.
+
+        Args:
+            links: Of an `Overlap`.
+            values: Of all joints [rad or m].
+        """
+        return self.code.overlap.format(**self._file, values=self._in_code(values), links=self._links_in_code(links))
+
+    def _links_in_code(self, links: tuple[str, str]) -> object:
+        """Two links as the code has them."""
+        return links
+
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
-        """Implement `RawEngineModel`."""
+        """Pairs of links that overlap with the joints at `values` [rad or m], the deepest first."""
         self.begin(values, contacts=True, released=())
         return self._overlaps()
 

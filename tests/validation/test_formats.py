@@ -61,7 +61,7 @@ def test_junit_has_a_suite_per_model_and_a_case_per_check_and_engine() -> None:
     cases = root[0].findall("testcase")
     assert len(cases) == 5
     assert cases[0].get("name") == "KV396 Doors & drawers of KV396"
-    assert cases[2].get("name") == "KV496 Doors & drawers of KV496 [mujoco]"
+    assert cases[2].get("name") == "KV896 Doors & drawers of KV896 [mujoco]"
     assert all(case.get("classname").startswith("models/door.urdf.") for case in cases)
     assert all(float(case.get("time")) == 0.25 for case in cases)
 

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-import trimesh
 
 from kinematify.config.validation import load_settings
-from kinematify.simulation.configurations import read_poses
 from kinematify.validation.checks import CHECKS, checks_of
-from kinematify.validation.engine_results import EXACT
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
 from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.stages.geometry import run
@@ -356,55 +353,3 @@ def test_a_leg_that_reaches_the_body_after_half_a_turn_needs_no_limits(
                at=(0.55, 0.0, 0.0), axis=(0.0, 1.0, 0.0), limits=limits)  # fmt: skip
     assert ("KV312" in found(beam(leg), tmp_path)) is is_reported
     assert any(note.check == "KV312" for note in notes(beam(leg), tmp_path, "KV312")), "it is said all the same"
-
-
-def test_contacts_are_left_for_the_comparison_with_engines(tmp_path: Path) -> None:
-    model = cabinet().with_part("drawer", limits=(-0.05, 0.3))
-    request = request_for(model, tmp_path)
-    tell(run, request)
-    left = read_poses(request.work, EXACT)
-    assert left is not None
-    assert left.contacts is not None
-    assert left.contact_depth is not None
-    names = [{left.links[first], left.links[second]} for _, first, second in left.contacts.tolist()]
-    assert names == [{"body", "drawer"}] * len(names)
-    values = left.q[left.contacts[:, 0], left.joints.index("drawer_joint")]
-    assert values.max() < -0.004  # 5 mm are free behind the drawer
-    assert left.contact_depth.max() > 0.015
-
-
-RING = """<robot name="ring">
-  <link name="ring">
-    <visual><geometry><mesh filename="ring.stl"/></geometry></visual>
-    <collision{concave}><geometry><mesh filename="ring.stl"/></geometry></collision>
-  </link>
-  <link name="plug">
-    <visual><geometry><box size="0.2 0.2 0.2"/></geometry></visual>
-    <collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision>
-  </link>
-  <joint name="push" type="prismatic">
-    <origin xyz="0 0 0.25"/><parent link="ring"/><child link="plug"/><axis xyz="0 0 -1"/>
-    <limit lower="0" upper="0.25" effort="10" velocity="1"/>
-  </joint>
-</robot>"""
-"""A plug that slides into the hole of a ring, whose hull has none."""
-
-
-@dataclass(frozen=True)
-class Ring:
-    """A ring that may be declared concave."""
-
-    concave: str
-
-    def write(self, folder: Path) -> Path:
-        """Write URDF and mesh."""
-        trimesh.creation.annulus(0.4, 0.5, 0.2).export(folder / "ring.stl")
-        (folder / "model.urdf").write_text(RING.format(concave=self.concave))
-        return folder / "model.urdf"
-
-
-@pytest.mark.parametrize(("concave", "is_reported"), [("", True), (' concave="yes"', False)])
-def test_hulls_of_what_is_declared_concave_are_not_held_against_it(
-    tmp_path: Path, concave: str, is_reported: bool
-) -> None:
-    assert ("KV332" in found(Ring(concave), tmp_path)) is is_reported  # type: ignore[arg-type]

@@ -11,8 +11,7 @@ from kinematify.robot.mesh_paths import GLTF_SUFFIXES
 from kinematify.simulation.engines import ENGINES
 from kinematify.simulation.raw_model import MovesFreely, Unloadable
 from kinematify.validation.check import CauseScope, FeedbackRow, OpenCheck, check
-from kinematify.validation.checks.engine_rest import FLOOR_OF_ENERGY, find_growth
-from kinematify.validation.checks.follow import IN_ENGINES, NOT_A_BODY
+from kinematify.validation.checks.follow import AT_REST, NOT_A_BODY
 from kinematify.validation.checks.needs import late
 from kinematify.validation.finding import Cause, Severity
 
@@ -38,9 +37,10 @@ _MESH_REFUSED = re.compile(r"no decoder found for mesh|invalid mesh filename ext
 _READS = {
     "mujoco": "OBJ, STL and MSH",
     "pybullet": "OBJ, STL and DAE",
-    "drake": "OBJ, VTK and glTF (.gltf)",
 }
 """Formats of meshes, by engine."""
+_FLOOR_OF_ENERGY = 1e-5
+"""Growth that does not count, fraction of the energy of a fall of the whole model by its own size."""
 _SUFFIX = re.compile(r"\.(?:glb|gltf|stl|dae|ply|obj|3mf|off)\b", re.IGNORECASE)
 
 
@@ -68,15 +68,25 @@ def nothing_moves(context: AsLoadedContext) -> str | None:
 def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     """The untouched file, loaded with the engine's own defaults (`MjModel.from_xml_path`; `loadURDF` with a fixed
     base; `buildModelFromUrdf`), is there with every joint that moves, and with its limits. Like all of KV8xx it is an
-    error if it fails in every engine, or in one of those that `--engines` names, else a warning.
+    error if it fails in every engine, or in one of those that `--engines` names, else a warning. So is a file that an
+    engine opens only from a copy with absolute paths of its meshes; the other checks look at that copy then.
 
-    Why it matters: Everything else is said of a prepared copy; this is what users load.
+    Why it matters: This is what users load.
 
     Remedy: Do what the engine's message asks for. MuJoCo resolves no package:// and reads STL, OBJ and MSH only; it
     looks for meshes beside the file unless `<mujoco><compiler strippath="false"/></mujoco>` is in it.
     """
     if isinstance(context.loading, MovesFreely) and context.floats:
         return
+    if isinstance(context.bare, Unloadable) and not isinstance(context.loading, Unloadable):
+        result.find(
+            f"{context.title} does not open the file as it is: {context.bare}. It opens a copy with "
+            "absolute paths of the meshes, of which its other findings are.",
+            _remedy_of_loading(context, str(context.bare)),
+            severity=Severity.WARNING,
+            cause=Cause.ENGINE,
+            reproduction=context.bare.reproduction,
+        )
     if isinstance(context.loading, Unloadable):
         result.find(
             f"{context.title} does not open the file as it is: {context.loading}.",
@@ -139,8 +149,7 @@ def _remedy_of_format(context: AsLoadedContext, message: str) -> str:
     """Return what to do with a mesh in a format that the engine does not read."""
     given = _SUFFIX.findall(message)
     suffix = given[-1].lower() if given else "another format"
-    other = ".obj" if context.engine == "drake" else ".obj or .stl"
-    said = f"{context.title} reads {_READS[context.engine]} meshes, not {suffix}: export them as {other}"
+    said = f"{context.title} reads {_READS[context.engine]} meshes, not {suffix}: export them as .obj or .stl"
     if suffix in GLTF_SUFFIXES:
         return f"{said}; kinematify fix MODEL.urdf -o OUT.urdf writes such copies."
     return f"{said} and name those in the file."
@@ -152,8 +161,8 @@ def _remedy_of_format(context: AsLoadedContext, message: str) -> str:
     fails="As loaded: links overlap at rest",
     severity=Severity.WARNING,
     cause=Cause.PHYSICS,
-    engines=_ENGINES,
-    follows=IN_ENGINES,
+    engines=_RUNNING,
+    follows={**AT_REST, "KV802": CauseScope.PAIR},
     needs=(not_loaded,),
 )
 def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -177,7 +186,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
                 value=overlap.depth,
                 limit=limit,
                 unit="m",
-                reproduction=context.loaded.lines_of_overlap(overlap.links, context.values),
+                reproduction=context.running.lines_of_overlap(overlap.links, context.values),
             )
 
 
@@ -189,7 +198,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
     cause=Cause.PHYSICS,
     engines=_RUNNING,
     feedback=FeedbackRow.AS_LOADED,
-    follows={**IN_ENGINES, "KV802": CauseScope.CONTACT},
+    follows={**AT_REST, "KV802": CauseScope.CONTACT, "KV803": CauseScope.JOINT},
     needs=(not_loaded, nothing_moves, late),
 )
 def stays(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -287,7 +296,7 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
     cause=Cause.PHYSICS,
     engines=_RUNNING,
     feedback=FeedbackRow.AS_LOADED,
-    follows={**IN_ENGINES, "KV802": CauseScope.CONTACT, "KV803": CauseScope.CONTACT},
+    follows={**AT_REST, "KV802": CauseScope.CONTACT, "KV803": CauseScope.CONTACT, "KV804": CauseScope.JOINT},
     needs=(not_loaded, nothing_moves, late),
 )
 def moves(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -462,11 +471,17 @@ def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
             reproduction=reproduction,
         )
         return
-    find_growth(
-        result,
-        run.energy,
-        floor=FLOOR_OF_ENERGY * context.fall,
-        share=context.settings.energy,
-        how=f"Given a push and let go in {context.title}",
-        reproduction=reproduction,
-    )
+    total, kinetic = run.energy.sum(axis=1), float(run.energy[:, 1].max())
+    growth = float(np.max(total - total[0]))
+    limit = max(_FLOOR_OF_ENERGY * context.fall, context.settings.energy * kinetic)
+    result.measured |= {"growth_J": max(0.0, growth), "kinetic_J": kinetic}
+    if growth > limit:
+        result.find(
+            f"Given a push and let go in {context.title}, the model gains {growth:.3g} J, "
+            f"{growth / max(kinetic, 1e-12):.0%} of its largest kinetic energy.",
+            "Correct inertia tensors and overlaps at rest, or simulate with a smaller time step.",
+            value=growth,
+            limit=limit,
+            unit="J",
+            reproduction=reproduction,
+        )

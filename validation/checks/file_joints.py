@@ -198,9 +198,9 @@ def missing_limits(result: OpenCheck, urdf: Urdf) -> None:
                 f'Add <limit lower="..." upper="..." effort="..." velocity="..."/> with the range in {unit}'
                 + (', or write type="continuous".' if turns else "."),
                 joint=joint.name,
-                unit=unit,
-                line=line_of(joint.element),
                 harmless=turns,  # it is read as continuous
+                unit=unit,
+                line=line_of(joint.element),  # it is read as continuous
             )
         elif limit.get("lower") is None and limit.get("upper") is None:
             result.find(

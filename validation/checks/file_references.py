@@ -36,6 +36,8 @@ class _Reference:
     """None where there is no such file."""
     fault: str
     """Why there is none."""
+    collides: bool
+    """It belongs to a collision element."""
 
 
 @check("KV141", title="Mesh files exist", fails="A mesh file is missing", severity=Severity.ERROR, cause=Cause.ASSET)
@@ -88,7 +90,8 @@ def _same_but_for_case(path: Path) -> Path | None:
     cause=Cause.ASSET,
 )
 def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
-    """Every mesh is of a format that is read here; formats that MuJoCo does not read are a note.
+    """Every mesh is of a format that is read here, a warning where only a visual is not, which the other checks then do
+    without; formats that MuJoCo does not read are a note.
 
     Why it matters: Each reader knows other formats; what it does not know it drops or refuses.
 
@@ -101,6 +104,7 @@ def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
             result.find(
                 f"The mesh {shown(reference.filename)} of the link {reference.link} is of no format that can be read.",
                 f"Convert it to one of {', '.join(MESH_SUFFIXES)}, for example with Blender.",
+                severity=Severity.ERROR if reference.collides else Severity.WARNING,
                 link=reference.link,
                 line=reference.line,
             )
@@ -188,7 +192,14 @@ def _references(urdf: Urdf) -> Iterator[_Reference]:
             filename = mesh.get("filename") or ""
             if filename.strip():
                 path, fault = _found(filename, link, urdf)
-                yield _Reference(link=link, filename=filename, line=line_of(mesh), path=path, fault=fault)
+                yield _Reference(
+                    link=link,
+                    filename=filename,
+                    line=line_of(mesh),
+                    path=path,
+                    fault=fault,
+                    collides=element.tag == "collision",
+                )
 
 
 def _found(filename: str, link: str, urdf: Urdf) -> tuple[Path | None, str]:

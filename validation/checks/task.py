@@ -152,7 +152,7 @@ def plan_fails(result: OpenCheck, task: RobotTask) -> None:
     Why it matters: A plan that an engine does not follow fails in training: masses, efforts or convex pieces are in
     the way.
 
-    Remedy: Check the collision geometry beside the part (KV332) and the masses; the plan itself is free of
+    Remedy: Check the collision geometry beside the part (KV804) and the masses; the plan itself is free of
     collisions.
     """
     task.tell_executions(result, Hold.WELD)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.formats.html_frame import badge, page, table, text
-from kinematify.validation.formats.html_motion import curves, show_button, viewer
+from kinematify.validation.formats.html_motion import show_button, viewer
 from kinematify.validation.formats.report_content import (
     Table,
     block_of,
@@ -124,7 +124,6 @@ def _section(index: int, outcome: Outcome, picture: bytes, scene: str) -> str:
         _picture(picture),
         _table("Families", family_table(outcome), f"families-{index}", _COUNTS),
         _table("Joints", joint_table(outcome), f"joints-{index}") if outcome.joints else "",
-        curves(outcome),
         _pair_matrix(index, outcome.pairs),
         _pairs(index, outcome),
         _checks(index, outcome),

@@ -20,7 +20,6 @@ from kinematify.geometry.together import looked_at, random_rows
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.finding import not_finished
 from kinematify.validation.geometry.formatting import in_document_order
-from kinematify.validation.geometry.hulls import HullView
 from kinematify.validation.summary import PairSummary, PairTable
 
 if TYPE_CHECKING:
@@ -200,11 +199,6 @@ class GeometryContext:
     @cached_property
     def _overlap_of_links(self) -> OverlapQueries:
         return OverlapQueries(self._links_apart)
-
-    @cached_property
-    def hulls(self) -> HullView:
-        """The bodies as engines see them that collide convex hulls."""
-        return HullView(self.scene, self.sweeper, self.allowance)
 
     def pair_table(self) -> PairTable:
         """Return what is known of every pair that touches at rest or meets while one joint moves."""

@@ -76,13 +76,17 @@ def with_causes(results: Sequence[CheckResult], robot: Robot | None) -> tuple[Ch
 
 
 def _cause(finding: Finding, findings: Sequence[Finding], subjects: _Subjects) -> Finding | None:
-    """Return the worst finding that a finding directly follows from; a note explains nothing worse than a note."""
+    """Return the worst finding that a finding directly follows from; a note explains nothing worse than a note.
+
+    What several engines find alike follows from the first of them.
+    """
     follows = CHECKS[finding.check].follows
+    earlier = findings[: next(number for number, other in enumerate(findings) if other is finding)]
     fits = [
         other
         for check, shared in follows.items()
-        for other in findings
-        if other.check == check and other is not finding and subjects.share(other, finding, shared)
+        for other in (earlier if check == finding.check else findings)
+        if other.check == check and subjects.share(other, finding, shared)
     ]
     fits = [item for item in fits if item.severity is not Severity.NOTE or finding.severity is Severity.NOTE]
     return min(fits, key=lambda item: _ORDER.index(item.severity), default=None)

@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from kinematify.robot.joint_type import JointType
-from kinematify.validation.check import ENGINE_FAMILIES, FeedbackRow
+from kinematify.validation.check import FeedbackRow
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.failure_rates import LINE, PARENT, RANGE, TYPE, shipped_rates
 from kinematify.validation.finding import Cause, Severity
@@ -128,9 +128,7 @@ def _worst_of_each(signals: Iterable[JointSignal], child: str) -> float:
     worst: dict[str, float] = {}
     for signal in signals:
         if signal.child == child:
-            family, number = signal.check[:3], signal.check[3:]
-            failure = number if family in ENGINE_FAMILIES.values() else signal.check
-            worst[failure] = max(signal.weight, worst.get(failure, 0.0))
+            worst[signal.check] = max(signal.weight, worst.get(signal.check, 0.0))
     return sum(worst.values())
 
 
@@ -278,7 +276,7 @@ def _route(case: _Case, finding: Finding) -> None:
         return
     if row is FeedbackRow.AS_GIVEN:
         case.leave(finding, "they overlap as given; the cause is the cut of the parts, not an axis")
-    elif row is FeedbackRow.COLLISION or only_collision_meets(finding):
+    elif only_collision_meets(finding):
         case.leave(finding, "only collision geometry is in the way; decompose it", Cause.PHYSICS)
     elif row is FeedbackRow.EXPORTER:
         case.leave(finding, "frames, masses or files disagree; that is for the exporter to fix")
@@ -378,26 +376,6 @@ def _type_doubted(case: _Case, finding: Finding, joint: Joint) -> None:
     case.against_type(finding, joint, "the parts look as if they moved otherwise")
 
 
-def _not_reached(case: _Case, finding: Finding, joint: Joint) -> None:
-    """KV405 and KV505: a drive that gets stuck, unless hulls or a known contact explain it."""
-    if case.has("KV332", "KV403", "KV503", joint=finding.joint) or finding.cause is not Cause.KINEMATICS:
-        case.leave(finding, "only the hulls that engines collide are in the way", Cause.PHYSICS)
-    else:
-        case.against_line(finding, joint, f"{finding.engine} cannot drive it to its end")
-
-
-def _unstable(case: _Case, finding: Finding, joint: Joint) -> None:
-    """Escaped limits, explosions and energy: masses and overlaps first."""
-    if case.has("KV201", "KV202", "KV204", "KV205", "KV207", "KV301", "KV302", "KV403", "KV503"):
-        case.leave(finding, "fix masses and overlaps at rest first", Cause.PHYSICS)
-    else:
-        case.against_line(finding, joint, "unstable though masses and rest are fine")
-
-
-def _sinks(case: _Case, finding: Finding, joint: Joint) -> None:
-    case.against_line(finding, joint, "it does not stay where it was given")
-
-
 def _as_loaded(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV803 and KV804: the written file, whose pieces leave every free motion free, does not move as it should."""
     case.against_all(finding, joint, f"as loaded, {finding.engine} does not move it as it should")
@@ -420,9 +398,6 @@ _ROWS: dict[FeedbackRow | None, Callable[[_Case, Finding, Joint], None]] = {
     FeedbackRow.GUIDE: _out_of_guide,
     FeedbackRow.LINE: _line_doubted,
     FeedbackRow.TYPE: _type_doubted,
-    FeedbackRow.NOT_REACHED: _not_reached,
-    FeedbackRow.UNSTABLE: _unstable,
-    FeedbackRow.SINKS: _sinks,
     FeedbackRow.AS_LOADED: _as_loaded,
     FeedbackRow.NO_WAY: _no_way,
 }

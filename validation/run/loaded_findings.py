@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
-from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Cause, Severity, Status
 
 if TYPE_CHECKING:
@@ -18,8 +17,6 @@ if TYPE_CHECKING:
 _FAMILY, _OPENS, _MOVES, _ENERGY = "KV8", "KV801", "KV804", "KV806"
 _TENSORS = ("KV204", "KV205")
 """Checks of inertia tensors, for which engines refuse files."""
-_CONTACTS = ("KV802", "KV803", _MOVES)
-"""Checks that tell of contacts."""
 
 
 def as_loaded_words(checks: Sequence[CheckResult]) -> str:
@@ -34,7 +31,7 @@ def as_loaded_words(checks: Sequence[CheckResult]) -> str:
     parts = []
     for engine, opening in opened.items():
         title, found = ENGINES[engine].title, moved.get(engine)
-        if any(finding.joint is None for finding in opening.findings):
+        if "joints" not in opening.measured and opening.findings:
             parts.append(f"{title} does not open the file")
         elif found is not None and "right" in found.measured:
             joints = "" if parts and "joints move" in parts[0] else " joints move"
@@ -111,36 +108,6 @@ def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> lis
         if check.check.startswith(_FAMILY)
         else check
         for check in checks
-    ]
-
-
-def confirm_on_raw_model(checks: Sequence[CheckResult]) -> list[CheckResult]:
-    """Make contacts that only a prepared copy shows notes, where an engine moved the joints of the untouched file.
-
-    The copy lets parent and child touch and gives links without collision geometry their visual one, which no engine
-    does by itself.
-
-    Args:
-        checks: All results.
-    """
-    if not any(check.check == _MOVES and "joints" in check.measured and not check.unfinished for check in checks):
-        return list(checks)
-    shown = [finding for check in checks if check.check in _CONTACTS for finding in check.findings]
-    joints = {finding.joint for finding in shown if finding.severity is not Severity.NOTE}
-    pairs = {frozenset(finding.pair) for finding in shown if finding.pair is not None}
-
-    def worded(finding: Finding) -> Finding:
-        counts = finding.cause is not Cause.PHYSICS or finding.joint in joints - {None}
-        if counts or finding.severity is Severity.NOTE or (finding.pair and frozenset(finding.pair) in pairs):
-            return finding
-        return replace(
-            finding,
-            severity=Severity.NOTE,
-            message=f"{finding.message} Only our prepared copy shows it, no engine that loads the file itself.",
-        )
-
-    return [
-        check.with_findings(map(worded, check.findings)) if CHECKS[check.check].prepared else check for check in checks
     ]
 
 

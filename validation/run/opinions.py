@@ -41,6 +41,35 @@ def demote_inference_findings(results: Sequence[CheckResult]) -> list[CheckResul
     return [_as_notes(result, notes, folded) if CHECKS[result.check].opinion else result for result in results]
 
 
+_LIFTS = "KV349"
+_SWEPT = ("KV310", "KV311", "KV312", "KV320")
+"""What exact sweeps measure of one joint."""
+
+
+def join_facts(results: Sequence[CheckResult]) -> list[CheckResult]:
+    """Make it an error that a part lifts off its bearing (KV349) where its sweep goes wrong too: two facts, one axis.
+
+    Args:
+        results: Of all checks of a run.
+    """
+    swept: dict[str | None, list[str]] = {}
+    for finding in _findings(results, opinion=False):
+        if finding.check in _SWEPT and finding.severity is not Severity.NOTE and finding.cause is Cause.KINEMATICS:
+            swept.setdefault(finding.joint, []).append(finding.check)
+
+    def joined(finding: Finding) -> Finding:
+        others = swept.get(finding.joint)
+        if finding.check != _LIFTS or finding.severity is not Severity.WARNING or not others:
+            return finding
+        also = f"{finding.message} Its sweep speaks against the same line ({', '.join(dict.fromkeys(others))})."
+        return replace(finding, severity=Severity.ERROR, message=also)
+
+    return [
+        replace(result, findings=tuple(map(joined, result.findings))) if result.check == _LIFTS else result
+        for result in results
+    ]
+
+
 def _findings(results: Sequence[CheckResult], *, opinion: bool) -> list[Finding]:
     return [finding for item in results if CHECKS[item.check].opinion is opinion for finding in item.findings]
 

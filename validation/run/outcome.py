@@ -34,6 +34,11 @@ class Unusable:
         """Always 2."""
         return ExitStatus.UNUSABLE
 
+    def status_at(self, least: Severity) -> int:
+        """Always 2, whatever the least severity is that counts."""
+        del least
+        return self.exit_status
+
     def as_json(self) -> dict[str, Any]:
         """The same keys as a report's, with the reason under ``error``."""
         return {"schema": SCHEMA, "model": self.model, "verdict": self.verdict, "error": self.message}

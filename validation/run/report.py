@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from kinematify.validation.finding import CheckResult, Finding
     from kinematify.validation.run.causes import FindingGroup
-    from kinematify.validation.summary import JointCurve, JointSummary, PairTable
+    from kinematify.validation.summary import JointSummary, PairTable
 
 SCHEMA = 2
 
@@ -30,8 +30,6 @@ class ValidationReport:
     """Path as it was given."""
     checks: tuple[CheckResult, ...]
     joints: tuple[JointSummary, ...] = ()
-    curves: tuple[JointCurve, ...] = ()
-    """As the engines drove the joints, those that ran."""
     pairs: PairTable | None = None
     """None if the exact geometry was not looked at."""
     environment: Mapping[str, Any] = field(default_factory=dict)
@@ -75,7 +73,12 @@ class ValidationReport:
     @property
     def exit_status(self) -> int:
         """1 with an error, else 3 if a check was not finished, else 0."""
-        if self.verdict == "fail":
+        return self.status_at(Severity.ERROR)
+
+    def status_at(self, least: Severity) -> int:
+        """1 with a finding of at least a severity, else 3 if a check was not finished, else 0."""
+        order = list(Severity)
+        if any(order.index(finding.severity) <= order.index(least) for finding in self.counted):
             return ExitStatus.FAILURES
         return ExitStatus.FAULT if self.unfinished else ExitStatus.FINE
 
