@@ -133,8 +133,7 @@ def describe_briefly(report: ValidationReport) -> str:
     lines += [f"  {_heading(block_of(group), report.model)}{_times(len(group))}" for group in warnings.values()]
     loaded = report.as_loaded or "as loaded: not known, see what did not run"
     lines += [_reasons(report, Status.BLOCKED), loaded, f"{_verdict(report)}: {summary_words(report)}"]
-    return "
-".join(filter(None, lines))
+    return "\n".join(filter(None, lines))
 
 
 def describe_unused(rules: Iterable[Suppression]) -> str:
