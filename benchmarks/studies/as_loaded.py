@@ -34,6 +34,7 @@ from kinematify.evaluation.benchmark_job import erased_item, shown_parts
 from kinematify.evaluation.datasets import CONDITIONS, find_objects
 from kinematify.evaluation.metrics import score_blueprint
 from kinematify.evaluation.result_record import grouped, table
+from kinematify.generate.blueprint_files import true_model
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
@@ -41,7 +42,6 @@ from kinematify.generate.procedural.family import build
 from kinematify.generate.sentence import from_text
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
-from kinematify.pipeline.blueprint_files import true_model
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.refinement.loop import repaired
 from kinematify.refinement.repair import fix_urdf

@@ -26,8 +26,8 @@ from benchmarks.study import Options, Study, explained
 from kinematify.config import load_config
 from kinematify.evaluation.result_record import table
 from kinematify.formats.export_model import export
+from kinematify.generate.blueprint_files import true_model
 from kinematify.model.output import MODEL_FILE
-from kinematify.pipeline.blueprint_files import true_model
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 from kinematify.robot.joint_type import JointType

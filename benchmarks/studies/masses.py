@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 from benchmarks.study import Options, Study, explained
 from kinematify.config import load_config
 from kinematify.evaluation.result_record import table
+from kinematify.generate.blueprint_files import true_model
 from kinematify.generate.sentence import from_text
 from kinematify.model.dynamics import with_dynamics
 from kinematify.model.urdf import model_robot
-from kinematify.pipeline.blueprint_files import true_model
 
 if TYPE_CHECKING:
     from benchmarks.study import Measured, Record, Work

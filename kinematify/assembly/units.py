@@ -49,8 +49,9 @@ def in_metres(meshes: Sequence[RawMesh], scale: float | None, config: AssemblyCo
     if stated:
         scaled = [_scaled(mesh, _UNITS.get(unit, (1.0, ""))[0]) for mesh, unit in zip(meshes, units, strict=True)]
         return scaled, f"{' and '.join(word for _, word in stated)} (stated in the file)"
-    corners = [mesh.vertices for mesh in meshes if len(mesh.vertices)]
-    size = float(np.ptp(np.concatenate(corners), axis=0).max()) if corners else 0.0
+    corners = np.concatenate([mesh.vertices for mesh in meshes])
+    corners = corners[np.isfinite(corners).all(axis=1)]
+    size = float(np.ptp(corners, axis=0).max()) if len(corners) else 0.0
     if size > config.largest:
         said = f"millimetres (the file states no unit, and {size:.4g} m is too long; --scale 1 reads metres)"
         return [_scaled(mesh, 1e-3) for mesh in meshes], said

@@ -48,8 +48,8 @@ from kinematify.evaluation.nightly.trend_page import trend_page
 from kinematify.evaluation.nightly.validity import NightValidation, run_validation
 from kinematify.evaluation.result_record import code_version, replace_text
 from kinematify.evaluation.run_benchmark import BenchmarkRequest, Variant, run_benchmark
+from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.sentence import from_text
-from kinematify.pipeline.blueprint_files import write_blueprint
 from kinematify.processes.lock import locked
 from kinematify.processes.pool import TaskFailure
 
