@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from kinematify.validation.finding import Finding
     from kinematify.validation.stage import StageRequest
 
-_SHAPES = ("KV138", "KV139", "KV140", "KV141", "KV142", "KV150", "KV151", "KV152")
+LEFT_OUT = frozenset(("KV140", "KV141", "KV142", "KV150"))
+"""Checks of shapes that reading leaves out, with a note."""
+_SHAPES = ("KV138", "KV139", "KV151", "KV152")
 """Checks after whose errors a model is read without the shape that they name."""
 _JOINTS = ("KV127", "KV128", "KV130", "KV131", "KV134", "KV136", "KV137")
 """The same with a fixed joint in place of the one that they name."""
@@ -55,7 +57,10 @@ def readable_copy(request: StageRequest, errors: Iterable[Finding], name: str) -
         errors: Findings that keep the document from being read.
         name: Of the copy in the folder of the run.
     """
-    robot = parse_description(request.urdf)
+    try:
+        robot = parse_description(request.urdf)
+    except DescriptionError:  # the text is not well-formed, which a finding says
+        return None
     shapes, joints, only_visuals = set[str](), set[str](), True
     for finding in errors:
         if finding.check == _NO_LIMIT and _turns(robot, finding.joint):
@@ -77,9 +82,18 @@ def readable_copy(request: StageRequest, errors: Iterable[Finding], name: str) -
     return DocumentCopy(path=path, shapes=frozenset(shapes), joints=frozenset(joints), only_visuals=only_visuals)
 
 
-def resolved_copy(request: StageRequest, name: str) -> Path:
-    """Write a copy that engines open wherever packages lie: absolute paths, which MuJoCo is told to keep whole."""
+def resolved_copy(request: StageRequest, name: str, left_out: Iterable[Finding]) -> Path:
+    """Write a copy that engines open wherever packages lie: absolute paths, which MuJoCo is told to keep whole.
+
+    Args:
+        request: Names the document, where packages lie, and the folder.
+        left_out: Findings of `LEFT_OUT`; the copy lacks the shapes that they are about.
+        name: Of the copy in the folder of the run.
+    """
     robot = parse_description(request.urdf)
+    for finding in left_out:
+        if finding.severity is not Severity.NOTE:
+            _drop_shapes(robot, finding)
     extension = robot.find("mujoco")
     extension = etree.SubElement(robot, "mujoco") if extension is None else extension
     compiler = extension.find("compiler")

@@ -26,7 +26,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import partial
-from importlib.metadata import Distribution, PackageNotFoundError, distribution
+from importlib.metadata import Distribution, distribution
 from itertools import product
 from operator import itemgetter
 from pathlib import Path
@@ -42,6 +42,7 @@ from kinematify.errors import EnvironmentFault, ExitStatus, InputError
 from kinematify.evaluation.datasets import bench_folder, example_robots
 from kinematify.evaluation.result_record import grouped, table
 from kinematify.validation.finding import Cause, Severity
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -256,10 +257,8 @@ def _example_models() -> Iterator[PublishedModel]:
 
 
 def _bullet_models() -> Iterator[PublishedModel]:
-    try:
-        folder = Path(str(distribution("pybullet").locate_file("pybullet_data")))
-    except PackageNotFoundError as error:
-        raise EnvironmentFault("pybullet is not installed. Run `pip install kinematify`.") from error
+    require("Models of pybullet_data", "pybullet")
+    folder = Path(str(distribution("pybullet").locate_file("pybullet_data")))
     for name in BULLET_ROBOTS:
         yield PublishedModel(name=name, source="pybullet_data", urdf=folder / f"{name}.urdf")
 

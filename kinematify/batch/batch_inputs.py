@@ -19,6 +19,7 @@ from kinematify.assembly.load import PART_SUFFIXES
 from kinematify.errors import EnvironmentFault, InputError, KinematifyError
 from kinematify.robot.mesh_file import read_meshes
 from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES
+from kinematify.versions import install_command
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -134,8 +135,7 @@ def filesystem(place: str) -> tuple[Any, str]:
         fs, path = url_to_fs(place)
     except ImportError as error:
         raise EnvironmentFault(
-            f"{place} needs a package that is not installed: {error}. Run `pip install kinematify[cloud]` for "
-            "s3://, or install the package that the message names."
+            f"{place} needs a package that is not installed: {error}. For s3://, run: {install_command('s3fs')}"
         ) from error
     except ValueError as error:
         raise InputError(

@@ -59,9 +59,8 @@ _QUICK = "KV1*,KV2*,KV30*,KV31*,KV32*,KV801,KV802,KV803,KV804"
 @click.option(
     "--engines",
     metavar="LIST",
-    default="mujoco,pybullet,pinocchio",
-    show_default=True,
-    help="Engines to run, separated by commas; drake can be added; none: only file and geometry.",
+    show_default="all that are installed",
+    help="Engines to run, separated by commas; none: only file and geometry.",
 )
 @click.option(
     "--suppress", type=click.Path(path_type=Path), metavar="FILE", help="YAML list of accepted findings with reasons."
@@ -133,7 +132,7 @@ def command(
     skip: str | None,
     quick: bool,
     fail_on: str,
-    engines: str,
+    engines: str | None,
     suppress: Path | None,
     suggest_accept: Path | None,
     budget: float | None,
@@ -232,9 +231,11 @@ def _matching(patterns: str) -> frozenset[str]:
     return frozenset(check for check in CHECKS if any(fnmatchcase(check, pattern) for pattern in known))
 
 
-def _engines(words: str) -> tuple[str, ...]:
-    from kinematify.simulation.engines import ENGINES
+def _engines(words: str | None) -> tuple[str, ...]:
+    from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
 
+    if words is None:
+        return DEFAULT_ENGINES
     chosen = [word.strip().lower() for word in words.split(",")] if words.strip().lower() not in ("", "none") else []
     unknown = [word for word in chosen if word not in ENGINES]
     if unknown:

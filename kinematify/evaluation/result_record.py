@@ -22,7 +22,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from kinematify import __version__
 from kinematify.errors import EnvironmentFault, InputError, OutputError
-from kinematify.versions import package_versions
+from kinematify.versions import not_installed, package_versions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
@@ -229,10 +229,7 @@ def write_report(
         if plot is not None:
             plot().savefig(folder / f"{name}.png", dpi=120)
     except ImportError as error:
-        raise EnvironmentFault(
-            "The plot of the report needs matplotlib, which is not installed. Run `pip install kinematify[bench]`; "
-            "Markdown and JSON are written."
-        ) from error
+        raise EnvironmentFault(not_installed("Markdown and JSON are written; the plot", "matplotlib")) from error
     except OSError as error:
         raise OutputError(
             f"The report cannot be written to {folder}: {error}. Give a folder that can be written."

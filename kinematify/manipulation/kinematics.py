@@ -7,14 +7,20 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pinocchio as pin
 from lxml import etree
 from scipy.spatial import KDTree
 from scipy.stats import qmc
 
+from kinematify.errors import EnvironmentFault
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.write import robot_element
+from kinematify.versions import not_installed
+
+try:
+    import pinocchio as pin
+except ImportError as error:
+    raise EnvironmentFault(not_installed("A robot arm", "pin", "coal", "ompl")) from error
 
 if TYPE_CHECKING:
     from kinematify.config.planning_settings import PlanSettings

@@ -30,7 +30,6 @@ from kinematify.refinement.topology import (
     replanned,
     search_again,
 )
-from kinematify.simulation.engines import DEFAULT_ENGINES, require_engine
 from kinematify.validation.check import FeedbackRow
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.failure_rates import GEOMETRY
@@ -83,14 +82,11 @@ def refine(
 
     Raises:
         ValueError: The tier is unknown, or there is no time.
-        EnvironmentFault: The tier runs an engine that is not installed.
     """
     if tier not in TIERS:
         raise ValueError(f"There is no tier {tier}. Give one of {', '.join(TIERS)}.")
     if seconds is not None and not seconds > 0.0:
         raise ValueError(f"The time for all rounds is {seconds} s. Give a number of seconds above 0, or None.")
-    for engine in DEFAULT_ENGINES if tier != GEOMETRY else ():
-        require_engine(engine)
     config = inference.config.refine
     usual = max(config.seconds_factor * sum(inference.timings.values()), config.seconds_least)
     loop = _Loop(

@@ -49,6 +49,9 @@ _WEIGHED = ("KV202", "KV204", "KV205")
 """Findings about a mass or an inertia that no engine can use."""
 _CENTER = "KV208"
 _REPEATED = "KV105"
+_QUATERNION = "KV107"
+_SHAPELESS = ("KV140", "KV141", "KV142", "KV150")
+"""Elements without geometry that can be read."""
 _FORMAT = re.compile(r"\.(?:glb|gltf)\b", re.IGNORECASE)
 """In what an engine says of a file that it does not open."""
 _ONCE = {
@@ -279,6 +282,10 @@ class _Repairs:
         found = [finding for finding in report.counted if finding.severity is not Severity.NOTE]
         for element in self._repeated(found):
             _keep_first(editor, element)
+        if any(finding.check == _QUATERNION for finding in found):
+            editor.write_rpy()
+        if any(finding.check in _SHAPELESS for finding in found):
+            editor.settle_shapes()
         try:
             robot = read_robot(path, package_dirs=package_dirs)
         except DescriptionError:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kinematify.errors import EnvironmentFault
-from kinematify.versions import package_versions
+from kinematify.versions import is_installed, not_installed, require
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,10 +26,8 @@ class EngineEntry:
     """As users write it; ``kinematify.simulation.NAME_engine`` has `load_raw`, and `open_world` if it `holds`."""
     title: str
     """As it is written in messages."""
-    package: str
-    """Distribution that brings it."""
-    extra: str | None = None
-    """Extra of Kinematify that installs it; None: every installation has it."""
+    packages: tuple[str, ...]
+    """Distributions that bring what its module imports; not every installation has them."""
     runs: bool = True
     """False: it only computes; it sees no contacts and never runs."""
     contact_flag: str | None = None
@@ -47,21 +45,21 @@ class EngineEntry:
 
 
 _ENTRIES = (
-    EngineEntry(name="mujoco", title="MuJoCo", package="mujoco", holds=("weld", "contact")),
+    EngineEntry(name="mujoco", title="MuJoCo", packages=("mujoco",), holds=("weld", "contact")),
     EngineEntry(
         name="pybullet",
         title="PyBullet",
-        package="pybullet",
+        packages=("pybullet",),
         contact_flag="URDF_USE_SELF_COLLISION",
         holds=("weld",),  # its hulls slip out of fingers that hold by friction
         prints_when_loaded=True,
     ),
-    EngineEntry(name="pinocchio", title="Pinocchio", package="pin", runs=False),
+    EngineEntry(name="pinocchio", title="Pinocchio", packages=("pin", "coal"), runs=False),
 )
 ENGINES = {entry.name: entry for entry in _ENTRIES}
 """Keyed by name."""
-DEFAULT_ENGINES = tuple(name for name, engine in ENGINES.items() if engine.extra is None)
-"""Engines that every installation has; FCL and the exact geometry are always there."""
+DEFAULT_ENGINES = tuple(name for name, engine in ENGINES.items() if all(map(is_installed, engine.packages)))
+"""Engines that run unless others are asked for: those that are installed."""
 
 
 def engines_that_hold(hold: str) -> tuple[str, ...]:
@@ -75,14 +73,14 @@ def require_engine(name: str) -> None:
     Raises:
         EnvironmentFault: It is not installed.
     """
-    engine = ENGINES[name]
-    if package_versions((engine.package,))[engine.package] == "missing":
-        raise EnvironmentFault(_missing(engine, f"the package {engine.package} is not installed"))
+    require(ENGINES[name].title, *ENGINES[name].packages)
 
 
-def _missing(engine: EngineEntry, why: str) -> str:
-    install = f'pip install "kinematify[{engine.extra}]"' if engine.extra else "pip install kinematify"
-    return f"{engine.title} was asked for and cannot be loaded: {why}. Install it: {install}"
+def why_not_run(name: str) -> str:
+    """Return the reason why an engine that was not among the chosen ones has no results."""
+    if name in DEFAULT_ENGINES:
+        return "the engine was not asked for"
+    return not_installed(f"{ENGINES[name].title} did not run: it", *ENGINES[name].packages)
 
 
 def open_world(name: str, spec: WorldSpec) -> EngineWorld:
@@ -122,4 +120,5 @@ def _module_of(name: str) -> ModuleType:
     try:
         return importlib.import_module(ENGINES[name].module)
     except ImportError as error:
-        raise EnvironmentFault(_missing(ENGINES[name], str(error))) from error
+        engine = ENGINES[name]
+        raise EnvironmentFault(f"{not_installed(engine.title, *engine.packages)} ({error})") from error

@@ -33,7 +33,6 @@ from kinematify.refinement.hints import parse_hints, with_hints
 from kinematify.refinement.joint_plan import Plan
 from kinematify.refinement.simulate import Simulator
 from kinematify.robot.joint_type import JointType
-from kinematify.simulation.engines import ENGINES
 from kinematify.validation.failure_rates import LINE, TYPE, shipped_rates
 from kinematify.validation.finding import Severity
 from tests.objects import BUILDERS
@@ -432,17 +431,6 @@ def test_a_folder_without_candidates_is_refused(tmp_path: Path, capsys: pytest.C
 def test_no_time_is_refused() -> None:
     with pytest.raises(ValueError, match="above 0"):
         refine(inferred("drawer"), seconds=0.0)
-
-
-def test_a_missing_engine_ends_with_its_own_status_and_changes_nothing(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    write_inference(mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0)), tmp_path / "out", preview=False)
-    before = file_hashes(tmp_path / "out")
-    monkeypatch.setitem(ENGINES, "pybullet", replace(ENGINES["pybullet"], package="absent"))
-    assert run(["refine", str(tmp_path / "out"), "--force", "--tier", "engines", "--no-preview"]) == 3
-    assert "PyBullet was asked for" in capsys.readouterr().err
-    assert file_hashes(tmp_path / "out") == before
 
 
 def test_ctrl_c_in_the_middle_of_a_trial_keeps_the_best_round_and_a_whole_folder(

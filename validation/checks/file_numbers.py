@@ -24,7 +24,7 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _Counts = dict[str, dict[str, tuple[int, ...]]]
 """Tag -> attribute -> counts of numbers that are right, the usual one first."""
 
-_ORIGIN: dict[str, tuple[int, ...]] = {"xyz": (3,), "rpy": (3,)}
+_ORIGIN: dict[str, tuple[int, ...]] = {"xyz": (3,), "rpy": (3,), "quat_xyzw": (4,)}
 _JOINT: _Counts = {
     "origin": _ORIGIN,
     "axis": {"xyz": (3,)},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections import defaultdict
 from dataclasses import dataclass
@@ -9,7 +10,7 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from kinematify.errors import DescriptionError
-from kinematify.robot.mesh_paths import MESH_SUFFIXES, find_mesh
+from kinematify.robot.mesh_paths import MESH_SUFFIXES, find_mesh, near_mesh
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
 from kinematify.validation.document import shown
@@ -32,6 +33,7 @@ class _Reference:
     link: str
     filename: str
     line: int
+    collides: bool
     path: Path | None
     """None where there is no such file."""
     fault: str
@@ -42,7 +44,8 @@ class _Reference:
 
 @check("KV141", title="Mesh files exist", fails="A mesh file is missing", severity=Severity.ERROR, cause=Cause.ASSET)
 def missing_files(result: OpenCheck, urdf: Urdf) -> None:
-    """Every file name leads to a file, through packages where it says so.
+    """Every file name leads to a file, through packages where it says so; for what is only seen it is a warning. All
+    else is checked without the element.
 
     Why it matters: The link is invisible and collides with nothing, or the model does not load.
 
@@ -50,16 +53,22 @@ def missing_files(result: OpenCheck, urdf: Urdf) -> None:
     """
     # what a link shows and collides with is often one file
     missing = {(item.link, item.filename): item for item in reversed([*_references(urdf)]) if item.path is None}
-    for reference in reversed(missing.values()):
+    felt = {(item.link, item.filename) for item in _references(urdf) if item.collides}
+    for key, reference in reversed(missing.items()):
+        near = near_mesh(reference.filename, urdf.folder, urdf.package_dirs)
         result.find(
             reference.fault,
-            _remedy(reference.filename, urdf.folder),
+            _remedy(reference.filename)
+            if near is None
+            else f"There is {os.path.relpath(near, urdf.folder)}; `kinematify fix` writes that path.",
+            severity=None if key in felt else Severity.WARNING,
             link=reference.link,
             line=reference.line,
+            harmless=True,
         )
 
 
-def _remedy(filename: str, folder: Path) -> str:
+def _remedy(filename: str) -> str:
     if "$(" in filename or "${" in filename:
         return "This is an expression of xacro: expand the file with `xacro FILE > robot.urdf`."
     if filename.startswith(("package://", "model://")):
@@ -71,15 +80,7 @@ def _remedy(filename: str, folder: Path) -> str:
         return "This path is on the drive of a Windows machine: copy the mesh and write its path relative to the URDF."
     if filename.startswith(("/", "file:")):
         return "Absolute paths hold on one machine only: write the path relative to the URDF."
-    near = _same_but_for_case(folder / filename.replace("\\", "/"))
-    return f"Did you mean {near.name}? Every letter counts." if near else "Put the file there, or correct the path."
-
-
-def _same_but_for_case(path: Path) -> Path | None:
-    try:
-        return next((item for item in path.parent.iterdir() if item.name.lower() == path.name.strip().lower()), None)
-    except (OSError, ValueError):
-        return None
+    return "Put the file there, or correct the path; `kinematify fix` leaves the element out."
 
 
 @check(
@@ -104,9 +105,10 @@ def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
             result.find(
                 f"The mesh {shown(reference.filename)} of the link {reference.link} is of no format that can be read.",
                 f"Convert it to one of {', '.join(MESH_SUFFIXES)}, for example with Blender.",
-                severity=Severity.ERROR if reference.collides else Severity.WARNING,
+                severity=None if reference.collides else Severity.WARNING,
                 link=reference.link,
                 line=reference.line,
+                harmless=True,
             )
         elif suffix not in _BY_ENGINES:
             converted[suffix].append(reference)

@@ -108,7 +108,8 @@ def bad_scales(result: OpenCheck, urdf: Urdf) -> None:
     cause=Cause.ASSET,
 )
 def malformed_shapes(result: OpenCheck, urdf: Urdf) -> None:
-    """Every visual and collision holds one known shape with the attributes that it needs.
+    """Every visual and collision holds one known shape with the attributes that it needs; for a visual it is a warning.
+    All else is checked without the element.
 
     Why it matters: Readers stop, or drop the shape in silence.
 
@@ -121,9 +122,11 @@ def malformed_shapes(result: OpenCheck, urdf: Urdf) -> None:
             result.find(
                 f"A {element.tag} of the link {link} {message}.",
                 remedy,
+                severity=Severity.WARNING if element.tag == "visual" else None,
                 cause=cause_of(element),
                 link=link,
                 line=line_of(element),
+                harmless=True,
             )
 
 

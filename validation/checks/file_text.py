@@ -11,6 +11,7 @@ from lxml import etree
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.robot.urdf_text import has_doctype
 from kinematify.validation.check import check
+from kinematify.validation.checks.file_numbers import finite_numbers
 from kinematify.validation.document import shown
 from kinematify.validation.finding import Cause, Severity
 
@@ -249,6 +250,44 @@ def unknown_elements(result: OpenCheck, urdf: Urdf) -> None:
             value=len(elements),
             line=line_of(elements[0]),
         )
+
+
+@check(
+    "KV107",
+    title="Rotations are written as every reader knows",
+    fails="Rotations are written as few readers know",
+    severity=Severity.WARNING,
+    cause=Cause.ASSET,
+)
+def quaternions(result: OpenCheck, urdf: Urdf) -> None:
+    """No rotation is written as quat_xyzw of URDF 1.1 and later, unless it is none. All other checks read it.
+
+    Why it matters: MuJoCo, PyBullet, Pinocchio and most importers skip the attribute without a word and do not turn
+    the frame.
+
+    Remedy: Write roll, pitch and yaw (rpy); `kinematify fix` does it.
+    """
+    turned = [
+        origin
+        for origin in urdf.robot.iter("origin")
+        if not _is_unturned(finite_numbers(origin.get("quat_xyzw") or "") or [])
+    ]
+    if turned:
+        parent = turned[0].getparent()
+        owner = urdf.robot if parent is None else parent
+        result.find(
+            f"{_called(owner)} has quat_xyzw={shown(turned[0].get('quat_xyzw'))} (in the file: {len(turned)}); MuJoCo, "
+            "PyBullet and Pinocchio skip the attribute and do not turn the frame.",
+            "Write rpy instead; `kinematify fix` does it.",
+            value=len(turned),
+            line=line_of(turned[0]),
+            link=_owner(owner, "link"),
+            joint=_owner(owner, "joint"),
+        )
+
+
+def _is_unturned(quaternion: list[float]) -> bool:
+    return len(quaternion) != 4 or not any(quaternion[:3])
 
 
 def _structure(robot: _Element) -> Iterator[_Element]:

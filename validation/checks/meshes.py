@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 )
 def unreadable(result: OpenCheck, look: MeshContext) -> None:
     """Every mesh file that the URDF names opens, is complete, not larger than `max_mesh_bytes`, and its faces refer to
-    vertices that it has.
+    vertices that it has; for a mesh that is only seen it is a warning. All else is checked without it.
 
     Why it matters: A truncated or lying mesh is dropped in silence by PyBullet, which also reads past the end of
     its arrays where a face of an OBJ refers to a vertex that is not there; MuJoCo refuses to load the model.
@@ -32,9 +32,11 @@ def unreadable(result: OpenCheck, look: MeshContext) -> None:
         if file.mesh is None:
             result.find(
                 f"The mesh {file.called} cannot be used. {file.fault}",
-                "Export it again and check that it opens in a viewer.",
+                "Export it again and check that it opens in a viewer; `kinematify fix` leaves it out.",
+                severity=None if file.collides else Severity.WARNING,
                 link=file.first.link,
                 line=file.first.line,
+                harmless=True,
             )
     if look.fault is not None:
         result.find(look.fault, "Fix what the message names.")

@@ -17,12 +17,13 @@ from kinematify.config.validation import load_settings
 from kinematify.errors import DescriptionError
 from kinematify.manipulation.plan_request import PriorFinding
 from kinematify.robot.read import read_robot
-from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine
+from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine, why_not_run
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.document_copy import readable_copy, resolved_copy
+from kinematify.validation.document_copy import LEFT_OUT, readable_copy, resolved_copy
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
+from kinematify.validation.left_model import has_model
 from kinematify.validation.lines import with_lines
 from kinematify.validation.run.causes import with_causes
 from kinematify.validation.run.loaded_findings import across_engines, with_refusals
@@ -40,6 +41,7 @@ from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.stages.precheck import precheck
 from kinematify.validation.summary import JointSummary, PairTable
 from kinematify.validation.suppression import suppress
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -76,8 +78,8 @@ def validate(
         package_dirs: Where packages lie (``package://``).
         settings: Thresholds and budgets; the shipped ones if absent.
         selected: Ids of the checks to run; all if absent. Those of file and meshes always run, and their errors count.
-        engines: Of `kinematify.simulation.engines.ENGINES`; checks of others that every installation has are reported
-            as skipped.
+        engines: Of `kinematify.simulation.engines.ENGINES`; all that are installed if absent. Checks of others are
+            reported as skipped, with the reason.
         suppressions: Findings that do not count.
         task: What a robot is to do with the object (KV7xx); without one these checks are not in the report.
         workers: Processes at a time; as many as there are cores if absent.
@@ -88,12 +90,14 @@ def validate(
 
     Raises:
         InputError: `path` is not a URDF at all (missing, unreadable, binary, xacro, MJCF).
-        EnvironmentFault: An engine was asked for that is not installed.
+        EnvironmentFault: An engine was asked for that is not installed, or a task without what plans it.
     """
     for engine in engines:
         require_engine(engine)
+    if task is not None:
+        require("A robot arm", "pin", "coal", "ompl")
     chosen = tuple(engine for engine in ENGINES if engine in engines)
-    checks = _checks(task, chosen)
+    checks = _checks(task)
     wanted = frozenset(checks) if selected is None else frozenset(checks) & frozenset(selected)
     run = _Run(path=Path(path), selected=wanted, progress=progress, task=task, engines=chosen, checks=checks)
     settings = settings or load_settings()
@@ -117,7 +121,6 @@ def validate(
 _GUARDS = frozenset(check for check in CHECKS if check.startswith("KV1"))
 """Checks of file and meshes: they always run, and their errors always count."""
 _MESH_GUARDS = frozenset(check for check in _GUARDS if check.startswith("KV15"))
-_FORMATS = "KV142"
 _LAST_GUARD = "KV152"
 """Called when every mesh file has been opened and read."""
 
@@ -128,14 +131,9 @@ _LEEWAY = 20.0
 """Processor time that the stage of a task has to end what it is at [s]."""
 
 
-def _checks(task: TaskRequest | None, engines: Sequence[str]) -> dict[str, Check]:
-    """Checks of the report; those of a task and of engines that not every installation has only when asked for."""
-    known = {None, *DEFAULT_ENGINES, *engines}
-    return {
-        name: replace(check, engines=tuple(engine for engine in check.engines if engine in known))
-        for name, check in CHECKS.items()
-        if (task is not None or not name.startswith("KV7")) and known & {*(check.engines or (None,))}
-    }
+def _checks(task: TaskRequest | None) -> dict[str, Check]:
+    """Checks of the report; those of a task only when it was asked for."""
+    return {name: check for name, check in CHECKS.items() if task is not None or not name.startswith("KV7")}
 
 
 class _Run:
@@ -186,7 +184,11 @@ class _Run:
             )
             return
         spent, late = self._read_meshes(asset_request, copy, [*later, *plain])
-        if self._fault_of_meshes() is not None and not late and (again := self._readable(asset_request)) is not None:
+        if (
+            self._fault_of_meshes(request.work) is not None
+            and not late
+            and (again := self._readable(asset_request)) is not None
+        ):
             copy = again
             more, late = self._read_meshes(asset_request, copy, [])
             spent += more
@@ -195,7 +197,7 @@ class _Run:
             self._explain_rest(Status.SKIPPED, not_finished("time ran out before the meshes were checked"))
             return
         request = replace(request, deadline=max(0.0, request.deadline - spent))
-        fault = self._fault_of_meshes() if copy is None else None
+        fault = self._fault_of_meshes(request.work) if copy is None else None
         if copy is not None and not copy.only_visuals:
             fault = f"the pre-check found errors in what collides or moves: {self._ids(self._broken())}"
         if fault is not None:
@@ -204,24 +206,16 @@ class _Run:
         for number, end in enumerate(run_stages(later, request, workers=workers)):
             self._take_end(end)
             self._progress(end.stage.name, 0.15 + 0.8 * (number + 1) / len(later))
-        self._explain(
-            [key for key in self._missing() if key[1] in set(ENGINES) - set(self.engines)],
-            Status.SKIPPED,
-            "the engine was not asked for",
-        )
+        for name in set(ENGINES) - set(self.engines):
+            self._explain([key for key in self._missing() if key[1] == name], Status.SKIPPED, why_not_run(name))
         self._load_plainly(plain, request, workers, request.urdf if copy is None else copy.path)
         if self.task is not None:
             self._use(request, self.engines)
 
     def _broken(self) -> list[Finding]:
-        """What keeps the document from being read: errors of file and meshes, and formats of visuals."""
-        found = [finding for key, result in self._results.items() if key[0] in _GUARDS for finding in result.findings]
-        return [
-            finding
-            for finding in found
-            if finding.severity is Severity.ERROR
-            or (finding.check == _FORMATS and finding.severity is Severity.WARNING)
-        ]
+        """What keeps the document from being read: errors of file and meshes, but for shapes that are left out."""
+        found = [result for key, result in self._results.items() if key[0] in _GUARDS - LEFT_OUT]
+        return [item for result in found for item in result.findings if item.severity is Severity.ERROR]
 
     def _readable(self, request: StageRequest) -> DocumentCopy | None:
         """A copy without what is broken; None where nothing is, or where it cannot be read at all."""
@@ -254,7 +248,8 @@ class _Run:
     def _load_plainly(self, stages: list[Stage], request: StageRequest, workers: int, readable: Path) -> None:
         """Look at the untouched file in engines; what the exact geometry knows of the joints is known by now."""
         free = {name: joint.free_travel for name, joint in self._joints.items() if joint.free_travel is not None}
-        resolved = resolved_copy(replace(request, urdf=readable), "resolved.urdf") if stages else None
+        left_out = [item for key, result in self._results.items() if key[0] in LEFT_OUT for item in result.findings]
+        resolved = resolved_copy(replace(request, urdf=readable), "resolved.urdf", left_out) if stages else None
         for end in run_stages(stages, replace(request, free_travel=free, resolved=resolved), workers=workers):
             self._take_end(end)
             self._progress(end.stage.name, 0.95)
@@ -296,9 +291,7 @@ class _Run:
         )
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)
         checks = with_causes(checks, robot)
-        facts = environment(
-            settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted, engines=self.engines
-        )
+        facts = environment(settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted)
         return ValidationReport(
             model=str(self.path),
             checks=checks,
@@ -334,12 +327,14 @@ class _Run:
             self._results[left[0]] = _fallen(left[0], end)
         self._explain(left, Status.BLOCKED, reason)
 
-    def _fault_of_meshes(self) -> str | None:
+    def _fault_of_meshes(self, work: Path) -> str | None:
         """Why no later stage may open the meshes; None if they may."""
         if (_LAST_GUARD, None) not in self._results:
             return "the meshes could not be checked, and no other stage may trip over them"
+        if has_model(work):
+            return None
         faults = [key[0] for key, result in self._results.items() if key[0] in _MESH_GUARDS and _has_error(result)]
-        return f"the meshes cannot be used, see {', '.join(faults)}" if faults else None
+        return f"the meshes cannot be used, see {', '.join(faults)}"
 
     def _missing(self) -> Iterable[CheckKey]:
         return [key for key in keys(list(self.checks.values())) if key not in self._results and key not in self._why]

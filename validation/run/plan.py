@@ -75,7 +75,7 @@ def as_loaded_stages(chosen: Sequence[str]) -> list[Stage]:
 
 def _library(engine: EngineEntry) -> str | None:
     """Return what can be loaded once for all stages of an engine; none that may be missing."""
-    return None if engine.prints_when_loaded or engine.extra else engine.module
+    return None if engine.prints_when_loaded else engine.module
 
 
 def task_stage() -> Stage:
