@@ -73,7 +73,7 @@ def command(
     """
     from kinematify.config.validation import load_settings
     from kinematify.formats.export_model import export
-    from kinematify.model.output import check_file
+    from kinematify.model.output import check_file, urdf_of
     from kinematify.processes.lock import writing
 
     if form != "srdf" and (tool or gripper):
@@ -81,6 +81,7 @@ def command(
     if free and form in ("srdf", "glb", "urdf"):
         raise click.UsageError("--free belongs to --to mjcf, usd or sdf. Leave it out.")
     check_file(out, overwrite=force)
+    model = urdf_of(model)
     joints = listed(gripper)
     settings = load_settings() if seed is None else load_settings(seed=seed)
     with writing(out), progress_reporter() as progress:
