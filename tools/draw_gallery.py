@@ -105,8 +105,8 @@ def write_gallery(
         page.write_text(_page(families, sentences, described, command), encoding="utf-8")
     except OSError as error:
         raise OutputError(
-            f"The gallery cannot be written to {folder} ({error.strerror or error}). Give a folder that you may write "
-            "to, on a disk with space."
+            f"The gallery cannot be written to {folder} ({error.strerror or error}). Give a writable folder "
+            "on a disk with space."
         ) from error
     return page
 

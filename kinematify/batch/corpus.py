@@ -85,8 +85,7 @@ def write_corpus(
             progress(name, done / count)
     except OSError as error:
         raise OutputError(
-            f"The corpus {out} cannot be written ({error.strerror}). Give a folder that you may write to, on a disk "
-            "with space."
+            f"The corpus {out} cannot be written ({error.strerror}). Give a writable folder on a disk with space."
         ) from error
     return manifest
 

@@ -153,6 +153,7 @@ def _share(words: str | None) -> tuple[int, int]:
 
 def _described(result: BatchResult) -> str:
     from kinematify.batch.batch_summary import STEP_HEADINGS, outcome_words, step_rows
+    from kinematify.validation.run.outcome import counted_words
 
     rate = f", {3600.0 * result.new / result.seconds:.0f} an hour" if result.new else ""
     bad = [record for record in result.records if record.failed]
@@ -162,7 +163,8 @@ def _described(result: BatchResult) -> str:
     return "\n".join(
         [
             f"{len(result.records)} objects: {outcome_words(result.records)}",
-            f"{result.new} of them now, in {result.seconds:.0f} s with {result.workers} workers{rate}",
+            f"{result.new} converted in this run ({result.seconds:.0f} s, {counted_words(result.workers, 'worker')}{rate}), "
+            f"{len(result.records) - result.new} skipped: done earlier",
             "",
             format_table(STEP_HEADINGS, step_rows(result.records)),
             "",

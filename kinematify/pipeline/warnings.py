@@ -107,11 +107,14 @@ def floating_parts(assembly: Assembly, graph: ContactGraph, tree: KinematicTree)
             gap = "" if edge is None else f" ({edge.gap / assembly.diagonal:.2%} of the object's diagonal apart)"
             name, above = assembly.names[child], assembly.names[parent]
             touched = [item for item in graph.edges if child in (item.a, item.b) and not item.bridge]
-            warnings.append(
-                f"{name} hangs on {above}, which it does not touch{gap}, and not on what it touches."
-                if touched
-                else f"{name} touches nothing; it hangs on {above}, the nearest part{gap}."
-            )
+            if touched:
+                other = assembly.names[touched[0].a + touched[0].b - child]
+                warnings.append(
+                    f"The parent of {name} is {above}, which it does not touch{gap}. If its parent is what it touches, "
+                    f"give --hint {name}:parent={other}."
+                )
+            else:
+                warnings.append(f"{name} touches nothing; its parent is {above}, the nearest part{gap}.")
     return warnings
 
 

@@ -77,8 +77,8 @@ class Night:
 def unwritable(folder: Path, error: OSError) -> str:
     """The message for a folder that cannot be written."""
     return (
-        f"The nights cannot be kept in {folder}: {error.strerror or error}. Give a folder that you may write to with "
-        "-o, on a disk with space."
+        f"The nights cannot be kept in {folder}: {error.strerror or error}. Give a writable "
+        "folder on a disk with space with -o."
     )
 
 
