@@ -155,6 +155,7 @@ def _described(result: BatchResult) -> str:
     from kinematify.batch.batch_summary import STEP_HEADINGS, outcome_words, step_rows
     from kinematify.validation.run.outcome import counted_words
 
+    skipped = f"; skipped: {len(result.records) - result.new} done earlier" if len(result.records) > result.new else ""
     rate = f", {3600.0 * result.new / result.seconds:.0f} an hour" if result.new else ""
     bad = [record for record in result.records if record.failed]
     lines = [f"{record.object}: {record.error or 'an error, see its validation.json'}" for record in bad[:_SHOWN]]
@@ -163,8 +164,7 @@ def _described(result: BatchResult) -> str:
     return "\n".join(
         [
             f"{len(result.records)} objects: {outcome_words(result.records)}",
-            f"{result.new} converted in this run ({result.seconds:.0f} s, {counted_words(result.workers, 'worker')}{rate}), "
-            f"{len(result.records) - result.new} skipped: done earlier",
+            f"{result.new} converted in {result.seconds:.0f} s with {counted_words(result.workers, 'worker')}{rate}{skipped}",
             "",
             format_table(STEP_HEADINGS, step_rows(result.records)),
             "",
