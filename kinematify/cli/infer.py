@@ -24,7 +24,6 @@ from kinematify.cli.inferred import (
 )
 from kinematify.cli.options import collision_option, examples, pieces_option, scale_option, with_collision
 from kinematify.cli.progress import progress_reporter
-from kinematify.cli.refine import TIERS, describe_refinement, exit_status
 from kinematify.errors import EnvironmentFault, InputError
 
 if TYPE_CHECKING:
@@ -58,7 +57,6 @@ _LONGEST = 86400.0
         "kinematify infer whole.glb --pieces group -o out/whole",
         "kinematify infer whole.glb --pieces group --groups out/whole/groups.json -o out/corrected",
         "kinematify infer parts.zip -o out/parts --config paper --seed 7",
-        "kinematify infer parts/ -o out/parts --refine 3 --tier engines",
         "kinematify infer parts/ -o out/parts --vlm http://localhost:11434/v1",
         "kinematify infer examples/cabinet -o out/cabinet --force --json - > answer.json",
     ),
@@ -113,20 +111,6 @@ _LONGEST = 86400.0
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
 )
 @click.option("--seed", type=int, help="Seed of everything random, instead of the configuration's.")
-@click.option(
-    "--refine",
-    "rounds",
-    type=click.IntRange(min=1),
-    metavar="N",
-    help="Simulate the result and choose again what caused its failures, up to N rounds (see kinematify refine).",
-)
-@click.option(
-    "--tier",
-    type=click.Choice(TIERS),
-    default="geometry",
-    show_default=True,
-    help="How far --refine simulates: exact sweeps; engines too; an arm that pulls as well.",
-)
 @asking_options
 @collision_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
@@ -149,8 +133,6 @@ def command(
     hints: tuple[str, ...],
     config: str,
     seed: int | None,
-    rounds: int | None,
-    tier: str,
     vlm: str,
     vlm_all: bool,
     vlm_first: bool,
@@ -208,24 +190,22 @@ def command(
         parts = grouped_parts(given, groups, settings, progress)
         settings = _weighing(settings, density, masses, parts)
         stated = _parsed(hints, _names(parts), base)
-        inference = infer(parts, config=settings, base=base, progress=_share(progress, 0.0, _INFERRED))
+        inference = infer(
+            parts, config=settings, base=base, progress=lambda stage, done: progress(stage, _INFERRED * min(done, 0.99))
+        )
         asking = Asking(vlm=vlm, everything=vlm_all, types_first=vlm_first)
         inference, heard, status = with_answers(
             inference, asking, {hint.part for hint in stated}, lambda stage: progress(stage, _INFERRED)
         )
-        if rounds is not None:
-            inference, failed = _refined(inference, rounds, tier, base, _share(progress, _INFERRED, _REFINED))
-            status = status or failed
         inference = _with_hints(inference, stated)
-        if rounds is None:
-            progress("moving every joint", _INFERRED)
-            inference = repaired(inference, base=base)
+        progress("moving every joint", _INFERRED)
+        inference = repaired(inference, base=base)
         report = _written(inference, out, overwrite=force, preview=not no_preview, beside=beside, progress=progress)
         progress("done", 1.0)
     if json_to:
         write_answer({**_as_answer(inference, out), **validation_answer(report)}, json_to)
     if json_to != "-":
-        blocks = (heard, describe_refinement(inference), describe(inference, out), describe_validation(report, out))
+        blocks = (heard, describe(inference, out), describe_validation(report, out))
         click.echo("\n\n".join(block for block in blocks if block))
     return status or validation_status(report)
 
@@ -286,21 +266,6 @@ def _with_hints(inference: Inference, stated: Sequence[Hint]) -> Inference:
     from kinematify.refinement.hints import with_hints
 
     return with_hints(inference, stated)
-
-
-def _share(progress: Callable[[str, float], None], start: float, end: float) -> Callable[[str, float], None]:
-    """Progress of a step that is a share of the whole; that it is done, only the whole says."""
-    return lambda stage, done: progress(stage, start + (end - start) * done) if done < 1.0 else None
-
-
-def _refined(
-    inference: Inference, rounds: int, tier: str, base: str | None, progress: Callable[[str, float], None]
-) -> tuple[Inference, int]:
-    """The best of some rounds of simulation, and the exit status that they ask for."""
-    from kinematify.refinement import refine
-
-    refinement = refine(inference, rounds=rounds, tier=tier, base=base, progress=progress)
-    return refinement.inference, exit_status(refinement)
 
 
 def use_one_thread(config: Config) -> None:
@@ -366,7 +331,6 @@ def _as_answer(inference: Inference, out: Path) -> dict[str, Any]:
         "warnings": list(inference.warnings),
         "closed_chains": [chain.description for chain in inference.closed_chains],
         "seconds": dict(inference.timings),
-        "refinement": None if inference.refinement is None else dict(inference.refinement),
         "vision": None if inference.vision is None else dict(inference.vision),
     }
 

@@ -11,7 +11,6 @@ from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.inferred import describe, describe_validation, validated, validation_answer, validation_status
 from kinematify.cli.options import collision_option, examples, with_collision
 from kinematify.cli.progress import progress_reporter
-from kinematify.cli.report_files import ReportFiles, report_on
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
 
@@ -33,7 +32,7 @@ _ROUND_HEADINGS = ("round", "simulated by", "chosen again", "failed", "cause", "
         "kinematify refine out -o refined",
         "kinematify refine out --force",
         "kinematify refine out -o refined --tier engines --rounds 5",
-        "kinematify refine out -o refined --budget 20 --html validation.html",
+        "kinematify refine out -o refined --budget 20",
         "kinematify refine out -o refined --json - > rounds.json",
     ),
 )
@@ -56,9 +55,6 @@ _ROUND_HEADINGS = ("round", "simulated by", "chosen again", "failed", "cause", "
     help="Time for all rounds. If not given, twice that of the inference for geometry, and no limit for the others.",
 )
 @click.option("--base", metavar="NAME", help="Part that the tree is rooted at, if the choice made is wrong.")
-@click.option(
-    "--html", type=click.Path(path_type=Path), metavar="FILE", help="Validate the result and write its report."
-)
 @collision_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder; without -o, the model in FOLDER.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
@@ -72,7 +68,6 @@ def command(
     tier: str,
     budget: float | None,
     base: str | None,
-    html: Path | None,
     collision: str | None,
     force: bool,
     no_preview: bool,
@@ -100,9 +95,6 @@ def command(
     from kinematify.refinement.folder import as_left, open_model_folder, read_record, write_refined
 
     target = _target(folder, out, force=force)
-    files = None if html is None else ReportFiles(json=None, junit=None, sarif=None, html=html)
-    if files is not None:
-        files.check()
     _check_budget(budget)
     with writing(target), progress_reporter() as progress:
         progress("reading the parts", 0.0)
@@ -124,9 +116,6 @@ def command(
         if not (no_validation or refinement.interrupted):
             progress("checking the geometry and loading the file into engines", 0.94)
             report = validated(target / MODEL_FILE)
-        if files is not None:
-            progress("validating the result", 0.95)
-            report_on(target, files)
     if json_to:
         write_answer({**as_answer(refinement, target), **validation_answer(report)}, json_to)
     if json_to != "-":

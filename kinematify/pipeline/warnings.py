@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.contact.graph import pair
-from kinematify.joints.bearings.refine_lines import across_axis
 from kinematify.joints.choice.congruent_joints import TwinJoints
 from kinematify.joints.choice.judge import alike_edges
 from kinematify.robot.joint_type import JointType
@@ -19,7 +18,7 @@ from kinematify.robot.joint_type import JointType
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from kinematify.assembly.part import Assembly, Part
+    from kinematify.assembly.part import Assembly
     from kinematify.config import CompoundConfig, Config
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.contact.tree import KinematicTree
@@ -205,7 +204,6 @@ class CompoundKind(StrEnum):
     BALL = "ball"
     UNIVERSAL = "universal"
     FINGERS = "fingers"
-    CAP = "cap"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -250,7 +248,7 @@ def compounds(
         and _one_point((first, second), near)
         and _is_cross(assembly, first, second, config)
     ]
-    return (*balls, *universals, *_fingers(assembly, joints, clusters, config), *_caps(assembly, joints, config))
+    return (*balls, *universals, *_fingers(assembly, joints, clusters, config))
 
 
 def described(compound: Compound, names: Sequence[str]) -> str:
@@ -261,11 +259,6 @@ def described(compound: Compound, names: Sequence[str]) -> str:
     if compound.kind is CompoundKind.UNIVERSAL:
         return (
             f"The joints of {parts[0]} and {parts[1]} cross at a right angle in {parts[0]}: together a universal joint."
-        )
-    if compound.kind is CompoundKind.CAP:
-        return (
-            f"{parts[0]} closes the end of what it turns on and may come off along its axis: a screw or cylindrical "
-            "pair, which takes two joints about one line with a link without geometry between them."
         )
     return (
         f"{parts[0]} and {parts[1]} mirror each other as fingers do. Where one drive moves both, let one joint follow "
@@ -324,43 +317,3 @@ def _face(assembly: Assembly, one: JointEstimate, other: JointEstimate, config: 
     gap = max(spans[0][0], spans[1][0]) - min(spans[0][1], spans[1][1])
     reach = (one.upper - one.lower) + (other.upper - other.lower)
     return beside < config.beside * abs(along) and gap < reach
-
-
-def _caps(assembly: Assembly, joints: Sequence[JointEstimate], config: CompoundConfig) -> Iterator[Compound]:
-    """Parts that carry nothing and turn in a bearing on the end of a part about the same line, which they close."""
-    carriers = {joint.parent for joint in joints}
-    for joint in joints:
-        turns = joint.kind.turns and joint.evidence.get("bearing_gate", 0.0) > 0.0
-        if turns and joint.child not in carriers and _closes(assembly, joint, config):
-            yield Compound(kind=CompoundKind.CAP, children=(joint.child,))
-
-
-def _closes(assembly: Assembly, joint: JointEstimate, config: CompoundConfig) -> bool:
-    """True if a part goes around the end of its parent, and over it."""
-    cap, body = assembly.parts[joint.child], assembly.parts[joint.parent]
-    across = across_axis(joint.axis)
-    aside = float(np.linalg.norm(across @ (body.centroid - joint.pivot)))
-    for direction in (joint.axis, -joint.axis):
-        end = float(((body.vertices - joint.pivot) @ direction).max())
-        height = (cap.vertices - joint.pivot) @ direction
-        rim = cap.vertices[height < end]
-        neck = body.vertices[(body.vertices - joint.pivot) @ direction > height.min()]
-        if len(rim) == 0 or len(neck) == 0 or height.max() <= end:
-            continue
-        inner, outer = (np.linalg.norm((points - joint.pivot) @ across.T, axis=1).max() for points in (neck, rim))
-        if outer > inner and aside < config.coaxial * inner and _on_the_line(cap, joint, direction, end):
-            return True
-    return False
-
-
-def _on_the_line(part: Part, joint: JointEstimate, direction: FloatArray, beyond: float) -> bool:
-    """True if the joint's line meets a part farther along `direction` than `beyond` [m]."""
-    corners = part.vertices[part.faces] - joint.pivot
-    flat = corners @ across_axis(joint.axis).T
-    turns = np.stack([_cross(flat[:, k], flat[:, (k + 1) % 3]) for k in range(3)])
-    met = (turns >= 0).all(axis=0) | (turns <= 0).all(axis=0)
-    return bool(met.any() and ((corners[met] @ direction).max(axis=1) > beyond).any())
-
-
-def _cross(one: FloatArray, other: FloatArray) -> FloatArray:
-    return np.asarray(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
