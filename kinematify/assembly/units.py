@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.lengths import length_text
+from kinematify.robot.vectors import referenced
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import AssemblyConfig
-    from kinematify.robot.mesh_file import RawMesh
+    from kinematify.robot.raw_mesh import RawMesh
 
 UNITLESS = (".stl", ".obj", ".ply", ".off")
 """Formats that state no unit."""
@@ -49,7 +50,7 @@ def in_metres(meshes: Sequence[RawMesh], scale: float | None, config: AssemblyCo
     if stated:
         scaled = [_scaled(mesh, _UNITS.get(unit, (1.0, ""))[0]) for mesh, unit in zip(meshes, units, strict=True)]
         return scaled, f"{' and '.join(word for _, word in stated)} (stated in the file)"
-    corners = np.concatenate([mesh.vertices for mesh in meshes])
+    corners = np.concatenate([referenced(mesh.vertices, mesh.faces) for mesh in meshes])
     corners = corners[np.isfinite(corners).all(axis=1)]
     size = float(np.ptp(corners, axis=0).max()) if len(corners) else 0.0
     if size > config.largest:

@@ -68,7 +68,7 @@ OTHERS = "all else that a URDF states (gazebo, transmission, ros2_control, safet
 
 TREATMENT: Mapping[str, Mapping[str, str]] = {
     "urdf": {
-        "closed loops": "drake:ball_constraint, which Drake closes; readers of trees alone ignore it",
+        "closed loops": "drake:ball_constraint; readers of trees alone ignore it",
         "capsules": "their triangles",
         "links that overlap at rest": "they collide in engines that let links of one model collide",
         "materials and textures": "in the OBJ files; the URDF has one mean colour a shape",

@@ -16,9 +16,10 @@ from kinematify.errors import AssemblyError, DescriptionError, OutputError
 from kinematify.model.collision import fit_collision
 from kinematify.model.dynamics import with_dynamics
 from kinematify.model.masses import prepared_inertials
-from kinematify.robot.mesh_file import merged, read_meshes
+from kinematify.robot.mesh_file import read_meshes
 from kinematify.robot.mesh_paths import GLTF_SUFFIXES, find_mesh, near_mesh
 from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
+from kinematify.robot.raw_mesh import merged
 from kinematify.robot.robot import Inertial, Robot
 from kinematify.robot.transforms import rpy_of
 from kinematify.robot.urdf_geometry import geometry_source
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from kinematify.config import Config, DynamicsConfig
     from kinematify.config.validation import PrepareSettings, ValidationSettings
     from kinematify.model.collision import FittedCollision
-    from kinematify.robot.mesh_file import RawMesh
+    from kinematify.robot.raw_mesh import RawMesh
     from kinematify.robot.robot import Link, LinkMesh
 
 _FILES = ("mesh", "texture")

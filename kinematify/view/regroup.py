@@ -12,7 +12,7 @@ from kinematify.assembly.part import Part
 from kinematify.assembly.pieces import connected_sheets
 from kinematify.errors import InputError
 from kinematify.grouping.groups import Group, Grouping, joined_pieces, stated_groups
-from kinematify.robot.mesh_file import RawMesh
+from kinematify.robot.raw_mesh import RawMesh
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -14,7 +14,7 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointEstimate
-from kinematify.pipeline.warnings import Compound, CompoundKind, compounds, missed_linkages
+from kinematify.pipeline.warnings import Compound, CompoundKind, compounds, described, missed_linkages
 from kinematify.robot.joint_type import JointType
 
 CONFIG = load_config().joints.compound
