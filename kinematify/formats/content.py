@@ -147,15 +147,20 @@ def _renamed(robot: Robot, to: str) -> Robot:
     # SDFormat knows no two siblings of one name; elsewhere joints are no siblings of links.
     taken = {WORLD, *links} if to == "sdf" else set[str]()
     joints = _allowed([item.name for item in (*robot.joints, *robot.loops)], to, taken, "joint")
-    link_of = {link.name: name for link, name in zip(robot.links, links, strict=True)}
-    joint_of = {joint.name: name for joint, name in zip(robot.joints, joints, strict=False)}
+    return replace(with_names(robot, links, joints), name=_allowed([robot.name], to, reserved, "model")[0])
+
+
+def with_names(robot: Robot, links: Sequence[str], joints: Sequence[str]) -> Robot:
+    """Return a robot with other names of its links, and of its joints and perhaps its loops, in their order."""
+    link_of = dict(zip(robot.link_by_name, links, strict=True))
+    joint_of = dict(zip(robot.joint_by_name, joints, strict=False))
 
     def led(rule: Any) -> Any:
         return rule and replace(rule, joint=joint_of[rule.joint])
 
+    loops = joints[len(robot.joints) :] or [loop.name for loop in robot.loops]
     return replace(
         robot,
-        name=_allowed([robot.name], to, reserved, "model")[0],
         links=tuple(replace(link, name=link_of[link.name]) for link in robot.links),
         joints=tuple(
             replace(
@@ -166,7 +171,7 @@ def _renamed(robot: Robot, to: str) -> Robot:
         ),
         loops=tuple(
             replace(loop, name=name, links=(link_of[loop.links[0]], link_of[loop.links[1]]))
-            for loop, name in zip(robot.loops, joints[len(robot.joints) :], strict=True)
+            for loop, name in zip(robot.loops, loops, strict=True)
         ),
     )  # fmt: skip
 

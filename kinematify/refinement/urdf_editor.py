@@ -123,7 +123,12 @@ class UrdfEditor:
         self.diffs.append(Diff(title=title, lines="\n".join(lines)))
 
     def carve(
-        self, robot: Robot, links: frozenset[str], config: Config, settings: ValidationSettings
+        self,
+        robot: Robot,
+        links: frozenset[str],
+        config: Config,
+        settings: ValidationSettings,
+        most_cut: float = 1.0,
     ) -> FittedCollision:
         """Give links collision pieces that leave the joints free; the others keep what they have.
 
@@ -133,11 +138,21 @@ class UrdfEditor:
             links: Names.
             config: Clearance.
             settings: How surfaces are taken apart, and when they block a motion.
+            most_cut: Share of the volume of its pieces that a link may lose to the motion; one that would lose more
+                keeps what it has.
 
         Returns:
             The pieces, with what could not be made free.
         """
-        fitted = fit_collision(robot, config.collision, settings.prepare, settings.geometry, only=links)
+        given = (robot, config.collision, settings.prepare, settings.geometry)
+        fitted = fit_collision(*given, only=links)
+        harmed = {item.link for item in fitted.links if item.link in links and item.carved > most_cut}
+        if harmed:  # the others leave room for what these keep
+            links -= harmed
+            others = fit_collision(*given, only=links)
+            lost = tuple(item for item in fitted.links if item.link in harmed)
+            kept = tuple(item for item in others.links if item.link not in harmed)
+            fitted = replace(others, links=(*kept, *lost))
         before = robot.link_by_name
         for link in fitted.robot.links:
             if link.name not in links or not link.collisions or _same(link, before[link.name]):
