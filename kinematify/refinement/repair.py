@@ -412,4 +412,4 @@ def _reason(finding: Finding, repairs: _Repairs, *, kinematics: bool) -> str:
         return "Not repaired: needs --all, which carves all links; plain loading does not show it."
     if finding.check in _CARVED and finding.cause is Cause.PHYSICS:
         return "Not repaired: the pieces cannot be carved further."
-    return f"Not repaired: no safe fix. {finding.remedy}"
+    return f"Not repaired: no safe fix is known. {finding.remedy}"
