@@ -65,9 +65,9 @@ class Grouping:
         doubtful = [_said(group) for group in self.groups if group.moves is not None and group.moves < _DOUBTFUL]
         said = [f"The mesh is not segmented: {count} pieces were grouped into {len(self.groups)} rigid parts."]
         if doubtful:
-            said.append(f"Parts that may be fixed: {', '.join(doubtful[:_MOST_NAMED])}.")
+            said.append(f"Likely fixed: {', '.join(doubtful[:_MOST_NAMED])}.")
         if self.rejected:
-            said.append(f"Taken for fixed, but may move: {', '.join(map(_said, self.rejected[:_MOST_NAMED]))}.")
+            said.append(f"Assumed to be fixed, but may move: {', '.join(map(_said, self.rejected[:_MOST_NAMED]))}.")
         if doubtful or self.rejected:
             said.append(f"Correct {GROUPS_FILE} beside the model and give it with --groups.")
         return tuple(said)
@@ -93,8 +93,8 @@ def stated_groups(record: dict[str, Any], key: str) -> tuple[Group, ...]:
 
 def _said(group: Group) -> str:
     others = len(group.pieces) - 1
-    more = f" with {others} other piece{'s' if others > 1 else ''}" if others else ""
-    return f"{group.name}{more} ({group.moves:.0%})"
+    more = f" and {others} more piece{'s' if others > 1 else ''}" if others else ""
+    return f"{group.name}{more} ({group.moves:.0%} likely to move)"
 
 
 _DOUBTFUL = 0.7

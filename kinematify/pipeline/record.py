@@ -183,8 +183,6 @@ def _closed_chain(chain: CutChain) -> dict[str, Any]:
         "joints": list(chain.joints),
         "opened_by": chain.opening.joint,
         "opens": chain.opening.distance,
-        "reward": chain.reward,
-        "reward_with_it": chain.rival,
         "loop": chain.closing.loop,
         "driver": chain.closing.driver,
         "by": chain.closing.by or None,
