@@ -105,7 +105,7 @@ _STARTS = 32
 
 def _start(look: GeometryContext, pair: Pair) -> str:
     """Return a configuration in which a pair is apart, the nearest to rest of some; empty if it is in none."""
-    from kinematify.geometry.scene import relative  # noqa: PLC0415 - checks are read without geometry
+    from kinematify.geometry.scene import relative  # noqa: PLC0415 - reading the checks loads no geometry
     from kinematify.geometry.together import random_rows  # noqa: PLC0415
 
     scene, between = look.scene, sorted(look.scene.between(pair))
