@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kinematify.assembly.assemble import part_names
 from kinematify.assembly.part import Assembly, Part
 from kinematify.errors import AssemblyError, InputError
 from kinematify.grouping.piece_sets import Candidate, measure_candidates, node_of_pieces, propose
@@ -193,6 +194,29 @@ def _doubtful(label: IntArray, pairs: IntArray, odds: FloatArray) -> dict[int, i
     return {} if len(found) == int((label < 0).sum()) else found
 
 
+def grouped_as(
+    grouping: Grouping, assembly: Assembly, indices: Sequence[IntArray], names: Sequence[str] | None = None
+) -> Grouping:
+    """The grouping with parts that are joined or named anew.
+
+    Args:
+        grouping: Groups in the order of the parts.
+        assembly: Their parts.
+        indices: The parts that become each part.
+        names: Of the new parts; without them each has that of its largest one.
+    """
+    found = joined_pieces(assembly, indices, names)
+    groups = [
+        Group(
+            name=name,
+            pieces=tuple(piece for k in index for piece in grouping.groups[k].pieces),
+            moves=grouping.groups[index[0]].moves if len(index) == 1 else None,
+        )
+        for name, index in zip(found.names, indices, strict=True)
+    ]
+    return replace(grouping, assembly=found, groups=tuple(groups))
+
+
 def completed(grouping: Grouping, chosen: Collection[int]) -> Grouping:
     """The grouping in which some groups have their doubtful pieces, which the body loses.
 
@@ -361,22 +385,26 @@ def one_part(assembly: Assembly) -> AssemblyError:
     )
 
 
-def joined_pieces(assembly: Assembly, groups: Sequence[IntArray]) -> Assembly:
-    """The assembly with each group of pieces as one part, named after its largest piece."""
+def joined_pieces(assembly: Assembly, groups: Sequence[IntArray], names: Sequence[str] | None = None) -> Assembly:
+    """The assembly with each group of pieces as one part, named after its largest piece or as `names` say."""
+    wanted = names or [assembly.names[_main_piece(assembly, group)] for group in groups]
+    own = part_names(wanted)
     parts = tuple(
-        _joined([assembly.parts[k] for k in group], _main_piece(assembly, group), assembly) for group in groups
+        _joined([assembly.parts[k] for k in group], name, assembly.parts[_main_piece(assembly, group)])
+        for group, name in zip(groups, own, strict=True)
     )
     originals = {}
     for part, group in zip(parts, groups, strict=True):
         if any(assembly.names[k] in assembly.originals for k in group):
             whole = [assembly.originals.get(assembly.names[k], assembly.parts[k]) for k in group]
-            originals[part.name] = _joined(whole, _main_piece(assembly, group), assembly)
+            originals[part.name] = _joined(whole, part.name, part)
     into = {assembly.names[k]: part.name for part, group in zip(parts, groups, strict=True) for k in group}
     return replace(
         assembly,
         parts=parts,
         set_aside=tuple(replace(item, nearest=into[item.nearest]) for item in assembly.set_aside),
         originals=originals,
+        original_names={**assembly.original_names, **(dict(zip(own, names, strict=True)) if names else {})},
         segmented=True,
     )
 
@@ -388,13 +416,12 @@ def _main_piece(assembly: Assembly, group: IntArray) -> int:
     return next((int(k) for k in group if assembly.names[k] == node), largest)
 
 
-def _joined(pieces: Sequence[Part], largest: int, assembly: Assembly) -> Part:
-    main = assembly.parts[largest]
+def _joined(pieces: Sequence[Part], name: str, main: Part) -> Part:
     if len(pieces) == 1:
-        return pieces[0]
+        return replace(pieces[0], name=name)
     starts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
     return Part(
-        name=main.name,
+        name=name,
         vertices=np.concatenate([piece.vertices for piece in pieces]),
         faces=np.concatenate([piece.faces + start for piece, start in zip(pieces, starts, strict=False)]),
         color=main.color,
@@ -411,7 +438,8 @@ def read_groups(path: Path, assembly: Assembly) -> Grouping:
     """Group pieces as a groups file says; pieces that it does not name are parts of their own.
 
     Args:
-        path: What `Grouping.to_json` wrote, perhaps edited: ``{"parts": [{"name": ..., "pieces": [...]}]}``.
+        path: What `Grouping.to_json` wrote, perhaps edited: ``{"parts": [{"name": ..., "pieces": [...]}]}``; the
+            names become those of the links.
         assembly: The pieces.
 
     Raises:
@@ -419,8 +447,9 @@ def read_groups(path: Path, assembly: Assembly) -> Grouping:
     """
     try:
         stated = json.loads(path.read_text(encoding="utf-8"))
-        groups = [tuple(str(name) for name in part["pieces"]) for part in stated["parts"] if part["pieces"]]
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        groups = [tuple(map(str, part["pieces"])) for part in stated["parts"] if part["pieces"]]
+        given = {group[0]: part.get("name") for part in stated["parts"] if (group := part["pieces"])}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(
             f"The groups {path} cannot be read ({error!r}). Expected is JSON as in the {GROUPS_FILE} of a model: "
             '{"parts": [{"pieces": ["piece_000", "piece_004"]}]}.'
@@ -435,10 +464,14 @@ def read_groups(path: Path, assembly: Assembly) -> Grouping:
             f"The file {path} {wrong} of {assembly.source}. It has {len(index)} pieces, from {assembly.names[0]} to "
             f"{assembly.names[-1]}; each belongs to one part. Give the --pieces with which the file was made."
         )
-    left = [(name,) for name in assembly.names if name not in set(names)]
-    indices = [np.array(sorted(index[name] for name in group)) for group in (*groups, *left)]
-    indices.sort(key=lambda group: int(group[0]))
-    if len(indices) < 2:
+    groups += [(name,) for name in assembly.names if name not in set(names)]
+    groups.sort(key=lambda group: min(index[name] for name in group))
+    if len(groups) < 2:
         raise one_part(assembly)
-    found = tuple(_group(assembly, group, None) for group in indices)
-    return Grouping(assembly=joined_pieces(assembly, indices), groups=found)
+    indices = [np.array(sorted(index[name] for name in group)) for group in groups]
+    named = [
+        str(given.get(group[0]) or assembly.names[_main_piece(assembly, k)])
+        for group, k in zip(groups, indices, strict=True)
+    ]
+    pieces = Grouping(assembly=assembly, groups=tuple(Group(name=name, pieces=(name,)) for name in assembly.names))
+    return grouped_as(pieces, assembly, indices, named)

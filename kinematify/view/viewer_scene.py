@@ -86,9 +86,10 @@ class ViewScene:
 
     def extent(self, q: Mapping[str, float]) -> FloatArray:
         """Return the corners of the model in a configuration, frame of the root link [m], shape (2, 3)."""
-        placed = self._placed(self.poses(q))
-        points = [vertices @ T[:3, :3].T + T[:3, 3] for T, (vertices, _) in placed if len(vertices)]
-        corners = np.concatenate(points) if points else np.zeros((1, 3))
+        poses = self.poses(q)
+        placed = [vertices @ poses[top][:3, :3].T + poses[top][:3, 3] for top, (vertices, _) in self.meshes.items()]
+        corners = np.concatenate(placed)
+        corners = corners if len(corners) else np.zeros((1, 3))
         return np.stack([corners.min(axis=0), corners.max(axis=0)])
 
     @cached_property
@@ -186,6 +187,11 @@ class ViewScene:
         """Type of a joint as it is tried, or as in the file."""
         tried = self._tried.get(joint.name)
         return joint.kind if tried is None else tried.kind
+
+    @property
+    def tried_joints(self) -> tuple[str, ...]:
+        """Joints that do not move as the file says."""
+        return tuple(self._tried)
 
     def tried(self, joint: str) -> JointAlternative | None:
         """What a joint is tried as; None: as the file says."""
@@ -333,9 +339,6 @@ class ViewScene:
                 looks.append(mesh.appearance)
                 start += len(mesh.vertices)
         return np.concatenate(vertices), np.concatenate(faces), joined(looks, [len(item) for item in faces[1:]])
-
-    def _placed(self, poses: Mapping[str, FloatArray]) -> list[tuple[FloatArray, tuple[FloatArray, IntArray]]]:
-        return [(poses[top], mesh) for top, mesh in self.meshes.items()]
 
 
 def _color(index: int) -> Rgba:
