@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 from benchmarks.fit.corpora import may_be_fitted_to
 from kinematify.errors import InputError
+from kinematify.evaluation.benchmark_summary import motion_rates
 from kinematify.evaluation.datasets import find_objects
 from kinematify.evaluation.result_record import load_report, number, replace_text, table
 from kinematify.evaluation.run_benchmark import RESULTS
-from kinematify.evaluation.benchmark_summary import motion_rates
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

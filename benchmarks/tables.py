@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from benchmarks.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
 from kinematify.evaluation.benchmark_job import CLEAN
+from kinematify.evaluation.benchmark_summary import Summary, motion_rates, summarise, summarise_types
 from kinematify.evaluation.metrics import CLOSE_ANGLE
 from kinematify.evaluation.result_record import grouped, number, table
-from kinematify.evaluation.benchmark_summary import Summary, motion_rates, summarise, summarise_types
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -11,11 +11,11 @@ from gymnasium import spaces
 from gymnasium.utils import EzPickle
 
 from kinematify.envs.articulated_object import AUTO, ENGINES, held_links, shared_articulated_object, shared_target
-from kinematify.envs.joint_dynamics import draw, drawing
-from kinematify.envs.goal import Goal
 from kinematify.envs.env_picture import CameraView, Piece, Renderer, ViewerWindow, has_screen, require_screen
-from kinematify.envs.settings import load_settings
+from kinematify.envs.goal import Goal
+from kinematify.envs.joint_dynamics import draw, drawing
 from kinematify.envs.model_verdict import require_valid
+from kinematify.envs.settings import load_settings
 from kinematify.errors import InputError
 from kinematify.geometry.scene import transformed
 from kinematify.robot.robot import forward_kinematics
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.envs.articulated_object import ArticulatedObject, Target
-    from kinematify.envs.joint_dynamics import Draw
     from kinematify.envs.goal import Progress
+    from kinematify.envs.joint_dynamics import Draw
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.world import EngineWorld, ObjectState
 

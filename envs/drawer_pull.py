@@ -12,12 +12,12 @@ from gymnasium.utils import EzPickle
 
 from kinematify.envs.articulated_object import AUTO, shared_target
 from kinematify.envs.base import OpeningEnv, made, one_of
-from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
 from kinematify.envs.env_picture import Piece
+from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
 from kinematify.envs.robot_plan import env_robot, robot_plan
 from kinematify.envs.worlds import arm_facts
-from kinematify.manipulation.robot_place import column_mesh
 from kinematify.manipulation.manipulator import hand_links
+from kinematify.manipulation.robot_place import column_mesh
 from kinematify.simulation.world import ROBOT
 
 if TYPE_CHECKING:

@@ -15,13 +15,13 @@ import numpy as np
 
 from kinematify.config.validation import load_settings
 from kinematify.envs.articulated_object import loadable
-from kinematify.envs.settings import load_settings as load_env_settings
 from kinematify.envs.model_verdict import content_digest, keep, kept, tell
+from kinematify.envs.settings import load_settings as load_env_settings
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene
 from kinematify.manipulation.kinematics import Arm
-from kinematify.manipulation.planning import plan_pull
 from kinematify.manipulation.manipulator import builtin_robot, user_robot
+from kinematify.manipulation.planning import plan_pull
 from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:

@@ -7,7 +7,6 @@ import re
 import pytest
 
 from tools.draw_architecture import PAGE, drawing, rewritten, table
-from tools.imports import ROOT
 
 
 def without_sizes(page: str) -> str:

@@ -148,7 +148,10 @@ def test_the_check_can_fail(name: str, source: str) -> None:
 @pytest.mark.parametrize(
     ("name", "source"),
     [
-        ("kinematify.cli.infer", "from kinematify.pipeline.infer_assembly import infer\nfrom kinematify import __version__"),
+        (
+            "kinematify.cli.infer",
+            "from kinematify.pipeline.infer_assembly import infer\nfrom kinematify import __version__",
+        ),
         ("kinematify.contact.build_graph", "from kinematify.contact.graph import ContactGraph\nimport numpy as np"),
     ],
 )

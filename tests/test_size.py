@@ -36,7 +36,9 @@ def test_every_package_is_within_its_ceiling() -> None:
         for name in now
         if any(a > b for a, b in zip(astuple(now[name]), astuple(most[name]), strict=True))
     ]
-    assert over == [], "something has to go before this can come; if another package shrank: python -m tools.size --write"
+    assert over == [], (
+        "something has to go before this can come; if another package shrank: python -m tools.size --write"
+    )
 
 
 def test_no_ceiling_of_the_whole_was_raised() -> None:
@@ -48,7 +50,10 @@ def test_a_raised_ceiling_is_found() -> None:
     before = {"product": Size(10, 2, 5), "joints": Size(10, 2, 5)}
     assert grown(before, {"product": Size(10, 2, 5), "joints": Size(12, 2, 5)}) == []  # another package paid
     assert grown(before, {"product": Size(11, 2, 5)}) == ["product: 11 tokens, 10 before"]
-    assert grown(before, {"product": Size(1, 3, 6)}) == ["product: 3 classes, 2 before", "product: 6 bytes of YAML, 5 before"]
+    assert grown(before, {"product": Size(1, 3, 6)}) == [
+        "product: 3 classes, 2 before",
+        "product: 6 bytes of YAML, 5 before",
+    ]
 
 
 def test_docstrings_comments_and_layout_are_free() -> None:

@@ -6,8 +6,8 @@ import ast
 
 import networkx as nx
 
-from tools.size import measured, packages
 from tools.imports import ORDER, ROOT, import_graph, modules
+from tools.size import measured, packages
 
 PAGE = ROOT / "docs" / "architecture.md"
 EVERYWHERE = {"errors", "versions", "configs", "config", "__main__"}

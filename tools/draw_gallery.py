@@ -14,8 +14,8 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import COMMON, build
 from kinematify.generate.procedural.parameter import PARAMETER_HEADINGS, parameter_rows
 from kinematify.generate.sentence import from_text
-from kinematify.model.preview import draw_pair, draw_steps
 from kinematify.model.picture_scene import moving_joints
+from kinematify.model.preview import draw_pair, draw_steps
 from kinematify.pipeline.blueprint_files import true_model
 from kinematify.robot.joint_type import JointType
 

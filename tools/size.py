@@ -65,7 +65,7 @@ def measured(name: str, text: str) -> Size:
 
 
 def packages(root: Path = ROOT) -> dict[str, Size]:
-    """Size of every package in a checkout by name, `product` among them; modules directly in `kinematify` count together."""
+    """Size of every package in a checkout by name, `product` among them; modules in `kinematify` itself count together."""
     found: dict[str, Size] = {"product": Size()}
     for path in sorted(path for top in TOPS for path in (root / top).rglob("*")):
         if path.suffix not in {".py", ".yaml", ".yml"} or not path.is_file() or "__pycache__" in path.parts:
@@ -92,7 +92,9 @@ def grown(before: dict[str, Size], now: dict[str, Size]) -> list[str]:
         f"{name}: {new:,} {unit}, {old:,} before"
         for name in ("product", *OUTSIDE)
         if name in before and name in now
-        for unit, old, new in zip(("tokens", "classes", "bytes of YAML"), astuple(before[name]), astuple(now[name]), strict=True)
+        for unit, old, new in zip(
+            ("tokens", "classes", "bytes of YAML"), astuple(before[name]), astuple(now[name]), strict=True
+        )
         if new > old
     ]
 

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.assembly.truth import GroundTruth, TrueJoint
     from kinematify.config import Config
-    from kinematify.joints.features.measurements import Values
     from kinematify.joints.features.edge_scene import JointScene
+    from kinematify.joints.features.measurements import Values
     from kinematify.robot.arrays import FloatArray, IntArray
 
 _WHOLE_TURN = 2.0 * np.pi - 0.1  # [rad]

@@ -27,9 +27,9 @@ from kinematify.assembly.part import Part
 from kinematify.assembly.pieces import connected_sheets
 from kinematify.config import load_config
 from kinematify.evaluation.result_record import git_commit, grouped, table
-from kinematify.grouping.piece_sets import Candidate, measure_candidates, propose
 from kinematify.grouping.groups import PieceWeights, odds_of, select
 from kinematify.grouping.pair_measurements import MeasuredPieces, measure_pieces
+from kinematify.grouping.piece_sets import Candidate, measure_candidates, propose
 from kinematify.joints.choice.scorer import MOVING_WEIGHTS, PIECES_WEIGHTS, read_scorer
 from kinematify.robot.mesh_file import RawMesh
 from kinematify.robot.weld import weld

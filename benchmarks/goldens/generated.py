@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 from benchmarks.expectations import SETS, load_sentences
 from benchmarks.goldens.values import array_hash, blueprint_values, made, plain
 from kinematify.errors import InputError
-from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.composer.body_sentence import sentence_of
+from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build

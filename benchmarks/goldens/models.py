@@ -16,8 +16,8 @@ from benchmarks.goldens.values import array_hash, file_hashes, made, plain
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
-from kinematify.evaluation.datasets import CONDITIONS, BenchObject, bench_folder, find_objects
 from kinematify.evaluation.benchmark_job import erased_item, shown_parts
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject, bench_folder, find_objects
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.pipeline.blueprint_files import write_blueprint

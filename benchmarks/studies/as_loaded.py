@@ -29,8 +29,8 @@ from benchmarks.expectations import load_sentences
 from benchmarks.study import Options, Study, among, explained
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
-from kinematify.evaluation.datasets import CONDITIONS, find_objects
 from kinematify.evaluation.benchmark_job import erased_item, shown_parts
+from kinematify.evaluation.datasets import CONDITIONS, find_objects
 from kinematify.evaluation.metrics import score_blueprint
 from kinematify.evaluation.result_record import grouped, table
 from kinematify.generate.composer.compose import compose, draw_composition

@@ -26,9 +26,9 @@ from pydantic import Field
 from scipy.optimize import nnls
 
 from benchmarks.study import Options, Study, explained
+from kinematify.batch.batch_summary import STEP_HEADINGS, step_rows
 from kinematify.batch.corpus import write_corpus
 from kinematify.batch.manifest import RECORD
-from kinematify.batch.batch_summary import STEP_HEADINGS, step_rows
 from kinematify.evaluation.result_record import table
 
 if TYPE_CHECKING:

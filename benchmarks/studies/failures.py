@@ -36,8 +36,8 @@ from kinematify import __version__
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.errors import OutputError
-from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
 from kinematify.evaluation.benchmark_job import erased_item
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
 from kinematify.evaluation.result_record import table
 from kinematify.refinement.joint_plan import Plan
 from kinematify.refinement.simulate import TIERS, DearTiers, Simulator

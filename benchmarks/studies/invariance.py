@@ -16,8 +16,8 @@ from pydantic import Field
 from benchmarks.study import Options, Study, explained
 from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
-from kinematify.evaluation.datasets import CONDITIONS, BenchObject, bench_folder, find_objects
 from kinematify.evaluation.benchmark_job import erased_item, shown_parts
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject, bench_folder, find_objects
 from kinematify.evaluation.result_record import table
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.robot.joint_type import JointType

@@ -35,8 +35,8 @@ from benchmarks.paper_configurations import OWN, configured
 from benchmarks.study import Options, Study, among, explained
 from kinematify.config import load_config
 from kinematify.contact.build_graph import build_contact_graph
-from kinematify.evaluation.datasets import CONDITIONS, BenchObject, Condition, find_objects, matching
 from kinematify.evaluation.benchmark_job import erased_item, shown_parts
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject, Condition, find_objects, matching
 from kinematify.evaluation.metrics import axis_angle
 from kinematify.evaluation.result_record import grouped, table
 from kinematify.evaluation.tree_metrics import parent_errors, tree_edit_distance

@@ -31,8 +31,8 @@ from benchmarks.planted import FAULTS, NOTHING, PARENT, SECOND, PlantedJoint, pl
 from benchmarks.study import Options, Study, among, explained
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
-from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
 from kinematify.evaluation.benchmark_job import erased_item
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
 from kinematify.evaluation.result_record import grouped, table
 from kinematify.refinement import refine
 from kinematify.refinement.candidates import CandidateJoints, is_same

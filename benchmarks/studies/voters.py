@@ -27,8 +27,8 @@ from pydantic import Field
 
 from benchmarks.study import Options, Study, explained
 from kinematify.config import load_config
-from kinematify.evaluation.datasets import CONDITIONS, BenchObject, bench_folder, find_objects, matching
 from kinematify.evaluation.benchmark_job import erased_item, shown_parts
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject, bench_folder, find_objects, matching
 from kinematify.evaluation.metrics import CLOSE_ANGLE, axis_angle, axis_line_distance
 from kinematify.evaluation.result_record import grouped, table
 from kinematify.joints.candidate import JointCandidate

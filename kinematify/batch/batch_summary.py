@@ -9,10 +9,10 @@ from statistics import fmean
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
+from kinematify.batch.batch_inputs import filesystem
 from kinematify.batch.convert import REPORT_FILE, THUMBNAIL_FILE, VIEW_FILE
 from kinematify.batch.manifest import read_manifests
 from kinematify.batch.run_batch import OBJECTS
-from kinematify.batch.batch_inputs import filesystem
 from kinematify.errors import OutputError
 from kinematify.validation.formats.html_frame import badge, page, table, text
 

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 from PIL import Image
 
 from kinematify.assembly.load import load_assembly
-from kinematify.batch.manifest import ObjectRecord
 from kinematify.batch.batch_inputs import content_hash, fetched, publish
+from kinematify.batch.manifest import ObjectRecord
 from kinematify.config import Config
 from kinematify.config.validation import ValidationSettings
 from kinematify.errors import InputError, KinematifyError, OutputError

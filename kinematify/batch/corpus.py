@@ -17,8 +17,8 @@ import numpy as np
 from kinematify import __version__
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, OutputError
-from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.composer.body_sentence import sentence_of
+from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.pipeline.blueprint_files import write_blueprint

@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import TypeAdapter, ValidationError
 
-from kinematify.batch.ledger import Ledger
 from kinematify.batch.batch_inputs import filesystem, is_local
+from kinematify.batch.ledger import Ledger
 from kinematify.errors import OutputError
 
 if TYPE_CHECKING:

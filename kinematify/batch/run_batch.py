@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinematify import __version__
+from kinematify.batch.batch_inputs import absolute, content_hash, filesystem, find_sources, is_local
 from kinematify.batch.convert import FORMATS, STEPS, Conversion, convert
 from kinematify.batch.manifest import Manifest, ObjectRecord
-from kinematify.batch.batch_inputs import absolute, content_hash, filesystem, find_sources, is_local
 from kinematify.errors import InputError, OutputError
 from kinematify.processes.pool import TaskFailure, WorkItem, run_tasks
 from kinematify.simulation.engines import DEFAULT_ENGINES

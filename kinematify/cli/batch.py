@@ -90,8 +90,8 @@ def command(**values: Any) -> int:
     Ends with 0 if every object has a model without errors, with 1 if one has not. Ctrl-C leaves valid records and ends
     with 130; the same command with --resume goes on.
     """
-    from kinematify.batch.run_batch import BatchRequest, run_batch
     from kinematify.batch.batch_summary import write_page
+    from kinematify.batch.run_batch import BatchRequest, run_batch
     from kinematify.config import load_config
     from kinematify.config.validation import load_settings
 

@@ -280,8 +280,8 @@ def _rows(report: Report[JobResult]) -> list[tuple[str, ...]]:
 
 def _summary_row(key: tuple[str, str, str], runs: Sequence[JobResult]) -> tuple[str, ...]:
     from kinematify.evaluation.benchmark_job import CLEAN
-    from kinematify.evaluation.result_record import number
     from kinematify.evaluation.benchmark_summary import summarise
+    from kinematify.evaluation.result_record import number
 
     summary = summarise(runs)
     columns = (("angle_deg", 1.0, 2), ("line_m", 1e3, 2), ("ted", 1.0, 2), ("root", 1.0, 2), ("types", 100.0, 1))

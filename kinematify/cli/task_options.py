@@ -43,8 +43,8 @@ class TaskOptions:
             return None
         if self.task == "pour" and (self.grasp or self.base):
             raise click.UsageError("--grasp and --base belong to --task pull. Leave them out.")
-        from kinematify.manipulation.plan_request import TaskRequest
         from kinematify.manipulation.manipulator import robot_of
+        from kinematify.manipulation.plan_request import TaskRequest
 
         request = TaskRequest(
             kind=self.task,

@@ -32,7 +32,8 @@ if TYPE_CHECKING:
 _PACKAGE = Path(__file__).resolve().parents[1]
 NOT_INFERRING = (
     "batch", "cli", "configs", "envs", "generate", "manipulation", "refinement", "simulation", "validation", "view",
-    "vision", "evaluation/nightly", "evaluation/result_record.py", "evaluation/run_benchmark.py", "evaluation/benchmark_summary.py",
+    "vision", "evaluation/nightly", "evaluation/result_record.py", "evaluation/run_benchmark.py",
+    "evaluation/benchmark_summary.py",
 )  # fmt: skip
 """What neither infers nor scores; configurations count by their values."""
 

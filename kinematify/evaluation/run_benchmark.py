@@ -13,10 +13,10 @@ from pydantic import TypeAdapter
 from kinematify.batch.task_pool import WORK_FOLDER, Pool
 from kinematify.config import Config, load_config
 from kinematify.errors import ConfigError, InputError
-from kinematify.evaluation.datasets import CONDITIONS, Condition, find_objects, matching
 from kinematify.evaluation.benchmark_job import CLEAN, INFER, Job, JobResult, run_job, unscored
-from kinematify.evaluation.result_record import NOT_INFERRING, Header, Report, code_version, new_header
 from kinematify.evaluation.benchmark_summary import summaries
+from kinematify.evaluation.datasets import CONDITIONS, Condition, find_objects, matching
+from kinematify.evaluation.result_record import NOT_INFERRING, Header, Report, code_version, new_header
 from kinematify.processes.pool import TaskFailure
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ import numpy as np
 from kinematify.assembly.assemble import part_names
 from kinematify.assembly.part import Assembly, Part
 from kinematify.errors import AssemblyError, InputError
-from kinematify.grouping.piece_sets import Candidate, measure_candidates, node_of_pieces, propose
 from kinematify.grouping.pair_measurements import measure_pieces
+from kinematify.grouping.piece_sets import Candidate, measure_candidates, node_of_pieces, propose
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.joints.choice.scorer import MOVING_WEIGHTS, PIECES_WEIGHTS, shipped_scorer
 from kinematify.robot.appearance import joined

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.manipulation.grip import grip_piece
-from kinematify.manipulation.plan_request import Hold
 from kinematify.manipulation.manipulator import effort_limits, hand_links
+from kinematify.manipulation.plan_request import Hold
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import rest_configuration, rigid_groups

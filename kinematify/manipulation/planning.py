@@ -18,9 +18,9 @@ from kinematify.geometry.sweep import Sweeper
 from kinematify.manipulation.collision_world import CollisionWorld
 from kinematify.manipulation.execute import Motion
 from kinematify.manipulation.grasp import moved_bodies, opening_sign, search_grasps
-from kinematify.manipulation.robot_place import Places, object_box, object_motion
-from kinematify.manipulation.pull import ITSELF, Pull, Puller, Stop
 from kinematify.manipulation.plan_request import Failure
+from kinematify.manipulation.pull import ITSELF, Pull, Puller, Stop
+from kinematify.manipulation.robot_place import Places, object_box, object_motion
 from kinematify.manipulation.sampling_planner import plan_reach, search_pull
 
 if TYPE_CHECKING:
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from kinematify.geometry.scene import Scene
     from kinematify.manipulation.grasp import GraspReport
     from kinematify.manipulation.kinematics import Arm
-    from kinematify.manipulation.robot_place import ObjectMotion, RobotPlacement
     from kinematify.manipulation.manipulator import TaskRobot
+    from kinematify.manipulation.robot_place import ObjectMotion, RobotPlacement
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import Travel
 

@@ -17,10 +17,10 @@ from kinematify.errors import InputError
 from kinematify.geometry.overlap import OverlapQueries
 from kinematify.geometry.scene import read_scene, relative, visible_shapes
 from kinematify.manipulation.grasp import moved_bodies
-from kinematify.manipulation.robot_place import ObjectMotion, object_box
-from kinematify.manipulation.planning import Clearing, Freedom, JointPlanning, motion_of
 from kinematify.manipulation.plan_request import Failure
+from kinematify.manipulation.planning import Clearing, Freedom, JointPlanning, motion_of
 from kinematify.manipulation.real_size import sizing, write_scaled
+from kinematify.manipulation.robot_place import ObjectMotion, object_box
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Joint, Link, Robot, forward_kinematics, rest_configuration

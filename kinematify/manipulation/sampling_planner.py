@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from kinematify.config.planning_settings import PlanSettings
     from kinematify.manipulation.collision_world import CollisionWorld
     from kinematify.manipulation.kinematics import Arm
-    from kinematify.manipulation.robot_place import RobotPlacement
     from kinematify.manipulation.pull import Pull, Puller
+    from kinematify.manipulation.robot_place import RobotPlacement
     from kinematify.robot.arrays import FloatArray
 
 _HALF_METRES = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])

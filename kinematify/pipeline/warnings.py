@@ -12,8 +12,8 @@ import numpy as np
 
 from kinematify.contact.graph import pair
 from kinematify.joints.bearings.refine_lines import across_axis
-from kinematify.joints.choice.judge import alike_edges
 from kinematify.joints.choice.congruent_joints import TwinJoints
+from kinematify.joints.choice.judge import alike_edges
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointCandidate
-    from kinematify.joints.features.frames import BoxFrame
     from kinematify.joints.features.edge_scene import JointScene
+    from kinematify.joints.features.frames import BoxFrame
     from kinematify.paper.cavl import FailedMotions
     from kinematify.paper.joints import PaperJoints
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import DescriptionError, ExitStatus
 from kinematify.model.collision import collides_as_it_is
-from kinematify.refinement.joint_edits import JointEdits
 from kinematify.refinement.engine_opening import refusals
+from kinematify.refinement.joint_edits import JointEdits
 from kinematify.refinement.urdf_editor import UrdfEditor, xml_of
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Robot

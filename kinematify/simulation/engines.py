@@ -48,8 +48,8 @@ class EngineEntry:
     contact_flag: str | None = None
     """Of its loader: without it links of one file pass through each other; None: they collide by default."""
     holds: tuple[str, ...] = ()
-    """What may connect a hand with a part (values of `kinematify.manipulation.plan_request.Hold`) where plans are executed
-    and environments run in it: its class is a `WorldEngine`."""
+    """What may connect a hand with a part (values of `kinematify.manipulation.plan_request.Hold`) where plans are
+    executed and environments run in it: its class is a `WorldEngine`."""
     prints_when_loaded: bool = False
     """True: it may be loaded only where what is printed goes to a file."""
 

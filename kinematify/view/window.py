@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kinematify.view.keep import ModelFolder
     from kinematify.view.inference_view import Sight
+    from kinematify.view.keep import ModelFolder
     from kinematify.view.server import ModelViewer
 
 _PAGE_HEIGHT = 620

@@ -18,8 +18,9 @@ from benchmarks.paper import ABLATION, DEFAULT_ABLATION, PAPER_VARIANTS
 from benchmarks.tables import benchmark_blocks
 from kinematify.config import load_config
 from kinematify.errors import ConfigError, EnvironmentFault, InputError, OutputError
-from kinematify.evaluation.datasets import bench_folder, find_objects
 from kinematify.evaluation.benchmark_job import JobResult
+from kinematify.evaluation.benchmark_summary import summarise
+from kinematify.evaluation.datasets import bench_folder, find_objects
 from kinematify.evaluation.result_record import Report, load_report, write_report
 from kinematify.evaluation.run_benchmark import (
     RESULTS,
@@ -27,7 +28,6 @@ from kinematify.evaluation.run_benchmark import (
     changed,
     run_benchmark,
 )
-from kinematify.evaluation.benchmark_summary import summarise
 from tests.places import ROOT
 from tests.secret_cabinets import request, write_object
 

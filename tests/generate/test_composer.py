@@ -12,9 +12,9 @@ from manifold3d import Manifold, Mesh64
 
 from kinematify.errors import InputError
 from kinematify.generate.composer.bodies import BODIES
+from kinematify.generate.composer.body_sentence import sentence_of
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.composer.placed_mechanisms import MECHANISMS
-from kinematify.generate.composer.body_sentence import sentence_of
 from kinematify.generate.procedural.materials import COLORS
 from kinematify.generate.sentence import from_text
 from kinematify.robot.joint_type import JointType

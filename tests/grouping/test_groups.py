@@ -15,7 +15,6 @@ from kinematify.assembly.part import Assembly, Part
 from kinematify.assembly.pieces import connected_sheets
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
-from kinematify.grouping.piece_sets import node_of_pieces
 from kinematify.grouping.groups import (
     Group,
     Grouping,
@@ -27,6 +26,7 @@ from kinematify.grouping.groups import (
     sureness,
     unsure,
 )
+from kinematify.grouping.piece_sets import node_of_pieces
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.robot.mesh_file import RawMesh

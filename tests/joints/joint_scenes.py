@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.joints.features.ranking import Ranked
     from kinematify.joints.features.edge_scene import JointScene
+    from kinematify.joints.features.ranking import Ranked
     from tests.known import KnownObject
 
 CONFIG = load_config()

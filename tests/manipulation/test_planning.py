@@ -15,11 +15,11 @@ from kinematify.errors import InputError
 from kinematify.geometry.scene import Scene, read_scene
 from kinematify.manipulation.collision_world import CollisionWorld
 from kinematify.manipulation.kinematics import Arm
-from kinematify.manipulation.robot_place import object_motion
+from kinematify.manipulation.manipulator import builtin_robot
+from kinematify.manipulation.plan_request import PULL, Failure, TaskRequest
 from kinematify.manipulation.planning import PullPlan, depend, plan_pull
 from kinematify.manipulation.pull import Puller
-from kinematify.manipulation.plan_request import PULL, Failure, TaskRequest
-from kinematify.manipulation.manipulator import builtin_robot
+from kinematify.manipulation.robot_place import object_motion
 from kinematify.manipulation.sampling_planner import search_manifold
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics

@@ -12,9 +12,9 @@ from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene
 from kinematify.manipulation.execute import execute, load
 from kinematify.manipulation.kinematics import Arm
-from kinematify.manipulation.pour import PourPlan, Vessel, plan_pour, pour_motion, read_vessel, write_pour
-from kinematify.manipulation.plan_request import Failure, Hold
 from kinematify.manipulation.manipulator import builtin_robot
+from kinematify.manipulation.plan_request import Failure, Hold
+from kinematify.manipulation.pour import PourPlan, Vessel, plan_pour, pour_motion, read_vessel, write_pour
 from kinematify.robot.read import read_robot
 from tests.manipulation.furniture import SETTINGS, box
 

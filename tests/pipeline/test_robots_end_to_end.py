@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from kinematify.config import load_config
-from kinematify.evaluation.datasets import CONDITIONS, find_objects
 from kinematify.evaluation.benchmark_job import Job, run_job
+from kinematify.evaluation.datasets import CONDITIONS, find_objects
 from tests.places import BENCH
 
 if TYPE_CHECKING:

@@ -17,9 +17,9 @@ from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.errors import OutputError
-from kinematify.refinement.repair import Fix, fix_urdf
-from kinematify.refinement.joint_edits import JointEdits
 from kinematify.refinement.engine_opening import refusals
+from kinematify.refinement.joint_edits import JointEdits
+from kinematify.refinement.repair import Fix, fix_urdf
 from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import DEFAULT_ENGINES

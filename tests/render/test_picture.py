@@ -11,7 +11,6 @@ from PIL import Image
 
 from kinematify.config import load_config
 from kinematify.geometry.rays import RayScene
-from kinematify.model.preview import draw_pair, render_preview, render_story
 from kinematify.model.picture_scene import (
     GLYPH_COLORS,
     best_azimuth,
@@ -23,6 +22,7 @@ from kinematify.model.picture_scene import (
     sliding_arrow,
     turning_arrow,
 )
+from kinematify.model.preview import draw_pair, render_preview, render_story
 from kinematify.model.urdf import link_colors, link_shades, tell_apart
 from kinematify.render.camera import fit_camera
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene

@@ -20,7 +20,12 @@ from kinematify.validation.as_loaded_context import AsLoadedContext
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.run import validate
-from kinematify.validation.run.loaded_findings import across_engines, as_loaded_words, confirm_on_raw_model, with_refusals
+from kinematify.validation.run.loaded_findings import (
+    across_engines,
+    as_loaded_words,
+    confirm_on_raw_model,
+    with_refusals,
+)
 from kinematify.validation.stage import StageRequest
 from kinematify.validation.stages import loaded_file
 from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, tell

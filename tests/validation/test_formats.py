@@ -13,9 +13,9 @@ from lxml import etree
 
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
-from kinematify.validation.formats.report_content import configuration, joint_range, measure, number, where
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.junit import as_junit
+from kinematify.validation.formats.report_content import configuration, joint_range, measure, number, where
 from kinematify.validation.formats.sarif import as_sarif
 from kinematify.validation.run.outcome import Outcome, Unusable, as_json_text
 from tests.reports import EVIL, add_checks, finding, full_report, report, result

@@ -16,8 +16,8 @@ from kinematify.refinement.hints import Hint
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.view.alternatives import JointAlternative
-from kinematify.view.keep import ModelFolder
 from kinematify.view.inference_view import shown_with
+from kinematify.view.keep import ModelFolder
 from kinematify.view.viewer_scene import ViewScene
 from tests.objects import BUILDERS
 from tests.view.pages import candidates_in

@@ -11,6 +11,8 @@ from kinematify.validation.checks import (  # noqa: F401 - each registers its ch
     as_loaded,
     collision_geometry,
     contact_agreement,
+    declared_limits,
+    declared_masses,
     drives,
     engine_drive,
     engine_loading,
@@ -25,15 +27,13 @@ from kinematify.validation.checks import (  # noqa: F401 - each registers its ch
     file_text,
     file_tree,
     inertias,
-    declared_limits,
     loops,
-    declared_masses,
     meshes,
     motion,
     rest,
-    unit_sizes,
-    task,
     several_joints,
+    task,
+    unit_sizes,
 )
 
 __all__ = ["CHECKS", "checks_of", "find_check"]

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.formats.html_frame import badge, page, table, text
+from kinematify.validation.formats.html_motion import curves, show_button, viewer
 from kinematify.validation.formats.report_content import (
     Table,
     block_of,
@@ -22,8 +24,6 @@ from kinematify.validation.formats.report_content import (
     summary_words,
     title,
 )
-from kinematify.validation.formats.html_frame import badge, page, table, text
-from kinematify.validation.formats.html_motion import curves, show_button, viewer
 from kinematify.validation.run.outcome import Unusable, severity_counts
 
 if TYPE_CHECKING:

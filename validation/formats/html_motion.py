@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.formats.chart import Axes, Series, line_chart
-from kinematify.validation.formats.report_content import TURNING
 from kinematify.validation.formats.html_frame import text
+from kinematify.validation.formats.report_content import TURNING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

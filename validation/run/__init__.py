@@ -23,8 +23,8 @@ from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
 from kinematify.validation.lines import with_lines
-from kinematify.validation.run.loaded_findings import across_engines, confirm_on_raw_model, with_refusals
 from kinematify.validation.run.causes import with_causes
+from kinematify.validation.run.loaded_findings import across_engines, confirm_on_raw_model, with_refusals
 from kinematify.validation.run.opinions import evidence_before_blame
 from kinematify.validation.run.plan import (
     agreement_stage,

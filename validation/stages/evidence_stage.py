@@ -19,8 +19,8 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     from kinematify.config import load_config
     from kinematify.validation.evidence.bodies_at_rest import read_bodies
     from kinematify.validation.evidence.case import JointCase, summary_of
-    from kinematify.validation.evidence.measure import measure_joints
     from kinematify.validation.evidence.loop_pins import shared_pins
+    from kinematify.validation.evidence.measure import measure_joints
     from kinematify.validation.left_model import model_of
 
     of_joints, of_pins = checks_of("KV34"), checks_of("KV35")

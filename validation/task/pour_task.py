@@ -9,9 +9,9 @@ from kinematify.errors import InputError
 from kinematify.manipulation.execute import Execution, Loaded, execute, load
 from kinematify.manipulation.film import write_film
 from kinematify.manipulation.kinematics import Arm
-from kinematify.manipulation.pour import PourPlan, Vessel, plan_pour, read_vessel
-from kinematify.manipulation.plan_request import Failure, Hold
 from kinematify.manipulation.manipulator import robot_of
+from kinematify.manipulation.plan_request import Failure, Hold
+from kinematify.manipulation.pour import PourPlan, Vessel, plan_pour, read_vessel
 from kinematify.simulation.engines import ENGINES, engines_that_hold
 from kinematify.validation.finding import Severity
 

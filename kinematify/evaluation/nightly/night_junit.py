@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from lxml import etree
 
 from kinematify.evaluation.nightly.comparison import Class
-from kinematify.validation.formats.report_content import printable
 from kinematify.validation.formats.junit import count_cases
+from kinematify.validation.formats.report_content import printable
 
 if TYPE_CHECKING:
     from lxml.etree import _Element

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 from kinematify.batch.task_pool import Pool
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
-from kinematify.evaluation.datasets import CONDITIONS, find_objects, matching
 from kinematify.evaluation.benchmark_job import INFER
+from kinematify.evaluation.datasets import CONDITIONS, find_objects, matching
 from kinematify.evaluation.nightly.comparison import compare, counts
 from kinematify.evaluation.nightly.night_junit import as_junit
 from kinematify.evaluation.nightly.night_page import night_page
@@ -58,8 +58,8 @@ if TYPE_CHECKING:
 
     from kinematify.batch.task_pool import Progress
     from kinematify.config.nightly_settings import NightlySettings
-    from kinematify.evaluation.datasets import BenchObject
     from kinematify.evaluation.benchmark_job import JobResult
+    from kinematify.evaluation.datasets import BenchObject
     from kinematify.evaluation.nightly.comparison import Change
     from kinematify.evaluation.nightly.runs import Run
     from kinematify.evaluation.result_record import Report

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from kinematify.config.nightly_settings import NightlySettings
     from kinematify.config.validation import ValidationSettings
-    from kinematify.evaluation.datasets import BenchObject, Condition
     from kinematify.evaluation.benchmark_job import JobResult
+    from kinematify.evaluation.datasets import BenchObject, Condition
     from kinematify.evaluation.metrics import JointScore, ObjectScore
 
 SCHEMA = 1

@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING, Literal
 
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
-from kinematify.evaluation.datasets import CONDITIONS, BenchObject
 from kinematify.evaluation.benchmark_job import erased_item, imported, shown_parts
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject
 from kinematify.evaluation.nightly.runs import AS_LOADED, OPENED, PULLED, Problem, Run
 from kinematify.manipulation.plan_request import PULL, TaskRequest
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
-from kinematify.validation.formats.report_content import where
 from kinematify.validation.formats.html import as_html
+from kinematify.validation.formats.report_content import where
 from kinematify.validation.formats.report_picture import scene_of
 from kinematify.validation.run import validate
 from kinematify.validation.run.outcome import severity_counts, status_counts

@@ -11,8 +11,8 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.composer.bodies import BODIES, BodyKind, Size
-from kinematify.generate.composer.placed_mechanisms import MECHANISMS, MechanismKind
 from kinematify.generate.composer.place import Placement
+from kinematify.generate.composer.placed_mechanisms import MECHANISMS, MechanismKind
 from kinematify.generate.composer.side import columns, rows
 from kinematify.generate.procedural.pieces.fronts import Fitting
 from kinematify.generate.procedural.workshop import Workshop

@@ -16,6 +16,7 @@ import numpy as np
 
 from kinematify.geometry.surface import distinct_directions
 from kinematify.joints.bearings.bearing_evidence import contact_centroid, contact_sides, thin, whole_side
+from kinematify.joints.bearings.congruent_contacts import shared_by_twins
 from kinematify.joints.bearings.line import NO_LINES, Line, Lines, join, lines_of
 from kinematify.joints.bearings.refine_lines import refine_line, refine_lines
 from kinematify.joints.bearings.scores import (
@@ -28,7 +29,6 @@ from kinematify.joints.bearings.scores import (
     scored_lines,
     surface_support,
 )
-from kinematify.joints.bearings.congruent_contacts import shared_by_twins
 from kinematify.robot.arrays import read_only
 from kinematify.robot.vectors import crossed, lengths_of
 

@@ -10,8 +10,8 @@ from scipy.spatial import cKDTree
 
 from kinematify.contact.graph import pair
 from kinematify.geometry.sampling import sample_surface
-from kinematify.joints.bearings.line import Line
 from kinematify.joints.bearings.congruent_contacts import RigidMotion, matched, motions_between
+from kinematify.joints.bearings.line import Line
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:

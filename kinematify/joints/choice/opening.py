@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
     from kinematify.config import LimitsConfig
     from kinematify.joints.choice.scorer import Scorer
-    from kinematify.joints.features.measurements import Values
     from kinematify.joints.features.edge_scene import JointScene
+    from kinematify.joints.features.measurements import Values
     from kinematify.robot.arrays import FloatArray, IntArray
 
 

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
     from kinematify.config import JointsConfig
     from kinematify.joints.candidate import Hypotheses
+    from kinematify.joints.features.edge_scene import JointScene
     from kinematify.joints.features.measurements import Values
     from kinematify.joints.features.ranking import Ranked
-    from kinematify.joints.features.edge_scene import JointScene
     from kinematify.robot.arrays import FloatArray
 
 CUES, VERDICTS = "cues", "verdicts"

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.features.frames import UP
-from kinematify.joints.features.ranking import Ranked, cue_sum
 from kinematify.joints.features.edge_scene import is_cap
+from kinematify.joints.features.frames import UP
 from kinematify.joints.features.motion_test import moving_points, sweep_slides
+from kinematify.joints.features.ranking import Ranked, cue_sum
 
 if TYPE_CHECKING:
     from kinematify.config import JointsConfig

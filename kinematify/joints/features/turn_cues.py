@@ -14,8 +14,8 @@ import numpy as np
 from kinematify.joints.candidate import CENTRE, CORNER, HALF_WAY
 from kinematify.joints.features.frames import UP
 from kinematify.joints.features.measurements import turned_about
-from kinematify.joints.features.ranking import Ranked, cue_sum
 from kinematify.joints.features.motion_test import moving_points, turn_paths
+from kinematify.joints.features.ranking import Ranked, cue_sum
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:

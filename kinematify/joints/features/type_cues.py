@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.features.frames import UP
 from kinematify.joints.features.edge_scene import is_cap
+from kinematify.joints.features.frames import UP
 from kinematify.joints.features.motion_test import contact_clearance
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.config import JointsConfig
-    from kinematify.joints.features.ranking import Ranked
     from kinematify.joints.features.edge_scene import JointScene
+    from kinematify.joints.features.ranking import Ranked
     from kinematify.robot.arrays import FloatArray, IntArray
 
 
