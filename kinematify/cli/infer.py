@@ -198,8 +198,8 @@ def command(
             inference, failed = _refined(inference, rounds, tier, base, _share(progress, _INFERRED, _REFINED))
             status = status or failed
         inference = _with_hints(inference, stated)
-        progress("writing the model", _REFINED)
-        loaded = _written(inference, out, overwrite=force, preview=not no_preview, beside=beside)
+        ahead = _share(progress, _REFINED, 1.0)
+        loaded = _written(inference, out, ahead, overwrite=force, preview=not no_preview, beside=beside)
         progress("done", 1.0)
     if json_to:
         write_answer({**_as_answer(inference, out), "as_loaded": loaded or None}, json_to)
@@ -290,7 +290,15 @@ def use_one_thread(config: Config) -> None:
         torch.set_num_threads(1)
 
 
-def _written(inference: Inference, out: Path, *, overwrite: bool, preview: bool, beside: WorkerProcess | None) -> str:
+def _written(
+    inference: Inference,
+    out: Path,
+    progress: Callable[[str, float], None],
+    *,
+    overwrite: bool,
+    preview: bool,
+    beside: WorkerProcess | None,
+) -> str:
     """Write the model folder, its picture while engines load the model, and return what `as_loaded` says."""
     from kinematify.model.output import MODEL_FILE, write_model_folder
     from kinematify.pipeline.record import write_inference_files, write_preview
@@ -299,12 +307,14 @@ def _written(inference: Inference, out: Path, *, overwrite: bool, preview: bool,
 
     def write(folder: Path) -> None:
         nonlocal loaded
-        write_inference_files(inference, folder, preview=False)
+        write_inference_files(inference, folder, preview=False, progress=progress)
         if beside is not None:
             beside.take(partial(_as_loaded_or_why, folder / MODEL_FILE), _LONGEST)
         if preview:
+            progress("drawing the picture", 0.4)
             write_preview(inference, folder)
         if beside is not None:
+            progress("loading the model into engines", 0.7)
             loaded = _last_answer(beside)
 
     write_model_folder(out, write, overwrite=overwrite)

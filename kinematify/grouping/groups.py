@@ -12,7 +12,7 @@ from kinematify.assembly.assemble import part_names
 from kinematify.assembly.part import Assembly, Part
 from kinematify.errors import AssemblyError, InputError
 from kinematify.grouping.pair_measurements import measure_pieces
-from kinematify.grouping.piece_sets import Candidate, measure_candidates, node_of_pieces, propose
+from kinematify.grouping.piece_sets import Candidate, alike, measure_candidates, node_of_pieces, propose
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.joints.choice.scorer import MOVING_WEIGHTS, PIECES_WEIGHTS, shipped_scorer
 from kinematify.robot.appearance import joined
@@ -66,11 +66,13 @@ class Grouping:
         doubtful = [_said(group) for group in self.groups if group.moves is not None and group.moves < _DOUBTFUL]
         said = [f"The mesh is not segmented: {count} pieces were grouped into {len(self.groups)} rigid parts."]
         if doubtful:
-            said.append(f"Parts that may be fixed: {', '.join(doubtful[:_MOST_NAMED])}.")
+            said.append(f"Parts that may not move: {', '.join(doubtful[:_MOST_NAMED])}.")
         if self.rejected:
-            said.append(f"Taken for fixed, but may move: {', '.join(map(_said, self.rejected[:_MOST_NAMED]))}.")
+            said.append(
+                f"Pieces that may move but were left fixed: {', '.join(map(_said, self.rejected[:_MOST_NAMED]))}."
+            )
         if doubtful or self.rejected:
-            said.append(f"Correct {GROUPS_FILE} beside the model and give it with --groups.")
+            said.append(f"To change the parts, edit {GROUPS_FILE} beside the model and give it with --groups.")
         return tuple(said)
 
     def record(self) -> dict[str, Any]:
@@ -93,9 +95,8 @@ def stated_groups(record: dict[str, Any], key: str) -> tuple[Group, ...]:
 
 
 def _said(group: Group) -> str:
-    others = len(group.pieces) - 1
-    more = f" with {others} other piece{'s' if others > 1 else ''}" if others else ""
-    return f"{group.name}{more} ({group.moves:.0%})"
+    count = len(group.pieces)
+    return f"{group.name} ({count} pieces)" if count > 1 else group.name
 
 
 _DOUBTFUL = 0.7
@@ -139,6 +140,7 @@ def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeigh
         raise one_part(assembly)
     weights = weights or shipped_weights()
     candidates, odds, pairs, of_pairs = judged([parts[k] for k in kept], weights)
+    candidates, odds = alike(candidates, odds, [parts[k] for k in kept])
     node = node_of_pieces([assembly.original_names.get(parts[k].name, "") for k in kept], pairs)
     if node is not None:
         node_of_part = node[np.searchsorted(kept, owner)]
@@ -342,8 +344,8 @@ def unsure(grouping: Grouping, joints: Sequence[JointEstimate], config: Grouping
     if surest >= config.sure or all(group.moves is None for group in grouping.groups):
         return ()
     said = (
-        f"No joint of the grouped mesh is sure (the surest: {surest:.0%}). The object may be rigid, or its parts may "
-        f"be no sets of its connected pieces: correct {GROUPS_FILE}, or give --labels."
+        "No joint of the grouped mesh is sure. The object may be rigid, or its parts may not consist of whole pieces: "
+        f"edit {GROUPS_FILE}, or give --labels."
     )
     return (said,)
 

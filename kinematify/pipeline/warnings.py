@@ -70,9 +70,9 @@ def floating_parts(assembly: Assembly, graph: ContactGraph, tree: KinematicTree)
             name, above = assembly.names[child], assembly.names[parent]
             touched = [item for item in graph.edges if child in (item.a, item.b) and not item.bridge]
             warnings.append(
-                f"{name} hangs on {above}, which it does not touch{gap}, and not on what it touches."
+                f"The parent of {name} is {above}, which it does not touch{gap}, although it touches other parts."
                 if touched
-                else f"{name} touches nothing; it hangs on {above}, the nearest part{gap}."
+                else f"{name} touches nothing; its parent is {above}, the nearest part{gap}."
             )
     return warnings
 
@@ -99,7 +99,7 @@ def _followed_twins(
         said.append(f"{own} turn as their congruent twins do ({'; '.join(models)})")
     if not said:
         return []
-    return [f"{'. '.join(said)}. By itself, the rough contact shows another line; what all twins show was taken."]
+    return [f"{'. '.join(said)}. Their own contact, which is rough, shows another line than that of all these parts."]
 
 
 def _runs_along(joint: JointEstimate, line: BearingLine) -> bool:
@@ -128,8 +128,8 @@ def unlike_twins(
                 if found and all(found):
                     unlike.setdefault(found[0], []).append(assembly.names[joint.child])
         said += [
-            f"{', '.join(names)} and {assembly.names[model.child]} are congruent and held alike, but their joints "
-            f"differ in {aspect}. If they move alike, give --hint {names[0]}:twin={assembly.names[model.child]}."
+            f"{', '.join(names)} and {assembly.names[model.child]} are congruent and have the same contacts, but their "
+            f"joints differ in {aspect}. If they move alike, give --hint {names[0]}:twin={assembly.names[model.child]}."
             for aspect, names in unlike.items()
         ]
     return said

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from kinematify.view.inference_view import DrawnChain
     from kinematify.view.viewer_scene import ViewScene
 
+_export_glb: Any = export_glb  # untyped in trimesh
+
 
 def glb_of(surfaces: Sequence[Surface], *, double_sided: bool) -> bytes:
     """Return surfaces as meshes of a GLB file, without normals, so that its triangles look flat.
@@ -39,7 +41,7 @@ def glb_of(surfaces: Sequence[Surface], *, double_sided: bool) -> bytes:
     meshes: Any = [surface_mesh(surface) for surface in surfaces]
     for mesh in meshes:
         mesh.visual.material.doubleSided = double_sided
-    return bytes(export_glb(trimesh.Scene(meshes), include_normals=False))
+    return bytes(_export_glb(trimesh.Scene(meshes), include_normals=False))
 
 
 Color = tuple[int, int, int]
@@ -135,25 +137,18 @@ class DrawnModel:
         self._axes[joint.name] = self._add_lines(f"/axes/{joint.name}", points, color, visible=visible)
 
     def step_back(self, client: viser.ClientHandle) -> None:
-        """Let a window that is higher than wide see the whole model, above the panel that lies over its lower half."""
-        aspect = client.camera.aspect
-        if aspect < 1.0:
+        """Let a window that is higher than wide see the whole model."""
+        if client.camera.aspect < 1.0:
             eye, target = self._scene.camera
-            back = (eye - target) / aspect
-            down = np.array([0.0, 0.0, -_ABOVE_PANEL * np.linalg.norm(back)])
-            with client.atomic():
-                client.camera.position, client.camera.look_at = target + back + down, target + down
+            _aim(client, eye - target, target)
 
     def fit(self, q: Mapping[str, float]) -> None:
         """Let every page see the whole model in a configuration, from the side from which it looks."""
         low, high = self._scene.extent(q)
-        center, size = 0.5 * (low + high), float(np.linalg.norm(high - low))
+        size = 1.1 * max(float(np.linalg.norm(high - low)), self._scene.size)
         for client in self._server.get_clients().values():
             back = client.camera.position - client.camera.look_at
-            back *= max(size, self._scene.size) / max(float(np.linalg.norm(back)), 1e-9)
-            back *= 1.1 / min(client.camera.aspect, 1.0)
-            with client.atomic():
-                client.camera.position, client.camera.look_at = center + back, center
+            _aim(client, back * size / max(float(np.linalg.norm(back)), 1e-9), 0.5 * (low + high))
 
     def add_gizmo(self, axis: FloatArray, pivot: FloatArray) -> Any:
         """Return a gizmo whose red arrow is an axis, frame of the root link [m], shape (3,) each."""
@@ -250,6 +245,21 @@ class DrawnModel:
             if number == len(self._dashes):
                 self._dashes.append(self._add_lines(f"/closed/{number}", points, _CLOSED))
             self._dashes[number].points = points.astype(np.float32)
+
+
+def _aim(client: viser.ClientHandle, back: FloatArray, target: FloatArray) -> None:
+    """Let a page look at a point; in a window that is higher than wide, above the panel, from farther away.
+
+    Args:
+        client: The page.
+        back: From the point to the camera [m], shape (3,).
+        target: The point [m], shape (3,).
+    """
+    back = back / min(client.camera.aspect, 1.0)
+    below = _ABOVE_PANEL * float(np.linalg.norm(back)) if client.camera.aspect < 1.0 else 0.0
+    point = target - [0.0, 0.0, below]
+    with client.atomic():
+        client.camera.position, client.camera.look_at = point + back, point
 
 
 def _is_solid(vertices: FloatArray, faces: IntArray) -> bool:

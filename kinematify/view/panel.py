@@ -36,8 +36,12 @@ _SLIDER_STEPS = 100
 """An arrow key moves a slider by one."""
 _LISTED_PAIRS, _LISTED_FINDINGS = 12, 40
 """Touching pairs and findings that are listed; the report has all."""
-# A page runs no <script> that arrives later, but it runs what an image does that cannot be loaded.
-_PAGE = '<img src="data:," style="display:none" onerror="{}">'
+_PAGE = (
+    '<style>.mantine-Paper-root[style*="max-height: 60%"]{{max-height:50% !important}}</style>'
+    '<img src="data:," style="display:none" onerror="{}">'
+)
+"""Leaves the upper half of a narrow window to the model. A page runs no <script> that arrives later, but what an image
+does that cannot be loaded."""
 _NAME_UNDER_POINTER = """
 if (!window.partName) {
   const label = window.partName = document.body.appendChild(document.createElement('div'));
@@ -46,12 +50,12 @@ if (!window.partName) {
     'border-radius:4px;background:#222c;color:#fff;font:13px sans-serif';
   addEventListener('pointermove', event => setTimeout(() => {
     const page = window.__viserMutable, state = page?.scene?.__r3f?.root.getState();
-    const over = new Set([...state?.internal.hovered.values() ?? []].map(item => item.eventObject));
-    const found = Object.entries(page?.nodeRefFromName ?? {}).find(([name, item]) => {
-      for (let at = item; at && name.startsWith('/parts/'); at = at.parent) if (over.has(at)) return true;
-    });
+    const names = new Map(Object.entries(page?.nodeRefFromName ?? {}).map(([name, node]) => [node, name]));
+    let found;
+    for (const { eventObject } of state?.internal.hovered.values() ?? [])
+      for (let node = eventObject; node; node = node.parent) found ??= names.get(node)?.split('/')[2];
     label.style.display = found ? 'block' : 'none';
-    label.textContent = found ? found[0].split('/')[2] : '';
+    label.textContent = found ?? '';
     label.style.left = event.clientX + 14 + 'px';
     label.style.top = event.clientY + 14 + 'px';
   }));

@@ -228,7 +228,7 @@ class ModelViewer:
         """Let the part of a joint glow, and show what is known of the joint."""
         with self._lock:
             if self._chosen != joint and joint in self._panel.sliders:
-                self._forget()
+                self.show_as_in_file()
                 self._chosen, self._marked = joint, frozenset()
                 item = self._scene.robot.joint_by_name[joint]
                 said = [words for _, words in self._candidates(item)]
@@ -252,8 +252,8 @@ class ModelViewer:
         self._waiting = change
         self._panel.offer(words)
 
-    def _forget(self) -> None:
-        """Show everything as in the file again; nothing waits to be kept."""
+    def show_as_in_file(self) -> None:
+        """Show everything as in the file; what waited to be kept is forgotten."""
         self._waiting = None
         self._end_by_hand()
         for name in self._scene.tried_joints:
@@ -266,8 +266,8 @@ class ModelViewer:
         """Move a joint as one of its candidates says, 0 for as in the file, and show that on the page."""
         with self._lock:
             self.choose(joint)
-            self._forget()
-            if number:
+            self.show_as_in_file()
+            if number and joint == self._chosen:
                 item = self._scene.robot.joint_by_name[joint]
                 alternative, words = self._candidates(item)[number - 1]
                 self._panel.choice.value = self._panel.choice.options[number]
@@ -282,7 +282,7 @@ class ModelViewer:
         with self._lock:
             if self._chosen is None:
                 return
-            self._forget()
+            self.show_as_in_file()
             joint = self._scene.robot.joint_by_name[self._chosen]
             offered = self._shown.parents if key == "parent" else self._shown.twins
             if (key == "parent" and name == joint.parent) or name not in offered.get(joint.child, ()):
@@ -295,7 +295,7 @@ class ModelViewer:
     def rename(self, part: str, name: str) -> None:
         """Propose another name of a part, which is that of its link."""
         with self._lock:
-            self._forget()
+            self.show_as_in_file()
             if name.strip() and name != part:
                 self._propose(f"{part} is named {name}", lambda folder: folder.rename(part, name))
 
@@ -313,7 +313,7 @@ class ModelViewer:
 
     def _regroup(self, words: str, change: Callable[[ModelFolder], Kept]) -> None:
         with self._lock:
-            self._forget()
+            self.show_as_in_file()
             self._regrouped = True
             self._propose(words, change)
 
@@ -389,7 +389,7 @@ class ModelViewer:
                 return
             joint = self._scene.robot.joint_by_name[self._chosen]
             if self._scene.tried(joint.name) is None:
-                self._forget()
+                self.show_as_in_file()
             self.set(dict.fromkeys(self._q, 0.0))
             axis, pivot = self._scene.line_of(joint)
             self._end_by_hand()

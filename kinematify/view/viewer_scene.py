@@ -24,7 +24,6 @@ from kinematify.validation.formats.view_data import camera_turn
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from kinematify.geometry.overlap import OverlapQueries
     from kinematify.geometry.rest_pairs import DepthAllowance
     from kinematify.geometry.scene import Scene
     from kinematify.render.picture import PosedMesh
@@ -241,20 +240,14 @@ class ViewScene:
         Args:
             q: Leader -> value [rad or m].
         """
-        from kinematify.geometry.scene import relative  # noqa: PLC0415  # as for `_collisions`
-
-        scene, overlap, allowance = self._collisions
+        scene, allowance = self._collisions
         poses = self.poses(q)
         tops = [self.groups[body.group].top for body in scene.bodies]
-        placed = np.stack([poses[top] for top in tops])[None] if tops else np.zeros((1, 0, 4, 4))
-        found = []
-        for pair in scene.pairs:
-            T = relative(placed, pair)
-            if not (overlap.collide(pair, T)[0] or overlap.may_contain(pair, T)[0]):
-                continue
-            depth = float(overlap.depth(pair, T)[0])
-            tolerated = depth <= allowance.at_rest(pair) + allowance.tolerance(pair)
-            found.append(Touch(pair=(tops[pair[0]], tops[pair[1]]), depth=depth, tolerated=tolerated))
+        placed = np.array([poses[top] for top in tops])
+        found = [
+            Touch(pair=(tops[pair[0]], tops[pair[1]]), depth=depth, tolerated=tolerated)
+            for pair, depth, tolerated in allowance.meeting(placed)
+        ]
         return sorted(found, key=lambda touch: (touch.tolerated, -touch.depth))
 
     def free_range(self, joint: Joint) -> tuple[float, float]:
@@ -317,15 +310,14 @@ class ViewScene:
         return forward_kinematics(self.robot, {})
 
     @cached_property
-    def _collisions(self) -> tuple[Scene, OverlapQueries, DepthAllowance]:
+    def _collisions(self) -> tuple[Scene, DepthAllowance]:
         from kinematify.config.validation import load_settings  # noqa: PLC0415  # what is seen first needs none of these
         from kinematify.geometry.overlap import OverlapQueries  # noqa: PLC0415
         from kinematify.geometry.rest_pairs import DepthAllowance  # noqa: PLC0415
         from kinematify.geometry.scene import read_scene  # noqa: PLC0415
 
         scene = read_scene(self._read_solid(), load_settings().geometry)
-        overlap = OverlapQueries(scene)
-        return scene, overlap, DepthAllowance(scene, overlap)
+        return scene, DepthAllowance(scene, OverlapQueries(scene))
 
     def _mesh(self, group: RigidGroup) -> tuple[FloatArray, IntArray, Appearance | None]:
         vertices, faces, start = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)], 0
