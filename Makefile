@@ -2,9 +2,14 @@
 # `make help` lists the rest.
 
 SHELL := bash
-PYTHON ?= python3.11
+.SHELLFLAGS := -o pipefail -c
+# The first of these that runs.
+FOUND := $(shell for v in 3.11 3.12 3.13; do python$$v -c '' 2> /dev/null && echo python$$v; done; true)
+PYTHON ?= $(firstword $(FOUND) python3.11)
 VENV := .venv
 IN_VENV := $(VENV)/bin/python -m
+# Says which package it is at; modules are compiled when they are first used, which saves time and 100 MB.
+install = $(IN_VENV) pip install --no-compile $(1) | sed -u -n 's/^Collecting \([^ ]*\).*/  \1/p'
 JOBS ?= $(shell getconf _NPROCESSORS_ONLN)
 # Test files or options for pytest, e.g. `make test ARGS="tests/test_cli.py -k infer"`.
 ARGS ?=
@@ -18,7 +23,11 @@ DATA ?= pip
 # torch goes first and exactly: left to the resolver, another build of several GB may be chosen.
 TORCH := $(shell sed -n 's/.*"\(torch==[0-9.]*\)".*/\1/p' pyproject.toml)
 # Named after the content of pyproject.toml: while that does not change there is nothing to do.
-STAMP := $(VENV)/.setup-$(shell cksum < pyproject.toml | tr ' ' '-')
+SUM := $(shell cksum < pyproject.toml | tr ' ' '-')
+CORE := $(VENV)/.core-$(SUM)
+STAMP := $(VENV)/.setup-$(SUM)
+TOOK = echo "make $@ took $$(( $$(date +%s) - $(START) )) s"
+START := $(shell date +%s)
 
 .PHONY: help setup demo test check lint format types bench docs pictures clean
 .DEFAULT_GOAL := help
@@ -38,29 +47,39 @@ help:
 
 setup: $(STAMP)
 
-$(STAMP):
-	@command -v $(PYTHON) > /dev/null || { echo "There is no $(PYTHON) on the path. Kinematify needs Python 3.11:" \
-	  "install it (Debian and Ubuntu: apt-get install python3.11 python3.11-venv) or name it:" \
+$(VENV)/bin/python:
+	@command -v $(PYTHON) > /dev/null || { echo "There is no $(PYTHON) on the path. Kinematify needs Python 3.11, 3.12" \
+	  "or 3.13: install one (Debian and Ubuntu: apt-get install python3 python3-venv) or name it:" \
 	  "make setup PYTHON=/path/to/python3.11" >&2; exit 2; }
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' || { echo "$(PYTHON) is" \
-	  "$$($(PYTHON) --version), but Kinematify needs Python 3.11: make setup PYTHON=/path/to/python3.11" >&2; exit 2; }
-	@[ -x $(VENV)/bin/pip ] || { echo "Creating $(VENV)"; $(PYTHON) -m venv $(VENV); }
-	@echo "Installing Kinematify and what it needs into $(VENV) (the first time takes some minutes)"
-	@$(IN_VENV) pip install --quiet $(TORCH)
-	@$(IN_VENV) pip install --quiet --editable '.[dev]' --config-settings editable_mode=compat
+	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 14))' || { echo "$(PYTHON) is" \
+	  "$$($(PYTHON) --version), but Kinematify needs Python 3.11, 3.12 or 3.13:" \
+	  "make setup PYTHON=$(firstword $(FOUND) /path/to/python3.11)" >&2; exit 2; }
+	@echo "Creating $(VENV) with $$($(PYTHON) --version)"
+	@$(PYTHON) -m venv $(VENV)
+
+$(CORE): | $(VENV)/bin/python
+	@[ -e $(STAMP) ] || { echo "Installing Kinematify into $(VENV): 0.9 GB, some minutes the first time" && \
+	  $(call install,--editable . --config-settings editable_mode=compat); }
+	@rm -f $(VENV)/.core-* && touch $@
+
+$(STAMP): | $(VENV)/bin/python
+	@echo "Installing Kinematify, all extras and what tests need into $(VENV): 3 GB, ten minutes the first time"
+	@$(call install,$(TORCH))
+	@$(call install,--editable '.[dev]' --config-settings editable_mode=compat)
 	@rm -f $(VENV)/.setup-* && touch $@
 
-demo: setup
+demo: $(CORE)
 	@echo "A sentence: $$SENTENCE"
 	@$(IN_VENV) kinematify generate "$$SENTENCE" -o out/cabinet --infer --force
 	@echo
 	@echo "Look at  out/cabinet/preview.png       the cabinet at rest, and with every joint moved"
-	@echo "    and  out/cabinet/validation.html   what was checked, in three engines, and what to do about each finding"
+	@echo "    and  out/cabinet/validation.html   what was checked, in every engine, and what to do about each finding"
 	@echo "    and  out/cabinet/model.urdf        what a simulator loads"
-	@echo "Now try  $(VENV)/bin/kinematify generate \"a quadruped with 3 joints per leg\" --seed 7 -o out/dog"
-	@echo "    and  $(VENV)/bin/kinematify generate --list"
+	@echo "Now try  $(VENV)/bin/kinematify view out/cabinet"
+	@echo "    and  $(VENV)/bin/kinematify generate \"a quadruped with 3 joints per leg\" --seed 7 -o out/dog"
 	@echo "    and  $(VENV)/bin/kinematify infer YOUR_FOLDER_OF_PARTS -o out/yours"
 	@echo "    and  $(VENV)/bin/kinematify validate YOUR_ROBOT.urdf"
+	@$(TOOK)
 
 pictures: setup
 	$(IN_VENV) kinematify generate "$$SENTENCE" -o out/cabinet --force --no-validation
@@ -69,6 +88,7 @@ pictures: setup
 
 test: setup
 	OMP_NUM_THREADS=1 $(IN_VENV) pytest -n $(JOBS) --dist worksteal $(ARGS)
+	@$(TOOK)
 
 check: lint types
 	tests=$$($(IN_VENV) tools.affected_tests $(BASE)) && OMP_NUM_THREADS=1 $(IN_VENV) pytest -q -n $(JOBS) \

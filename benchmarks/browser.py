@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from kinematify.errors import EnvironmentFault
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,10 +27,9 @@ def open_browser() -> Iterator[Browser]:
     Raises:
         EnvironmentFault: There is none, or playwright is not installed.
     """
-    try:
-        from playwright.sync_api import sync_playwright  # noqa: PLC0415  # for tests and measurements of pages alone
-    except ImportError as error:
-        raise EnvironmentFault("playwright is not installed. Run `pip install 'kinematify[bench]'`.") from error
+    require("A page that is measured", "playwright")
+    from playwright.sync_api import sync_playwright  # noqa: PLC0415  # for tests and measurements of pages alone
+
     path = os.environ.get("KINEMATIFY_BROWSER") or next(filter(None, map(shutil.which, _NAMES)), None)
     if path is None:
         raise EnvironmentFault("There is no Chromium on this machine (Debian: apt-get install chromium).")

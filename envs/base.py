@@ -1,4 +1,4 @@
-"""What both environments share: keywords, the object, start of an episode, randomisation, pictures, bookkeeping."""
+"""Base of the environments: keywords, the object, start of an episode, randomisation, pictures, bookkeeping."""
 
 from __future__ import annotations
 
@@ -225,10 +225,10 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     @abstractmethod
     def _observe(self, reading: ObjectState) -> NDArray[np.float32]:
-        """What is seen."""
+        """Observation of one step."""
 
     def _helped(self) -> float:
-        """What is rewarded beside opening, already weighted."""
+        """Reward beside opening, already weighted."""
         return 0.0
 
     # After a step.
@@ -312,7 +312,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     @property
     def _tint(self) -> dict[str, FloatArray]:
-        """What is added to the colour of each link; nothing before the first episode."""
+        """Tint added to the colour of each link; none before the first episode."""
         if self._draw is None:
             return {}
         return dict(zip(self.articulated_object.scene.mechanism.links, self._draw.color, strict=True))

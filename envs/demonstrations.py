@@ -14,7 +14,8 @@ import numpy as np
 
 from kinematify.envs.drawer_pull import DrawerPullEnv
 from kinematify.envs.expert import ArmExpert, HandExpert
-from kinematify.errors import EnvironmentFault, InputError
+from kinematify.errors import InputError
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -29,7 +30,7 @@ def expert_for(env: gymnasium.Env[Any, Any]) -> HandExpert | ArmExpert:
 def record_demonstrations(
     env_id: str, name: str, *, seeds: Iterable[int] = range(100), only_successes: bool = True, **keywords: Any
 ) -> Any:
-    """Let the hand-written policy act, and write what happened.
+    """Record episodes of the hand-written policy.
 
     Args:
         env_id: One of `kinematify.envs.IDS`, with or without ``kinematify.envs:``.
@@ -45,14 +46,9 @@ def record_demonstrations(
         EnvironmentFault: Minari is not installed.
         InputError: No episode is left, or a keyword is impossible.
     """
-    try:
-        minari = importlib.import_module("minari")
-        buffers = importlib.import_module("minari.data_collector.episode_buffer")
-    except ImportError as error:
-        raise EnvironmentFault(
-            f"Demonstrations are written by Minari, which cannot be imported ({error}). "
-            "Install it: pip install 'kinematify[rl]'."
-        ) from error
+    require("Writing demonstrations", "minari", "h5py")
+    minari = importlib.import_module("minari")
+    buffers = importlib.import_module("minari.data_collector.episode_buffer")
     env = gymnasium.make(env_id, **keywords)
     policy = expert_for(env)
     episodes = [_episode(env, policy, seed) for seed in seeds]

@@ -161,7 +161,7 @@ class DrawerPullEnv(OpeningEnv):
         return self.world.depth()
 
     def _commands(self) -> FloatArray:
-        """Of the servos: arm, then fingers."""
+        """Commands of the servos: arm, then fingers."""
         return np.concatenate([self.wanted, self.robot.robot.finger_values(self._gap)])
 
     def _act(self, action: NDArray[np.float32]) -> None:
@@ -261,7 +261,7 @@ class DrawerPullEnv(OpeningEnv):
         return (np.stack([base * [1.0, 1.0, 0.0], shoulder]),)
 
     def _column(self) -> Sequence[Piece]:
-        """What the robot stands on, if it does not stand on the floor."""
+        """Return what the robot stands on, if it does not stand on the floor."""
         found = column_mesh(float(self.plan.T_world_base[2, 3]))
         if found is None:
             return ()

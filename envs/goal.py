@@ -1,4 +1,4 @@
-"""What is seen, what counts as open, and what is rewarded: one set of formulas for one environment and for many.
+"""Observation, success and reward: one set of formulas for one environment and for many.
 
 All arrays may have leading axes of environments.
 """
@@ -25,7 +25,7 @@ _SHORT = 1e-9  # a hold that is nearer to an axis moves nowhere [m]
 
 @dataclass(slots=True, eq=False)
 class Progress:
-    """What the judgement remembers from step to step."""
+    """State that the judgement remembers from step to step."""
 
     fraction: Any
     """Share of the way that is open: a float for one environment, else shape (n,); so are the others."""

@@ -34,7 +34,7 @@ class JointDynamics:
 def joint_dynamics(
     articulated_object: ArticulatedObject, inertia: FloatArray, gravity: FloatArray, settings: ObjectSettings
 ) -> JointDynamics:
-    """What the file declares; where it declares nothing, values in proportion to what the joint moves.
+    """Return the declared dynamics; where the file has none, values in proportion to what the joint moves.
 
     Friction then also holds what its own weight would move from where it was given into its range.
 

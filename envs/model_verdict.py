@@ -19,7 +19,7 @@ from kinematify.geometry.cut_cache import cache_folder
 if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject
 
-_CHECKS = "KV1*,KV2*,KV30*,KV31*,KV40*,KV50*"
+_CHECKS = "KV1*,KV2*,KV30*,KV31*,KV801,KV803,KV804"
 """File, declared physics, overlap at rest and along the motion, loading and moving in an engine."""
 _SHOWN = 3
 _KEPT = 500
@@ -61,7 +61,7 @@ def content_digest(articulated_object: ArticulatedObject) -> str:
 
 
 def kept(folder: str, digest: str) -> dict[str, object] | None:
-    """What an earlier run has kept, or None."""
+    """Return what an earlier run has kept, or None."""
     with suppress(OSError, ValueError):
         found = json.loads((cache_folder().parent / folder / f"{digest}.json").read_text(encoding="utf-8"))
         return found if isinstance(found, dict) else None

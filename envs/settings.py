@@ -33,7 +33,7 @@ class TimeSettings(StageConfig):
 
 
 class ObjectSettings(StageConfig):
-    """What files do not say about joints."""
+    """Settings of joints that files do not state."""
 
     damping_rate: float = 1.5  # a drawer that is let go comes to rest within a second or two
     """Damping of a joint without one, per inertia that it moves [1/s]."""

@@ -31,7 +31,7 @@ class Task:
 
 @dataclass(frozen=True, kw_only=True)
 class Split:
-    """What is drawn from."""
+    """Objects and seeds that episodes are drawn from."""
 
     objects: range
     """Object seeds."""

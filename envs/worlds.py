@@ -1,4 +1,4 @@
-"""What runs in an environment: the object with the dynamics of its joints, and a hand or a robot."""
+"""Worlds of the environments: the object with the dynamics of its joints, and a hand or a robot."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _FILTER_SHARE = 0.6  # of the time between actions: servos are led smoothly to a
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class WorldFacts:
-    """What worlds are opened from, in any engine."""
+    """Facts that worlds are opened from, in any engine."""
 
     spec: WorldSpec
     dynamics: JointDynamics
@@ -46,7 +46,7 @@ class WorldFacts:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HandFacts(WorldFacts):
-    """What the hand can do."""
+    """Abilities of the hand."""
 
     hand: PullingHand
     inertia: float
@@ -139,7 +139,7 @@ def _point(articulated_object: ArticulatedObject, target: Target) -> HeldPoint:
 
 
 class _Loads:
-    """What joints move and carry, which MuJoCo computes whatever engine is asked for."""
+    """Loads that joints move and carry, which MuJoCo computes whatever engine is asked for."""
 
     def __init__(self, articulated_object: ArticulatedObject, spec: WorldSpec) -> None:
         self._object = articulated_object

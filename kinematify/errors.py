@@ -17,7 +17,7 @@ from enum import IntEnum
 
 
 class ExitStatus(IntEnum):
-    """What the command line ends with."""
+    """Exit status of the command line."""
 
     FINE = 0
     FAILURES = 1

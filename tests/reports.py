@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.validation.check import Check
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
+from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
 from kinematify.validation.run.report import ValidationReport
 from kinematify.validation.summary import JointSummary
 
@@ -19,14 +19,14 @@ EVIL = "<b>&\"'\x00\x1b[31m\udcff"
 
 
 def add_checks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Put KV396 (no engine) and KV496 (MuJoCo) among the checks for one test."""
-    for name, engines in (("KV396", ()), ("KV496", ("mujoco",))):
+    """Put KV396 (no engine) and KV896 (MuJoCo) among the checks for one test."""
+    for name, engines in (("KV396", ()), ("KV896", ("mujoco",))):
         check = Check(
             id=name,
             title=f"Doors & drawers of {name}",
             fails=f"Doors & drawers of {name} jam",
             severity=Severity.ERROR,
-            blame=Blame.KINEMATICS,
+            cause=Cause.KINEMATICS,
             engines=engines,
             verifies="Something with `some_threshold`.",
             matters="It jams.",
@@ -41,7 +41,7 @@ def finding(**changes: object) -> Finding:
     fields: dict[str, object] = {
         "check": "KV396",
         "severity": Severity.ERROR,
-        "blame": Blame.KINEMATICS,
+        "cause": Cause.KINEMATICS,
         "message": "The joint hinge_1 overlaps by 5 mm.",
         "remedy": "Turn the axis of hinge_1.",
         "joint": "hinge_1",
@@ -82,15 +82,15 @@ def report(*checks: CheckResult, model: str = "models/door.urdf", interrupted: b
 
 def full_report(**changes: object) -> ValidationReport:
     """One of everything: error, warning, suppressed error, note on a pair, skipped, blocked, blocked by a crash."""
-    warning = finding(severity=Severity.WARNING, blame=Blame.PHYSICS, joint=None, link="door", q=None, value=math.inf)
+    warning = finding(severity=Severity.WARNING, cause=Cause.PHYSICS, joint=None, link="door", q=None, value=math.inf)
     accepted = finding(joint="hinge_2", suppressed="the seal is soft")
     pair = finding(severity=Severity.NOTE, pair=("frame", "door"), joint=None, message="They touch at rest.")
-    crash = finding(check="KV496", engine="mujoco", joint=None, q=None, value=None, limit=None, unit=None, line=None)
+    crash = finding(check="KV896", engine="mujoco", joint=None, q=None, value=None, limit=None, unit=None, line=None)
     checks = (
         result(finding(), warning, accepted, pair),
         result(check="KV396", status=Status.SKIPPED, reason="it does not apply"),
-        result(crash, check="KV496", engine="mujoco", status=Status.BLOCKED, reason="the stage crashed"),
-        result(check="KV496", engine="mujoco", status=Status.BLOCKED, reason="no mesh"),
+        result(crash, check="KV896", engine="mujoco", status=Status.BLOCKED, reason="the stage crashed"),
+        result(check="KV896", engine="mujoco", status=Status.BLOCKED, reason="no mesh"),
         result(),
     )
     return report(*checks, **changes)  # type: ignore[arg-type]

@@ -18,7 +18,10 @@ from tests.places import ROOT
 PAGES = ("README.md", "CONTRIBUTING.md", *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md")))
 MADE_BY_COMMANDS = ("out/", "OUT/", "meshes/", "parts/", "inferred/", "OUT.job/")
 # Ids of environments, repositories elsewhere, what is yours.
-NO_PATHS = r".*-v\d|ZebraDevs/fetch_ros|Daniella1/.*|mees/.*|ros-industrial/.*|models/|jackal/.*|more/.*|assets/.*"
+NO_PATHS = (
+    r".*-v\d|ZebraDevs/fetch_ros|Daniella1/.*|mees/.*|ros-industrial/.*|models/|jackal/.*|more/.*|assets/.*|"
+    r"changes/NAME\.TYPE\.md"
+)
 
 
 def blocks(text: str, language: str) -> str:

@@ -65,7 +65,7 @@ def measured(name: str, text: str) -> Size:
 
 
 def packages(root: Path = ROOT) -> dict[str, Size]:
-    """Size of every package in a checkout by name, `product` among them; modules in `kinematify` itself count together."""
+    """Size of every package by name, and of the product; modules directly in `kinematify` are one package."""
     found: dict[str, Size] = {"product": Size()}
     for path in sorted(path for top in TOPS for path in (root / top).rglob("*")):
         if path.suffix not in {".py", ".yaml", ".yml"} or not path.is_file() or "__pycache__" in path.parts:
@@ -87,16 +87,12 @@ def ceilings(text: str) -> dict[str, Size]:
 
 
 def grown(before: dict[str, Size], now: dict[str, Size]) -> list[str]:
-    """Say which numbers of the product, benchmarks and tests are larger than before, one sentence each."""
-    return [
-        f"{name}: {new:,} {unit}, {old:,} before"
-        for name in ("product", *OUTSIDE)
-        if name in before and name in now
-        for unit, old, new in zip(
-            ("tokens", "classes", "bytes of YAML"), astuple(before[name]), astuple(now[name]), strict=True
-        )
-        if new > old
-    ]
+    """Say which numbers of the product are larger than before, one sentence each."""
+    if "product" not in before:
+        return []
+    units = ("tokens", "classes", "bytes of YAML")
+    numbers = zip(units, astuple(before["product"]), astuple(now["product"]), strict=True)
+    return [f"product: {new:,} {unit}, {old:,} before" for unit, old, new in numbers if new > old]
 
 
 def table(sizes: dict[str, Size]) -> str:

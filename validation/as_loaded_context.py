@@ -1,4 +1,4 @@
-"""What the checks of the untouched file look at in one engine, computed when one of them first asks for it."""
+"""Context of the checks of the untouched file in one engine, computed when first asked for."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from kinematify.simulation.raw_model import MovesFreely, Unloadable, velocity_pr
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+    from pathlib import Path
 
     from kinematify.config.validation import AsLoadedSettings
     from kinematify.geometry.sweep import Sweeper
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
     )
     from kinematify.validation.stage import StageRequest
 
+RESOLVED = "resolved.urdf"
+"""Name of the file in plain code where an engine does not find the meshes of the original."""
 _LEAST_SIZE = 0.01
 """Smaller models are looked at as if they had it [m]."""
 _SAME = 1e-6
@@ -72,7 +75,7 @@ class AsLoadedContext:
 
     @property
     def title(self) -> str:
-        """Of the engine."""
+        """Title of the engine."""
         return ENGINES[self.engine].title
 
     @property
@@ -101,11 +104,26 @@ class AsLoadedContext:
         return LeaderMechanism(robot=self.robot)
 
     @cached_property
+    def bare(self) -> RawEngineModel | Unloadable:
+        """The file in the engine as it is, or what the engine says against it."""
+        return self._opened(self.request.urdf)
+
+    @cached_property
     def loading(self) -> RawEngineModel | Unloadable:
-        """The file in the engine, or what the engine says against it."""
+        """The file in the engine, from a copy with absolute paths of meshes where it is not opened without."""
+        resolved = self.request.resolved
+        if not isinstance(self.bare, Unloadable) or isinstance(self.bare, MovesFreely) or resolved is None:
+            return self.bare
+        copy = self._opened(resolved)
+        if isinstance(copy, Unloadable):
+            return self.bare
+        copy.rename(RESOLVED)
+        return copy
+
+    def _opened(self, urdf: Path) -> RawEngineModel | Unloadable:
         try:
             root = self.mechanism.links[int(np.flatnonzero(self.mechanism.body_of_link == 0)[0])]
-            loaded = load_file(self.engine, self.request.urdf, root, self.request.package_dirs)
+            loaded = load_file(self.engine, urdf, root, self.request.package_dirs)
         except Unloadable as error:
             return error
         known = set(loaded.joints) <= set(self.mechanism.joints)
@@ -113,7 +131,7 @@ class AsLoadedContext:
 
     @property
     def floats(self) -> bool:
-        """Whether the file has a floating or planar joint."""
+        """True if the file has a floating or planar joint."""
         return any(joint.declared_kind in FREE_KINDS for joint in self.robot.joints)
 
     @property
@@ -147,7 +165,7 @@ class AsLoadedContext:
 
     @cached_property
     def travels(self) -> tuple[Travel, ...]:
-        """Of the joints that lead and that the engine moves."""
+        """Travels of the joints that lead and that the engine moves."""
         return tuple(travel for travel in self.mechanism.travels if travel.joint not in self.lost)
 
     @cached_property
@@ -174,7 +192,7 @@ class AsLoadedContext:
     def overlaps(self) -> tuple[Overlap, ...]:
         """At rest, the deepest first, of links that can move against each other: nothing pushes others apart."""
         body = dict(zip(self.mechanism.links, self.mechanism.body_of_link.tolist(), strict=True))
-        found = self.loaded.overlaps(self.values)
+        found = self.running.overlaps(self.values)
         return tuple(item for item in found if body[item.links[0]] != body[item.links[1]])
 
     @cached_property
@@ -192,7 +210,7 @@ class AsLoadedContext:
         return run.values[:, list(self.loaded.joints).index(travel.joint)]
 
     def still(self, travel: Travel) -> float:
-        """How far a joint may go that nothing moves [rad or m]."""
+        """Return how far a joint may go that nothing moves [rad or m]."""
         settings = self.settings
         return max(settings.still * travel.range, settings.still_angle if travel.turns else settings.still_length)
 
@@ -226,7 +244,7 @@ class AsLoadedContext:
         )
 
     def moves_plainly(self, run: VelocityProbe) -> bool:
-        """Whether a joint that a push did not bring to its end gets there as the file is loaded without flags.
+        """True if a joint that a push did not bring to its end gets there as the file is loaded without flags.
 
         By the push without contacts, or by the joint's own motor: engines answer pushes of light parts wrongly.
         """
@@ -250,14 +268,14 @@ class AsLoadedContext:
             values = dict(run.values)
             for name, ratio in self.ratios(travel).items():
                 values[name] = run.values[name] + ratio * (value - travel.rest)
-            found = self.between(travel, self.loaded.overlaps(values))
+            found = self.between(travel, self.running.overlaps(values))
             if found is not None:
                 return found, value
         return None
 
     @cached_property
     def inertias(self) -> dict[str, float]:
-        """What a force at each joint moves at rest [kg or kg m^2]."""
+        """Return what a force at each joint moves at rest [kg or kg m^2]."""
         return dict(zip(self.loaded.joints, self.running.inertias(self.values).tolist(), strict=True))
 
     @cached_property
@@ -274,7 +292,7 @@ class AsLoadedContext:
 
     @cached_property
     def _surfaces(self) -> Sweeper | None:
-        """What is visible in motion, for joints that fall short; None where it is what collides, swept already."""
+        """Return the visible surfaces in motion, for joints that fall short; None where they are what collides."""
         from kinematify.geometry.scene import read_scene, simplified, visible_shapes  # noqa: PLC0415 - for these only
         from kinematify.geometry.sweep import Sweeper  # noqa: PLC0415
         from kinematify.validation.left_model import model_of  # noqa: PLC0415
@@ -311,7 +329,7 @@ class AsLoadedContext:
         return self.settings.torque if travel.turns else self.settings.force
 
     def speed(self, travel: Travel) -> float:
-        """Of the hand [rad/s or m/s]."""
+        """Speed of the hand [rad/s or m/s]."""
         return self.settings.turning_speed if travel.turns else self.settings.sliding_speed
 
     def _push(self, travel: Travel, way: tuple[float, float], force: float, **more: float) -> Push:
@@ -367,7 +385,7 @@ class AsLoadedContext:
         return GRAVITY * float(sum(masses)) * self.size
 
     def arrives(self, run: VelocityProbe, farthest: float) -> bool:
-        """Whether a push got so far that the joint counts as moving to its end [rad or m]."""
+        """True if a push got so far that the joint counts as moving to its end [rad or m]."""
         travel, way = run.travel, abs(run.end - run.travel.rest)
         gone, stopped = abs(farthest - travel.rest), run.end not in (travel.lower, travel.upper)
         touching = self.settings.touch_angle if travel.turns else self.settings.touch_length

@@ -5,7 +5,7 @@
         title="Zero lies within the limits",
         fails="Zero lies outside the limits",
         severity=Severity.NOTE,
-        blame=Blame.KINEMATICS,
+        cause=Cause.KINEMATICS,
     )
     def zero_outside(result: OpenCheck, physics: Physics) -> None:
         '''Zero is a value that the joint may take.
@@ -27,39 +27,30 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, TypedDict
 
-from kinematify.simulation.engines import ENGINES
 from kinematify.validation.finding import Finding, Severity, Status, not_finished
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from kinematify.validation.finding import Blame
+    from kinematify.validation.finding import Cause
 
     CheckFunction = Callable[["OpenCheck", Any], None]
     Need = Callable[[Any], str | None]
 
-ENGINE_FAMILIES = {name: engine.family for name, engine in ENGINES.items() if engine.runs and engine.prepared}
-"""Family of each engine that the same checks run in."""
-FAMILIES = dict(
-    sorted(
-        {
-            "KV1": "file and tree",
-            "KV2": "declared physics",
-            "KV3": "kinematics by geometry",
-            "KV6": "agreement",
-            "KV7": "task of a robot",
-            "KV8": "file as loaded",
-            **{family: ENGINES[name].title for name, family in ENGINE_FAMILIES.items()},
-        }.items()
-    )
-)
+FAMILIES = {
+    "KV1": "file and tree",
+    "KV2": "declared physics",
+    "KV3": "kinematics by geometry",
+    "KV7": "task of a robot",
+    "KV8": "file as loaded",
+}
 """Title of each family, keyed by the beginning of its ids."""
-_NOT_OURS = ("KV1", "KV2", "KV6", "KV8")
+_NOT_OURS = ("KV1", "KV2", "KV8")
 """Families whose findings no choice of a joint can fix."""
 
 
 class FeedbackRow(StrEnum):
-    """What `kinematify refine` makes of a finding, a row of the table in `validation/run/feedback.py`."""
+    """Reaction of `kinematify refine` to a finding, a row of the table in `validation/run/feedback.py`."""
 
     AS_GIVEN = "none: the overlap is as given, no axis is the cause"
     INTO_PARENT = "against this line, this type and this parent; if one side is free, it is the opening one"
@@ -70,17 +61,13 @@ class FeedbackRow(StrEnum):
     GUIDE = "the range ends before"
     LINE = "against this line"
     TYPE = "against this type"
-    NOT_REACHED = "against this line, unless convex stand-ins explain it"
-    UNSTABLE = "against this line, once masses and overlaps at rest are fine"
-    SINKS = "against this line"
     AS_LOADED = "against this line, this type and this parent"
     NO_WAY = "against this line, this type and this parent, if several places of the robot were tried"
-    COLLISION = "none: collision geometry is in the way"
     EXPORTER = "none: files, frames or masses are for the exporter to fix"
 
 
 class CauseScope(StrEnum):
-    """What a cause and what follows from it must both be about."""
+    """Subject that a cause and what follows from it must both be about."""
 
     MODEL = "the model"
     BODY = "a body in common"
@@ -101,8 +88,8 @@ class Check:
     """A few words that are true where it finds something."""
     severity: Severity
     """The worst that it reports, and what it reports where nothing else is said."""
-    blame: Blame
-    """What it usually blames."""
+    cause: Cause
+    """The usual cause."""
     engines: tuple[str, ...] = ()
     """Engines that it runs in; empty: none."""
     verifies: str
@@ -116,11 +103,9 @@ class Check:
     doubts: bool = False
     """Its findings put axis, place, type, parent or direction of a joint in doubt; a robot's task wants to know."""
     opinion: bool = False
-    """Its findings are what our own inference holds of the shapes; they blame nobody where no fact agrees."""
+    """Its findings are what our own inference holds of the shapes; they name no cause where no fact agrees."""
     follows: Mapping[str, CauseScope] = field(default_factory=dict)
     """Checks whose findings can be the cause of its own, and what both must be about; the first that fits is taken."""
-    prepared: bool = False
-    """Its findings about contact are seen in a prepared copy; they count where the file as loaded shows it too."""
     needs: tuple[Need, ...] = ()
     """Asked before it runs, with the context: each gives the reason why there is nothing to look at, or None."""
     function: CheckFunction
@@ -158,7 +143,7 @@ class OpenCheck:
         remedy: str,
         *,
         severity: Severity | None = None,
-        blame: Blame | None = None,
+        cause: Cause | None = None,
         joint: str | None = None,
         link: str | None = None,
         pair: tuple[str, str] | None = None,
@@ -173,7 +158,7 @@ class OpenCheck:
     ) -> None:
         """Add a finding.
 
-        Severity, blame and engine are the check's unless given, see `Finding` for the rest; `harmless` is for an error
+        Severity, cause and engine are the check's unless given, see `Finding` for the rest; `harmless` is for an error
         after which later stages may read the file all the same.
         """
         check = REGISTRY[self.id]
@@ -184,7 +169,7 @@ class OpenCheck:
             Finding(
                 check=self.id,
                 severity=severity or check.severity,
-                blame=blame or check.blame,
+                cause=cause or check.cause,
                 message=message,
                 remedy=remedy,
                 joint=joint,
@@ -230,13 +215,12 @@ def check(
     title: str,
     fails: str,
     severity: Severity,
-    blame: Blame,
+    cause: Cause,
     engines: tuple[str, ...] = (),
     feedback: FeedbackRow | None = None,
     doubts: bool = False,
     opinion: bool = False,
     follows: Mapping[str, CauseScope] | None = None,
-    prepared: bool = False,
     needs: tuple[Need, ...] = (),
 ) -> Callable[[CheckFunction], CheckFunction]:
     """Register the decorated function as a check; see `Check` for the arguments.
@@ -252,56 +236,16 @@ def check(
             title=title,
             fails=fails,
             severity=severity,
-            blame=blame,
+            cause=cause,
             engines=engines,
             feedback=feedback or (FeedbackRow.EXPORTER if id.startswith(_NOT_OURS) else None),
             doubts=doubts,
             opinion=opinion,
             follows=follows or {},
-            prepared=prepared,
             needs=needs,
             function=function,
             **_documentation(id, function),
         )
-        return function
-
-    return register
-
-
-def engine_check(
-    number: str,
-    *,
-    title: str,
-    fails: str,
-    severity: Severity,
-    blame: Blame,
-    feedback: FeedbackRow | None = None,
-    follows: Mapping[str, CauseScope] | None = None,
-    prepared: bool = False,
-    needs: tuple[Need, ...] = (),
-) -> Callable[[CheckFunction], CheckFunction]:
-    """Register the decorated function once for each engine of `ENGINE_FAMILIES`: ``"05"`` is KV405 and KV505.
-
-    Causes in `follows` are ids, or such numbers for checks of the same engine.
-
-    In its docstring ``{engine}`` represents the engine's name, and a paragraph such as ``PyBullet: ...`` is added to
-    what that engine's check verifies.
-    """
-
-    def register(function: CheckFunction) -> CheckFunction:
-        for engine, family in ENGINE_FAMILIES.items():
-            check(
-                family + number,
-                title=title,
-                fails=fails,
-                severity=severity,
-                blame=blame,
-                engines=(engine,),
-                feedback=feedback,
-                follows={family + name if len(name) == 2 else name: shared for name, shared in (follows or {}).items()},
-                prepared=prepared,
-                needs=needs,
-            )(function)
         return function
 
     return register
@@ -314,20 +258,12 @@ class _Documentation(TypedDict):
 
 
 def _documentation(id: str, function: CheckFunction) -> _Documentation:
-    """Split a docstring into what `Check` holds; of the paragraphs about single engines, the one of its own is kept."""
+    """Split a docstring into what `Check` holds."""
     paragraphs = [" ".join(part.split()) for part in inspect.cleandoc(function.__doc__ or "").split("\n\n")]
     verifies, named = paragraphs[0], dict(part.partition(": ")[::2] for part in paragraphs[1:])
-    family = id[:3]
-    of_engine = family in ENGINE_FAMILIES.values()
-    engines = {FAMILIES[other] for other in ENGINE_FAMILIES.values()} if of_engine else set[str]()
     assert verifies, f"{id}: its docstring must say what it verifies"
-    assert {"Why it matters", "Remedy"} <= set(named) <= {"Why it matters", "Remedy", *engines}, (
+    assert set(named) == {"Why it matters", "Remedy"}, (
         f"{id}: after what it verifies, its docstring must have the paragraphs `Why it matters: ...` and "
         f"`Remedy: ...`, not {', '.join(named) or 'nothing'}"
     )
-    if of_engine and FAMILIES[family] in named:
-        verifies = f"{verifies} {named[FAMILIES[family]]}"
-    texts = (verifies, named["Why it matters"], named["Remedy"])
-    own = FAMILIES[family] if of_engine else "{engine}"
-    verifies, matters, remedy = (text.replace("{engine}", own) for text in texts)
-    return {"verifies": verifies, "matters": matters, "remedy": remedy}
+    return {"verifies": verifies, "matters": named["Why it matters"], "remedy": named["Remedy"]}

@@ -1,4 +1,4 @@
-"""What all checks of the text are given: the document, and how they name its values and who answers for them."""
+"""Context of all checks of the text: the document, and how they name its values and who answers for them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kinematify.robot.urdf_numbers import UrdfDocument
-from kinematify.validation.finding import Blame
+from kinematify.validation.finding import Cause
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -39,14 +39,14 @@ class Urdf(UrdfDocument):
         )
 
 
-def blame_of(element: _Element) -> Blame:
+def cause_of(element: _Element) -> Cause:
     """Who answers for a number, by the nearest ancestor that tells."""
     for item in (element, *element.iterancestors()):
         if item.tag in ("inertial", "collision", "dynamics", "limit"):
-            return Blame.KINEMATICS if item.tag == "limit" else Blame.PHYSICS
+            return Cause.KINEMATICS if item.tag == "limit" else Cause.PHYSICS
         if item.tag in ("visual", "joint"):
-            return Blame.ASSET if item.tag == "visual" else Blame.KINEMATICS
-    return Blame.ASSET
+            return Cause.ASSET if item.tag == "visual" else Cause.KINEMATICS
+    return Cause.ASSET
 
 
 def shown(text: str | None, most: int = 60) -> str:

@@ -6,12 +6,9 @@ import platform
 from typing import TYPE_CHECKING, Any
 
 from kinematify import __version__
-from kinematify.simulation.engines import ENGINES
 from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
-
     from kinematify.config.validation import ValidationSettings
 
 _PACKAGES = (
@@ -19,15 +16,13 @@ _PACKAGES = (
 )  # fmt: skip
 
 
-def environment(
-    settings: ValidationSettings, *, seconds: float, interrupted: bool, engines: Collection[str] = ()
-) -> dict[str, Any]:
+def environment(settings: ValidationSettings, *, seconds: float, interrupted: bool) -> dict[str, Any]:
     """Versions, machine, seed, settings and time of a run."""
     return {
         "kinematify": __version__,
         "python": platform.python_version(),
         "platform": platform.platform(),
-        "versions": package_versions([*_PACKAGES, *(ENGINES[name].package for name in engines if ENGINES[name].extra)]),
+        "versions": package_versions(_PACKAGES),
         "seed": settings.seed,
         "seconds": round(seconds, 3),
         "interrupted": interrupted,

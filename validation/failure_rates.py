@@ -1,4 +1,4 @@
-"""What a failure weighs: how often it occurs where a joint is wrong, against how often where it is right.
+"""Weight of a failure: how often it occurs where a joint is wrong, against how often where it is right.
 
 The counts in ``failure_rates.json`` are of wrong joints planted in true mechanisms; `kinematify bench failures` makes
 them. A weight is a lower confidence bound of the logarithm of the ratio of the two rates, the unit in which the choice
@@ -40,7 +40,7 @@ class FailureRates:
     provenance: Mapping[str, Any]
 
     def weight(self, check: str, severity: Severity, wrong: str) -> float:
-        """What a failure of a check says for a wrong joint and against a right one [log odds], 0 if nothing.
+        """Return what a failure of a check says for a wrong joint and against a right one [log odds], 0 if nothing.
 
         Args:
             check: Its id.

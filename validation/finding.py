@@ -1,4 +1,4 @@
-"""What a check says: findings with their evidence, and the status of the check itself (design section 4)."""
+"""Findings of a check with their evidence, and the status of the check itself (design section 4)."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 
 
 class Severity(StrEnum):
-    """How bad a finding is; an error makes the verdict ``fail``."""
+    """Severity of a finding; an error makes the verdict ``fail``."""
 
     ERROR = "error"
     WARNING = "warning"
     NOTE = "note"
 
 
-class Blame(StrEnum):
+class Cause(StrEnum):
     """Who can act on a finding."""
 
     KINEMATICS = "kinematics"
@@ -35,7 +35,7 @@ class Blame(StrEnum):
 
 
 class Status(StrEnum):
-    """What became of a check; skipped and blocked never count as passed."""
+    """Status of a check; skipped and blocked never count as passed."""
 
     PASS = "pass"
     FAIL = "fail"
@@ -61,7 +61,7 @@ class Finding:
     check: str
     """Id, e.g. ``KV301``."""
     severity: Severity
-    blame: Blame
+    cause: Cause
     message: str
     """One or two sentences: what was found and what was expected."""
     remedy: str
@@ -84,7 +84,7 @@ class Finding:
     """Plain Python that shows it in the engine, without Kinematify."""
     suppressed: str | None = None
     """Reason given by the user for not counting it; it is still reported."""
-    cause: Finding | None = field(default=None, compare=False, repr=False)
+    follows_from: Finding | None = field(default=None, compare=False, repr=False)
     """Finding that it follows from and is reported under; it has no cause itself."""
 
     def __post_init__(self) -> None:

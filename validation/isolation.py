@@ -15,7 +15,7 @@ import sys
 import time
 import traceback
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -57,8 +57,6 @@ class Stage:
     """What runs in the process; what it measures with is imported there."""
     checks: tuple[tuple[str, str | None], ...]
     """Every (id, engine) that it tells if nothing goes wrong."""
-    after: tuple[str, ...] = ()
-    """Names of the stages that must have ended without a crash before."""
     imports: tuple[str, ...] = ()
     """Modules that it needs, loaded once for all stages."""
     library: str | None = None
@@ -67,16 +65,16 @@ class Stage:
 
 @dataclass(frozen=True, kw_only=True)
 class StageEnd:
-    """How a stage ended."""
+    """End of a stage."""
 
     stage: Stage
     results: tuple[CheckResult | Summary, ...]
     failure: str | None
     """Why it did not end by itself, as words that follow "because"; None if it did."""
     late: bool = False
-    """It, or one that it comes after, was stopped because time ran out: no fact about the model."""
+    """It was stopped because time ran out: no fact about the model."""
     seconds: float = 0.0
-    """Processor time of a stage that ended by itself, with the longest of those that it comes after."""
+    """Processor time of a stage that ended by itself."""
 
 
 class _StageProcesses:
@@ -126,30 +124,21 @@ def load_imports(stages: Sequence[Stage] = (), ahead: Sequence[Stage] = ()) -> N
 def run_stages(
     stages: list[Stage], request: StageRequest, *, workers: int, ahead: Sequence[Stage] = ()
 ) -> Iterator[StageEnd]:
-    """Run stages, each as soon as those before it have ended; yield each end. Closing the iterator stops all.
+    """Run stages; yield each end. Closing the iterator stops all.
 
     Args:
-        stages: In an order in which each stands behind those that it comes after.
-        request: What each of them is given; what those before it took is taken off the time of a stage.
+        stages: The longest first.
+        request: What each of them is given.
         workers: Processes at a time.
         ahead: Stages of later calls: what they need is loaded while these run.
     """
     load_imports(stages, ahead)
-    waiting, ended = list(stages), dict[str, StageEnd]()
-    before: dict[str, float] = {}  # processor time of those that a stage comes after [s]
     results: dict[str, list[CheckResult | Summary]] = {stage.name: [] for stage in stages}
 
-    def tasks() -> Iterator[WorkItem[float] | None]:
-        while waiting:
-            stage = next((stage for stage in waiting if all(name in ended for name in stage.after)), None)
-            if stage is None:
-                yield None
-                continue
-            waiting.remove(stage)
-            before[stage.name] = max((ended[name].seconds for name in stage.after), default=0.0)
-            given = replace(request, deadline=max(0.0, request.deadline - before[stage.name]))
-            timeout = _PATIENCE * given.deadline + _GRACE
-            yield WorkItem(key=stage.name, call=partial(_work, stage, given), timeout=timeout)
+    def tasks() -> Iterator[WorkItem[float]]:
+        for stage in stages:
+            timeout = _PATIENCE * request.deadline + _GRACE
+            yield WorkItem(key=stage.name, call=partial(_work, stage, request), timeout=timeout)
 
     by_name = {stage.name: stage for stage in stages}
     executor = _StageProcesses(workers, ahead)
@@ -159,19 +148,9 @@ def run_stages(
             if isinstance(answer, TaskFailure):
                 failure, late = _cause(answer, _log(by_name[name], request))
             else:
-                seconds = before[name] + answer
-            stage, said = by_name[name], tuple(results[name])
-            ended[name] = StageEnd(stage=stage, results=said, failure=failure, late=late, seconds=seconds)
-            yield ended[name]
-            for stage in list(waiting):
-                if not all(name in ended for name in stage.after):
-                    continue
-                broken = next((ended[name] for name in stage.after if ended[name].failure), None)
-                if broken is not None:
-                    waiting.remove(stage)
-                    why = f"did not run, because the stage {broken.stage.name} {broken.failure}"
-                    ended[stage.name] = StageEnd(stage=stage, results=(), failure=why, late=broken.late)
-                    yield ended[stage.name]
+                seconds = answer
+            said = tuple(results[name])
+            yield StageEnd(stage=by_name[name], results=said, failure=failure, late=late, seconds=seconds)
 
 
 def _work(stage: Stage, request: StageRequest) -> float:

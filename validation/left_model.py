@@ -25,15 +25,19 @@ def leave_model(model: Robot, work: Path) -> None:
     partly.replace(work / _LEFT)  # a stage that is stopped leaves no half of it
 
 
+def has_model(work: Path) -> bool:
+    """True if a stage of the run with this folder left the model."""
+    return (work / _LEFT).is_file()
+
+
 def model_of(request: StageRequest) -> Robot:
     """Read the model of a run: what an earlier stage left, or else the files.
 
     Raises:
         DescriptionError: As for `read_robot`.
     """
-    left = request.work / _LEFT
-    if not left.is_file():
+    if not has_model(request.work):
         return read_robot(request.urdf, package_dirs=request.package_dirs)
-    with left.open("rb") as file:
+    with (request.work / _LEFT).open("rb") as file:
         model: Robot = pickle.load(file)
     return model

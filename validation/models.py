@@ -71,7 +71,7 @@ def _matching(pattern: str) -> list[Path]:
 
 
 def _described(files: Iterable[Path]) -> str:
-    """What lies in a folder instead."""
+    """Return what lies in a folder instead."""
     kinds = Counter(file.suffix.lower() or "no suffix" for file in files)
     if not kinds:
         return "It is empty. Give the folder that holds the models."

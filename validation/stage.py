@@ -1,4 +1,4 @@
-"""How a group of checks runs: in a process of its own, telling each result as soon as it is known.
+"""Stage of a run: a group of checks in a process of its own, telling each result as soon as it is known.
 
 A stage is a function `stage(request, recorder)`. What it has recorded before it crashes or is stopped is kept;
 the checks that it has not recorded become ``blocked``, or ``skipped`` as not finished where time ran out.
@@ -26,29 +26,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class StageRequest:
-    """What every stage is given; it crosses a process border, so it holds plain data only."""
+    """Input of every stage; it crosses a process border, so it holds plain data only."""
 
     urdf: Path
     """The file as the user gave it."""
     package_dirs: tuple[Path, ...]
     work: Path
-    """Folder of this run: stages leave there what later ones need (`prepared.urdf`, `poses-ENGINE.npz`)."""
+    """Folder of this run: stages leave there what later ones need."""
     settings: ValidationSettings
     selected: frozenset[str]
     """Ids of the checks that the user wants."""
     deadline: float
     """`time.process_time()` of the stage's process at which it should be over, which no other program's load changes; a
     stage that is late says what it omitted."""
-    engines: tuple[str, ...] = ()
-    """Engines that were asked for, for the stage that compares them."""
-    failures: Mapping[str, str] = field(default_factory=dict)
-    """Why stages before it did not end by themselves, keyed by stage."""
-    late: frozenset[str] = frozenset()
-    """Those of them that time ran out for."""
     task: TaskRequest | None = None
     """What a robot is to do with the object."""
     task_engines: tuple[str, ...] = ()
     """Engines in which its plans are executed."""
+    resolved: Path | None = None
+    """A copy of the file with every mesh by its absolute path, for engines that find the meshes nowhere else."""
     free_travel: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Range around rest in which nothing collides by exact geometry, of joints where it was measured [rad or m]."""
     suspects: Mapping[str, PriorFinding] = field(default_factory=dict)

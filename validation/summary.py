@@ -1,4 +1,4 @@
-"""What a stage tells besides its checks: what is known of joints and of pairs of bodies."""
+"""Facts that a stage tells besides its checks: what is known of joints and of pairs of bodies."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class JointSummary:
-    """What is known of one joint at the end."""
+    """Facts of one joint at the end."""
 
     joint: str
     kind: str
@@ -24,26 +24,8 @@ class JointSummary:
 
 
 @dataclass(frozen=True, kw_only=True)
-class JointCurve:
-    """How one engine drove a joint from rest to one end, at some looks on the way."""
-
-    joint: str
-    engine: str
-    upper: bool
-    """True towards the upper end."""
-    commanded: tuple[float, ...]
-    """[rad or m]."""
-    reached: tuple[float, ...]
-    """[rad or m]."""
-    force: tuple[float, ...]
-    """Of the servo [N m or N]."""
-    depth: tuple[float, ...]
-    """How much deeper than allowed any two links are in each other [m]."""
-
-
-@dataclass(frozen=True, kw_only=True)
 class PairSummary:
-    """What the exact geometry knows of two bodies that touch, or that something is to be said of."""
+    """Facts of two bodies that touch, or that something is to be said of."""
 
     pair: tuple[str, str]
     """In the order of the document."""
@@ -67,5 +49,5 @@ class PairTable:
     """Those that touch at rest or meet on the way; all others stay clear in what was looked at."""
 
 
-Summary = JointSummary | JointCurve | PairTable
+Summary = JointSummary | PairTable
 """What a stage may tell besides its checks."""

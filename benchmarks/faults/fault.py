@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from kinematify.evaluation.datasets import BenchObject
     from kinematify.robot.robot import Joint, Link, Robot
-    from kinematify.validation.finding import Blame
+    from kinematify.validation.finding import Cause
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +50,7 @@ class Fault:
     name: str
     kinematic: bool
     """A motion is wrong; otherwise the file is."""
-    blames: frozenset[Blame]
+    causes: frozenset[Cause]
     """A finding must put one of these."""
     plant_joint: JointPlanter | None = None
     plant_link: LinkPlanter | None = None

@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks.faults.fault import Fault, PlantedFault, link_part, words
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import rigid_groups
-from kinematify.validation.finding import Blame
+from kinematify.validation.finding import Cause
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -177,18 +177,18 @@ def _mass_outside(robot: _Element, link: Link, model: Robot, random: Random) -> 
     return _at_link(link, model, f"centre of mass moved by {np.linalg.norm(shift):.3g} m")
 
 
-_KINEMATICS, _PHYSICS, _ASSET = (frozenset({blame}) for blame in (Blame.KINEMATICS, Blame.PHYSICS, Blame.ASSET))
+_KINEMATICS, _PHYSICS, _ASSET = (frozenset({cause}) for cause in (Cause.KINEMATICS, Cause.PHYSICS, Cause.ASSET))
 
 FILE_DEFECTS = (
-    Fault(name="units of one link", kinematic=False, blames=_ASSET, plant_link=_units_of_link),
-    Fault(name="units of all links", kinematic=False, blames=_ASSET, plant_link=_units_of_all),
-    Fault(name="zero axis", kinematic=False, blames=_KINEMATICS, plant_joint=_zero_axis),
-    Fault(name="swapped limits", kinematic=False, blames=_KINEMATICS, plant_joint=_swapped_limits),
-    Fault(name="degrees for radians", kinematic=False, blames=_KINEMATICS, plant_joint=_degrees),
-    Fault(name="bad inertia", kinematic=False, blames=_PHYSICS, plant_link=_inertia),
-    Fault(name="bad mass", kinematic=False, blames=_PHYSICS, plant_link=_mass),
-    Fault(name="missing mesh file", kinematic=False, blames=_ASSET, plant_link=_missing_mesh),
-    Fault(name="missing collision geometry", kinematic=False, blames=_PHYSICS, plant_link=_missing_collision),
-    Fault(name="offset collision geometry", kinematic=False, blames=_PHYSICS, plant_link=_offset_collision),
-    Fault(name="centre of mass outside", kinematic=False, blames=_PHYSICS, plant_link=_mass_outside),
+    Fault(name="units of one link", kinematic=False, causes=_ASSET, plant_link=_units_of_link),
+    Fault(name="units of all links", kinematic=False, causes=_ASSET, plant_link=_units_of_all),
+    Fault(name="zero axis", kinematic=False, causes=_KINEMATICS, plant_joint=_zero_axis),
+    Fault(name="swapped limits", kinematic=False, causes=_KINEMATICS, plant_joint=_swapped_limits),
+    Fault(name="degrees for radians", kinematic=False, causes=_KINEMATICS, plant_joint=_degrees),
+    Fault(name="bad inertia", kinematic=False, causes=_PHYSICS, plant_link=_inertia),
+    Fault(name="bad mass", kinematic=False, causes=_PHYSICS, plant_link=_mass),
+    Fault(name="missing mesh file", kinematic=False, causes=_ASSET, plant_link=_missing_mesh),
+    Fault(name="missing collision geometry", kinematic=False, causes=_PHYSICS, plant_link=_missing_collision),
+    Fault(name="offset collision geometry", kinematic=False, causes=_PHYSICS, plant_link=_offset_collision),
+    Fault(name="centre of mass outside", kinematic=False, causes=_PHYSICS, plant_link=_mass_outside),
 )

@@ -16,7 +16,7 @@ from benchmarks.faults.fault import Fault, PlantedFault, link_part, words
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
 from kinematify.robot.transforms import rotation_about, rpy_of
-from kinematify.validation.finding import Blame
+from kinematify.validation.finding import Cause
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
@@ -201,14 +201,14 @@ def _change_parent(robot: _Element, joint: Joint, model: Robot, random: np.rando
     return _planted(joint, f"parent {joint.parent} replaced by {parent}")
 
 
-_ONLY = frozenset({Blame.KINEMATICS})
+_ONLY = frozenset({Cause.KINEMATICS})
 
 KINEMATIC_FAULTS = (
-    Fault(name="axis turned by 20 deg", kinematic=True, blames=_ONLY, plant_joint=_turn_axis_20),
-    Fault(name="axis turned by 90 deg", kinematic=True, blames=_ONLY, plant_joint=_turn_axis_90),
-    Fault(name="pivot moved by 20 % of the part", kinematic=True, blames=_ONLY, plant_joint=_move_pivot),
-    Fault(name="type swapped", kinematic=True, blames=_ONLY, plant_joint=_swap_type),
-    Fault(name="range doubled", kinematic=True, blames=_ONLY, plant_joint=_double_range),
-    Fault(name="direction flipped", kinematic=True, blames=_ONLY, plant_joint=_flip),
-    Fault(name="wrong parent", kinematic=True, blames=_ONLY, plant_joint=_change_parent),
+    Fault(name="axis turned by 20 deg", kinematic=True, causes=_ONLY, plant_joint=_turn_axis_20),
+    Fault(name="axis turned by 90 deg", kinematic=True, causes=_ONLY, plant_joint=_turn_axis_90),
+    Fault(name="pivot moved by 20 % of the part", kinematic=True, causes=_ONLY, plant_joint=_move_pivot),
+    Fault(name="type swapped", kinematic=True, causes=_ONLY, plant_joint=_swap_type),
+    Fault(name="range doubled", kinematic=True, causes=_ONLY, plant_joint=_double_range),
+    Fault(name="direction flipped", kinematic=True, causes=_ONLY, plant_joint=_flip),
+    Fault(name="wrong parent", kinematic=True, causes=_ONLY, plant_joint=_change_parent),
 )

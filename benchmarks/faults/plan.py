@@ -101,18 +101,18 @@ def _plant(
 
 
 Fact = dict[str, Any]
-"""What is kept of a finding: check, severity, blame, joint, link, pair."""
+"""What is kept of a finding: check, severity, cause, joint, link, pair."""
 
 
 class Verdict(StrEnum):
     """What became of a planted fault."""
 
     FOUND = "found"
-    """A new warning or error names the joint or link and puts the right blame."""
+    """A new warning or error names the joint or link and the right cause."""
     NOTED = "only as a note"
     """A new note does: the shapes suggest otherwise, and no fact agrees."""
     ELSEWHERE = "elsewhere"
-    """There are new warnings or errors, but they name something else or blame something else."""
+    """There are new warnings or errors, but they name something else or another cause."""
     MISSED = "missed"
     """Nothing new was found."""
 
@@ -139,7 +139,7 @@ def _fact(finding: Finding) -> Fact:
     return {
         "check": finding.check,
         "severity": finding.severity.value,
-        "blame": finding.blame.value,
+        "cause": finding.cause.value,
         "joint": finding.joint,
         "link": finding.link,
         "pair": list(finding.pair) if finding.pair else None,
@@ -150,7 +150,7 @@ def judge(fault: Fault, planted: PlantedFault, found: Sequence[Fact], untouched:
     """Compare the findings of a mutant with those of the model that it was made from."""
     known = {_key(fact) for fact in untouched}
     new = [fact for fact in found if _key(fact) not in known]
-    right = [fact for fact in new if _names(fact, planted) and fact["blame"] in fault.blames]
+    right = [fact for fact in new if _names(fact, planted) and fact["cause"] in fault.causes]
     other = tuple(fact for fact in new if fact not in right)
     if any(_counts(fact) for fact in right):
         verdict = Verdict.FOUND

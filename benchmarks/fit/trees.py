@@ -16,10 +16,11 @@ from benchmarks.fit.network import PARAMETERS as NETWORK_PARAMETERS
 from benchmarks.fit.network import fit_network
 from benchmarks.fit.point_network import PARAMETERS as POINT_PARAMETERS
 from benchmarks.fit.point_network import fit_points
-from kinematify.errors import EnvironmentFault, InputError
+from kinematify.errors import InputError
 from kinematify.joints.choice.opening import rigid_columns, side_columns, turning_columns
 from kinematify.joints.choice.scorer import FORMAT, NETWORK, POINTS, SUMMARIES, Scorer, base_columns, stacked
 from kinematify.joints.features.columns import CUES, VERDICTS
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -309,12 +310,9 @@ def trees_alone(names: tuple[str, ...], boosters: Sequence[Any], provenance: Map
 
 
 def _lightgbm() -> Any:
-    try:
-        import lightgbm  # noqa: PLC0415 - an extra that only the fit needs
-    except ImportError as error:
-        raise EnvironmentFault(
-            "The fit needs LightGBM, which is not installed. Install it with: pip install 'kinematify[fit]'"
-        ) from error
+    require("The fit", "lightgbm")
+    import lightgbm  # noqa: PLC0415 - an extra that only the fit needs
+
     return lightgbm
 
 

@@ -12,5 +12,5 @@ therefore holds the versions and a hash of what this processor computes. On anot
 unless `--portable` asks for what is the same everywhere: parses, names, kinds of joints, help, exit statuses, schemas.
 
 What is tolerated: numbers and messages of findings that rest on PyBullet or Drake, whose solvers keep what an earlier
-step or process left behind; check, severity, blame and place of these findings are exact.
+step or process left behind; check, severity, cause and place of these findings are exact.
 """

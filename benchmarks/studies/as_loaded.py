@@ -127,7 +127,7 @@ def measure(options: AsLoadedOptions, work: Work) -> Measured:
         for number, said in enumerate(load_sentences("composed"), start=1):
             cases[f"sentence {number} {seed}"] = case(made="exact", sentence=said["text"], seed=seed)
     return list(work.each(tried_as_loaded, cases, timeout=1800.0, reuse=20).values()), {
-        "versions": package_versions(ENGINES[engine].package for engine in options.engines)
+        "versions": package_versions(ENGINES[engine].packages[0] for engine in options.engines)
     }
 
 
@@ -276,7 +276,7 @@ def _row(found: Report[Record], name: str, engine: str, records: Sequence[Record
     return (
         name,
         ENGINES[engine].title,
-        found.summary["versions"][ENGINES[engine].package],
+        found.summary["versions"][ENGINES[engine].packages[0]],
         found.header.date,
         f"{sum(not one['findings'] and not one['unfinished'] for one in tried)} of {len(tried)}",
         f"{sum(one['right'] for one in tried):.0f} of {sum(one['joints'] for one in tried):.0f}",

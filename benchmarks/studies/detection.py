@@ -1,7 +1,7 @@
 """Which faults that are planted in good models does `kinematify validate` find?
 
 *Found*: a warning or an error that the untouched model does not have names the joint (or its link) and puts the right
-blame. *Only as a note*: nothing measured does, but the note that the shapes suggest otherwise. *Elsewhere*: there are
+cause. *Only as a note*: nothing measured does, but the note that the shapes suggest otherwise. *Elsewhere*: there are
 new warnings or errors, but none of them does.
 """
 
@@ -187,7 +187,7 @@ def _misses(records: Sequence[Record]) -> list[str]:
 
 def _short(fact: Fact) -> str:
     place = str(fact["joint"] or fact["link"] or (fact["pair"] and " and ".join(fact["pair"])) or "the model")
-    return f"{fact['check']} ({fact['blame']}, {place})"
+    return f"{fact['check']} ({fact['cause']}, {place})"
 
 
 STUDY = Study(

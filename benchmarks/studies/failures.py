@@ -3,9 +3,9 @@
 Wrong joints are planted in true mechanisms as `kinematify bench refine` does, and nothing is refined. *Line*: an axis
 turned by 90 deg, a moved pivot, or the second-best hypothesis where it is of the right type; *type*, *parent*: the
 other type, another parent; *range*: the other sign, or a range that reaches twice as far. A joint failed a check that
-found an error about it, or a warning and no error; the two are counted apart, and what only collision geometry is to
-blame for is not counted. What a failure weighs in `kinematify refine` is a lower bound (95 %) of the logarithm of the
-ratio of a rate to that on right joints; `--write FILE` writes the counts as `validation/failure_rates.json` has them.
+found an error about it, or a warning and no error; the two are counted apart, and what collision geometry alone causes
+is not counted. What a failure weighs in `kinematify refine` is a lower bound (95 %) of the logarithm of the ratio of
+a rate to that on right joints; `--write FILE` writes the counts as `validation/failure_rates.json` has them.
 """
 
 from __future__ import annotations
@@ -156,7 +156,7 @@ def _failed(inference: Inference, tier: str) -> dict[str, dict[str, Severity]]:
     carrier = {joint.child: joint.name for joint in plan.model.joints}
     failed: dict[str, dict[str, Severity]] = {name: {} for name in carrier.values()}
     for finding in verdict.findings:
-        joint = _blamed(finding, carrier)
+        joint = _suspected(finding, carrier)
         if joint not in failed or tier_of(finding.check) != tier or only_collision_meets(finding):
             continue
         if finding.severity is not Severity.NOTE and failed[joint].get(finding.check) is not Severity.ERROR:
@@ -164,7 +164,7 @@ def _failed(inference: Inference, tier: str) -> dict[str, dict[str, Severity]]:
     return {part: failed[name] for part, name in carrier.items()}
 
 
-def _blamed(finding: Finding, carrier: dict[str, str]) -> str | None:
+def _suspected(finding: Finding, carrier: dict[str, str]) -> str | None:
     """The joint that a finding is about: of KV311 that of the part which is brought into another body."""
     parts = [carrier[part] for part in finding.pair or () if part in carrier]
     if finding.check == "KV311" and finding.joint not in parts and parts:

@@ -20,11 +20,11 @@ from pydantic import Field
 
 from benchmarks.study import Options, Study, explained
 from kinematify.envs.expert import HandExpert
-from kinematify.errors import EnvironmentFault
 from kinematify.evaluation.result_record import table
 from kinematify.generate.request import from_category
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -89,13 +89,10 @@ def stable_baselines() -> tuple[Any, Any]:
     Raises:
         EnvironmentFault: Stable-Baselines3 is not installed.
     """
-    try:
-        from stable_baselines3 import PPO  # noqa: PLC0415  an optional package
-        from stable_baselines3.common.env_util import make_vec_env  # noqa: PLC0415
-    except ImportError as error:
-        raise EnvironmentFault(
-            "Training needs Stable-Baselines3, which is not installed. Run `pip install 'kinematify[rl,bench]'`."
-        ) from error
+    require("Training", "stable-baselines3", "matplotlib")
+    from stable_baselines3 import PPO  # noqa: PLC0415  an optional package
+    from stable_baselines3.common.env_util import make_vec_env  # noqa: PLC0415
+
     return PPO, make_vec_env
 
 

@@ -26,7 +26,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import partial
-from importlib.metadata import Distribution, PackageNotFoundError, distribution
+from importlib.metadata import Distribution, distribution
 from itertools import product
 from operator import itemgetter
 from pathlib import Path
@@ -41,7 +41,8 @@ from kinematify.config import StageConfig, load
 from kinematify.errors import EnvironmentFault, ExitStatus, InputError
 from kinematify.evaluation.datasets import bench_folder, example_robots
 from kinematify.evaluation.result_record import grouped, table
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -256,10 +257,8 @@ def _example_models() -> Iterator[PublishedModel]:
 
 
 def _bullet_models() -> Iterator[PublishedModel]:
-    try:
-        folder = Path(str(distribution("pybullet").locate_file("pybullet_data")))
-    except PackageNotFoundError as error:
-        raise EnvironmentFault("pybullet is not installed. Run `pip install kinematify`.") from error
+    require("Models of pybullet_data", "pybullet")
+    folder = Path(str(distribution("pybullet").locate_file("pybullet_data")))
     for name in BULLET_ROBOTS:
         yield PublishedModel(name=name, source="pybullet_data", urdf=folder / f"{name}.urdf")
 
@@ -354,7 +353,7 @@ def verdict_on(model: PublishedModel) -> Record:
             {item["check"] for item in answered.get("checks", ()) if "not finished" in str(item["reason"])}
         ),
         "findings": [
-            {key: item[key] for key in ("check", "severity", "blame", "joint", "link", "pair", "message")}
+            {key: item[key] for key in ("check", "severity", "cause", "joint", "link", "pair", "message")}
             for item in counted
         ],
     }
@@ -428,14 +427,14 @@ def _verdict(judged: ExpertVerdicts, record: Record, finding: Record) -> str:
 def _confusion(records: Sequence[Record], judged: ExpertVerdicts) -> Iterator[tuple[str, ...]]:
     for (thing, seen), group in grouped(records, by=partial(kind_of, judged)).items():
         counts = Counter(
-            (finding["severity"], finding["blame"] == Blame.KINEMATICS, _verdict(judged, record, finding))
+            (finding["severity"], finding["cause"] == Cause.KINEMATICS, _verdict(judged, record, finding))
             for record in group
             for finding in record["findings"]
         )
         for severity, kinematic in product((Severity.ERROR, Severity.WARNING), (True, False)):
-            blame = "kinematics" if kinematic else "others"
+            cause = "kinematics" if kinematic else "others"
             numbers = (str(counts[severity, kinematic, verdict]) for verdict in _VERDICTS)
-            yield thing, seen, str(len(group)), f"{severity.value}s, {blame}", *numbers
+            yield thing, seen, str(len(group)), f"{severity.value}s, {cause}", *numbers
 
 
 def kind_of(judged: ExpertVerdicts, record: Record) -> tuple[str, str]:

@@ -5,7 +5,7 @@ part, the other type, the other sign, another parent that the part touches, and 
 fitted choice puts next, written in place of a right one with the log odds of it. Contacts are as measured; the
 candidates are those of inference, the right one among them. The other wrong joints have the log odds that the fitted
 choice gives them beside the candidates, with --level those of the best candidate, so that only simulation tells them
-apart. *Found*: a failure blames the joint, in whichever round. *Repaired*: parent, type, axis within 10 deg, line
+apart. *Found*: a failure points to the joint, in whichever round. *Repaired*: parent, type, axis within 10 deg, line
 within a tenth of the part, and the opening side are right afterwards; of *parent*, the parent, on which the joint is
 inferred again. *Harm*: joints that were right and no longer are, or whose range overlaps the true one by .1 less. The
 rows *nothing* are the true mechanisms as they are.
@@ -176,8 +176,8 @@ def _refined(mechanism: TrueMechanism, planted: PlantedJoint, asked: Planting) -
     before, after = mechanism.scores(planted.inference), mechanism.scores(answer)
     wrong, left = mechanism.wrong(planted.inference), mechanism.wrong(answer)
     shorter = {part for part in before if after[part].limit_iou < before[part].limit_iou - _IOU_LOST}
-    phrases = [phrase for item in history.rounds for phrase in item.blamed]
-    blamed = {part for part in wrong if any(item.startswith(f"{part}: ") for item in phrases)}
+    phrases = [phrase for item in history.rounds for phrase in item.suspected]
+    suspected = {part for part in wrong if any(item.startswith(f"{part}: ") for item in phrases)}
     cured = {part for part in wrong if after[part].matched} if planted.fault == PARENT else wrong - left
     return {
         "object": asked.item.name,
@@ -186,7 +186,7 @@ def _refined(mechanism: TrueMechanism, planted: PlantedJoint, asked: Planting) -
         "part": planted.part,
         "failed": list(dict.fromkeys(failed for item in history.rounds for failed in item.failed)),
         "wrong": len(wrong),
-        "found": len(blamed),
+        "found": len(suspected),
         "repaired": len(cured),
         "joints": len(before),
         "harmed": sorted((left | shorter) - wrong),

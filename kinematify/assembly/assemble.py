@@ -173,7 +173,7 @@ def _looks(vertices: FloatArray, faces: IntArray, appearance: Appearance | None)
 
 
 def _told_looks(meshes: Sequence[RawMesh], names: Sequence[str]) -> list[str]:
-    """What of the materials is lost."""
+    """Return what of the materials is lost."""
     notes = dict.fromkeys(note for mesh in meshes if mesh.appearance for note in mesh.appearance.notes)
     warnings = [f"Not all colours are those of the input: {'; '.join([*notes][:8])}."] if notes else []
     many = [

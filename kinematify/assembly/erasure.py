@@ -47,7 +47,7 @@ A continuous joint counts as one with the range -180 to 180 deg."""
 
 @dataclass(frozen=True, kw_only=True)
 class ErasedModel:
-    """What a method may see, and what it must not."""
+    """Assembly that a method may see, and the truth that it must not."""
 
     parts: tuple[Part, ...]
     """World frame of the erased pose; part i is node i of the truth."""

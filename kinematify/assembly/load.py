@@ -61,7 +61,7 @@ _UNITS = {"micron": 1e-6, "millimeter": 1e-3, "centimeter": 1e-2, "meter": 1.0, 
 
 @dataclass(frozen=True, kw_only=True)
 class _Given:
-    """What was found under the path."""
+    """Files found under the path."""
 
     meshes: tuple[RawMesh, ...]
     """One per part, in the frame and unit of the file but z up."""
@@ -74,7 +74,7 @@ class _Given:
 
 @dataclass(frozen=True, kw_only=True)
 class _Reading:
-    """How files are to be read."""
+    """Options of reading files."""
 
     up: str
     scale: float | None
@@ -203,7 +203,7 @@ def _folder(folder: Path, reading: _Reading) -> _Given:
 
 
 def _instead(entries: list[Path]) -> str:
-    """What the user may have meant."""
+    """Return what the user may have meant."""
     urdf = next((entry for entry in entries if entry.suffix.lower() == ".urdf"), None)
     return f", or give the description {urdf} itself" if urdf else ""
 

@@ -147,7 +147,7 @@ def _split(mesh: RawMesh, index: IntArray, names: Sequence[str]) -> tuple[RawMes
 
 
 def _inward(corners: FloatArray, normals: FloatArray, sheet: IntArray, one: IntArray, other: IntArray) -> BoolArray:
-    """Whether a closed surface folds inwards by more than `_FOLD` between two faces each, shape (n,).
+    """Test whether a closed surface folds inwards by more than `_FOLD` between two faces each, shape (n,).
 
     Args:
         corners: Of all faces, shape (F, 3, 3).

@@ -1,4 +1,4 @@
-"""What is converted: files and folders on disks and in stores, by pattern, each with a name of its own."""
+"""Inputs of a batch: files and folders on disks and in stores, by pattern, each with a name of its own."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from kinematify.assembly.load import PART_SUFFIXES
 from kinematify.errors import EnvironmentFault, InputError, KinematifyError
 from kinematify.robot.mesh_file import read_meshes
 from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES
+from kinematify.versions import install_command
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -101,7 +102,7 @@ def _objects(fs: Any, place: str) -> list[str]:
 
 
 def _are_objects(fs: Any, files: Sequence[str]) -> bool:
-    """Whether mesh files are objects, not parts of one: each has several nodes, or they stand in each other."""
+    """True if mesh files are objects, not parts of one: each has several nodes, or they stand in each other."""
     counts, boxes = [], []
     with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
         for k in np.unique(np.linspace(0, len(files) - 1, _OPENED).astype(int)).tolist():
@@ -134,8 +135,7 @@ def filesystem(place: str) -> tuple[Any, str]:
         fs, path = url_to_fs(place)
     except ImportError as error:
         raise EnvironmentFault(
-            f"{place} needs a package that is not installed: {error}. Run `pip install kinematify[cloud]` for "
-            "s3://, or install the package that the message names."
+            f"{place} needs a package that is not installed: {error}. For s3://, run: {install_command('s3fs')}"
         ) from error
     except ValueError as error:
         raise InputError(
@@ -198,7 +198,7 @@ def absolute(fs: Any, place: str) -> str:
 
 
 def is_local(fs: Any) -> bool:
-    """Whether a file system is that of this machine."""
+    """True if a file system is that of this machine."""
     return "file" in (fs.protocol if isinstance(fs.protocol, tuple) else (fs.protocol,))
 
 
@@ -214,7 +214,7 @@ def _files(fs: Any, path: str) -> dict[str, str]:
 
 
 def _is_near(name: str) -> bool:
-    """Whether a file is named by its place from the one that names it."""
+    """True if a file is named by its place from the one that names it."""
     return not (name.startswith(("/", "data:")) or "://" in name)
 
 

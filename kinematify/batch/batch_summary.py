@@ -1,4 +1,4 @@
-"""What a batch came to: counts, times and failures, and a page with all objects."""
+"""Summary of a batch: counts, times and failures, and a page with all objects."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def outcome_words(records: Sequence[ObjectRecord]) -> str:
 
 
 def step_rows(records: Sequence[ObjectRecord]) -> list[tuple[str, ...]]:
-    """How long each step took, over the objects that had it."""
+    """Return how long each step took, over the objects that had it."""
     seconds: dict[str, list[float]] = {}
     for record in records:
         for step, value in record.step_seconds.items():

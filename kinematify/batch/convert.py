@@ -52,7 +52,7 @@ _THUMBNAIL = (320, 320)
 
 @dataclass(frozen=True, kw_only=True)
 class Conversion:
-    """What is asked for, of every object alike; small and picklable."""
+    """Conversion asked for, of every object alike; small and picklable."""
 
     steps: tuple[str, ...]
     formats: tuple[str, ...]
@@ -134,7 +134,7 @@ def _do_steps(
             (made / REPORT_FILE).write_text(as_json_text([report]), encoding="utf-8")
             _draw(report, model, conversion.settings, made)
         known["verdict"] = report.verdict
-        errors = [item for item in report.counted if item.severity is Severity.ERROR and item.cause is None]
+        errors = [item for item in report.counted if item.severity is Severity.ERROR and item.follows_from is None]
         known["errors"] = tuple(dict.fromkeys(map(_place_words, errors)))[:_ERRORS]
     if "export" in steps:
         with clock.stage("export", 0.0):
@@ -161,7 +161,7 @@ def _place_words(finding: Finding) -> str:
 
 
 def _forget_peak() -> None:
-    """Let the kernel count the most memory again, where it can: a worker takes many objects."""
+    """Reset the peak memory of the process, where the kernel can: a worker takes many objects."""
     with suppress(OSError):
         Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
 

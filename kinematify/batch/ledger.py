@@ -39,7 +39,7 @@ class Ledger:
         self._file.close()
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
-        """What the lines hold; one that is no JSON object is passed over."""
+        """Return what the lines hold; one that is no JSON object is passed over."""
         self._file.seek(0)
         for line in self._file.read().splitlines():
             with suppress(ValueError):
@@ -65,7 +65,7 @@ class Ledger:
             raise self._unwritable(error) from error
 
     def rewrite(self, lines: Iterable[Mapping[str, Any]]) -> None:
-        """Let the file hold these lines alone; a reader sees it as it was or as it is then.
+        """Replace the file by these lines; a reader sees it as it was or as it is then.
 
         Raises:
             OutputError: It cannot be written; it is as it was then.

@@ -35,7 +35,7 @@ SCHEMA = 1
 
 @dataclass(frozen=True, kw_only=True)
 class ObjectRecord:
-    """What became of an object."""
+    """Result of one object."""
 
     object: str
     """Its name: that of its folder in the output."""
@@ -73,7 +73,7 @@ class ObjectRecord:
 
     @property
     def failed(self) -> bool:
-        """Whether a user has to look at it: no model, or one with an error."""
+        """True if a user has to look at it: no model, or one with an error."""
         return self.status != "ok" or self.verdict == "fail"
 
 

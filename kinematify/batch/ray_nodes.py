@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import EnvironmentFault
 from kinematify.processes.pool import Processes, TaskFailure
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
@@ -115,11 +116,8 @@ class _Keeper:
 
 
 def _ray() -> ModuleType:
-    try:
-        import ray  # noqa: PLC0415  # of an extra
-    except ImportError as error:
-        raise EnvironmentFault(
-            "--engine ray needs Ray, which is not installed. Run `pip install kinematify[ray]` here and on every node."
-        ) from error
+    require("--engine ray, here and on every node,", "ray")
+    import ray  # noqa: PLC0415  # of an extra
+
     module: ModuleType = ray
     return module

@@ -44,7 +44,7 @@ LIVES = 3
 
 @dataclass(frozen=True, kw_only=True)
 class BatchRequest:
-    """What to convert, and how."""
+    """Inputs and options of a batch."""
 
     patterns: tuple[str, ...]
     """As `find_sources` takes them."""
@@ -101,7 +101,7 @@ class BatchRequest:
 
 @dataclass(frozen=True, kw_only=True)
 class BatchResult:
-    """What has come of a run."""
+    """Result of a batch."""
 
     out: str
     """Absolute path or URL of the output."""
@@ -188,7 +188,7 @@ def _share(sources: Sequence[Source], share: tuple[int, int]) -> list[Source]:
 
 
 def _has_ended(source: Source, manifest: Manifest, conversion: Conversion, request: BatchRequest) -> bool:
-    """Whether an object has a record that stays."""
+    """True if an object has a record that stays."""
     record = manifest.records.get(source.place)
     if record is None or record.configuration != conversion.hash or record.status == "error":
         return False

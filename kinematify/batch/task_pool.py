@@ -25,7 +25,7 @@ WORK_FOLDER = Path(".kinematify-bench")
 
 @dataclass(frozen=True, kw_only=True)
 class Pool:
-    """How many processes there are, and where results are kept."""
+    """Number of processes, and the folder that keeps results."""
 
     folder: Path = WORK_FOLDER
     workers: int = field(default_factory=lambda: os.cpu_count() or 1)

@@ -29,7 +29,7 @@ COMMANDS = (
 
 @dataclass
 class _Session:
-    """What the error boundary needs to know of the arguments."""
+    """Arguments that the error boundary needs."""
 
     traceback: bool = False
     """True if the user wants the traceback under the message."""

@@ -241,7 +241,7 @@ def command(
 
 
 def _faults(given: str) -> tuple[tuple[str, ...], str]:
-    """What is asked for of `--degrade`, and the function that does it, as ``module:name``."""
+    """Return what is asked for of `--degrade`, and the function that does it, as ``module:name``."""
     if given == "none":
         return (), ""
     module = benchmark_module("degrade", "--degrade")

@@ -1,4 +1,4 @@
-"""What a validation finds, in the fields of a blueprint: what a language model can correct."""
+"""Findings of a validation in the fields of a blueprint: what a language model can correct."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ADVICE = {
 
 
 def in_blueprint_words(findings: Iterable[Finding]) -> list[str]:
-    """What a validation found that a blueprint can correct, one line for each cause.
+    """Return what a validation found that a blueprint can correct, one line for each cause.
 
     Args:
         findings: Errors and warnings of the model; warnings that no field of a blueprint can change are left away.

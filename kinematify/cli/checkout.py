@@ -21,7 +21,7 @@ _ADVICE = (
 
 
 def has_benchmarks() -> bool:
-    """Whether `benchmarks/` of this version lies beside the package.
+    """True if `benchmarks/` of this version lies beside the package.
 
     Raises:
         InputError: It is there, and of another version.

@@ -16,6 +16,7 @@ from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.options import examples
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
+from kinematify.versions import install_command
 
 if TYPE_CHECKING:
     from packaging.requirements import Requirement
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 MODULES = {
     "numpy": ("numpy", "arrays"),
     "scipy": ("scipy", "spatial search, optimisation"),
-    "torch": ("torch", "differentiable motions and distances"),
+    "torch": ("torch", "`--config paper`"),
     "networkx": ("networkx", "graphs"),
     "trimesh": ("trimesh", "reading meshes"),
     "libigl": ("igl", "exact distances, winding numbers"),
@@ -36,15 +37,12 @@ MODULES = {
     "lxml": ("lxml.etree", "URDF"),
     "pycollada": ("collada", "DAE meshes"),
     "pillow": ("PIL.Image", "pictures"),
-    "yourdfpy": ("yourdfpy", "a second reader of our URDF"),
     "usd-core": ("pxr.Usd", "export to USD"),
     "httpx": ("httpx", "generators behind a web service"),
     "mujoco": ("mujoco", "engine"),
     "pybullet": ("pybullet", "engine"),
     "pin": ("pinocchio", "engine"),
     "coal": ("coal", "engine"),
-    "drake": ("pydrake.multibody.plant", "engine"),
-    "newton": ("newton", "engine"),
     "ompl": ("ompl.base", "motion planning"),
     "gymnasium": ("gymnasium", "environments"),
     "click": ("click", "command line"),
@@ -77,7 +75,7 @@ class PackageState:
     state: str
     """``ok``, ``missing``, ``version`` (outside the tested range) or ``broken`` (does not import)."""
     optional: bool
-    """True if only an extra needs it."""
+    """True if only an extra needs it, or this Python has no wheel of it."""
     problem: str | None = None
     """Last line that the failing import printed."""
 
@@ -86,8 +84,8 @@ class PackageState:
         """The command that fixes it, None if nothing is wrong."""
         if self.state == "ok":
             return None
-        force = "--force-reinstall --no-deps " if self.state == "broken" else ""
-        return f"{sys.executable} -m pip install {force}'{self.package}{self.wanted}'"
+        force = ("--force-reinstall", "--no-deps") if self.state == "broken" else ()
+        return install_command(self.package, options=force)
 
 
 @click.command(
@@ -138,7 +136,7 @@ def _examine(requirement: Requirement) -> PackageState:
         wanted=",".join(sorted(map(str, requirement.specifier), reverse=True)),
         installed=installed,
         state=_judge(requirement, installed, problem),
-        optional=requirement.marker is not None,
+        optional=requirement.marker is not None and not requirement.marker.evaluate({"extra": ""}),
         problem=problem,
     )
 
@@ -180,20 +178,7 @@ def _system() -> dict[str, str]:
         "executable": sys.executable,
         "platform": platform.platform(),
         "cores": str(os.cpu_count()),
-        "cuda": _cuda(),
     }
-
-
-def _cuda() -> str:
-    """The GPU that torch sees, or that it sees none."""
-    seen = "torch.cuda.get_device_name() if torch.cuda.is_available() else ''"
-    words = [sys.executable, "-c", f"import torch; print(torch.__version__, {seen}, sep='|')"]
-    try:
-        done = subprocess.run(words, capture_output=True, text=True, timeout=IMPORT_SECONDS, check=True)
-    except subprocess.SubprocessError:
-        return "unknown, torch cannot be imported"
-    version, _, device = done.stdout.strip().partition("|")
-    return f"{device}, seen by torch {version}" if device else f"torch {version} sees no GPU; nothing needs one"
 
 
 def _as_answer(findings: tuple[PackageState, ...]) -> dict[str, Any]:

@@ -83,7 +83,7 @@ def as_markdown(checks: Sequence[Check]) -> str:
 
 def _index(checks: Sequence[Check]) -> list[str]:
     rows = [
-        f"| [{check.id}](#{check.id.lower()}) | {_cell(check.title)} | {check.severity.value} | {check.blame.value} "
+        f"| [{check.id}](#{check.id.lower()}) | {_cell(check.title)} | {check.severity.value} | {check.cause.value} "
         f"| {_engines(check)} |"
         for check in checks
     ]
@@ -125,7 +125,7 @@ def _cell(text: str) -> str:
 
 
 def _as_table(checks: Sequence[Check]) -> str:
-    rows = [(check.id, check.severity.value, check.blame.value, _engines(check), check.title) for check in checks]
+    rows = [(check.id, check.severity.value, check.cause.value, _engines(check), check.title) for check in checks]
     return format_table(("id", "severity", "cause", "engines", "check"), sorted(rows))
 
 
@@ -133,7 +133,7 @@ def _describe(check: Check) -> str:
     from kinematify.validation.check import FAMILIES
 
     family = f"{check.id[:3]}xx, {FAMILIES[check.id[:3]]}"
-    facts = f"severity {check.severity.value}, cause {check.blame.value}, engines {_engines(check)}"
+    facts = f"severity {check.severity.value}, cause {check.cause.value}, engines {_engines(check)}"
     texts = (
         ("Family", f"{family}; {facts}"),
         ("Verifies", check.verifies),
@@ -159,7 +159,7 @@ def _as_answer(check: Check) -> dict[str, Any]:
         "title": check.title,
         "fails": check.fails,
         "severity": check.severity.value,
-        "blame": check.blame.value,
+        "cause": check.cause.value,
         "engines": list(check.engines),
         "verifies": check.verifies,
         "matters": check.matters,

@@ -37,7 +37,7 @@ _INFERRED, _WRITTEN = 0.4, 0.6  # shares of the time at which these are done, fo
 
 @dataclass
 class Generation:
-    """What was asked for, and what has come of it so far."""
+    """State of one generation: the request and what was built."""
 
     request: Requested | None
     """None where a language model is asked."""
@@ -74,7 +74,7 @@ class Generation:
             from kinematify.validation.run.plan import as_loaded_stages, asset_stage, later_stages
 
             # Its imports take a second, on another core than the inference.
-            start_server([asset_stage(), *later_stages(DEFAULT_ENGINES), *as_loaded_stages(DEFAULT_ENGINES)])
+            start_server([asset_stage(), *later_stages(), *as_loaded_stages(DEFAULT_ENGINES)])
         config = with_collision(self.config, self.collision)
         if self.inferred:
             from kinematify.pipeline.infer_assembly import infer
@@ -105,7 +105,7 @@ class Generation:
 
     @property
     def blueprint(self) -> Blueprint:
-        """What was built."""
+        """Return the blueprint that was built."""
         return self.made.blueprint
 
     def _write(self, folder: Path, config: Config, progress: Reporter) -> None:
@@ -182,7 +182,7 @@ def status_of(report: ValidationReport | None) -> int:
 
 
 def verdict_on(report: ValidationReport | None, out: Path) -> str:
-    """What a user reads of a validation, or how to get one."""
+    """Return what a user reads of a validation, or how to get one."""
     if report is None:
         return f"Not validated; kinematify validate {out / MODEL_FILE} does that."
     from kinematify.cli.verdict import describe_briefly

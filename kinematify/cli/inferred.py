@@ -1,4 +1,4 @@
-"""What was inferred, as people read it."""
+"""Summary of an inference for people."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def estimates(inference: Inference) -> dict[str, JointEstimate]:
 
 
 def describe(inference: Inference, out: Path) -> str:
-    """What was found, as people read it: the joints, what to look at first, and the files."""
+    """Return what was found, as people read it: the joints, what to look at first, and the files."""
     bounds = inference.assembly.bounds
     size = " x ".join(length_text(float(side)) for side in bounds[1] - bounds[0])
     lines = [
@@ -74,7 +74,7 @@ def load_as_loaded() -> None:
     from kinematify.validation.isolation import load_imports
     from kinematify.validation.run.plan import as_loaded_stages, asset_stage, later_stages, needed
 
-    later = needed(later_stages(DEFAULT_ENGINES), _as_loaded_checks())
+    later = needed(later_stages(), _as_loaded_checks())
     load_imports([asset_stage(), *later, *as_loaded_stages(DEFAULT_ENGINES)])
 
 
@@ -96,7 +96,7 @@ def _range(joint: Joint) -> str:
 
 
 def _describe_doubts(inference: Inference) -> list[str]:
-    """What the user should look at, one line each, and an empty line if there is any."""
+    """Return what the user should look at, one line each, and an empty line if there is any."""
     joint_of = {joint.child: joint.name for joint in inference.model.joints}
     doubtful = [joint_of[part] for part in inference.doubtful]
     lines = [f"Set aside: {item.part.name} ({item.reason})" for item in inference.assembly.set_aside]

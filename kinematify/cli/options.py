@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,13 +15,31 @@ if TYPE_CHECKING:
 
     from kinematify.config import Config
 
+
+def _package_dirs(context: click.Context, _parameter: click.Parameter, given: tuple[Path, ...]) -> tuple[Path, ...]:
+    """Folders as given; ``NAME=DIR`` becomes a folder that has the package under its name, as engines look for it."""
+    folders = []
+    for folder in given:
+        name, equals, place = str(folder).partition("=")
+        if equals and not folder.is_dir():
+            if not Path(place).is_dir() or name != Path(name).name:
+                raise click.BadParameter(f"{folder} names no folder. Give DIR, or NAME=DIR with the package's name.")
+            holder = Path(context.with_resource(tempfile.TemporaryDirectory(prefix="kinematify-packages-")))
+            (holder / name).symlink_to(Path(place).resolve())
+            folders.append(holder)
+        else:
+            folders.append(folder)
+    return tuple(folders)
+
+
 package_dirs_option = click.option(
     "--package-dir",
     "package_dirs",
     multiple=True,
     type=click.Path(path_type=Path),
-    metavar="DIR",
-    help="Package, or folder of packages, for package:// paths; may be given more than once.",
+    callback=_package_dirs,
+    metavar="[NAME=]DIR",
+    help="Package, or folder of packages, for package:// paths, or the package NAME; may be given more than once.",
 )
 
 force_file_option = click.option("--force", is_flag=True, help="Replace the file of -o if it exists.")

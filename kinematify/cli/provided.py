@@ -126,7 +126,7 @@ def job_folder(out: Path) -> Path:
 
 @dataclass
 class ProvidedGeneration:
-    """What was asked for, and what has come of it so far."""
+    """State of one generation by a provider: the request and what was built."""
 
     options: ProvidedOptions
     out: Path
@@ -174,7 +174,7 @@ class ProvidedGeneration:
 
     @property
     def job_folder(self) -> Path:
-        """See `job_folder`."""
+        """Implement `job_folder`."""
         return job_folder(self.out)
 
     def _make_parts(self, progress: Reporter) -> None:
@@ -224,7 +224,7 @@ class LanguageGeneration(Generation):
     """The blueprint, where the library has no such object."""
 
     def build(self, progress: Reporter) -> Made:
-        """Let the model translate, or else write and correct a blueprint; compare what is built with the request.
+        """Build what a model translates, writes or corrects; compare it with the request.
 
         Raises:
             InputError: See `LanguageModel.write`.
@@ -288,7 +288,7 @@ class LanguageGeneration(Generation):
         return made if other is None or len(made.not_built) <= len(other.not_built) else other
 
     def _findings(self, blueprint: Blueprint) -> Sequence[str]:
-        """What the validation holds against the model of a blueprint; nothing without validation."""
+        """Return what the validation holds against the model of a blueprint; nothing without validation."""
         if not self.validated:
             return ()
         with TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-"""`kinematify refine`: a model is simulated, and what its failures blame is chosen again."""
+"""`kinematify refine`: a model is simulated, and what its failures point to is chosen again."""
 
 from __future__ import annotations
 
@@ -163,7 +163,7 @@ def _round_row(item: Mapping[str, Any], *, kept: bool) -> tuple[str, ...]:
         item["tier"],
         "; ".join(changes) or ("as inferred" if item["number"] == 0 else "-"),
         "; ".join(item["failed"]) or "nothing",
-        "; ".join(item["blamed"]) or "-",
+        "; ".join(item["suspected"]) or "-",
         f"{item['score']:.2f}",
         f"{item['seconds']:.1f}",
     )

@@ -32,7 +32,7 @@ class TaskOptions:
     into: Path | None = None
 
     def request(self, files: ReportFiles, package_dirs: tuple[Path, ...]) -> TaskRequest | None:
-        """What the options ask for; the robot is read once, so that what is wrong with it is said at once.
+        """Return what the options ask for; the robot is read once, so that what is wrong with it is said at once.
 
         Raises:
             InputError: There is no such robot, tool or gripper.

@@ -11,11 +11,16 @@ import click
 from kinematify.cli.options import examples, package_dirs_option, sampling_seed_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.report_files import ReportFiles
+from kinematify.validation.finding import Severity
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.config.validation import ValidationSettings
+
+
+_QUICK = "KV1*,KV2*,KV30*,KV31*,KV32*,KV801,KV802,KV803,KV804"
+"""Checks of `--quick`."""
 
 
 @click.command(
@@ -24,6 +29,7 @@ if TYPE_CHECKING:
     epilog=examples(
         "kinematify validate model.urdf",
         "kinematify validate models/ 'more/**/*.urdf' --junit report.xml",
+        "kinematify validate models/ --quick --fail-on warning",
         "kinematify validate model.urdf --html report.html --sarif report.sarif",
         "kinematify validate robot.urdf --package-dir ~/ros/src --engines mujoco,pinocchio",
         "kinematify validate model.urdf --checks 'KV3*,KV401' --skip KV305 --budget 10",
@@ -39,11 +45,22 @@ if TYPE_CHECKING:
 @click.option("--checks", metavar="LIST", help="Only these: ids or patterns such as KV3*, separated by commas.")
 @click.option("--skip", metavar="LIST", help="All but these.")
 @click.option(
+    "--quick",
+    is_flag=True,
+    help="File, meshes, declared physics, each joint in motion by exact geometry, and the file in MuJoCo: seconds.",
+)
+@click.option(
+    "--fail-on",
+    type=click.Choice([item.value for item in reversed(Severity)]),
+    default=Severity.ERROR.value,
+    show_default=True,
+    help="Least severity of a finding that ends the command with 1.",
+)
+@click.option(
     "--engines",
     metavar="LIST",
-    default="mujoco,pybullet,pinocchio",
-    show_default=True,
-    help="Engines to run, separated by commas; drake can be added; none: only file and geometry.",
+    show_default="all that are installed",
+    help="Engines to run, separated by commas; none: only file and geometry.",
 )
 @click.option(
     "--suppress", type=click.Path(path_type=Path), metavar="FILE", help="YAML list of accepted findings with reasons."
@@ -113,7 +130,9 @@ def command(
     package_dirs: tuple[Path, ...],
     checks: str | None,
     skip: str | None,
-    engines: str,
+    quick: bool,
+    fail_on: str,
+    engines: str | None,
     suppress: Path | None,
     suggest_accept: Path | None,
     budget: float | None,
@@ -140,9 +159,9 @@ def command(
     MODEL is a URDF file, a folder with URDF files at any depth, or a pattern in quotes. Nothing else is needed: no
     ground truth, no second pose. `kinematify explain KV301` shows more about a check.
 
-    Ends with 0 if no model has an error (warnings are allowed), with 1 if one has, with 2 if one cannot be used,
-    with 3 if there is no error and something
-    that was asked for was not finished (the report shows how to finish it).
+    Ends with 0 if no model has an error (warnings are allowed unless --fail-on says otherwise), with 1 if one has, with
+    2 if one cannot be used, with 3 if there is no error and something that was asked for was not finished (the report
+    shows how to finish it). Findings begin with FILE:LINE.
     Ctrl-C ends with 130 and leaves valid reports of what is known by then.
     """
     from kinematify.validation.isolation import load_imports
@@ -162,8 +181,10 @@ def command(
     run = ValidationRun(
         models=find_models(models),
         package_dirs=_existing(package_dirs),
-        selected=_selected(checks, skip),
-        engines=_engines(engines),
+        selected=_selected(checks or (_QUICK if quick else None), skip),
+        engines=("mujoco",) if quick else _engines(engines),
+        fail_on=Severity(fail_on),
+        quiet=json_to == "-",
         rules=load_suppressions(suppress) if suppress is not None else (),
         settings=_settings(config, budget=budget, seed=seed),
         workers=jobs or os.cpu_count() or 1,
@@ -177,7 +198,7 @@ def command(
     except KeyboardInterrupt:
         run.interrupted = True
     files.write(run.outcomes, run.pictures, run.scenes, run.rules)
-    run.say(quiet=json_to == "-")
+    run.say()
     return run.exit_status
 
 
@@ -210,9 +231,11 @@ def _matching(patterns: str) -> frozenset[str]:
     return frozenset(check for check in CHECKS if any(fnmatchcase(check, pattern) for pattern in known))
 
 
-def _engines(words: str) -> tuple[str, ...]:
-    from kinematify.simulation.engines import ENGINES
+def _engines(words: str | None) -> tuple[str, ...]:
+    from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
 
+    if words is None:
+        return DEFAULT_ENGINES
     chosen = [word.strip().lower() for word in words.split(",")] if words.strip().lower() not in ("", "none") else []
     unknown = [word for word in chosen if word not in ENGINES]
     if unknown:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from kinematify.cli.options import say
-from kinematify.cli.verdict import describe, describe_all, describe_unused
+from kinematify.cli.verdict import describe, describe_listed, describe_table, describe_unused
 from kinematify.errors import ExitStatus, InputError
 from kinematify.validation.finding import Severity
 from kinematify.validation.run import validate
@@ -34,7 +34,7 @@ PICTURE_SECONDS = 15.0
 
 @dataclass(kw_only=True)
 class ValidationRun:
-    """What was asked for, and what has come of it so far."""
+    """State of one run of `kinematify validate`: the request and the results."""
 
     models: tuple[Path, ...]
     package_dirs: tuple[Path, ...]
@@ -44,6 +44,10 @@ class ValidationRun:
     settings: ValidationSettings
     workers: int
     with_pictures: bool
+    fail_on: Severity = Severity.ERROR
+    """Least severity that ends the command with 1."""
+    quiet: bool = False
+    """Nothing is told on stdout."""
     everything: bool = False
     """Tell notes, places and tables of one model, too."""
     task: TaskRequest | None = None
@@ -79,14 +83,20 @@ class ValidationRun:
                 progress=progress,
             )
         except InputError as error:
-            self.outcomes.append(Unusable(model=str(model), message=str(error)))
+            self._take(Unusable(model=str(model), message=str(error)))
             return
-        self.outcomes.append(report)
+        self._take(report)
         self.interrupted = bool(report.environment.get("interrupted"))
         if self.with_pictures and len(self.models) <= PICTURES_AT_MOST and _can_be_drawn(report):
             progress("picture", 0.97)
             drawing = self._drawing(model)
             self.pictures[report.model], self.scenes[report.model] = drawing.picture, drawing.scene
+
+    def _take(self, outcome: Outcome) -> None:
+        """Keep an outcome, and tell it at once where there are several."""
+        self.outcomes.append(outcome)
+        if len(self.models) > 1 and not self.quiet:
+            say(f"{describe_listed(outcome)}\n")
 
     def _task_of(self, model: Path) -> TaskRequest | None:
         """The task with names of films that distinguishes the models."""
@@ -105,16 +115,16 @@ class ValidationRun:
         """130 after Ctrl-C, else the worst of the models: unusable, an error, not finished, fine."""
         if self.interrupted:
             return ExitStatus.INTERRUPTED
-        found = {item.exit_status for item in self.outcomes}
+        found = {item.status_at(self.fail_on) for item in self.outcomes}
         order = (ExitStatus.UNUSABLE, ExitStatus.FAILURES, ExitStatus.FAULT)
         return next((status for status in order if status in found), ExitStatus.FINE)
 
-    def say(self, *, quiet: bool) -> None:
+    def say(self) -> None:
         """Tell the user: the report on stdout unless a machine reads that, what is no result on stderr."""
         reports = [outcome for outcome in self.outcomes if not isinstance(outcome, Unusable)]
-        if len(self.models) > 1 and not quiet:
-            say(describe_all(self.outcomes))
-        elif reports and not quiet:
+        if len(self.models) > 1 and not self.quiet:
+            say(describe_table(self.outcomes))
+        elif reports and not self.quiet:
             say(describe(reports[0], everything=self.everything))
         else:
             for outcome in self.outcomes:

@@ -1,11 +1,13 @@
-"""What `kinematify validate` says on a terminal: the verdict first, then what is wrong, the worst first."""
+"""Terminal output of `kinematify validate`: the verdict first, then what is wrong, the worst first."""
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import textwrap
 from collections import Counter
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -62,7 +64,7 @@ def _full(report: ValidationReport) -> list[str]:
         _first_lines(report),
         _table(family_table(report)),
         _reasons(report, Status.SKIPPED, Status.BLOCKED),
-        *map(_long_text, blocks(report.groups, together=MANY)),
+        *(_long_text(block, report.model) for block in blocks(report.groups, together=MANY)),
         _table(joint_table(report)),
     ]
 
@@ -77,14 +79,15 @@ def _short(report: ValidationReport) -> list[str]:
     errors, warnings = ([t for t in groups if t.finding.severity is s] for s in (Severity.ERROR, Severity.WARNING))
     head = [_first_lines(report), _reasons(report, Status.BLOCKED)]
     foot = ["\n".join(text for text in (_notes(groups), _more(report)) if text)]
-    paragraphs = [*map(_short_text, blocks(errors, alike=False))]
-    full = [*head, *paragraphs, *map(_short_text, blocks(warnings, alike=False)), *foot]
+    model = report.model
+    paragraphs = [_short_text(block, model) for block in blocks(errors, alike=False)]
+    full = [*head, *paragraphs, *(_short_text(block, model) for block in blocks(warnings, alike=False)), *foot]
     if _height(full) <= _SCREEN:
         return full
     listed = blocks(warnings, alike=False, by_engine=False)
-    if _height([*head, *paragraphs, *map(_line, listed), *foot]) > _LONGEST:
+    if _height([*head, *paragraphs, *(_line(block, model) for block in listed), *foot]) > _LONGEST:
         paragraphs, listed = [], [*blocks(errors, alike=False, by_engine=False), *listed]
-    lines = [_line(block, 0) for block in listed]
+    lines = [_line(block, model, 0) for block in listed]
     shown = len(lines)
     while shown and _height([*head, *paragraphs, "\n".join(lines[:shown]), *foot]) > _LONGEST - 2:
         shown -= 1
@@ -99,25 +102,23 @@ def _height(blocks: Sequence[str]) -> int:
 
 
 def _notes(groups: Sequence[FindingGroup]) -> str:
-    """How many notes there are, by check."""
+    """Return how many notes there are, by check."""
     counts = Counter(item.finding.check for item in groups if item.finding.severity is Severity.NOTE)
     listed = ", ".join(f"{check}{f' ({count})' if count > 1 else ''}" for check, count in sorted(counts.items()))
     return _wrapped(f"{counted_words(counts.total(), 'note')}: {listed}.") if counts else ""
 
 
 def _more(report: ValidationReport) -> str:
-    """What the whole report has besides."""
+    """Return what the whole report has besides."""
     findings = [item.finding for item in report.groups if item.finding.suppressed is None]
     worst = next((found.check for severity in Severity for found in findings if found.severity is severity), "KV301")
     return f"--all: notes, places, consequences, code, joints, checks. kinematify explain {worst}: what it checks."
 
 
-def describe_all(outcomes: Sequence[Outcome]) -> str:
-    """Errors and warnings of each of several models in a line each, and a table of all models at the end."""
-    blocks = [_brief(outcome) for outcome in outcomes]
-    rows = [_summary_row(outcome) for outcome in outcomes]
+def describe_table(outcomes: Sequence[Outcome]) -> str:
+    """All models, a row each."""
     headings = ("model", "verdict", "errors", "warnings", "notes", "failed", "skipped", "blocked", "seconds")
-    return "\n\n".join([*blocks, format_table(headings, rows)])
+    return format_table(headings, [_summary_row(outcome) for outcome in outcomes])
 
 
 def describe_briefly(report: ValidationReport) -> str:
@@ -128,8 +129,8 @@ def describe_briefly(report: ValidationReport) -> str:
     for item in groups:
         if item.finding.severity is Severity.WARNING:
             warnings.setdefault((item.finding.check, item.finding.engine), []).append(item)
-    lines = [_first_lines(report), *map(_line, errors)]
-    lines += [f"  {_heading(block_of(group))}{_times(len(group))}" for group in warnings.values()]
+    lines = [_first_lines(report), *(_line(block, report.model) for block in errors)]
+    lines += [f"  {_heading(block_of(group), report.model)}{_times(len(group))}" for group in warnings.values()]
     return "\n".join(lines)
 
 
@@ -156,32 +157,32 @@ def _reasons(report: ValidationReport, *statuses: Status) -> str:
     return "\n".join(_wrapped(printable(reason), 2, 4) for reason in reasons(report, statuses))
 
 
-def _short_text(block: FindingBlock) -> str:
-    """What is wrong, where else, what to do, and what follows from it."""
+def _short_text(block: FindingBlock, model: str) -> str:
+    """Return what is wrong, where else, what to do, and what follows from it."""
     follows = f"{block.follows}." if block.follows else ""
-    return _paragraphs(block, block.message, block.also, block.remedy, follows, _plain_call(block))
+    return _paragraphs(block, model, block.message, block.also, block.remedy, follows, _plain_call(block))
 
 
 def _plain_call(block: FindingBlock) -> str:
     """The call of an engine that shows a finding or what follows from it; its code goes on with `--all`."""
-    first = [item for item in block.consequences if item.cause is block.findings[0]]
+    first = [item for item in block.consequences if item.follows_from is block.findings[0]]
     codes = [item.reproduction for item in (block.findings[0], *first) if item.reproduction is not None]
     call = _CALL.search(codes[0]) if codes else None
     return "" if call is None else f"To see it: {call.group()} and what --all prints."
 
 
-def _paragraphs(block: FindingBlock, *words: str) -> str:
+def _paragraphs(block: FindingBlock, model: str, *words: str) -> str:
     count = len(block.findings)
-    heading = _heading(block) + (f", {count} times" if count > 1 else "")
+    heading = _heading(block, model) + (f", {count} times" if count > 1 else "")
     return "\n".join([heading, *(_wrapped(printable(text), 2, 2) for text in words if text)])
 
 
-def _long_text(block: FindingBlock) -> str:
-    """What is wrong, what to do, what follows from it and the code that shows it; many places as a table."""
+def _long_text(block: FindingBlock, model: str) -> str:
+    """Return what is wrong, what to do, what follows from it and the code that shows it; many places as a table."""
     many = len(block.findings) > 1
     example = f"For example: {block.message}" if many else block.message
     lines = [
-        _paragraphs(block, "" if many else block.facts, example, block.remedy),
+        _paragraphs(block, model, "" if many else block.facts, example, block.remedy),
         *_consequences(block.consequences),
         *_code(block.code),
         *([_wrapped(printable(block.suppressed), 2, 2)] if block.suppressed else []),
@@ -191,7 +192,7 @@ def _long_text(block: FindingBlock) -> str:
 
 
 def _consequences(findings: Sequence[Finding]) -> list[str]:
-    """What follows from a finding, a paragraph each, with the code that shows the first in an engine."""
+    """Return what follows from a finding, a paragraph each, with the code that shows the first in an engine."""
     if not findings:
         return []
     lines = [_wrapped(f"{title(item)}: {printable(item.message)}", 4, 6) for item in findings]
@@ -199,9 +200,13 @@ def _consequences(findings: Sequence[Finding]) -> list[str]:
     return ["  Follows from it:", *lines, *_code(shown)]
 
 
-def _heading(block: FindingBlock) -> str:
+def _heading(block: FindingBlock, model: str) -> str:
+    """File and line, as compilers name them, with severity, check and cause."""
+    line, path = block.findings[0].line, Path(model)
+    near = not path.is_absolute() or path.is_relative_to(Path.cwd())
+    place = printable(os.path.relpath(path) if near else path.name) + (f":{line}" if line else "")
     severity = click.style(block.severity.value, fg=_SEVERITY_COLORS[block.severity], bold=True)
-    return f"{severity} {block.title} {block.cause}"
+    return f"{place}: {severity} {block.title} {block.cause}"
 
 
 def _code(text: str) -> list[str]:
@@ -214,20 +219,21 @@ def _table(table: Table, empty: str = "") -> str:
     return format_table(table.headings, rows) if rows else ""
 
 
-def _brief(outcome: Outcome) -> str:
+def describe_listed(outcome: Outcome) -> str:
+    """The verdict of one of several models, with its errors and warnings in a line each."""
     if isinstance(outcome, Unusable):
         return describe(outcome)
     groups = [item for item in outcome.groups if item.finding.suppressed is None]
     shown = blocks(item for item in groups if item.finding.severity is not Severity.NOTE)
-    return "\n".join([_first_lines(outcome), *map(_line, shown)])
+    return "\n".join([_first_lines(outcome), *(_line(block, outcome.model) for block in shown)])
 
 
-def _line(block: FindingBlock, indent: int = 2) -> str:
+def _line(block: FindingBlock, model: str, indent: int = 0) -> str:
     first = block.findings[0]
     names = {first.joint, first.link, *(first.pair or ())} - {None}
     about = "" if all(str(name) in first.message for name in names) else where(first)
     message = " ".join(text for text in (f"{about}: {block.message}" if about else block.message, block.also) if text)
-    return _wrapped(f"{_heading(block)}{_times(len(block.findings))}: {printable(message)}", indent, indent + 2)
+    return _wrapped(f"{_heading(block, model)}{_times(len(block.findings))}: {printable(message)}", indent, indent + 2)
 
 
 def _times(count: int) -> str:

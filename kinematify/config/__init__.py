@@ -37,6 +37,8 @@ from kinematify.config.shapes import (
     SurfaceConfig,
 )
 from kinematify.config.tree_settings import BaseConfig, FeedbackConfig, RefineConfig, RewardWeights, TopologyConfig
+from kinematify.errors import ConfigError
+from kinematify.versions import is_installed, not_installed
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -124,6 +126,10 @@ def load_config(name_or_path: str | Path = "default", **overrides: Any) -> Confi
         overrides: Top-level values that replace those of the file, e.g. ``seed=7``.
 
     Raises:
-        ConfigError: The name is unknown, the YAML is malformed, or a value has the wrong type.
+        ConfigError: The name is unknown, the YAML is malformed, a value has the wrong type, or torch is not installed
+            and the method of the paper needs it.
     """
-    return load(Config, name_or_path, **overrides)
+    config = load(Config, name_or_path, **overrides)
+    if config.joints.method == "cavl" and not is_installed("torch"):
+        raise ConfigError(not_installed(f"The configuration {name_or_path}", "torch"))
+    return config

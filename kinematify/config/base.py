@@ -1,4 +1,4 @@
-"""What every configuration shares: strict types, and YAML files that may extend each other."""
+"""Base of every configuration: strict types, and YAML files that may extend each other."""
 
 from __future__ import annotations
 

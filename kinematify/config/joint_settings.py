@@ -1,4 +1,4 @@
-"""How a joint is chosen: frames, sweeps, what the contact allows, limits; the cues are in `kinematify.config.cues`."""
+"""Settings of the choice of a joint: frames, sweeps, what the contact allows, limits."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class JournalConfig(StageConfig):
 
 
 class ClearanceConfig(StageConfig):
-    """How far the surface of a contact can turn or slide before it is stopped."""
+    """Limits on how far the surface of a contact can turn or slide before it is stopped."""
 
     least_samples: int = 30  # fewer may all lie on one side of a key
     """Fewer samples of a contact say nothing."""
@@ -140,7 +140,7 @@ class LimitsConfig(StageConfig):
 
 
 class GuideConfig(StageConfig):
-    """How far a part can slide before it leaves what it runs in or on."""
+    """Limits on how far a part can slide before it leaves what it runs in or on."""
 
     steps: int = 60  # shares fall evenly, so that proportion serves between two steps
     """Travels that are looked at, up to the diagonal of the object."""
@@ -233,7 +233,7 @@ class RailsConfig(StageConfig):
 
 
 class ConfidenceConfig(StageConfig):
-    """How likely a joint is right (`results/choice.md`)."""
+    """Probability that a joint is right (`results/choice.md`)."""
 
     cues_lead: float = 1.0  # with less, furniture that the cues were written for loses; with more, all else
     """Log odds that what the weighted cues would choose keeps over the fitted probabilities."""

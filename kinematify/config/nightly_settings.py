@@ -1,4 +1,4 @@
-"""What a night runs and when it calls a change a regression."""
+"""Settings of a night: runs and thresholds of a regression."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class GateSettings(StageConfig):
-    """How much worse one run may be than the same run of the night that it is compared with, and still no regression.
+    """Thresholds of a regression: the largest loss of a run against the same run of the compared night that is none.
 
     The inference is deterministic, so that these values only cover other versions of numeric libraries.
     """

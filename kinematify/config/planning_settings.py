@@ -8,7 +8,7 @@ from kinematify.config import StageConfig
 
 
 class PlanSettings(StageConfig):
-    """How an arm is placed, and how its motion is planned."""
+    """Settings of the placement of an arm and of its motion."""
 
     seconds: float = 20.0  # all places of a door take 8 s, and the first pass gets 0.6 of the time
     """Time of one core for the plan of one joint [s]."""

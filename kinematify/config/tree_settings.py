@@ -1,4 +1,4 @@
-"""How the kinematic tree is searched, and how failures of a model are weighed and fed back into the search."""
+"""Settings of the search for the kinematic tree, and of the weight of a model's failures in it."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class RewardWeights(StageConfig):
 
 
 class TopologyConfig(StageConfig):
-    """How a contact graph becomes a ranked list of kinematic trees."""
+    """Settings of the way from a contact graph to a ranked list of kinematic trees."""
 
     mode: Literal["mcts", "mst", "bfs"] = "mcts"
     """Search, maximum spanning trees alone, or breadth-first orientation alone."""
@@ -121,7 +121,7 @@ class TopologyConfig(StageConfig):
 
 
 class FeedbackConfig(StageConfig):
-    """How failures are read; what each weighs is measured (`kinematify.validation.failure_rates`)."""
+    """Settings of the reading of failures; what each weighs is measured (`kinematify.validation.failure_rates`)."""
 
     open_share: float = 0.9  # a side that is free for half of the range only is no side to open to: a suitcase
     """A side that is free over this share of the range is the one that opens."""

@@ -245,8 +245,6 @@ class GeometrySettings(StageConfig):
     """Share of configurations in which a pair that always collides does so."""
     random_rows: int = 128  # a power of two, as Sobol points want
     """Quasi-random configurations of all joints."""
-    hull_planes: int = 96
-    """Directions in which a hull is kept where collision shapes are looked at as engines see them."""
     listed: int = 8
     """Pairs that one finding names."""
 
@@ -335,63 +333,6 @@ class EvidenceSettings(StageConfig):
     """How far out on its parent, from 0 in the middle to 1 at the side, a small part may be that moves farther out."""
 
 
-class EngineSettings(StageConfig):
-    """KV4xx and KV5xx: behaviour in engines."""
-
-    time_step: float = 0.002  # default of MuJoCo
-    """Of MuJoCo [s]."""
-    pybullet_time_step: float = 0.0041666667  # its default, 1/240 s
-    """Of PyBullet [s]."""
-    same: float = 1.0e-5  # importers of single precision keep seven digits
-    """Difference of an axis, limit, mass or inertia that an importer may make, fraction of the value."""
-    pose_distance: float = 1.0e-5
-    """Difference of a link's position, fraction of the model's size."""
-    pose_deg: float = 0.01
-    """Difference of a link's orientation [deg]."""
-    contact_depth: float = 0.002  # 2 mm on an object of 1 m: what contacts of engines give way by
-    """Overlap that does not count, fraction of the model's size."""
-    sweep_samples: int = 25  # an obstacle gets deeper from sample to sample: 4 % of the range finds a board in the way
-    """Configurations of a joint from end to end."""
-    servo_frequency: float = 10.0  # a tenth of what the time step can follow, fast enough to keep up with the motion
-    """Of the servo of a joint, the others held [Hz]; it is critically damped."""
-    servo_margin: float = 3.0  # enough for couplings between joints, too little to squeeze through a contact
-    """How much stronger a servo is than its motion needs."""
-    drive_seconds: float = 0.8  # a hand opens a door in such a time
-    """From rest to one end [s]."""
-    settle_seconds: float = 0.2  # two periods of the servo
-    """Waiting at the end [s]."""
-    reach: float = 0.03
-    """Distance from the end at which a joint has arrived, fraction of the range."""
-    tracking: float = 0.1
-    """Lag behind the commanded motion, fraction of the way."""
-    push: float = 0.2
-    """How far beyond its limit a joint is commanded, fraction of the range."""
-    push_seconds: float = 0.1  # the shortest escape that a peer counts
-    """For how long [s]."""
-    escape: float = 0.05  # a stop of MuJoCo gives way by 1.4 % at this push
-    """How far beyond its limit a joint may get, fraction of the range."""
-    sag: float = 0.05
-    """Of a held joint under gravity, fraction of the range."""
-    passive_seconds: float = 1.0  # a door falls shut in less
-    """Free motion from rest, and holding at rest [s]."""
-    explosion: float = 3.0  # a chain's tip cracks like a whip; peers take 3 as well
-    """Speed, as a multiple of that of a fall from the height of the model, that is no motion any more."""
-    energy: float = 0.1  # arms with many joints that fall freely gain up to 7 %; peers warn at 5 %, fail at 50 %
-    """Growth of energy, fraction of the largest kinetic energy."""
-    drop: float = 0.05  # peers: 5 cm, at rest (below 5 cm/s) after 3 s, 1 cm deep at most
-    """Height above the floor [m]."""
-    drop_seconds: float = 2.0
-    """From letting go to rest [s]."""
-    sink: float = 0.01
-    """Depth in the floor [m]."""
-    rest_speed: float = 0.05
-    """Speed of the fastest link that counts as rest [m/s]."""
-    step_seconds: float = 0.25  # longer motions of several joints are chaotic, with any step
-    """Free motion that is repeated with a quarter of the time step [s]."""
-    step_difference: float = 0.5  # blows against a stop differ by up to a third
-    """Difference between the two motions, fraction of the larger one."""
-
-
 class AsLoadedSettings(StageConfig):
     """KV8xx: the untouched file in engines with their defaults."""
 
@@ -429,33 +370,6 @@ class AsLoadedSettings(StageConfig):
     """Growth of energy, fraction of the largest kinetic energy."""
 
 
-class AgreementSettings(StageConfig):
-    """KV6xx: agreement of engines."""
-
-    random_rows: int = 32  # poses are smooth functions of the joints: more rows found nothing new
-    """Quasi-random configurations beside zero, rest and the ends of every joint."""
-    end_rows: int = 128  # 64 joints have their ends for themselves; the largest known robots have about 60
-    """Configurations at most for the ends of the joints; joints share them where there are more."""
-    dynamic_rows: int = 10  # zero, rest and 8 points: a wrong inertia shows in almost every configuration
-    """Configurations with mass matrix and gravity torques."""
-    dynamic_numbers: int = 4000000  # 32 MB per engine
-    """Entries of all mass matrices together at most; large models have fewer configurations."""
-    position: float = 1.0e-4  # engines agree to 1e-9; others allow 2 cm, which hides a slipped decimal
-    """Distance between two engines' poses of one link that is an error, fraction of the model's size."""
-    angle: float = 1.0e-4  # the same; others allow 10 deg
-    """The same for the angle between them [rad]."""
-    mass_error: float = 1.0e-4  # masses are copied, not computed
-    """Relative difference of a mass that is an error."""
-    mass_matrix: float = 1.0e-3  # inertias are turned and diagonalised on the way: 1e-7 on all known robots
-    """Relative difference of an entry of the mass matrix that is a warning."""
-    gravity: float = 1.0e-3
-    """Relative difference of a gravity torque that is a warning."""
-    contact_depth: float = 0.005  # hulls and margins of engines differ by 1 to 3 mm
-    """Overlap in one engine that the other should see too [m]."""
-    contact_share: float = 0.005  # and by more on large models, where convex pieces represent curved shapes
-    """The same as a fraction of the model's size; the larger of the two counts."""
-
-
 class ValidationSettings(StageConfig):
     """All families."""
 
@@ -469,9 +383,7 @@ class ValidationSettings(StageConfig):
     prepare: PrepareSettings = section()
     geometry: GeometrySettings = section()
     evidence: EvidenceSettings = section()
-    engines: EngineSettings = section()
     as_loaded: AsLoadedSettings = section()
-    agreement: AgreementSettings = section()
     task: TaskSettings = section()
 
 

@@ -120,18 +120,18 @@ class _Seam:
     """Diagonal of the smaller part [m]."""
 
     def goes_through(self, config: SeamConfig) -> bool:
-        """Whether one part was cut in two there, by a plane or along the edges of its mesh."""
+        """True if one part was cut in two there, by a plane or along the edges of its mesh."""
         straight = self.smooth >= config.through_smooth and self.bend <= config.through_planar
         through = self.long(config) if self.line else self.facing <= config.through_facing
         flat = straight and self.complete >= config.through_complete and through
         return flat or self.smooth * self.length > config.ragged * self.smaller
 
     def leaves_rims(self, config: SeamConfig) -> bool:
-        """Whether it lies in a plane with rims of one part alone, as of a door towards the inside."""
+        """True if it lies in a plane with rims of one part alone, as of a door towards the inside."""
         return self.bend <= config.through_planar and self.complete < config.through_complete
 
     def long(self, config: SeamConfig) -> bool:
-        """Whether the surface goes on over about the size of the smaller part."""
+        """True if the surface goes on over about the size of the smaller part."""
         return self.smooth * self.length > config.share * self.smaller
 
 
@@ -152,7 +152,7 @@ def _seam(
     *,
     smaller: float,
 ) -> _Seam | None:
-    """What two rims, their edges (n, 2, 3) and normals (n, 3), have in common; None where that is nothing."""
+    """Return what two rims, their edges (n, 2, 3) and normals (n, 3), have in common; None where that is nothing."""
     if not len(first[0]) or not len(second[0]):
         return None
     mine, partner = _common(first[0], second[0], tolerance)

@@ -36,7 +36,7 @@ Status = Literal["ok", "error", "timeout", "crash", "unreadable"]
 
 @dataclass(frozen=True, kw_only=True)
 class Job:
-    """What a worker is given; small and picklable."""
+    """Input of a worker; small and picklable."""
 
     item: BenchObject
     condition: Condition
@@ -66,7 +66,7 @@ class Job:
 
 @dataclass(frozen=True, kw_only=True)
 class JobResult:
-    """What came of a job."""
+    """Result of a job."""
 
     object: str
     kind: str
@@ -162,7 +162,7 @@ def shown_parts(erased: ErasedModel) -> Assembly:
 
 
 def degraded(job: Job, assembly: Assembly) -> Degraded | None:
-    """What the inference of a job is given instead of the parts; None where it is given the parts."""
+    """Return what the inference of a job is given instead of the parts; None where it is given the parts."""
     if job.input == CLEAN:
         return None
     made: Degraded = imported(job.degrade)(job.input, assembly, job.config, seed=job.condition.seed)
@@ -200,7 +200,7 @@ def _infer(job: Job, erased: ErasedModel, assembly: Assembly, given: Degraded | 
 
 
 def _known(job: Job, erased: ErasedModel) -> dict[str, str]:
-    """What a method is given beside the parts: the base link, where its configuration takes that as input."""
+    """Return what a method is given beside the parts: the base link, where its configuration takes that as input."""
     if job.config.topology.base_rule != "given":
         return {}
     return {"base": erased.truth.part_names[erased.truth.parents.index(-1)]}

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from kinematify.errors import EnvironmentFault, InputError
+from kinematify.versions import install_command, not_installed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -30,7 +31,7 @@ DEFAULT_SETS = ("robots", "everyday")
 
 @dataclass(frozen=True, kw_only=True)
 class Condition:
-    """How an object is posed before its kinematics are erased."""
+    """Pose of an object before its kinematics are erased."""
 
     name: str
     pose: Literal["rest", "random"]
@@ -231,15 +232,12 @@ def example_robots() -> Path:
     try:
         package = distribution("example-robot-data")
     except PackageNotFoundError as error:
-        raise EnvironmentFault(
-            "The robots of `--data pip` come with the PyPI package example-robot-data, which is not installed. "
-            "Run `pip install kinematify[bench]`."
-        ) from error
+        raise EnvironmentFault(not_installed("`--data pip`", "example-robot-data")) from error
     share = Path(str(package.locate_file("cmeel.prefix/share")))
     robots = share / "example-robot-data" / "robots"
     if all((robots / place).is_file() for _, _, place, _ in _PIP_ROBOTS):
         return share
     raise EnvironmentFault(
-        f"The installed example-robot-data {package.version} does not hold all robots in {robots}. Run "
-        "`pip install --force-reinstall kinematify[bench]`."
+        f"The installed example-robot-data {package.version} does not hold all robots in {robots}. Run: "
+        f"{install_command('example-robot-data', options=('--force-reinstall',))}"
     )

@@ -1,4 +1,4 @@
-"""What a run of the evaluation leaves: a JSON of one form for benchmark and studies, and the Markdown beside it.
+"""Records of the evaluation: a JSON of one form for benchmark and studies, and the Markdown beside it.
 
 What a result depends on stands in its header: the sources that gave it, as a hash, and the commit that they are at.
 """
@@ -22,7 +22,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from kinematify import __version__
 from kinematify.errors import EnvironmentFault, InputError, OutputError
-from kinematify.versions import package_versions
+from kinematify.versions import not_installed, package_versions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
@@ -90,7 +90,7 @@ _Key = TypeVar("_Key", bound="Hashable")
 
 @dataclass(frozen=True, kw_only=True)
 class Header:
-    """How the records came about."""
+    """Origin of the records: command, versions, time."""
 
     study: str
     """``bench``, or the name of a study."""
@@ -229,10 +229,7 @@ def write_report(
         if plot is not None:
             plot().savefig(folder / f"{name}.png", dpi=120)
     except ImportError as error:
-        raise EnvironmentFault(
-            "The plot of the report needs matplotlib, which is not installed. Run `pip install kinematify[bench]`; "
-            "Markdown and JSON are written."
-        ) from error
+        raise EnvironmentFault(not_installed("Markdown and JSON are written; the plot", "matplotlib")) from error
     except OSError as error:
         raise OutputError(
             f"The report cannot be written to {folder}: {error}. Give a folder that can be written."

@@ -52,7 +52,7 @@ DEFAULT_VARIANTS = (Variant(label="default", config="default"),)
 
 @dataclass(frozen=True, kw_only=True)
 class BenchmarkRequest:
-    """What to run."""
+    """Request of a benchmark."""
 
     data: str | Path | None = None
     """As `find_objects` takes it."""

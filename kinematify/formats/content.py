@@ -1,4 +1,4 @@
-"""What goes into another format: the URDF's tree, what is seen, the pieces that collide, usable masses.
+"""Content of another format: the URDF's tree, what is seen, the pieces that collide, usable masses.
 
 The pieces are those that the file has. Engines take the hull of a mesh for the mesh, so that a drawer would be solid
 and its cabinet too: a file whose meshes are not convex gets the pieces that `kinematify fix` writes.
@@ -18,7 +18,6 @@ from kinematify.geometry.scene import read_scene
 from kinematify.model.collision import collides_as_it_is, fit_collision
 from kinematify.model.masses import prepared_inertials
 from kinematify.robot.appearance import Material, plain, surfaces
-from kinematify.robot.joint_type import FREE_KINDS
 from kinematify.robot.material_files import write_texture
 from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
 from kinematify.robot.read import read_robot
@@ -103,7 +102,7 @@ def read_content(urdf: Path, settings: ValidationSettings, *, package_dirs: Sequ
 
 def _notes(model: Robot, inertials: dict[str, PreparedInertial], *, made: bool) -> list[str]:
     weighed = [link.name for link in model.links if inertials[link.name].mass_added and link.has_geometry]
-    notes = []
+    notes = list(model.notes)
     if made:
         notes.append(
             "Not all meshes that collide are convex, as engines take them to be: what collides is the convex pieces "
@@ -112,14 +111,11 @@ def _notes(model: Robot, inertials: dict[str, PreparedInertial], *, made: bool) 
     if weighed:
         notes.append(f"{len(weighed)} links state no usable mass and weigh what their volume suggests: "
                      f"{', '.join(weighed[:4])}{', ...' if len(weighed) > 4 else ''}.")  # fmt: skip
-    free = [joint.name for joint in model.joints if joint.declared_kind in FREE_KINDS]
-    if free:
-        notes.append(f"Joints that are floating or planar are written as fixed: {', '.join(free)}.")
     return notes
 
 
 def _visuals(link: Link) -> tuple[Shape, ...]:
-    """What is seen: collision geometry where there is nothing else, as viewers do."""
+    """Return what is seen: collision geometry where there is nothing else, as viewers do."""
     shown = [
         shape
         for shape in link.visuals or link.collisions
@@ -129,7 +125,7 @@ def _visuals(link: Link) -> tuple[Shape, ...]:
 
 
 def shown_surfaces(shape: Shape) -> tuple[Surface, ...]:
-    """What is seen of a shape, cut into its materials; one that states none has its colour, or grey."""
+    """Return what is seen of a shape, cut into its materials; one that states none has its colour, or grey."""
     appearance = shape.mesh.appearance or plain(shape.color or GREY, len(shape.mesh.faces))
     return surfaces(shape.mesh.vertices, shape.mesh.faces, appearance)
 

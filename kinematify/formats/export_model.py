@@ -12,6 +12,7 @@ from kinematify.errors import InputError, OutputError
 from kinematify.formats.content import read_content, renaming_notes
 from kinematify.formats.losses import losses
 from kinematify.model.output import urdf_of
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,7 +33,7 @@ FORMATS = tuple(_WRITERS)
 
 @dataclass(frozen=True, kw_only=True)
 class Exported:
-    """What was written."""
+    """Files that were written."""
 
     path: Path
     notes: tuple[str, ...]
@@ -71,6 +72,7 @@ def export(
     Raises:
         InputError: The model cannot be used, or there is no such format.
         OutputError: The file cannot be written.
+        EnvironmentFault: The package that writes the format is not installed.
     """
     if to not in FORMATS:
         raise InputError(f"There is no format {to!r} to export to. Give one of {', '.join(FORMATS)}.")
@@ -104,5 +106,7 @@ def _srdf(
 
 def _writer(to: str) -> Any:
     """The function that writes a format; its package is imported only when it is asked for."""
+    if to == "usd":
+        require("Writing USD", "usd-core")
     module, function = _WRITERS[to]
     return getattr(importlib.import_module(module), function)

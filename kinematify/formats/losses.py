@@ -1,4 +1,4 @@
-"""What a format cannot say of a model, and what becomes of it: one table for the command, its JSON and the docs."""
+"""Losses of a format: one table of what it cannot say, for the command, its JSON and the docs."""
 
 from __future__ import annotations
 

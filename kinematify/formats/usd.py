@@ -166,7 +166,7 @@ class _UsdWriter:
         return found
 
     def _add_surface(self, path: Any, surface: Surface) -> None:
-        """What is seen of one material: a display colour, and the material itself for renderers that know it."""
+        """Return what is seen of one material: a display colour, and the material itself for renderers that know it."""
         found = self._mesh(path, surface.vertices, surface.faces)
         _display(found, surface.material.color)
         if surface.uv is not None:
@@ -200,7 +200,7 @@ class _UsdWriter:
         return found
 
     def _show_texture(self, path: Any, color: Any, texture: Texture, light: FloatArray) -> None:
-        """Let a picture beside the file, times a colour, be what an input shows."""
+        """Make a picture beside the file, times a colour, be what an input shows."""
         folder = self._out.parent / f"{self._out.stem}_textures"
         folder.mkdir(exist_ok=True)
         file = folder / f"{path.name}.png"
@@ -269,7 +269,7 @@ class _UsdWriter:
                     motor.CreateAttribute(name, Sdf.ValueTypeNames.Double).Set(sign * float(joint.effort))
 
     def _add_roles(self, top: Any, pinned: list[Any]) -> None:
-        """What Isaac Sim lists as joints and links of a robot; what is fixed to the world counts as a manipulator."""
+        """Add the joints and links that Isaac Sim lists of a robot; one fixed to the world is a manipulator."""
         if pinned:
             top.CreateAttribute("isaac:robotType", Sdf.ValueTypeNames.Token).Set("Manipulator")
         joints = [joint.GetPath() for joint in self._joints.values()]

@@ -67,7 +67,7 @@ class CopyDescription(BaseModel):
 
 
 class Spoken(BaseModel):
-    """How an object is asked for."""
+    """Names of an object in a request."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -96,7 +96,7 @@ class Spoken(BaseModel):
 
 
 class _Counted(Spoken):
-    """How a blueprint is asked for."""
+    """Counts of a blueprint in a request."""
 
     category: Name
     counts: dict[str, dict[str, Any]] = Field({})
@@ -126,11 +126,11 @@ class WrittenObject(_Counted):
 
     @cached_property
     def described(self) -> ObjectDescription:
-        """What the file says."""
+        """Return what the file says."""
         return ObjectDescription.model_validate(parse_table(self.text))
 
     def family(self) -> Family:
-        """See `ObjectDescription`."""
+        """Implement `ObjectDescription`."""
         material = re.search(r"\nparts:\n- name: .*\n  material: (\w+)", self.text)
         return self.as_family(material[1] if material else "plastic", self._build)
 
@@ -196,7 +196,7 @@ class SteppedDescription(Spoken):
 
     @cached_property
     def steps(self) -> tuple[Step, ...]:
-        """How it is built."""
+        """Return how it is built."""
         return tuple(parse_table(self.written_steps))
 
     def family(self) -> Family:
@@ -219,7 +219,7 @@ class SteppedDescription(Spoken):
 
     @cached_property
     def asked(self) -> tuple[Parameter, ...]:
-        """What may be asked of it."""
+        """Return what may be asked of it."""
         return tuple(read_parameter(name, said) for name, said in self.parameters.items())
 
     def draw(self, style: ModelingStyle, rng: np.random.Generator) -> Blueprint:

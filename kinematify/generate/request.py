@@ -1,4 +1,4 @@
-"""What to build of the library: a family with values, or mechanisms on a body; and how two objects stand together."""
+"""Request to the library: a family with values, or mechanisms on a body; and how two objects stand together."""
 
 from __future__ import annotations
 

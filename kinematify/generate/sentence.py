@@ -70,7 +70,7 @@ _SEVERAL = 400  # characters at most that may name several objects
 
 @dataclass(frozen=True, kw_only=True)
 class Made:
-    """What came of a request."""
+    """Result of a request."""
 
     blueprint: Blueprint
     specification: Specification | None = None
@@ -80,7 +80,7 @@ class Made:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """What is known of a sentence, for ``source.json``."""
+        """Return what is known of a sentence, for ``source.json``."""
         if self.specification is None:
             return {}
         return {
@@ -105,7 +105,7 @@ class _Plan:
     """Of a scene: what its objects miss."""
 
     def missing(self, blueprint: Blueprint) -> tuple[str, ...]:
-        """What of the sentence has no effect on an object."""
+        """Return what of the sentence has no effect on an object."""
         if self.others:
             return tuple(words for plan in self.others for words in plan.missing(plan.blueprint))
         return _missing(self, blueprint)
@@ -132,7 +132,7 @@ class Sentence:
 
     @cached_property
     def plan(self) -> _Plan:
-        """How the most of it is built.
+        """Return how the most of it is built.
 
         Raises:
             InputError: It contradicts itself, or nothing of it can be built.
@@ -157,7 +157,7 @@ class Sentence:
 
     @property
     def family(self) -> str:
-        """What is built."""
+        """Return what is built."""
         return self.plan.request.family
 
     def made(self, *, seed: int | None = None) -> Made:
@@ -182,7 +182,7 @@ class Sentence:
 
 
 def _drawn(plan: _Plan, seed: int, least: int) -> tuple[Blueprint, tuple[str, ...]]:
-    """What a seed draws of a plan, and what it misses; the next draw is taken where that is more than `least` words.
+    """Return the draw of a seed from a plan, and what it misses; the next draw if that is more than `least` words.
 
     Raises:
         InputError: No draw can be built.
@@ -292,7 +292,7 @@ def _scenes(text: str, harmless: tuple[str, ...]) -> Iterator[Specification]:
 
 
 def _names_a_part(text: str) -> bool:
-    """Whether `the door` is that of what was named before, and no object of its own."""
+    """True if `the door` is that of what was named before, and no object of its own."""
     from kinematify.generate.composer.body_sentence import nouns_of_mechanisms  # noqa: PLC0415 - with the library
 
     words = text.lower().rstrip(" .!").split()
@@ -456,7 +456,7 @@ def _scene_plan(specification: Specification) -> Iterator[_Plan]:
 
 
 def _best(specification: Specification) -> _Plan:
-    """How the most of an object of a scene is built.
+    """Return how the most of an object of a scene is built.
 
     Raises:
         InputError: Nothing of it can be.
@@ -495,7 +495,7 @@ def _missing(plan: _Plan, blueprint: Blueprint) -> tuple[str, ...]:
 
 
 def _names_nothing(specification: Specification, k: int) -> bool:
-    """Whether a word says nothing, not even a place: `on the inside`."""
+    """True if a word says nothing, not even a place: `on the inside`."""
     return _says_nothing(specification, k) and specification.tokens[k].given not in PLACES
 
 

@@ -98,7 +98,7 @@ class SweptJoint:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Carved:
-    """What is left."""
+    """Rest of a body after carving."""
 
     pieces: tuple[tuple[ConvexPiece, ...], ...]
     """Of every body, world frame at rest; at least one where there was one."""
@@ -144,7 +144,7 @@ class _Polytope:
         return np.asarray(middle + weights[:, :1] * a[face] + weights[:, 1:2] * b[face] + weights[:, 2:] * c[face])
 
     def clipped(self, normal: FloatArray, offset: float, thinnest: float) -> _Polytope | None:
-        """What lies where `normal @ x >= offset`; None where that is thinner than `thinnest` or nothing."""
+        """Return what lies where `normal @ x >= offset`; None where that is thinner than `thinnest` or nothing."""
         heights = self.vertices @ normal - offset
         if heights.max() <= thinnest:
             return None
@@ -176,7 +176,7 @@ class _Polytope:
         return float(nearest.sum())
 
     def share(self, volume: float, marks: int) -> float:
-        """How much it is of something with so much volume and surface."""
+        """Return how much it is of something with so much volume and surface."""
         return len(self.marks) / max(marks, 1) + _FILLING * self.piece.volume / max(volume, 1e-300)
 
 
@@ -454,7 +454,7 @@ class _Path:
         return np.asarray(np.einsum("nji,pj->npi" if backwards else "nij,pj->npi", turns, own).reshape(-1, 3))
 
     def _beyond(self, still: _Polytope, passing: _Polytope, ends: slice, *, backwards: bool) -> FloatArray:
-        """How far beyond the best plane of `still` the other one is in each step between some ends [m], shape (n,)."""
+        """Measure how far beyond the best plane of `still` the other is in each step between some ends [m], (n,)."""
         normals, offsets = still.planes
         normals = np.concatenate([normals, self._across])
         offsets = np.concatenate([offsets, (self._across @ still.vertices.T).max(axis=1)])
@@ -474,7 +474,7 @@ class _Path:
         return self._tracks[key]
 
     def _rise(self, piece: _Polytope) -> float:
-        """How far the arcs of a piece rise over their chords [m]; by second differences where it is no turn."""
+        """Return how far the arcs of a piece rise over their chords [m]; by second differences where it is no turn."""
         if self._sweep.followed is None:
             return self._arc * self._sweep.radius(piece.vertices)
         track = self._track(piece, backwards=piece.body not in self._sweep.moved)
@@ -483,7 +483,7 @@ class _Path:
 
 
 def _support(normals: FloatArray, points: FloatArray) -> FloatArray:
-    """How far points reach along each normal, shape (k,)."""
+    """Return how far points reach along each normal, shape (k,)."""
     if len(normals) * len(points) > _MANY:
         points = points[ConvexHull(points, qhull_options="QJ").vertices]
     blocks = np.array_split(normals, 1 + len(normals) * len(points) // _CACHED)

@@ -88,7 +88,7 @@ class CutSurface:
         return WindingTree(self.vertices, self.faces)
 
     def gap(self, piece: ConvexPiece, tolerance: float) -> float:
-        """How far a piece reaches beyond the surface at most [m]; what lies inside it does not count."""
+        """Return how far a piece reaches beyond the surface at most [m]; what lies inside it does not count."""
         return float(self.gaps(piece, tolerance).max())
 
     def gaps(self, piece: ConvexPiece, tolerance: float) -> FloatArray:
@@ -138,7 +138,7 @@ class Concave:
 
     @cached_property
     def triangles(self) -> FloatArray:
-        """What is cut: corners, shape (n, 3, 3)."""
+        """Return what is cut: corners, shape (n, 3, 3)."""
         return self.surface.few_triangles()
 
     @cached_property
@@ -188,7 +188,7 @@ class _Cutting:
 
     @property
     def chunks(self) -> list[Chunk]:
-        """What it is made of so far."""
+        """Return what it is made of so far."""
         return self._finished + self._queue
 
     @property

@@ -201,7 +201,7 @@ def _key(bodies: Sequence[Concave], cuts: int) -> str:
 
 
 def _load(path: Path, bodies: int) -> list[list[ConvexPiece]] | None:
-    """What was stored; None where there is nothing, or a file that someone damaged."""
+    """Return what was stored; None where there is nothing, or a file that someone damaged."""
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             body, corners, triangles = file["body"], file["corners"], file["triangles"]

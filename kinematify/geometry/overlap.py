@@ -1,4 +1,4 @@
-"""Whether two bodies collide in many relative poses, how deep, and how far apart they are."""
+"""Test whether two bodies collide in many relative poses, how deep, and how far apart they are."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class OverlapQueries:
         return self._scene.bodies[pair[0]].solid, self._scene.bodies[pair[1]].solid
 
     def collide(self, pair: Pair, T: FloatArray) -> BoolArray:
-        """Whether the surfaces meet, poses (n, 4, 4) -> (n,)."""
+        """Test whether the surfaces meet, poses (n, 4, 4) -> (n,)."""
         first, second = self.solids(pair)
         hit = boxes_meet(first, second, T)
         rows = np.flatnonzero(hit)
@@ -54,7 +54,7 @@ class OverlapQueries:
         return hit
 
     def may_contain(self, pair: Pair, T: FloatArray) -> BoolArray:
-        """Whether the box of one body lies in the box of the other one, poses (n, 4, 4) -> (n,)."""
+        """Test whether the box of one body lies in the box of the other one, poses (n, 4, 4) -> (n,)."""
         first, second = self.solids(pair)
         return _box_in_box(second, first, T) | _box_in_box(first, second, inverse(T))
 
@@ -67,7 +67,7 @@ class OverlapQueries:
         return np.maximum(_reach_into(first, second, T), _reach_into(second, first, inverse(T)))
 
     def passed(self, pair: Pair, T: FloatArray, hit: BoolArray, *, grace: float) -> FloatArray:
-        """How far points of one body have gone through walls of the other one [m], along a path of poses -> (n,).
+        """Measure how far points of one body went through walls of the other [m], along a path of poses -> (n,).
 
         A thin wall is never deep, and a sheet has no inside; what went through it stands behind it.
 
@@ -83,7 +83,7 @@ class OverlapQueries:
         return np.maximum(_passed(first, second, T, hit, grace), _passed(second, first, inverse(T), hit, grace))
 
     def near(self, pair: Pair, T: FloatArray, limit: float) -> bool:
-        """Whether a point of the second body is at most `limit` from the first [m] in one pose (4, 4).
+        """True if a point of the second body is at most `limit` from the first [m] in one pose (4, 4).
 
         Then so is their gap, which takes far longer to find; where it is False, the gap may still be smaller.
         """
@@ -112,7 +112,7 @@ class OverlapQueries:
 
 
 def boxes_meet(first: Solid, second: Solid, T: FloatArray) -> BoolArray:
-    """Whether the oriented boxes of two bodies meet (separating axes of their faces), poses (n, 4, 4) -> (n,)."""
+    """Test whether the oriented boxes of two bodies meet (separating axes of their faces), poses (n, 4, 4) -> (n,)."""
     half = 0.5 * (first.high - first.low), 0.5 * (second.high - second.low)
     rotations = T[:, :3, :3]
     absolute = np.abs(rotations)
@@ -124,14 +124,14 @@ def boxes_meet(first: Solid, second: Solid, T: FloatArray) -> BoolArray:
 
 
 def _box_in_box(inner: Solid, outer: Solid, T: FloatArray) -> BoolArray:
-    """Whether the box of `inner`, posed in the frame of `outer`, lies in the box of the latter."""
+    """Test whether the box of `inner`, posed in the frame of `outer`, lies in the box of the latter."""
     reach = np.abs(T[:, :3, :3]) @ (0.5 * (inner.high - inner.low))
     middle = T[:, :3, :3] @ inner.middle + T[:, :3, 3]
     return all_three((middle - reach >= outer.low) & (middle + reach <= outer.high))
 
 
 def _reach_into(body: Solid, other: Solid, T: FloatArray) -> FloatArray:
-    """How deep points of `other`, posed in the frame of `body`, lie in it [m], poses (n, 4, 4) -> (n,)."""
+    """Return how deep points of `other`, posed in the frame of `body`, lie in it [m], poses (n, 4, 4) -> (n,)."""
     depth = np.zeros(len(T))
     if len(body.shells.closed):
         for rows in _pieces(len(T), len(other.points)):

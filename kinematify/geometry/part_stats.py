@@ -1,4 +1,4 @@
-"""What the topology stage needs to know of each part: where it is, how large it is, what it can stand on."""
+"""Facts of each part for the topology stage: where it is, how large it is, what it can stand on."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def _hull_measures(part: Part) -> tuple[float, float, float]:
 
 
 def _rests(corners: FloatArray, diagonal: float, footprint: float) -> bool:
-    """Whether the surface that lies on the floor spans a fair share of the footprint.
+    """True if the surface that lies on the floor spans a fair share of the footprint.
 
     The hull of blades around a small cap is nearly level below, and there is nothing but the cap.
     """
@@ -123,7 +123,7 @@ def _rests(corners: FloatArray, diagonal: float, footprint: float) -> bool:
 
 
 def _is_closed(part: Part) -> bool:
-    """Whether every edge, by position, is walked once in each direction (meshes often repeat vertices)."""
+    """True if every edge, by position, is walked once in each direction (meshes often repeat vertices)."""
     merged = np.unique(part.vertices, axis=0, return_inverse=True)[1].reshape(-1)[part.faces]
     merged = merged[(merged != np.roll(merged, 1, axis=1)).all(axis=1)]
     edges = np.concatenate([merged[:, [0, 1]], merged[:, [1, 2]], merged[:, [2, 0]]])

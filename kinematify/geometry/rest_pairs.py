@@ -48,7 +48,7 @@ def overlapping_links(scene: Scene) -> tuple[tuple[str, str], ...]:
 
 
 class DepthAllowance:
-    """How deep each pair is at rest, and how much deeper it may get."""
+    """Depth of each pair at rest, and the extra depth that is allowed."""
 
     def __init__(self, scene: Scene, overlap: OverlapQueries) -> None:
         """Keep the scene; pairs are measured when first asked for."""
@@ -73,7 +73,7 @@ class DepthAllowance:
         return self._overlap.gap(pair, relative(self._scene.at_rest[None], pair)[0])
 
     def hovers(self, pair: Pair, limit: float) -> bool:
-        """Whether a pair is farther apart than `limit` at rest [m]."""
+        """True if a pair is farther apart than `limit` at rest [m]."""
         T = relative(self._scene.at_rest[None], pair)[0]
         return not self._overlap.near(pair, T, limit) and self._overlap.gap(pair, T) > limit
 
@@ -82,7 +82,7 @@ class DepthAllowance:
         return pair in self._scene.connection_of
 
     def tolerance(self, pair: Pair) -> float:
-        """How much deeper than at rest a pair may get [m]."""
+        """Return how much deeper than at rest a pair may get [m]."""
         settings = self._scene.settings
         part = min(solid.size for solid in self._overlap.solids(pair))
         return min(settings.tolerance * self._scene.size, settings.part_tolerance * part)

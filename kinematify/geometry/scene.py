@@ -134,7 +134,7 @@ class Scene:
         return frozenset(np.flatnonzero(np.any(np.abs(moving) > 0.0, axis=0)).tolist() if moving else ())
 
     def carries(self, pair: Pair) -> bool:
-        """Whether one of the two bodies carries the other, perhaps with bodies between them."""
+        """True if one of the two bodies carries the other, perhaps with bodies between them."""
         first, second = (self._ways[self.bodies[index].group] for index in pair)
         return first <= second or second <= first
 
@@ -204,7 +204,7 @@ def visible_shapes(link: Link) -> tuple[Shape, ...]:
 
 
 def simplified(model: Robot) -> bool:
-    """Whether the collision geometry of some link is not simply its visual geometry, where there is any."""
+    """True if the collision geometry of some link is not simply its visual geometry, where there is any."""
 
     def described(shapes: tuple[Shape, ...]) -> list[tuple[object, ...]]:
         return [(shape.kind, shape.file, shape.size, shape.T_link_shape.tobytes()) for shape in shapes]

@@ -99,7 +99,7 @@ class Solid:
         return np.asarray(depth.max(axis=1))
 
     def contains(self, points: FloatArray) -> BoolArray:
-        """Whether points are in the closed shells, body frame (n, 3) -> (n,)."""
+        """Test whether points are in the closed shells, body frame (n, 3) -> (n,)."""
         found, doubtful = self._by_rays(points)
         if doubtful.any():
             found[doubtful] = self._is_wound(points[doubtful])
@@ -115,7 +115,7 @@ class Solid:
         return first & second, first ^ second
 
     def _is_wound(self, points: FloatArray) -> BoolArray:
-        """Whether points are inside by the winding number, which is slow; rays disagree in shells that overlap."""
+        """Test whether points are inside by the winding number, which is slow; rays disagree in shells that overlap."""
         return np.asarray(np.abs(self._winding.numbers(self._local(points))) > 0.5)
 
     def _meets_from_behind(self, local: FloatArray, along: FloatArray) -> BoolArray:
@@ -132,7 +132,7 @@ class Solid:
         return np.where(on_rim, 0.0, distance)
 
     def meets(self, starts: FloatArray, steps: FloatArray, *, sheets: bool) -> BoolArray:
-        """Whether segments meet a sheet, or else a closed shell, body frame (n, 3) each -> (n,)."""
+        """Test whether segments meet a sheet, or else a closed shell, body frame (n, 3) each -> (n,)."""
         met = np.zeros(len(starts), dtype=bool)
         if not len(self.shells.sheets if sheets else self.shells.closed):
             return met
@@ -193,7 +193,7 @@ class Solid:
 
 
 def _at_edges(corners: FloatArray, foot: FloatArray) -> BoolArray:
-    """Whether a place in a triangle lies on the side opposite each corner, shape (n, 3)."""
+    """Test whether a place in a triangle lies on the side opposite each corner, shape (n, 3)."""
     u, v, w = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], foot - corners[:, 0]
     uu, uv, vv = (np.einsum("nd,nd->n", *pair) for pair in ((u, u), (u, v), (v, v)))
     wu, wv = np.einsum("nd,nd->n", w, u), np.einsum("nd,nd->n", w, v)

@@ -1,4 +1,4 @@
-"""What the evidence needs to know of one part's surface: smooth normals, sharp edges and a collision tree.
+"""Surface of a part as the evidence needs it: smooth normals, sharp edges and a collision tree.
 
 A faceted cylinder has wrong normals everywhere but on the middle line of each facet. `PartSurface` therefore
 interpolates corner normals over faces that meet at a small dihedral angle, which are radial to within the
@@ -139,7 +139,7 @@ class PartSurface:
 
     @cached_property
     def noisy(self) -> bool:
-        """Whether the vertices are so noisy that single faces do not tell how the surface runs."""
+        """True if the vertices are so noisy that single faces do not tell how the surface runs."""
         vertices, faces = self.welded
         normals, areas = self.face_normals
         return bends_both_ways(vertices[faces].mean(axis=1), normals, areas, self._adjacent[:, :2]) > ROUGH

@@ -106,7 +106,7 @@ class Sweeper:
         return JointSweep(leader=leader, travel=travel, own=own, sides=(low, high))
 
     def meeting(self, leader: int, pair: Pair, sign: float) -> Meeting | None:
-        """What one pair meets within the declared range on the way to one side, as in `sweep`."""
+        """Return what one pair meets within the declared range on the way to one side, as in `sweep`."""
         values, poses = self._way(leader, sign)
         return self._within(leader, pair, values, relative(poses, pair))
 
@@ -153,7 +153,7 @@ class Sweeper:
         return values, self._scene.poses(self.rows(leader, values))
 
     def _far_end(self, travel: Travel, sign: float) -> float:
-        """How far it is worth looking: one more range, at most half a turn from rest, never less than declared."""
+        """Return the end of the search: one more range, at most half a turn from rest, never less than declared."""
         declared = travel.upper if sign > 0 else travel.lower
         if not travel.limited:
             return declared

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class JudgedConfigurations:
-    """What meets in some configurations."""
+    """Contacts of some configurations."""
 
     rows: FloatArray
     """Values of the leaders [rad or m], shape (n, leaders)."""

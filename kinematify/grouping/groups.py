@@ -61,7 +61,7 @@ class Grouping:
 
     @property
     def messages(self) -> tuple[str, ...]:
-        """What was made of the pieces, one sentence each."""
+        """Return what was made of the pieces, one sentence each."""
         count = sum(len(group.pieces) for group in self.groups)
         doubtful = [_said(group) for group in self.groups if group.moves is not None and group.moves < _DOUBTFUL]
         said = [f"The mesh is not segmented: {count} pieces were grouped into {len(self.groups)} rigid parts."]
@@ -109,7 +109,7 @@ _MOST_NAMED = 8
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PieceWeights:
-    """What was fitted to objects whose parts are known."""
+    """Weights fitted to objects whose parts are known."""
 
     pairs: Scorer
     """Which two pieces are one part."""

@@ -1,4 +1,4 @@
-"""What is measured of two pieces that touch: sizes, contact, room to move, what is seen, twins and neighbours."""
+"""Measurements of two pieces that touch: sizes, contact, room to move, what is seen, twins and neighbours."""
 
 from __future__ import annotations
 
@@ -234,7 +234,7 @@ def freedom_columns(met: FloatArray) -> dict[str, FloatArray]:
 def _of_neighbours(
     pairs: IntArray, contact: dict[str, FloatArray], sizes: FloatArray, count: int
 ) -> dict[str, FloatArray]:
-    """How many neighbours every piece has, and how many small ones that touch nothing else."""
+    """Return how many neighbours every piece has, and how many small ones that touch nothing else."""
     small, large = pairs.T
     touches = contact["gap"] <= _TOUCH
     degree = np.bincount(pairs.reshape(-1), minlength=count).astype(float)
@@ -250,7 +250,7 @@ def _of_neighbours(
 
 
 def _of_boxes(grid: Lattice, pairs: IntArray, sizes: FloatArray) -> dict[str, FloatArray]:
-    """How the boxes of a pair lie."""
+    """Return how the boxes of a pair lie."""
     low, high = grid.bounds[:, 0], grid.bounds[:, 1]
     small, large = pairs.T
     extents = high - low + 1e-9
@@ -277,7 +277,7 @@ def _of_boxes(grid: Lattice, pairs: IntArray, sizes: FloatArray) -> dict[str, Fl
 
 
 def _blocked(grid: Lattice, pairs: IntArray) -> dict[str, FloatArray]:
-    """What of the smaller piece meets the larger one along each axis, beyond what meets it at rest."""
+    """Return what of the smaller piece meets the larger one along each axis, beyond what meets it at rest."""
     small, large = pairs.T
     hits = grid.met[:, :, small, large] / grid.sizes[small]
     columns = {f"blocked_{name}": column for name, column in freedom_columns(hits).items()}
@@ -286,7 +286,7 @@ def _blocked(grid: Lattice, pairs: IntArray) -> dict[str, FloatArray]:
 
 
 def _of_twins(of_piece: dict[str, FloatArray], pairs: IntArray) -> dict[str, FloatArray]:
-    """Whether the pair is congruent, as far as sizes tell; also adds how many twins each piece has."""
+    """Test whether the pair is congruent, as far as sizes tell; also adds how many twins each piece has."""
     shape = np.stack([of_piece[name] for name in ("thin", "middle", "long", "fill")], axis=1)
     length = shape[:, 2]
     alike = np.ones((len(shape), len(shape)), dtype=bool)

@@ -164,7 +164,7 @@ def alike(
 def measure_candidates(
     measured: MeasuredPieces, odds: FloatArray, areas: FloatArray, candidates: Sequence[Candidate]
 ) -> tuple[FloatArray, tuple[str, ...]]:
-    """What is measured of each candidate, shape (c, k), and the names of the columns.
+    """Return what is measured of each candidate, shape (c, k), and the names of the columns.
 
     Args:
         measured: Pieces and pairs.
@@ -193,7 +193,7 @@ def with_ranks(table: FloatArray, names: tuple[str, ...]) -> tuple[FloatArray, t
 
 
 def _links(inside: BoolArray, measured: MeasuredPieces, odds: FloatArray, areas: FloatArray) -> dict[str, float]:
-    """How likely its pieces are one, and are one with others."""
+    """Return how likely its pieces are one, and are one with others."""
     ends = inside[measured.pairs]
     within, across = ends.all(axis=1), ends[:, 0] != ends[:, 1]
     own, other = odds[within], odds[across]
@@ -243,7 +243,7 @@ def _corners(member: BoolArray, grid: Lattice) -> tuple[FloatArray, FloatArray]:
 
 
 def _slides(member: BoolArray, grid: Lattice) -> dict[str, FloatArray]:
-    """What each candidate meets when it moves along each axis, as shares of its cells; columns of shape (c,)."""
+    """Return what each candidate meets when it moves along each axis, as shares of its cells; columns of shape (c,)."""
     inside = member.astype(np.float64)
     size = inside @ grid.sizes
     met = np.array([[((inside @ of) * (1.0 - inside)).sum(axis=1) / size for of in reach] for reach in grid.met])
@@ -281,7 +281,7 @@ class _Turns:
         )
 
     def measured(self, inside: BoolArray) -> dict[str, float]:
-        """What a candidate (n,) meets in turns, as shares of its points, beyond what it meets at rest."""
+        """Return what a candidate (n,) meets in turns, as shares of its points, beyond what it meets at rest."""
         points = self._points_of(inside)
         outside = np.append(~inside, False)
         rest = self._hits(points[None], outside)[0]

@@ -1,4 +1,4 @@
-"""What is known of a joint before and after it is chosen."""
+"""Facts of a joint before and after it is chosen."""
 
 from __future__ import annotations
 

@@ -169,7 +169,7 @@ class CollisionWorld:
                 yield robot, self._column, "self", False
 
     def _first_joint(self, link: str) -> int:
-        """How many joints of the arm lead to a link."""
+        """Return how many joints of the arm lead to a link."""
         above, count = self._arm.declared.joint_above, 0
         while link in above:
             count += above[link].name in self._arm.robot.arm_joints

@@ -139,7 +139,7 @@ class Frame:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Execution:
-    """What an engine made of a plan."""
+    """Result of a plan in an engine."""
 
     engine: str
     hold: Hold
@@ -240,7 +240,7 @@ def execute(loaded: Loaded, settings: ExecutionSettings, *, engine: str, hold: H
 
 @dataclass(kw_only=True)
 class _Log:
-    """What is noted down on the way."""
+    """Log of an execution."""
 
     frames: list[Frame] = field(default_factory=list)
     depth: float = 0.0
@@ -328,7 +328,7 @@ class _Run:
         return values, log
 
     def _take_hold(self) -> None:
-        """Let the joint go; with a weld, fix the hand to the part."""
+        """Release the joint; with a weld, fix the hand to the part."""
         self.world.release((self._motion.joint, *self._motion.freed))
         if self._hold is Hold.WELD:
             self.world.weld()

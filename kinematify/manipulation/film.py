@@ -88,7 +88,7 @@ class _FilmStage:
 
     @cached_property
     def meshes(self) -> tuple[tuple[_Mesh, ...], tuple[_Mesh, ...]]:
-        """Of the robot, the hand first, and of the object, the held part first."""
+        """Meshes of the robot, the hand first, and of the object, the held part first."""
         loaded = self.loaded
         robot = _bodies(loaded.robot, lambda link: _HAND if link in loaded.hand_links else _ARM)
         root = loaded.object.root
@@ -101,7 +101,7 @@ class _FilmStage:
 
     @cached_property
     def watched(self) -> int:
-        """How many of the meshes of `scene` are the held part and the hand, which stand first."""
+        """Return how many of the meshes of `scene` are the held part and the hand, which stand first."""
         robot, model = self.meshes
         hand = sum(mesh.link in self.loaded.hand_links for mesh in robot)
         return hand + sum(mesh.link in self.loaded.held_links for mesh in model)
@@ -122,7 +122,7 @@ class _FilmStage:
 
     @cached_property
     def column(self) -> tuple[PosedMesh, ...]:
-        """What the robot stands on, if it does not stand on the floor."""
+        """Return what the robot stands on, if it does not stand on the floor."""
         T = self.loaded.motion.T_world_base
         found = column_mesh(float(T[2, 3]))
         if found is None:

@@ -51,7 +51,7 @@ class Grasp:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class GraspReport:
-    """What a search found."""
+    """Result of a search for grasps."""
 
     grasps: tuple[Grasp, ...]
     """The best first."""
@@ -197,7 +197,7 @@ def _pull(found: Candidates, motion: FloatArray) -> FloatArray:
 
 
 class _Room:
-    """Whether the hand and its straight way in are free of the object, exactly."""
+    """Test whether the hand and its straight way in are free of the object, exactly."""
 
     def __init__(self, scene: Scene, poses: FloatArray, settings: GraspSettings) -> None:
         self._settings, self._unit = settings, scene.unit

@@ -74,7 +74,7 @@ class Candidates:
 
 @dataclass(frozen=True, kw_only=True)
 class Tally:
-    """What became of the places that were looked at."""
+    """Counts of the places that were looked at."""
 
     seen: int
     """Places with approach and closing directions that are met first from outside."""
@@ -145,7 +145,7 @@ class GraspSearch:
         )
 
     def is_plate(self, candidates: Candidates) -> BoolArray:
-        """Whether what is held goes on with the same thickness deeper in, shape (n,)."""
+        """Test whether what is held goes on with the same thickness deeper in, shape (n,)."""
         deeper = candidates.between + self.settings.plate * candidates.approach
         half = 0.5 * candidates.width + self.settings.slack
         first = self._first(deeper + half[:, None] * candidates.closing, -candidates.closing)[0]
@@ -202,7 +202,7 @@ class GraspSearch:
         return free, tally
 
     def _lanes_free(self, found: Candidates) -> BoolArray:
-        """Whether rays along both edges of both fingers come in as far as the tips, shape (n,)."""
+        """Test whether rays along both edges of both fingers come in as far as the tips, shape (n,)."""
         settings = self.settings
         outward = 0.5 * found.width + settings.slack + 0.5 * settings.finger_thickness
         free = np.ones(len(found), dtype=bool)

@@ -1,4 +1,4 @@
-"""What fingers that hold by friction act on.
+"""Load on fingers that hold by friction.
 
 Engines see a part as convex pieces that may reach millimetres beyond its surface, which closes the gap behind a handle.
 Fingers that hold by friction therefore act on one piece only: what lies between the pads of the exact part, as one

@@ -7,14 +7,20 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pinocchio as pin
 from lxml import etree
 from scipy.spatial import KDTree
 from scipy.stats import qmc
 
+from kinematify.errors import EnvironmentFault
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.write import robot_element
+from kinematify.versions import not_installed
+
+try:
+    import pinocchio as pin
+except ImportError as error:
+    raise EnvironmentFault(not_installed("A robot arm", "pin", "coal", "ompl")) from error
 
 if TYPE_CHECKING:
     from kinematify.config.planning_settings import PlanSettings
@@ -67,7 +73,7 @@ class Arm:
         return np.asarray(self._placement(q).homogeneous).copy()
 
     def jacobian(self, q: FloatArray) -> FloatArray:
-        """Of the tool, in its own frame, linear part first, shape (6, dof)."""
+        """Jacobian of the tool, in its own frame, linear part first, shape (6, dof)."""
         values = pin.neutral(self.model)
         values[self._rows] = q
         return np.asarray(pin.computeFrameJacobian(self.model, self._data, values, self._tool, pin.LOCAL))[
@@ -133,7 +139,7 @@ class Arm:
         return np.stack([np.asarray(self._placement(q).homogeneous) for q in self.samples])
 
     def distances(self, targets: FloatArray) -> FloatArray:
-        """How far the nearest sample is from poses (n, 4, 4): metres and half metres per radian, shape (n,)."""
+        """Return how far the nearest sample is from poses (n, 4, 4): metres and half metres per radian, shape (n,)."""
         return np.asarray(self._map.query(_features(targets, self.settings.radian))[0])
 
     @cached_property

@@ -1,4 +1,4 @@
-"""What a user asks of a robot, what may become of the plan, and what holds the part when it is executed.
+"""Request of a robot task: the plan, its results, and what holds the part when it is executed.
 
 A request crosses a process border, so it holds plain data only.
 """
@@ -18,7 +18,7 @@ TASKS = (PULL, POUR)
 
 @dataclass(frozen=True, kw_only=True)
 class PriorFinding:
-    """What the geometry has against a joint."""
+    """Finding of the geometry against a joint."""
 
     check: str
     """Id of the check that says so."""
@@ -75,7 +75,7 @@ class Failure(StrEnum):
 
 
 class Hold(StrEnum):
-    """What connects the hand with the part."""
+    """Connection of the hand with the part."""
 
     WELD = "weld"
     """They are fixed to each other once the fingers have arrived."""

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Freedom:
-    """How far the object lets one of its joints go, whoever pulls."""
+    """Range that the object lets one of its joints go, whoever pulls."""
 
     share: float = 1.0
     """Of the way from rest to the open end, in [0, 1]."""
@@ -101,7 +101,7 @@ def _with(before: Clearing, scene: Scene, helper: int, leader: int, settings: Pl
 
 
 def _freedom(scene: Scene, leader: int, settings: PlanSettings) -> Freedom:
-    """How far a leader goes while all others rest."""
+    """Return how far a leader goes while all others rest."""
     overlap = OverlapQueries(scene)
     sweep = Sweeper(scene, overlap, DepthAllowance(scene, overlap)).sweep(leader)
     travel = scene.travels[leader]
@@ -120,7 +120,7 @@ def _freedom(scene: Scene, leader: int, settings: PlanSettings) -> Freedom:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PullPlan:
-    """What became of the plan for one joint."""
+    """Result of the plan for one joint."""
 
     joint: str
     turns: bool
@@ -159,7 +159,7 @@ class PullPlan:
 
 @dataclass(kw_only=True)
 class _Tried:
-    """What the search remembers."""
+    """Memory of the search."""
 
     pulls: list[Pull] = field(default_factory=list)
     stops: dict[str, int] = field(default_factory=dict)
@@ -173,7 +173,7 @@ class _Tried:
 
     @property
     def usual(self) -> Stop | None:
-        """What stopped it most often."""
+        """Return what stopped it most often."""
         return self.words[max(self.stops, key=lambda kind: self.stops[kind])] if self.stops else None
 
 
@@ -212,7 +212,7 @@ def plan_pull(
 
 
 def depend(plans: Sequence[PullPlan]) -> tuple[PullPlan, ...]:
-    """Let plans fail that need another joint opened first, where the plan for that one fails."""
+    """Make plans fail that need another joint opened first, where the plan for that one fails."""
     failed = {plan.joint for plan in plans if plan.failure is not None}
     while True:
         held = {plan.joint for plan in plans if plan.joint not in failed and failed & plan.first.keys()}

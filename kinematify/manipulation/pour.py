@@ -208,7 +208,7 @@ def _moving(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PourPlan:
-    """What became of the plan."""
+    """Result of the plan."""
 
     motion: Motion | None
     """To be executed; None if there is no way to a grasp."""
@@ -271,7 +271,7 @@ def _planned(arm: Arm, pour: Pour, settings: ValidationSettings, seed: int) -> P
 
 
 def _meeting(scene: Scene, motion: ObjectMotion) -> str | None:
-    """What the cup itself runs into on its way."""
+    """Return what the cup itself runs into on its way."""
     overlap = OverlapQueries(scene)
     cups = {body for bodies in moved_bodies(scene, TILT) for body in bodies}
     for pair in scene.pairs:

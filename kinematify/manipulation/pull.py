@@ -29,7 +29,7 @@ _KINDS = {"self": SELF, "object": OBJECT, "floor": FLOOR}
 
 @dataclass(frozen=True, kw_only=True)
 class Stop:
-    """What ends a pull."""
+    """Cause that ends a pull."""
 
     kind: str
     """One of the names of this module."""
@@ -41,7 +41,7 @@ class Stop:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Pull:
-    """How far the arm can take the part from one place."""
+    """Distance over which the arm can take the part from one place."""
 
     place: RobotPlacement
     path: FloatArray

@@ -1,4 +1,4 @@
-"""How large an object really is: shapes of common collections are brought to unit size, and an arm is not.
+"""Real size of an object: shapes of common collections are brought to unit size, and an arm is not.
 
 A model that fills a ball of radius 1 around its origin was normalised, and is scaled to the common size of what it is
 called. Any other model whose size is plausible for what it is called stays as it is, and so does one that is called

@@ -73,7 +73,7 @@ def standing_at(x: float, y: float, z: float, yaw: float) -> FloatArray:
 
 
 def column_mesh(height: float) -> tuple[FloatArray, IntArray] | None:
-    """What a robot stands on whose root link is so high [m], as pictures show it; None on the floor.
+    """Return what a robot stands on whose root link is so high [m], as pictures show it; None on the floor.
 
     Returns:
         Vertices in the frame of the root link [m], shape (8, 3), and faces, shape (12, 3).

@@ -50,7 +50,7 @@ class Counter:
         self.count, self._most = 0, most
 
     def condition(self) -> ob.PlannerTerminationCondition:
-        """What OMPL asks whether to go on."""
+        """Return what OMPL asks whether to go on."""
         return ob.PlannerTerminationCondition(lambda: bool(self.count > self._most))
 
 

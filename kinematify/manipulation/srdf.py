@@ -231,7 +231,7 @@ class _LinkSolids:
         self._solids: dict[str, Solid] = {}
 
     def collide(self, pair: Pair, links: tuple[str, str], T: FloatArray, hit: BoolArray) -> BoolArray:
-        """Whether two links collide, asked where their bodies do, poses (n, 4, 4) -> (n,)."""
+        """Test whether two links collide, asked where their bodies do, poses (n, 4, 4) -> (n,)."""
         found = np.zeros_like(hit)
         first, second = (self._solid(body, link) for body, link in zip(pair, links, strict=True))
         unit, request = self._scene.unit, fcl.CollisionRequest()

@@ -203,13 +203,13 @@ def _thin(shape: Shape) -> Shape:
 
 
 def _thinning(link: Link) -> float:
-    """How far vertices of a link move because there are too many [m]."""
+    """Return how far vertices of a link move because there are too many [m]."""
     heavy = [shape.mesh for shape in (*link.visuals, *link.collisions) if len(shape.mesh.faces) > _MANY_FACES]
     return max((3**0.5 * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))) / _CELLS for mesh in heavy), default=0.0)
 
 
 def collides_as_it_is(robot: Robot) -> bool:
-    """Whether what the links collide with is what engines take it for: primitives and convex meshes, on every link."""
+    """True if what the links collide with is what engines take it for: primitives and convex meshes, on every link."""
     return all(
         bool(link.collisions) and all(shape.kind != "mesh" or _convex(shape.mesh) for shape in link.collisions)
         for link in robot.links
@@ -269,7 +269,7 @@ class _ExactSweeps:
 
 
 def _sweeps(robot: Robot, poses: Mapping[str, FloatArray], config: CollisionConfig) -> list[_Sweep]:
-    """Of joints that lead, from where they rest: one for each two groups that a joint moves apart."""
+    """Sweeps of joints that lead, from where they rest: one for each two groups that a joint moves apart."""
     mechanism = LeaderMechanism(robot=robot)
     found = []
     leaders = robot.leaders
@@ -312,7 +312,7 @@ class _MovedTogether:
     def motions(
         self, resting: frozenset[str], moved: frozenset[str], values: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """How a group moves as another one sees it, both begun at rest in the world frame; values from rest (n,)."""
+        """Return the motion of a group relative to another, from rest in the world frame; values from rest (n,)."""
         displaced = self._displaced(tuple(values.tolist()))
         T = np.linalg.inv(displaced[self._link[resting]]) @ displaced[self._link[moved]]
         return T[:, :3, :3], T[:, :3, 3]
@@ -350,7 +350,7 @@ def _in_world(pieces: Pieces, T_world_link: FloatArray) -> list[ConvexPiece]:
 
 
 def _as_it_is(link: Link, T_world_link: FloatArray) -> list[ConvexPiece]:
-    """What engines collide of a link that stays as it is: primitives and hulls, in the world frame."""
+    """Return what engines collide of a link that stays as it is: primitives and hulls, in the world frame."""
     points = [shape.mesh.vertices for shape in link.collisions if len(shape.mesh.faces)]
     return [_moved(convex_piece(item, thickness=_THINNEST, directions=_CORNERS), T_world_link) for item in points]
 

@@ -34,7 +34,7 @@ _FILLED = 3.0
 
 
 class Method(StrEnum):
-    """How the collision geometry of a link became convex pieces, the least work first."""
+    """Method by which the collision geometry of a link became convex pieces, the least work first."""
 
     NONE = "none"
     """The link has no geometry."""
@@ -55,7 +55,7 @@ _EFFORT = list(Method)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Pieces:
-    """What the engines collide for one link."""
+    """Convex pieces that the engines collide for one link."""
 
     primitives: tuple[Shape, ...]
     convex: tuple[ConvexPiece, ...]
@@ -113,7 +113,7 @@ def decomposed(model: Robot, settings: PrepareSettings, *, only: frozenset[str] 
 
 
 def _diagonal(model: Robot) -> float:
-    """Of the box around the collision geometry at zero [m]; 0 where there is none."""
+    """Diagonal of the box around the collision geometry at zero [m]; 0 where there is none."""
     poses = forward_kinematics(model, {})
     ends = [
         end(shape.mesh.vertices @ poses[link.name][:3, :3].T + poses[link.name][:3, 3], axis=0)

@@ -35,7 +35,7 @@ _VALUES = 33
 
 @dataclass(frozen=True, kw_only=True)
 class JointLoad:
-    """What a joint moves: others rest."""
+    """Load of a joint: others rest."""
 
     inertia: float
     """About the axis [kg m^2], or the mass [kg]."""
@@ -140,7 +140,7 @@ def _spatial_inertia(inertial: Inertial, T_world_link: FloatArray) -> FloatArray
 
 
 def moved_by_hand(robot: Robot, joint: Joint) -> bool:
-    """Whether a joint belongs to a chain of at most two joints that move; others have motors."""
+    """True if a joint belongs to a chain of at most two joints that move; others have motors."""
     above = 0
     link: str = joint.parent
     while link != robot.root:
@@ -220,7 +220,7 @@ def _moved(robot: Robot, joint: Joint) -> dict[str, float]:
 
 @dataclass(frozen=True, kw_only=True)
 class _Motor:
-    """What a machine needs at a joint: all of it grows with the masses that the joint carries."""
+    """Motor that a machine needs at a joint; it grows with the masses that the joint carries."""
 
     friction: float
     damping: float

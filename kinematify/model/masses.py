@@ -89,7 +89,7 @@ def _walls(part: Part) -> _Solid:
 
 
 def _sturdy(solid: _Solid) -> bool:
-    """Whether the moments are those of something that extends in all directions, by more than engines round."""
+    """True if the moments are those of something that extends in all directions, by more than engines round."""
     low, middle, high = np.linalg.eigvalsh(solid.tensor)
     return bool(low > 0.0 and low + middle > (1.0 + _STURDY) * high)
 
@@ -143,7 +143,7 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PreparedInertial(Inertial):
-    """What engines are given for a link."""
+    """Mass and inertia that engines receive for a link."""
 
     mass_added: bool
     """True if the file states no mass above zero."""

@@ -22,7 +22,7 @@ SOURCE_FILE = "source.json"
 
 
 def write_model_folder(out: Path, write: Callable[[Path], None], *, overwrite: bool) -> None:
-    """Let `write` fill a hidden folder beside `out`, then give it the name `out`.
+    """Make `write` fill a hidden folder beside `out`, then give it the name `out`.
 
     On any failure, an interrupt included, the hidden folder and parent folders made here are removed and a folder that
     was at `out` before is still there.

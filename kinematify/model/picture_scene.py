@@ -1,4 +1,4 @@
-"""What a picture of a model shows: posed meshes, joint arrows, a configuration that opens it, a good point of view."""
+"""Content of a picture of a model: posed meshes, joint arrows, a configuration that opens it, a good point of view."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def _obstructed(model: KinematicModel, q: Mapping[str, float]) -> set[str]:
 
 
 def _longest_chain(model: KinematicModel) -> int:
-    """How many joints move one behind the other at most."""
+    """Return how many joints move one behind the other at most."""
     behind = {model.root: 0}
     for joint in model.robot.joints_downward:
         behind[joint.child] = behind[joint.parent] + (joint.kind is not JointType.FIXED)

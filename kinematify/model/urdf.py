@@ -155,7 +155,7 @@ def link_shades(model: KinematicModel) -> dict[str, float]:
 
 
 def tell_apart(colors: FloatArray) -> bool:
-    """Whether all of some colours differ to the eye.
+    """True if all of some colours differ to the eye.
 
     Args:
         colors: sRGB in [0, 1], shape (n, 3).

@@ -1,1 +1,1 @@
-"""What only `--config paper` runs."""
+"""Code that only `--config paper` runs."""

@@ -71,7 +71,7 @@ _STEPS = tuple(2.0**-k for k in range(6))
 
 @dataclass(frozen=True, kw_only=True)
 class FailedMotions:
-    """How far joints of an edge had moved when simulation found the parts in each other (not in the paper)."""
+    """Motions at which simulation found the parts in each other (not in the paper)."""
 
     angles: tuple[float, ...] = ()
     """Of those that turned [rad]."""
@@ -94,7 +94,7 @@ class FailedMotions:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CavlScene:
-    """What DW-CAVL knows of one directed edge."""
+    """Facts of one directed edge for DW-CAVL."""
 
     sides: tuple[CavlSide, ...]
     """The child's samples in the parent's field, then, if symmetric, the parent's in the child's."""

@@ -66,7 +66,7 @@ class PaperJoints:
         self._samples = [sample_surface(part, config.joints.samples, config.seed) for part in assembly.parts]
 
     def scene(self, parent: int, child: int) -> CavlScene:
-        """What DW-CAVL knows of one edge."""
+        """Return what DW-CAVL knows of one edge."""
         return cavl_scene(
             _edge_between(self._graph, parent, child),
             parent=parent,
@@ -155,7 +155,7 @@ def _edge_between(graph: ContactGraph, parent: int, child: int) -> ContactEdge:
 
 
 def noise_of(costs: Sequence[float], config: CavlConfig) -> float:
-    """What J is divided by to be a likelihood: the typical J of an object's best joints, each right or nearly so.
+    """Return the divisor that makes J a likelihood: the typical J of an object's best joints, right or nearly so.
 
     Gaps, closed fronts and samples leave every joint with some cost, and how much differs from object to object. It is
     at least that of a separation by the volume margin, below which distances count as touching.
@@ -201,7 +201,7 @@ def _estimate(ranked: tuple[JointCandidate, ...], edge: tuple[int, int], moving:
 
 
 def _reach(candidate: JointCandidate, moving: Part) -> float:
-    """How far a joint goes either way [rad or m]; the paper says nothing of it."""
+    """Return how far a joint goes either way [rad or m]; the paper says nothing of it."""
     return float(np.pi) if candidate.kind.turns else float(np.ptp(moving.vertices @ candidate.axis))
 
 

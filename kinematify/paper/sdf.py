@@ -1,4 +1,4 @@
-"""What every signed distance field offers, whatever stands behind it (paper III-B, ``f_theta``)."""
+"""Interface of every signed distance field, whatever is behind it (paper III-B, ``f_theta``)."""
 
 from __future__ import annotations
 

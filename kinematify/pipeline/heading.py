@@ -1,4 +1,4 @@
-"""How an object is turned about the vertical: the inference sees it square to the axes, so that this is no matter.
+"""Heading of an object: its turn about the vertical: the inference sees it square to the axes, so this does not matter.
 
 Samples, boxes and customs are taken along the axes of the world; a cabinet at 37 deg has other ones than the same
 cabinet at 0 deg, and where two hinges are nearly as likely, that decides.
@@ -98,7 +98,7 @@ def turned(assembly: Assembly, angle: float) -> Assembly:
 
 
 def with_heading(inference: Inference, assembly: Assembly, angle: float) -> Inference:
-    """What was inferred of a turned assembly, for the assembly as it was given.
+    """Return what was inferred of a turned assembly, for the assembly as it was given.
 
     Args:
         inference: Of the assembly after a turn by `-angle`.

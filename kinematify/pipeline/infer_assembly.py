@@ -128,7 +128,7 @@ def _with_doubt_of_group(joint: JointEstimate, likely: float | None) -> JointEst
 def _square(
     assembly: Assembly, config: Config, base: str | None, graph: ContactGraph | None, clock: StageClock
 ) -> Inference:
-    """What `infer` returns of rigid parts whose walls stand along the axes of the world, as far as they can."""
+    """Return what `infer` returns of rigid parts whose walls stand along the axes of the world, as far as they can."""
     with clock.stage("contacts", 0.0):
         surfaces = part_surfaces(assembly, config=config.surface)
         cuts = find_cuts(assembly, surfaces, config.seam) if graph is None and config.seam.join else {}

@@ -57,7 +57,7 @@ class SharedAxis:
 
 @dataclass(frozen=True, kw_only=True)
 class Closing:
-    """What became of a shared pin."""
+    """Result for a shared pin."""
 
     loop: str | None = None
     """The loop joint that was written; None where it would leave its joints no motion."""
@@ -155,13 +155,13 @@ def _parallel(model: KinematicModel, pins: Sequence[SharedAxis], config: Linkage
 
 
 def _of(model: KinematicModel, pin: SharedAxis, joints: Sequence[str]) -> bool:
-    """Whether a pin holds links that joints of a chain move."""
+    """True if a pin holds links that joints of a chain move."""
     moved = {joint.child for joint in model.joints if joint.name in joints}
     return bool(moved & set(pin.links))
 
 
 def _same_way(model: KinematicModel, moving: Sequence[Linkage], twins: Sequence[Sequence[str]]) -> KinematicModel:
-    """Let joints of parallel arms that are congruent with the driver's turn about its axis, not about its opposite."""
+    """Make joints of parallel arms that are congruent with the driver's turn about its axis, not about its opposite."""
     joints = {joint.name: joint for joint in model.joints}
     for linkage in moving:
         driver = joints[linkage.driver or ""]
@@ -234,7 +234,7 @@ def _moving_as_one(
 def _with_limits(
     model: KinematicModel, linkage: Linkage, ends: tuple[float, float], slack: float, config: LinkageConfig
 ) -> KinematicModel:
-    """Let every joint of a linkage go as far as the driver takes it between two values.
+    """Make every joint of a linkage go as far as the driver takes it between two values.
 
     Args:
         model: The tree.

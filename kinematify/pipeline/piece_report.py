@@ -36,7 +36,7 @@ def piece_standing_for(name: str | None, assembly: Assembly, groups: Groups) -> 
 def inference_of_pieces(
     whole: Inference, assembly: Assembly, graph: ContactGraph, groups: Groups, seconds: Mapping[str, float]
 ) -> Inference:
-    """What was inferred with the pieces of every part as one, with the pieces fixed to each other.
+    """Return what was inferred with the pieces of every part as one, with the pieces fixed to each other.
 
     Args:
         whole: Of the joined parts; part i is group i.

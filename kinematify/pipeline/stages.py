@@ -51,7 +51,7 @@ def find_trees(
 def tree_reward(
     assembly: Assembly, graph: ContactGraph, bearings: Mapping[Pair, EdgeBearing], config: Config
 ) -> TreeReward:
-    """What trees of an assembly are worth under the configuration."""
+    """Return what trees of an assembly are worth under the configuration."""
     stats = assembly_stats(assembly)
     evidence = gather_evidence(graph, stats, bearings, find_pins(assembly, graph, bearings, config))
     return _reward_class(config.topology)(graph, stats, evidence, config.topology)

@@ -1,4 +1,4 @@
-"""What the user should know of an inference, one sentence each."""
+"""Warnings of an inference, one sentence each."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def _followed_twins(
 
 
 def _runs_along(joint: JointEstimate, line: BearingLine) -> bool:
-    """Whether a joint has the direction of a line, to 1 deg."""
+    """True if a joint has the direction of a line, to 1 deg."""
     return bool(abs(float(joint.axis @ line.axis)) > math.cos(math.radians(1.0)))
 
 
@@ -164,7 +164,7 @@ def cut_parts(assembly: Assembly, groups: Sequence[Sequence[int]], mains: Sequen
 
 
 class CompoundKind(StrEnum):
-    """What several joints are together."""
+    """Kind of a group of joints."""
 
     BALL = "ball"
     UNIVERSAL = "universal"

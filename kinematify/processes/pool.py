@@ -33,7 +33,7 @@ _Result_co = TypeVar("_Result_co", covariant=True)
 
 @dataclass(frozen=True, kw_only=True)
 class WorkItem(Generic[_Result_co]):
-    """What a worker is given."""
+    """Task of a worker."""
 
     key: str
     """Each task has its own."""
@@ -45,7 +45,7 @@ class WorkItem(Generic[_Result_co]):
 
 @dataclass(frozen=True, kw_only=True)
 class TaskFailure:
-    """How a task ended that gave no result."""
+    """Failure of a task that gave no result."""
 
     status: Literal["error", "timeout", "crash"]
     message: str
@@ -56,7 +56,7 @@ class TaskFailure:
 
 @dataclass(frozen=True)
 class Message:
-    """What a task tells before it ends."""
+    """Message of a task before it ends."""
 
     content: Any
 

@@ -1,4 +1,4 @@
-"""How processes start: forked from one that has the heavy imports done, so that each costs milliseconds.
+"""Start of processes: forked from one that has the heavy imports done, so that each costs milliseconds.
 
 That is the caller's own where no library has started threads in it, whose locks a copy might inherit in any state, and
 else a server.
@@ -26,7 +26,7 @@ ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_
 
 
 class _Server:
-    """Whether the caller wants workers to come from the server alone."""
+    """Test whether the caller wants workers to come from the server alone."""
 
     wanted = False
 

@@ -159,7 +159,7 @@ class CandidateJoints:
 
 
 def is_same(joint: JointEstimate, candidate: JointCandidate) -> bool:
-    """Whether a candidate is the joint that was chosen: type, direction, and place for what turns."""
+    """True if a candidate is the joint that was chosen: type, direction, and place for what turns."""
     if joint.kind is JointType.FIXED or joint.kind.turns != candidate.kind.turns:
         return False
     if abs(float(joint.axis @ candidate.axis)) < _SAME:

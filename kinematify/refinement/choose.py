@@ -76,28 +76,28 @@ class Chooser:
     def choose_again(self, plan: Plan, feedback: Feedback) -> tuple[Plan, list[PlanChange]]:
         """Take decisions about joints again, one part after the other, those that most speaks against first.
 
-        Doubted are the joints that failures blame, and those that score far less than a candidate by their shape alone.
+        Doubted are the joints that failures point to, and those that score far less than a candidate by shape alone.
         A warning by itself moves no joint that nothing scores above, for true joints warn too.
 
         Args:
             plan: What was simulated.
-            feedback: What its failures blame.
+            feedback: What its failures point to.
         """
         changes: list[PlanChange] = []
         names = plan.assembly.names
-        blamed = {item.child for item in feedback.lines} | {item.child for item in feedback.types}
+        suspected = {item.child for item in feedback.lines} | {item.child for item in feedback.types}
         scores = {names[joint.child]: self.candidates.score(plan.tree, joint) for joint in plan.joints}
         odds = {child: feedback.against(child) - score for child, score in scores.items()}
-        unsure = {child for child in blamed if feedback.has_error(child) or scores[child] < 0.0}
+        unsure = {child for child in suspected if feedback.has_error(child) or scores[child] < 0.0}
         hinted = {names[joint.child] for joint in plan.joints if HINTED in joint.evidence}
         self.refused += [
             f"{child}: what failed speaks against its joint, but a hint asked for it; without the hint others are tried"
-            for child in sorted(blamed & hinted)
+            for child in sorted(suspected & hinted)
         ]
         doubted = [child for child in odds if child in unsure or -scores[child] > self.config.margin]
         doubted = [child for child in doubted if child not in hinted]
         for child in sorted(doubted, key=lambda child: (-odds[child], child)):
-            if child in blamed:
+            if child in suspected:
                 joint = plan.joints[plan.index(child)]
                 values, against = feedback.failed_at(child), feedback.against(child)
                 plan = plan.with_joint(self.candidates.after_failures(joint, values, against))
@@ -186,7 +186,7 @@ class Chooser:
         return plan.with_joint(best.joint), change
 
     def _lead_of(self, trial: Trial, first: Trial) -> float:
-        """What a candidate has to lead the chosen one by: more if it moves otherwise, most if it fixes no failure."""
+        """Return the lead that a candidate needs: more if it moves otherwise, most if it fixes no failure."""
         if first.against == 0.0 or trial.against > 0.0:
             return self.config.margin
         joint, old = trial.joint, first.joint
@@ -251,7 +251,7 @@ def _known(joint: JointEstimate, score: float, against: float, tier: str) -> Tri
 def _failed_in(feedback: Feedback, child: str) -> str:
     """The dearest tier in which the joint of a part failed."""
     signals = ((signal.child, signal.check) for group in (feedback.lines, feedback.types) for signal in group)
-    return max((tier_of(check) for blamed, check in signals if blamed == child), key=TIERS.index, default=GEOMETRY)
+    return max((tier_of(check) for part, check in signals if part == child), key=TIERS.index, default=GEOMETRY)
 
 
 TWINS = "twins"
@@ -265,7 +265,7 @@ if TYPE_CHECKING:
 
 
 def vote(plan: Plan, graph: ContactGraph, chooser: Chooser) -> tuple[Plan, list[PlanChange]]:
-    """Let siblings that are congruent vote about their type.
+    """Make siblings that are congruent vote about their type.
 
     Args:
         plan: With what was chosen for each alone.

@@ -51,7 +51,7 @@ _UNITS = {"deg": np.pi / 180.0, "rad": 1.0, "mm": 1e-3, "cm": 1e-2, "m": 1.0}
 
 @dataclass(frozen=True, kw_only=True)
 class Hint:
-    """What is known of the joint above one part."""
+    """Facts about the joint above one part."""
 
     part: str
     kind: JointType | None = None
@@ -75,7 +75,7 @@ class Hint:
 
     @property
     def about_joint(self) -> bool:
-        """Whether it states anything of the joint itself."""
+        """True if it states anything of the joint itself."""
         return any(item is not None for item in (self.kind, self.axis, self.pivot, self.limits))
 
     @property
@@ -90,11 +90,11 @@ class Hint:
 
     @property
     def turns(self) -> bool | None:
-        """Whether it turns: by its type, else by its pivot, else by the unit of its range; None if it states none."""
+        """Return whether it turns: by type, else by pivot, else by the unit of its range; None if it states none."""
         return self.kind.turns if self.kind else bool(self.pivot) or _is_angle(self.limits)
 
     def agrees(self, axis: FloatArray) -> bool:
-        """Whether a unit direction is the one that is named, or one is near enough to it."""
+        """True if a unit direction is the one that is named, or one is near enough to it."""
         named = self.direction
         return named is None or bool(abs(float(axis @ named)) > (_NEAR if self.axis in AXES else _SAME))
 
@@ -236,7 +236,7 @@ def _ends(text: str) -> FloatArray | None:
 
 
 def _is_angle(limits: str | None) -> bool | None:
-    """Whether a range is in degrees or radians, not in a unit of length; None if it has no unit."""
+    """Test whether a range is in degrees or radians, not in a unit of length; None if it has no unit."""
     return next((unit in ("deg", "rad") for unit in _UNITS if (limits or "").endswith(unit)), None)
 
 
@@ -358,7 +358,7 @@ def _best(joint: JointEstimate, hint: Hint, reach: float) -> JointCandidate:
 
 
 def _objections(joint: JointEstimate, hint: Hint, inference: Inference, before: JointEstimate) -> list[str]:
-    """What speaks against a hint that was followed: the part can hardly move that way; and what the geometry says."""
+    """Return the objections to a hint that was followed: the part can hardly move so; and what the geometry says."""
     if joint.kind is JointType.FIXED:
         return []
     free = max(joint.evidence.get("free_forward", np.inf), joint.evidence.get("free_backward", np.inf))

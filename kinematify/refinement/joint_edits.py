@@ -10,7 +10,7 @@ import numpy as np
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration
 from kinematify.robot.write import numbers
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -206,7 +206,7 @@ def _facts(report: ValidationReport, robot: Robot) -> dict[str, list[Finding]]:
     """Findings about joints themselves that are no notes, the worst first, by joint."""
     found: dict[str, list[Finding]] = {}
     for finding in report.counted:
-        counts = finding.severity is not Severity.NOTE and finding.blame is Blame.KINEMATICS
+        counts = finding.severity is not Severity.NOTE and finding.cause is Cause.KINEMATICS
         if counts and finding.check in (*_LINE, *_BLOCKED) and finding.joint in robot.joint_by_name:
             found.setdefault(finding.joint or "", []).append(finding)
     return found

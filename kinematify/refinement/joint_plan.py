@@ -42,7 +42,7 @@ class Plan:
 
     @cached_property
     def signature(self) -> tuple[object, ...]:
-        """What two plans share that are the same for every purpose: tree, types, lines and ranges to 6 digits."""
+        """Return a key that equal plans share: tree, types, lines and ranges to 6 digits."""
         return self.tree.parents, tuple(_signature(joint) for joint in self.joints)
 
     def index(self, child: str) -> int:
@@ -92,8 +92,8 @@ class Round:
     warnings: int = 0
     failed: tuple[str, ...] = ()
     """``CHECK joint`` of every error and warning about motion."""
-    blamed: tuple[str, ...] = ()
-    """What the feedback blames, one phrase each."""
+    suspected: tuple[str, ...] = ()
+    """What the feedback points to, one phrase each."""
     score: float = 0.0
     """Sum of the scores of the chosen candidates below the best ones, and of all log odds against them; 0 at best."""
     seconds: float = 0.0

@@ -29,11 +29,10 @@ from kinematify.refinement.topology import (
     replanned,
     search_again,
 )
-from kinematify.simulation.engines import DEFAULT_ENGINES, require_engine
 from kinematify.validation.check import FeedbackRow
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.failure_rates import GEOMETRY
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.run.feedback import feedback_from
 
 if TYPE_CHECKING:
@@ -46,7 +45,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Refinement:
-    """What the loop leaves: the best answer, with the history of how it was found."""
+    """Result of the loop: the best answer, with the history of how it was found."""
 
     inference: Inference
     """The kept round as an inference; its `refinement` holds the history as plain data."""
@@ -65,7 +64,7 @@ def refine(
     settings: ValidationSettings | None = None,
     progress: Progress | None = None,
 ) -> Refinement:
-    """Simulate what was inferred, and choose again what the failures blame.
+    """Simulate what was inferred, and choose again what the failures point to.
 
     Args:
         inference: What `infer` returned.
@@ -82,14 +81,11 @@ def refine(
 
     Raises:
         ValueError: The tier is unknown, or there is no time.
-        EnvironmentFault: The tier runs an engine that is not installed.
     """
     if tier not in TIERS:
         raise ValueError(f"There is no tier {tier}. Give one of {', '.join(TIERS)}.")
     if seconds is not None and not seconds > 0.0:
         raise ValueError(f"The time for all rounds is {seconds} s. Give a number of seconds above 0, or None.")
-    for engine in DEFAULT_ENGINES if tier != GEOMETRY else ():
-        require_engine(engine)
     config = inference.config.refine
     usual = max(config.seconds_factor * sum(inference.timings.values()), config.seconds_least)
     loop = _Loop(
@@ -134,7 +130,7 @@ class _Done:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Request:
-    """What `refine` was asked for."""
+    """Request to `refine`."""
 
     given: Inference
     rounds: int
@@ -161,7 +157,7 @@ class _Loop:
         self.sound_at = 0
 
     def in_time(self) -> bool:
-        """Whether there is time for one thing more."""
+        """True if there is time for one thing more."""
         return time.perf_counter() - self.started < self.request.seconds
 
     def run(self) -> None:
@@ -275,7 +271,7 @@ class _Loop:
             errors=errors,
             warnings=warnings,
             failed=tuple(_failed(verdict)),
-            blamed=tuple(_blamed(feedback)),
+            suspected=tuple(_suspected(feedback)),
             score=self._score(plan, contacts, feedback),
         )
         return _Done(plan=plan, contacts=contacts, verdict=verdict, feedback=feedback, round=judged)
@@ -381,14 +377,14 @@ class _Loop:
         )
 
 
-_BLAMED = (Blame.KINEMATICS, Blame.TASK)
+_MOTION_CAUSES = (Cause.KINEMATICS, Cause.TASK)
 _OF_PARENTS = (FeedbackRow.OTHER_PARENT, FeedbackRow.NOT_CARRIED)
 """Failures that speak of what carries a part, before they speak of its joint."""
 
 
 def _severities(verdict: MotionVerdict) -> tuple[int, int]:
-    """Errors and warnings that blame the kinematics or that a task failed on."""
-    found = [finding.severity for finding in verdict.findings if finding.blame in _BLAMED]
+    """Errors and warnings about the kinematics or that a task failed on."""
+    found = [finding.severity for finding in verdict.findings if finding.cause in _MOTION_CAUSES]
     return found.count(Severity.ERROR), found.count(Severity.WARNING)
 
 
@@ -396,12 +392,12 @@ def _failed(verdict: MotionVerdict) -> list[str]:
     return [
         f"{finding.check} {finding.joint or ''}".strip()
         for finding in verdict.findings
-        if finding.blame in _BLAMED and finding.severity is not Severity.NOTE
+        if finding.cause in _MOTION_CAUSES and finding.severity is not Severity.NOTE
     ]
 
 
-def _blamed(feedback: Feedback) -> list[str]:
-    """What is blamed, one phrase per part and decision."""
+def _suspected(feedback: Feedback) -> list[str]:
+    """Return what is suspected, one phrase per part and decision."""
     edges = [f"{signal.child}: parent" for signal in feedback.edges]
     lines = [f"{signal.child}: axis" for signal in feedback.lines]
     types = [f"{signal.child}: type" for signal in feedback.types]

@@ -21,7 +21,7 @@ from kinematify.robot.robot import Robot
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
 from kinematify.validation.checks import checks_of
 from kinematify.validation.checks.as_loaded import STILL
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 _ROUNDS = 3
 """Looks at the result at most: what a broken file hides is seen in the second, pieces that still meet in the third."""
-_CARVED = ("KV301", "KV302", "KV310", "KV311", "KV312", "KV332", "KV403", "KV405", "KV503", "KV505", "KV802", "KV804")
+_CARVED = ("KV301", "KV302", "KV310", "KV311", "KV312", "KV802", "KV804")
 """Findings about collision geometry, if they blame physics and name two links."""
 _BESIDE = "KV241"
 """Collision geometry is beside what is seen."""
@@ -49,6 +49,9 @@ _WEIGHED = ("KV202", "KV204", "KV205")
 """Findings about a mass or an inertia that no engine can use."""
 _CENTER = "KV208"
 _REPEATED = "KV105"
+_QUATERNION = "KV107"
+_SHAPELESS = ("KV140", "KV141", "KV142", "KV150")
+"""Elements without geometry that can be read."""
 _FORMAT = re.compile(r"\.(?:glb|gltf)\b", re.IGNORECASE)
 """In what an engine says of a file that it does not open."""
 _ONCE = {
@@ -73,7 +76,7 @@ class Look:
 
     @property
     def errors(self) -> int:
-        """How many there are that follow from no other finding."""
+        """Return how many there are that follow from no other finding."""
         return self._count(Severity.ERROR)
 
     @property
@@ -83,7 +86,7 @@ class Look:
 
     @property
     def moving(self) -> dict[str, int]:
-        """How many joints a hand moves in the file as it is, by engine."""
+        """Return how many joints a hand moves in the file as it is, by engine."""
         found = [check for check in self.report.checks if check.check == "KV804" and "right" in check.measured]
         return {check.engine: int(check.measured["right"]) for check in found if check.engine is not None}
 
@@ -234,7 +237,7 @@ def fix_urdf(
 
 
 class _Repairs:
-    """What was done to a editor, so that nothing is tried twice."""
+    """Repairs done to an editor, so that nothing is tried twice."""
 
     def __init__(
         self,
@@ -262,6 +265,10 @@ class _Repairs:
         found = [finding for finding in report.counted if finding.severity is not Severity.NOTE]
         for element in self._repeated(found):
             _keep_first(editor, element)
+        if any(finding.check == _QUATERNION for finding in found):
+            editor.write_rpy()
+        if any(finding.check in _SHAPELESS for finding in found):
+            editor.settle_shapes()
         try:
             robot = read_robot(path, package_dirs=package_dirs)
         except DescriptionError:
@@ -310,12 +317,12 @@ class _Repairs:
             ]
 
     def _to_carve(self, robot: Robot, found: Sequence[Finding], beside: set[str]) -> Iterator[str]:
-        """Of two links that meet those whose shapes are not what engines take them for; both where neither is."""
+        """Yield, of two links that meet, those whose shapes engines take for others; both where neither is."""
         if self._everything:
             yield from (link.name for link in robot.links if link.has_geometry)
             return
         for finding in found:
-            if finding.check not in _CARVED or finding.blame is not Blame.PHYSICS or finding.pair is None:
+            if finding.check not in _CARVED or finding.cause is not Cause.PHYSICS or finding.pair is None:
                 continue
             if _only_under_a_flag(finding):
                 continue
@@ -326,7 +333,7 @@ class _Repairs:
 
 
 def _only_under_a_flag(finding: Finding) -> bool:
-    """Whether plain loading does not show it."""
+    """True if plain loading does not show it."""
     return finding.check.startswith("KV8") and finding.engine is not None and bool(ENGINES[finding.engine].contact_flag)
 
 
@@ -370,12 +377,12 @@ def _reason(finding: Finding, repairs: _Repairs, *, kinematics: bool) -> str:
     joint = finding.joint or ""
     if repairs.joints is not None and joint in repairs.joints.left:
         return f"Left: {repairs.joints.left[joint]}."
-    if finding.check in _KINEMATICS and finding.blame is Blame.KINEMATICS and not kinematics:
+    if finding.check in _KINEMATICS and finding.cause is Cause.KINEMATICS and not kinematics:
         return "Left: fix --kinematics changes joints."
     if finding.check == _MASSLESS:
         return "Left: no mass is guessed unasked; --all writes that of the geometry."
     if finding.check in _CARVED and _only_under_a_flag(finding):
         return "Left: plain loading does not show it; --all carves all links."
-    if finding.check in _CARVED and finding.blame is Blame.PHYSICS:
+    if finding.check in _CARVED and finding.cause is Cause.PHYSICS:
         return "Left: the pieces cannot be carved further."
     return f"Left: no repair is certain. {finding.remedy}"

@@ -150,7 +150,7 @@ def _motions_about(joint: Joint, point: FloatArray, values: FloatArray) -> Float
 
 @dataclass(frozen=True, kw_only=True)
 class MotionVerdict:
-    """What a tier says of one plan."""
+    """Verdict of a tier on one plan."""
 
     findings: tuple[Finding, ...]
     joints: tuple[JointSummary, ...]
@@ -219,7 +219,7 @@ def _findings(checks: Iterable[Check], context: object) -> list[Finding]:
 
 
 def _key(model: KinematicModel, name: str) -> tuple[object, ...]:
-    """What the sweep of a joint depends on: its line and range, and which bodies the tree moves against which."""
+    """Return the key of the sweep of a joint: its line and range, and which bodies the tree moves against which."""
     joint = next(item for item in model.joints if item.name == name)
     tree = tuple(sorted((item.child, item.parent, item.kind.value == "fixed") for item in model.joints))
     return (*_line(model, joint), tree)
@@ -238,9 +238,7 @@ TIERS = (GEOMETRY, ENGINES, TASK)
 _TRIED = " tried"
 """After the name of a joint, in what KV705 measures."""
 _RUN = {
-    ENGINES: [
-        check.id for check in checks_of("KV4", "KV5", "KV8") if check.feedback not in (None, FeedbackRow.EXPORTER)
-    ],
+    ENGINES: [check.id for check in checks_of("KV8") if check.feedback not in (None, FeedbackRow.EXPORTER)],
     TASK: [check.id for check in checks_of("KV7") if check.severity is not Severity.NOTE],
 }
 """Checks that a dear tier runs beside those of the tiers before it: whose findings change what is chosen.
@@ -257,7 +255,7 @@ class DearTiers:
     _reports: dict[tuple[object, ...], ValidationReport] = field(default_factory=dict)
 
     def deepened(self, verdict: MotionVerdict, plan: Plan, tier: str) -> MotionVerdict:
-        """What all tiers up to a dear one say of a plan.
+        """Return what all tiers up to a dear one say of a plan.
 
         Args:
             verdict: What the exact geometry says of it.
@@ -273,7 +271,7 @@ class DearTiers:
         return verdict
 
     def _report(self, plan: Plan, tier: str) -> ValidationReport:
-        """What one dear tier says of a plan."""
+        """Return what one dear tier says of a plan."""
         key = (tier, *plan.signature)
         if key not in self._reports:
             with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
@@ -287,6 +285,6 @@ class DearTiers:
 
 
 def _placements(report: ValidationReport) -> dict[str, float]:
-    """How many places of the robot were tried for each joint."""
+    """Return how many places of the robot were tried for each joint."""
     measured = next((check.measured for check in report.checks if check.check == "KV705"), {})
     return {name.removesuffix(_TRIED): value for name, value in measured.items() if name.endswith(_TRIED)}

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class ContactAudit:
-    """What the meshes say about the edges of a contact graph."""
+    """Comparison of the meshes with the edges of a contact graph."""
 
     missing: tuple[Pair, ...]
     """Parts that touch and have no edge."""
@@ -48,7 +48,7 @@ class ContactAudit:
     """Gap up to which parts are held to touch, fraction of the diagonal."""
 
     def __bool__(self) -> bool:
-        """Whether the graph is wrong."""
+        """True if the graph is wrong."""
         return bool(self.missing or self.spurious)
 
 
@@ -124,7 +124,7 @@ class SearchedContacts:
 
 
 class EdgeMemory:
-    """What all rounds so far have had against edges of the tree."""
+    """Findings of all rounds against edges of the tree."""
 
     def __init__(self) -> None:
         self.against: dict[Edge, float] = {}
@@ -204,7 +204,7 @@ def with_kept(plan: Plan, contacts: SearchedContacts, chosen: Sequence[JointEsti
 
 
 def _alike(one: JointEstimate, other: JointEstimate) -> bool:
-    """Whether two joints of one part are of one type about one line, or along one direction."""
+    """True if two joints of one part are of one type about one line, or along one direction."""
     if one.kind is not other.kind or abs(float(one.axis @ other.axis)) < _SAME:
         return False
     apart = float(np.linalg.norm(np.cross(one.pivot - other.pivot, one.axis)))

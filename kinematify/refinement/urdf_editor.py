@@ -17,9 +17,12 @@ from kinematify.model.collision import fit_collision
 from kinematify.model.dynamics import with_dynamics
 from kinematify.model.masses import prepared_inertials
 from kinematify.robot.mesh_file import merged, read_meshes
-from kinematify.robot.mesh_paths import GLTF_SUFFIXES, find_mesh
+from kinematify.robot.mesh_paths import GLTF_SUFFIXES, find_mesh, near_mesh
 from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
 from kinematify.robot.robot import Inertial, Robot
+from kinematify.robot.transforms import rpy_of
+from kinematify.robot.urdf_geometry import geometry_source
+from kinematify.robot.urdf_numbers import origin_transform
 from kinematify.robot.urdf_text import parse_description, read_text, with_plain_declaration
 from kinematify.robot.write import numbers, robot_element
 
@@ -82,7 +85,7 @@ class UrdfEditor:
 
     @property
     def changes(self) -> tuple[str, ...]:
-        """What is other than in the given file, one sentence each; paths as they were written last."""
+        """Return what is other than in the given file, one sentence each; paths as they were written last."""
         return (*self._changes, *self._path_changes)
 
     def say(self, sentence: str) -> None:
@@ -182,6 +185,38 @@ class UrdfEditor:
             self._changes.append(f"{added} as OBJ in {self._copies_folder}, since MuJoCo and PyBullet read no glTF")
         return failed
 
+    def write_rpy(self) -> None:
+        """Write rotations as roll, pitch and yaw, where they are quaternions."""
+        turned = [origin for origin in self.root.iter("origin") if "quat_xyzw" in origin.attrib]
+        for origin in turned:
+            parent = origin.getparent()
+            if parent is not None:
+                origin.set("rpy", numbers(rpy_of(origin_transform(parent, "the file")[:3, :3])))
+                del origin.attrib["quat_xyzw"]
+        self.say(f"{_counted(len(turned), 'rotation')} as rpy instead of quat_xyzw")
+
+    def settle_shapes(self) -> None:
+        """Name the mesh that is meant where a path leads nowhere, and drop elements without geometry that can be read.
+
+        The only collision of a link stays, since without it the link would pass through everything.
+        """
+        folder = self._model.parent.resolve()
+        source = geometry_source(self._model, self._package_dirs)
+        for link in self.root.iterchildren("link"):
+            for element in (*link.findall("visual"), *link.findall("collision")):
+                if source.is_usable(element):
+                    continue
+                mesh = element.find("geometry/mesh")
+                name = "" if mesh is None else mesh.get("filename", "")
+                near = near_mesh(name, folder, self._package_dirs) if name else None
+                others = [item for item in link.findall(str(element.tag)) if item is not element]
+                if near is not None and mesh is not None and self._found(name, [folder, *self._mesh_folders()]) is None:
+                    mesh.set("filename", Path(os.path.relpath(near, folder)).as_posix())
+                    self.say(f"{link.get('name')}: {name!r} of a {element.tag} is {mesh.get('filename')!r}")
+                elif element.tag == "visual" or any(map(source.is_usable, others)):
+                    link.remove(element)
+                    self.say(f"{link.get('name')}: no {xml_of(element)}, which has no geometry that can be read")
+
     def weigh(self, robot: Robot, links: Collection[str], settings: PrepareSettings) -> list[str]:
         """Write mass and inertia of the geometry for links whose own ones no engine can use.
 
@@ -270,7 +305,7 @@ class UrdfEditor:
         return self.out
 
     def _settle_paths(self, document: _Element) -> None:
-        """Let paths of files mean the same from the new folder, for engines that know no packages.
+        """Make paths of files mean the same from the new folder, for engines that know no packages.
 
         Pieces have names beside the new file, and MuJoCo looks for all meshes in ``meshdir``, so that goes.
         """
@@ -304,7 +339,7 @@ class UrdfEditor:
             )
 
     def _path(self, name: str, folders: Sequence[Path], after: Path) -> str:
-        """What to write for a file; what is absolute, or found nowhere, stays."""
+        """Return what to write for a file; what is absolute, or found nowhere, stays."""
         found = None if Path(name).is_absolute() else self._found(name, folders)
         if found is None or ("://" not in name and "\\" not in name and found[0] == after):
             return name
@@ -326,7 +361,7 @@ class UrdfEditor:
 
 
 def _same(link: Link, before: Link) -> bool:
-    """Whether a link kept its primitives."""
+    """True if a link kept its primitives."""
     return [id(shape) for shape in link.collisions] == [id(shape) for shape in before.collisions]
 
 

@@ -60,7 +60,7 @@ class PosedMesh:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PictureScene:
-    """What a picture shows; what is derived from it is computed once for all points of view."""
+    """Content of a picture; what is derived from it is computed once for all points of view."""
 
     meshes: tuple[PosedMesh, ...]
     """At least one face in all."""
@@ -74,7 +74,7 @@ class PictureScene:
 
     @cached_property
     def glyphs_alone(self) -> PictureScene | None:
-        """What is drawn over the meshes as a scene of its own, if there is any."""
+        """Return what is drawn over the meshes as a scene of its own, if there is any."""
         return PictureScene(meshes=self.glyphs) if self.glyphs else None
 
     @cached_property
@@ -141,7 +141,7 @@ class _Viewpoint:
 
 @dataclass(frozen=True, eq=False)
 class _SparseLight:
-    """How much sky some pixels of a picture see."""
+    """Share of the sky that some pixels of a picture see."""
 
     mesh: IntArray
     """Shape (rows, columns)."""
@@ -185,7 +185,7 @@ class _Painter:
         return self._seen(pixels, *self.camera.rays(pixels))
 
     def _seen(self, pixels: FloatArray, origins: FloatArray, directions: FloatArray) -> _Viewpoint:
-        """What rays meet that need not begin at the camera."""
+        """Return what rays meet that need not begin at the camera."""
         hits = self.rays.first_hits(origins, directions)
         met = hits.met
         face = hits.face[met]

@@ -1,4 +1,4 @@
-"""What a mesh looks like: a material per triangle, with colour, opacity, roughness, metal and texture."""
+"""Appearance of a mesh: a material per triangle, with colour, opacity, roughness, metal and texture."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Texture:
 
 @dataclass(frozen=True, kw_only=True)
 class Material:
-    """What a surface is made of to the eye, as glTF has it."""
+    """Material of a surface to the eye, as glTF has it."""
 
     name: str = ""
     """As in the file; empty where it names none."""

@@ -1,4 +1,4 @@
-"""What the name of a material in a mesh file says of its mass."""
+"""Densities by the name of a material in a mesh file."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ class Linkage:
     """What ends the curve at its begin and its end: the joint whose limit is reached, or why it cannot go on."""
 
     def closure(self, joint: str) -> Closure:
-        """How a joint follows the driver."""
+        """Return how a joint follows the driver."""
         driver, own = (self.curve[:, self.joints.index(name)] for name in (self.driver or "", joint))
         return Closure(joint=self.driver or "", at=driver, values=own, repeats=self.turns_around)
 

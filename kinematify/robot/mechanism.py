@@ -1,4 +1,4 @@
-"""What a drive through the ranges needs to know of a tree: which joints lead, how far they go, what each one moves."""
+"""Mechanism of a tree: which joints lead, how far they go, what each one moves."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Travel:
 
     @property
     def unit(self) -> str:
-        """Of its values."""
+        """Unit of its values."""
         return "rad" if self.turns else "m"
 
 
@@ -60,7 +60,7 @@ class LeaderMechanism:
 
     @cached_property
     def travels(self) -> tuple[Travel, ...]:
-        """Of every joint that is neither fixed nor a follower, in the order of the document."""
+        """Travels of every joint that is neither fixed nor a follower, in the order of the document."""
         leaders = self.robot.leaders
         rest = {**rest_configuration(self.robot), **self.standing}
         lower, upper = joint_ends(leaders)
@@ -91,13 +91,6 @@ class LeaderMechanism:
         """Index of the rigid body of each link, shape (L,); the root's is 0."""
         bodies = {name: k for k, group in enumerate(rigid_groups(self.robot)) for name in group.links}
         return np.array([bodies[name] for name in self.links], dtype=np.int64)
-
-    @cached_property
-    def neighbours(self) -> frozenset[tuple[int, int]]:
-        """Pairs of bodies that a joint connects, smaller index first."""
-        body = dict(zip(self.links, self.body_of_link.tolist(), strict=True))
-        ends = [sorted((body[joint.parent], body[joint.child])) for joint in self.robot.joints]
-        return frozenset((a, b) for a, b in ends if a != b)
 
     @cached_property
     def moved(self) -> BoolArray:
@@ -161,7 +154,7 @@ class LeaderMechanism:
         """
         rows = np.tile(self.rest, (1 + len(self.travels) * samples, 1))
         for k, travel in enumerate(self.travels):
-            rows[sweep_rows(k, samples), k] = np.linspace(travel.lower, travel.upper, samples)
+            rows[1 + k * samples : 1 + (k + 1) * samples, k] = np.linspace(travel.lower, travel.upper, samples)
         return rows
 
     @cached_property
@@ -203,14 +196,9 @@ class LeaderMechanism:
         return np.array([[row[name] for name in self.joints] for row in rows]).reshape(len(leaders), len(self.joints))
 
 
-def sweep_rows(leader: int, samples: int) -> slice:
-    """Where the sweep of a leader stands among the rows of `LeaderMechanism.sweep`."""
-    return slice(1 + leader * samples, 1 + (leader + 1) * samples)
-
-
 @dataclass(frozen=True, kw_only=True)
 class LoopOpening:
-    """How far a shared pin comes apart when one joint moves alone."""
+    """Distance by which a shared pin comes apart when one joint moves alone."""
 
     joint: str
     """Leader that opens it most."""

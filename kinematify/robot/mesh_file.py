@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import io
 import logging
 import re
@@ -17,13 +16,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from lxml import etree
 
-from kinematify.errors import AssemblyError, EnvironmentFault, KinematifyError
+from kinematify.errors import AssemblyError, KinematifyError
 from kinematify.robot.appearance import joined, painted
 from kinematify.robot.exact_faces import ExactFaces, joined_faces
 from kinematify.robot.gltf_file import read_gltf
 from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES, MESH_SUFFIXES
 from kinematify.robot.obj_file import read_obj
 from kinematify.robot.weld import without_unused
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -356,11 +356,7 @@ def read_step(path: Path, *, appearance: bool = False) -> tuple[GltfNode, ...]:
         EnvironmentFault: cascadio is not installed.
         ValueError: The file cannot be converted.
     """
-    if importlib.util.find_spec("cascadio") is None:
-        raise EnvironmentFault(
-            f"Reading {path} needs the package cascadio, which is not installed. Run `pip install kinematify[cad]`, or "
-            "export the model as GLB from the CAD program."
-        )
+    require(f"Reading {path} (or export it as GLB from the CAD program)", "cascadio")
     with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
         converted = Path(folder) / "converted.glb"
         # In a process of its own: OpenCASCADE writes to the terminal, and broken files have crashed it.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 from functools import lru_cache
@@ -20,7 +21,13 @@ MESH_SUFFIXES = (*GLTF_SUFFIXES, ".obj", ".stl", ".ply", ".off", ".3mf", ".dae")
 CAD_SUFFIXES = (".step", ".stp")
 """Formats whose surfaces are turned into triangles; an assembly may be one, the mesh of a link not."""
 _SHOWN = 3
+_PACKAGE_PATHS = ("ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH")
+"""Variables of the environment that name folders of packages."""
+_NEAR, _MOST_BESIDE = 3, 300
+"""Folders above a document in which clones are looked for, and entries of each that are looked at."""
 _MANIFEST_BYTES = 100_000
+_LEVELS = 4
+"""Folders above a document that may be its package under another name: ``urdf/robots/arm/`` is the deepest seen."""
 _NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 """Of a package in its `package.xml`."""
 
@@ -49,6 +56,41 @@ def find_mesh(filename: str, folder: Path, package_dirs: Sequence[Path], where: 
     return found
 
 
+def near_mesh(filename: str, folder: Path, package_dirs: Sequence[Path]) -> Path | None:
+    """Return the one file that a name which leads to none may mean; None without one, or with several.
+
+    Letters in another case anywhere in the path, or the same end of the path in a folder beside or above the document.
+    """
+    tail = filename.replace("\\", "/").split("://")[-1]
+    words = [word for word in tail.split("/") if word not in ("", ".", "..")]
+    above = [folder, *folder.parents][:_LEVELS]
+    try:
+        asked = [path for path in mesh_candidates(filename, folder, package_dirs, "") if len(path.parts) > 1]
+    except DescriptionError:
+        asked = []
+    for path in (*asked, *(place / Path(*words[-depth:]) for depth in (2, 1) if words[-depth:] for place in above)):
+        found = _in_any_case(path)
+        if len(found) == 1:
+            return found[0]
+    return None
+
+
+def _in_any_case(path: Path) -> list[Path]:
+    """Files whose path differs from one in the case of letters only."""
+    known = [Path(path.anchor)]
+    for word in path.parts[1:] if path.anchor else path.parts:
+        exact = [place / word for place in known if word == ".." or os.path.lexists(place / word)]
+        known = exact or [item for place in known for item in _children(place) if item.name.lower() == word.lower()]
+    return [item for item in known if _is_file(item)]
+
+
+def _children(folder: Path) -> list[Path]:
+    try:
+        return sorted(folder.iterdir())
+    except OSError:
+        return []
+
+
 def mesh_candidates(filename: str, folder: Path, package_dirs: Sequence[Path], where: str) -> list[Path]:
     """Places where a mesh may lie, the likeliest first; arguments and errors as for `find_mesh`."""
     try:
@@ -69,7 +111,7 @@ def mesh_candidates(filename: str, folder: Path, package_dirs: Sequence[Path], w
 
 
 def _package_candidates(package: str, inside: str, folder: Path, package_dirs: Sequence[Path]) -> list[Path]:
-    """What is given comes first; then the folders above, by the name in their manifest, then by their own; then ROS.
+    """Find packages: given folders first; then those above, by the name in their manifest, then by their own; then ROS.
 
     ``--package-dir`` may be the package or its parent.
     """
@@ -80,21 +122,38 @@ def _package_candidates(package: str, inside: str, folder: Path, package_dirs: S
         if package in (given.name, _declared_name(given)):
             candidates.append(given / inside)
     candidates += [place / inside for place in above if _declared_name(place) == package]
+    candidates += [beside / inside for beside in _cloned_beside(folder, package)]
     for place in above:
         if place.name == package:
             candidates.append(place / inside)
         candidates.append(place / package / inside)
     candidates += [place / inside for place in _ros_packages(package)]
-    # Single exported robots keep the package's tree but not its name.
-    return candidates + [place / inside for place in (*package_dirs, folder)]
+    # Clones and single exported robots keep the package's tree but not its name.
+    return candidates + [place / inside for place in (*package_dirs, *above[:_LEVELS])]
+
+
+def _cloned_beside(folder: Path, package: str) -> list[Path]:
+    """Packages near a document by the name in their manifest: clones are often in folders of other names."""
+    found = []
+    for place in folder.parents[:_NEAR]:
+        try:
+            beside = sorted(item for item in itertools.islice(place.iterdir(), _MOST_BESIDE) if item.is_dir())
+        except OSError:
+            continue
+        found += [item for item in beside if item.name != package and _declared_name(item) == package]
+    return found
 
 
 def _ros_packages(package: str) -> list[Path]:
     """Places of a package in the workspaces that the environment names."""
-    sources = [Path(place) for place in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if place]
-    installed = [Path(place) for place in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if place]
+    sources = [place for name in _PACKAGE_PATHS for place in _environment_paths(name)]
+    installed = _environment_paths("AMENT_PREFIX_PATH")
     named = [place for place in sources if package in (place.name, _declared_name(place))]
     return [*named, *(place / package for place in sources), *(place / "share" / package for place in installed)]
+
+
+def _environment_paths(name: str) -> list[Path]:
+    return [Path(place) for place in os.environ.get(name, "").split(os.pathsep) if place]
 
 
 @lru_cache(maxsize=1024)

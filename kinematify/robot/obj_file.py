@@ -40,7 +40,7 @@ class ObjGroup:
 
 @dataclass
 class _Content:
-    """What has been read so far."""
+    """Content read so far."""
 
     appearance: bool = False
     """Whether materials, textures and colours are read."""

@@ -48,8 +48,8 @@ def read_robot(
     ``package://NAME/...`` is looked up in `package_dirs` (each a package or a folder of packages), then in the folders
     above the URDF. Floating and planar joints represent a body that is free in the world: above the first geometry they
     are read as fixed, elsewhere they are refused. A revolute joint without limits is continuous. COLLADA meshes that
-    state another axis than z as the one that points up are turned where links meet only then. Each such reading is a
-    note in the result.
+    state another axis than z as the one that points up are turned where links meet only then. A visual or collision
+    without usable geometry, such as a mesh that is missing, is left out. Each such reading is a note in the result.
 
     Args:
         path: The URDF file.
@@ -59,8 +59,8 @@ def read_robot(
         appearance: Read materials, textures and colours too.
 
     Raises:
-        DescriptionError: The file cannot be read, is not a kinematic tree of single-axis joints, or a mesh is missing
-            or broken. The message names the link or joint and says what to do.
+        DescriptionError: The file cannot be read, or is not a kinematic tree of single-axis joints. The message names
+            the link or joint and says what to do.
     """
     return parse_robot(
         parse_description(path), path, geometry_source(path, package_dirs, appearance=appearance), geometry
@@ -83,13 +83,14 @@ def parse_robot(element: _Element, path: Path, source: GeometrySource, geometry:
     names = [_name(item) for item in element.findall("link")]
     _check_tree(path, names, joints)
     _check_mimics(joints)
+    links = _links(element, source, geometry)
     robot = Robot(
         name=element.get("name") or path.stem,
-        links=_links(element, source, geometry),
+        links=links,
         joints=joints,
         loops=tuple(_loop(item, names) for item in element.iterchildren("*") if etree.QName(item).localname in _LOOPS),
         path=path.resolve(),
-        notes=tuple(note for joint in joints if (note := _note(joint))),
+        notes=(*(note for joint in joints if (note := _note(joint))), *source.omitted),
     )
     if source.states_up_axis:
         robot = upright_reading(

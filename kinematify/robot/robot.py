@@ -79,7 +79,7 @@ class Shape:
 
 @dataclass(frozen=True, kw_only=True)
 class UpAxis:
-    """How meshes were read whose files state that another axis than z points up."""
+    """Up axis of meshes whose files state that another axis than z points up."""
 
     respected: bool
     """Whether they were turned upright."""

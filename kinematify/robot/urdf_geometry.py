@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 SIZES = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length"), "capsule": ("radius", "length")}
 """Attributes that hold the size of a primitive."""
@@ -28,6 +28,10 @@ _SECTIONS = 64
 """Sides of a tessellated cylinder: its flats lie 0.12 % of the radius inside the circle."""
 _SUBDIVISIONS = 4
 """Of an icosphere: 5,120 faces, 0.1 % of the radius inside the sphere."""
+
+
+class NoShape(DescriptionError):
+    """An element has no geometry that can be read."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -38,27 +42,44 @@ class GeometrySource:
     """Folder of the document."""
     package_dirs: tuple[Path, ...]
     """Folders that are packages, or hold them."""
-    cache: dict[Path, RawMesh]
+    cache: dict[Path, RawMesh | str]
+    """Meshes by file; a sentence for one that cannot be used."""
     heeds_up_axis: bool = False
     """Whether meshes are turned upright whose files state that another axis than z points up."""
     appearance: bool = False
     """Whether materials of mesh files are read; they go before the colour that the document states."""
 
+    omitted: dict[str, None] = field(default_factory=dict)
+    """Elements without usable geometry, one sentence each, in order."""
+
     def shapes(self, link: _Element, tag: str) -> tuple[Shape, ...]:
         """Return all ``visual`` or ``collision`` elements of a link with their triangles.
 
-        Primitives with a length of zero represent no shape, and are omitted.
+        Primitives with a length of zero represent no shape. An element has none either if it states none or an unknown
+        one, or if its mesh is missing or cannot be read; `omitted` names it.
 
         Raises:
-            DescriptionError: An element has no geometry, an unknown one, bad numbers, or a mesh that is missing.
+            DescriptionError: A number is malformed.
         """
-        shapes = (self._shape(element, f"link {link.get('name')}") for element in link.findall(tag))
+        shapes = (self._usable(element, f"link {link.get('name')}") for element in link.findall(tag))
         return tuple(shape for shape in shapes if shape is not None)
+
+    def _usable(self, element: _Element, where: str) -> Shape | None:
+        try:
+            return self._shape(element, where)
+        except NoShape as error:
+            self.omitted[f"A {element.tag} is omitted (line {line_of(element)}). {error}"] = None
+            return None
+
+    def is_usable(self, element: _Element) -> bool:
+        """True if a visual or collision has geometry that can be read, or is of a size of zero."""
+        before = len(self.omitted)
+        return self._usable(element, "it") is not None or len(self.omitted) == before
 
     def _shape(self, element: _Element, where: str) -> Shape | None:
         geometry = element.find("geometry")
         if geometry is None or len(geometry) != 1:
-            raise DescriptionError(
+            raise NoShape(
                 f"The {element.tag} of {where} has no geometry element with exactly one shape inside. Give it a mesh, "
                 "box, cylinder or sphere, or remove it."
             )
@@ -68,7 +89,7 @@ class GeometrySource:
             size = _primitive_size(shape, where)
             if min(size) <= 0.0:
                 return None
-            built = replace(primitive(str(shape.tag), size, transform, color), line=line)
+            built = primitive(str(shape.tag), size, transform, color, line)
             looks = plain(color, len(built.mesh.faces)) if self.appearance and color else None
             return replace(built, mesh=replace(built.mesh, appearance=looks))
         mesh = self._mesh_file(shape, where)
@@ -101,13 +122,16 @@ class GeometrySource:
             try:
                 self.cache[path] = merged(read_meshes(path, appearance=self.appearance), path.stem)
             except AssemblyError as error:
-                raise DescriptionError(f"The mesh of {where} cannot be used. {error}") from error
-        return self.cache[path]
+                self.cache[path] = str(error)
+        found = self.cache[path]
+        if isinstance(found, str):
+            raise NoShape(f"The mesh of {where} cannot be used. {found}")
+        return found
 
     @property
     def states_up_axis(self) -> bool:
-        """Whether a mesh that was read states that another axis than z points up."""
-        return any(mesh.up for mesh in self.cache.values())
+        """True if a mesh that was read states that another axis than z points up."""
+        return any(mesh.up for mesh in self.cache.values() if not isinstance(mesh, str))
 
     def resolved(self, filename: str, where: str) -> Path:
         """Return the mesh file that a document names; see `kinematify.robot.mesh_paths.find_mesh`.
@@ -115,7 +139,10 @@ class GeometrySource:
         Raises:
             DescriptionError: It is nowhere; the message lists the places.
         """
-        return find_mesh(filename, self.folder, self.package_dirs, where)
+        try:
+            return find_mesh(filename, self.folder, self.package_dirs, where)
+        except DescriptionError as error:
+            raise NoShape(str(error)) from error
 
 
 def geometry_source(document: Path, package_dirs: Sequence[Path], *, appearance: bool = False) -> GeometrySource:
@@ -129,6 +156,7 @@ def primitive(
     size: tuple[float, ...],
     T_link_shape: FloatArray,
     color: tuple[float, float, float, float] | None = None,
+    line: int = 0,
 ) -> Shape:
     """Return a box, cylinder, sphere or capsule with its triangles; the arguments are fields of `Shape`."""
     mesh = _tessellated(kind, size)
@@ -139,15 +167,31 @@ def primitive(
         size=size,
         T_link_shape=T_link_shape,
         color=color,
+        line=line,
     )
+
+
+def mesh_shape(
+    vertices: FloatArray,
+    faces: IntArray,
+    T_link_shape: FloatArray,
+    color: tuple[float, float, float, float] | None = None,
+    line: int = 0,
+) -> Shape:
+    """Return a mesh that comes from no file of its own, of one colour; vertices in the frame of the shape, (V, 3)."""
+    placed = np.asarray(vertices, dtype=np.float64) @ T_link_shape[:3, :3].T + T_link_shape[:3, 3]
+    looks = None if color is None else plain(color, len(faces))
+    return Shape(mesh=LinkMesh(vertices=placed, faces=faces, appearance=looks), color=color, line=line)
 
 
 def _primitive_size(shape: _Element, where: str) -> tuple[float, ...]:
     if shape.tag not in SIZES:
-        raise DescriptionError(
+        raise NoShape(
             f"The geometry of {where} is a <{shape.tag}>, which URDF does not have. Use a mesh, box, cylinder or "
             "sphere."
         )
+    if absent := [name for name in SIZES[str(shape.tag)] if name not in shape.attrib]:
+        raise NoShape(f"The <{shape.tag}> of {where} states no {absent[0]}. Write it, or remove the element.")
     if shape.tag == "box":
         size = tuple(vector(shape, "size", None, where).tolist())
     else:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import DescriptionError
-from kinematify.robot.transforms import rotation_from_rpy
+from kinematify.robot.transforms import rotation_from_quaternion, rotation_from_rpy
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -21,21 +21,25 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 
+_COUNTS = {3: "three", 4: "four"}
 _SELF_COLLISION = ("selfCollide", "self_collide")
 """Elements by which Gazebo's extensions say whether a link collides with its own model."""
 
 
-def vector(element: _Element, attribute: str, default: Sequence[float] | None, where: str) -> FloatArray:
-    """Return three finite numbers of an attribute, shape (3,).
+def vector(
+    element: _Element, attribute: str, default: Sequence[float] | None, where: str, count: int = 3
+) -> FloatArray:
+    """Return finite numbers of an attribute, three if `count` says nothing else, shape (count,).
 
     Args:
         element: Where to look.
         attribute: Name of the attribute.
         default: Value of an absent attribute; None if it must be there.
         where: The link or joint, for the message.
+        count: Of the numbers.
 
     Raises:
-        DescriptionError: The attribute is absent, or anything but three finite numbers.
+        DescriptionError: The attribute is absent, or anything but so many finite numbers.
     """
     text = element.get(attribute)
     if text is None and default is not None:
@@ -43,10 +47,10 @@ def vector(element: _Element, attribute: str, default: Sequence[float] | None, w
     values = _finite(text)
     if len(values) == 1 and attribute == "scale":  # some exporters write one factor for all axes
         values = values * 3
-    if len(values) != 3:
+    if len(values) != count:
         raise DescriptionError(
-            f"The attribute {attribute}={text!r} of <{element.tag}> in {where} must be three finite numbers. Correct "
-            "it."
+            f"The attribute {attribute}={text!r} of <{element.tag}> in {where} must be {_COUNTS[count]} finite "
+            "numbers. Correct it."
         )
     return np.array(values)
 
@@ -92,15 +96,24 @@ def line_of(element: _Element) -> int:
 def origin_transform(element: _Element, where: str) -> FloatArray:
     """Return the transform of the ``origin`` child, shape (4, 4); identity where there is none.
 
-    Roll, pitch and yaw are turns about the fixed x, y and z axes, in this order.
+    Roll, pitch and yaw are turns about the fixed x, y and z axes, in this order; ``quat_xyzw`` of URDF 1.1 and later
+    goes before them.
 
     Raises:
-        DescriptionError: A number is malformed.
+        DescriptionError: A number is malformed, or the quaternion zero.
     """
     origin = element.find("origin")
     transform = np.eye(4)
     if origin is not None:
-        transform[:3, :3] = rotation_from_rpy(vector(origin, "rpy", (0.0, 0.0, 0.0), where))
+        quaternion = vector(origin, "quat_xyzw", (0.0, 0.0, 0.0, 1.0), where, 4)
+        if not quaternion.any():
+            raise DescriptionError(f"The quat_xyzw of <origin> in {where} is zero. Write 0 0 0 1 for no rotation.")
+        turned = "quat_xyzw" in origin.attrib
+        transform[:3, :3] = (
+            rotation_from_quaternion(np.roll(quaternion, 1))
+            if turned
+            else rotation_from_rpy(vector(origin, "rpy", (0.0, 0.0, 0.0), where))
+        )
         transform[:3, 3] = vector(origin, "xyz", (0.0, 0.0, 0.0), where)
     return transform
 

@@ -18,7 +18,7 @@ from lxml import etree
 from kinematify.errors import DescriptionError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
     from pathlib import Path
 
     from lxml.etree import _Element
@@ -65,11 +65,12 @@ class UrdfText:
     """Line and what the parser says."""
 
 
-def read_text(path: Path) -> UrdfText:
+def read_text(path: Path, roots: Sequence[str] = ("robot",)) -> UrdfText:
     """Read and parse a document.
 
     Args:
         path: What the user gave.
+        roots: Names that its root may have.
 
     Raises:
         DescriptionError: It is missing, cannot be opened, or is something else than a URDF; says what to do.
@@ -80,17 +81,22 @@ def read_text(path: Path) -> UrdfText:
     except etree.XMLSyntaxError:
         _refuse_foreign_text(path, text)
         return UrdfText(text=text, robot=None, syntax_errors=tuple(syntax_errors(text)))
-    _refuse_foreign_tree(path, robot)
+    if robot.tag not in roots or robot.tag == "robot":
+        _refuse_foreign_tree(path, robot)
     return UrdfText(text=text, robot=robot)
 
 
-def parse_description(path: Path) -> _Element:
-    """Return the robot element; entities, DOCTYPE and oversized files are refused before anything is expanded.
+def parse_description(path: Path, roots: Sequence[str] = ("robot",)) -> _Element:
+    """Return the root element; entities, DOCTYPE and oversized files are refused before anything is expanded.
+
+    Args:
+        path: The file.
+        roots: Names that the root may have.
 
     Raises:
-        DescriptionError: The file cannot be read, is not well-formed, or is no URDF.
+        DescriptionError: The file cannot be read, is not well-formed, or is of another format.
     """
-    source = read_text(path)
+    source = read_text(path, roots)
     if source.robot is None:
         line, message = source.syntax_errors[0]
         raise DescriptionError(
@@ -109,7 +115,12 @@ def parse_text(text: bytes) -> _Element:
     Raises:
         lxml.etree.XMLSyntaxError: It is not well-formed, or deeper or larger than the limits of the parser.
     """
-    return etree.fromstring(with_plain_declaration(text), _parser())
+    root = etree.fromstring(with_plain_declaration(text), _parser())
+    space = etree.QName(root).namespace
+    if space and etree.QName(root).localname == "robot":  # Drake's files state one, which every reader ignores
+        for element in root.iter(f"{{{space}}}*"):
+            element.tag = etree.QName(element).localname
+    return root
 
 
 def syntax_errors(text: bytes) -> list[tuple[int, str]]:

@@ -4,52 +4,37 @@ from __future__ import annotations
 
 import importlib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from kinematify.errors import EnvironmentFault
-from kinematify.versions import package_versions
+from kinematify.versions import is_installed, not_installed, require
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
+    from types import ModuleType
 
-    from kinematify.config.validation import EngineSettings
-    from kinematify.simulation.engine import Engine, WorldEngine
     from kinematify.simulation.raw_model import RawEngineModel
     from kinematify.simulation.world import EngineWorld, WorldSpec
 
 
 @dataclass(frozen=True, kw_only=True)
 class EngineEntry:
-    """What is known of an engine without loading it."""
+    """Entry of an engine, known without loading it."""
 
     name: str
-    """As users write it; ``kinematify.simulation.NAME_engine`` holds the class ``NameEngine``, an `Engine`."""
+    """As users write it; ``kinematify.simulation.NAME_engine`` has `load_raw`, and `open_world` if it `holds`."""
     title: str
     """As it is written in messages."""
-    package: str
-    """Distribution that brings it."""
-    extra: str | None = None
-    """Extra of Kinematify that installs it; None: every installation has it."""
-    family: str
-    """First characters of the ids of its checks of the prepared model."""
+    packages: tuple[str, ...]
+    """Distributions that bring what its module imports; not every installation has them."""
     runs: bool = True
     """False: it only computes; it sees no contacts and never runs."""
-    prepared: bool = True
-    """False: it loads raw files only, and has no checks but KV8xx."""
-    most_joints: int | None = None
-    """Larger models are not given to it."""
-    inflation: float = 0.0
-    """By which it makes meshes thicker [m]."""
-    keeps_energy: bool = True
-    """False: its integrator gains energy with its usual step, so energy is looked at with smaller ones."""
-    stops_late: bool = False
-    """True: a joint is stopped one step after it has passed its limit, and left where it is then."""
     contact_flag: str | None = None
     """Of its loader: without it links of one file pass through each other; None: they collide by default."""
     holds: tuple[str, ...] = ()
     """What may connect a hand with a part (values of `kinematify.manipulation.plan_request.Hold`) where plans are
-    executed and environments run in it: its class is a `WorldEngine`."""
+    executed and environments run in it."""
     prints_when_loaded: bool = False
     """True: it may be loaded only where what is printed goes to a file."""
 
@@ -60,28 +45,21 @@ class EngineEntry:
 
 
 _ENTRIES = (
-    EngineEntry(name="mujoco", title="MuJoCo", package="mujoco", family="KV4", holds=("weld", "contact")),
+    EngineEntry(name="mujoco", title="MuJoCo", packages=("mujoco",), holds=("weld", "contact")),
     EngineEntry(
         name="pybullet",
         title="PyBullet",
-        package="pybullet",
-        family="KV5",
-        most_joints=120,  # its tables end at 128 degrees of freedom per body; larger models overwrite its memory
-        inflation=1e-3,
-        keeps_energy=False,
-        stops_late=True,
+        packages=("pybullet",),
         contact_flag="URDF_USE_SELF_COLLISION",
         holds=("weld",),  # its hulls slip out of fingers that hold by friction
         prints_when_loaded=True,
     ),
-    EngineEntry(name="drake", title="Drake", package="drake", extra="drake", family="KV9"),
-    EngineEntry(name="pinocchio", title="Pinocchio", package="pin", family="KV6", runs=False),
-    EngineEntry(name="newton", title="Newton", package="newton", extra="newton", family="", prepared=False),
+    EngineEntry(name="pinocchio", title="Pinocchio", packages=("pin", "coal"), runs=False),
 )
 ENGINES = {entry.name: entry for entry in _ENTRIES}
 """Keyed by name."""
-DEFAULT_ENGINES = tuple(name for name, engine in ENGINES.items() if engine.extra is None)
-"""Engines that every installation has; FCL and the exact geometry are always there."""
+DEFAULT_ENGINES = tuple(name for name, engine in ENGINES.items() if all(map(is_installed, engine.packages)))
+"""Engines that run unless others are asked for: those that are installed."""
 
 
 def engines_that_hold(hold: str) -> tuple[str, ...]:
@@ -95,28 +73,14 @@ def require_engine(name: str) -> None:
     Raises:
         EnvironmentFault: It is not installed.
     """
-    engine = ENGINES[name]
-    if package_versions((engine.package,))[engine.package] == "missing":
-        raise EnvironmentFault(_missing(engine, f"the package {engine.package} is not installed"))
+    require(ENGINES[name].title, *ENGINES[name].packages)
 
 
-def _missing(engine: EngineEntry, why: str) -> str:
-    install = f'pip install "kinematify[{engine.extra}]"' if engine.extra else "pip install kinematify"
-    return f"{engine.title} was asked for and cannot be loaded: {why}. Install it: {install}"
-
-
-def open_engine(name: str, settings: EngineSettings, log: Path) -> Engine:
-    """Load an engine's library.
-
-    Args:
-        name: Of `ENGINES`.
-        settings: Time step, servos and how long it runs.
-        log: File that this process prints into, where an engine speaks by printing.
-
-    Raises:
-        EnvironmentFault: It is not installed.
-    """
-    return _class_of(name)(settings, log)
+def why_not_run(name: str) -> str:
+    """Return the reason why an engine that was not among the chosen ones has no results."""
+    if name in DEFAULT_ENGINES:
+        return "the engine was not asked for"
+    return not_installed(f"{ENGINES[name].title} did not run: it", *ENGINES[name].packages)
 
 
 def open_world(name: str, spec: WorldSpec) -> EngineWorld:
@@ -130,7 +94,8 @@ def open_world(name: str, spec: WorldSpec) -> EngineWorld:
         EnvironmentFault: The engine is not installed.
         Refused: It cannot load a model.
     """
-    return cast("type[WorldEngine]", _class_of(name)).open_world(spec)
+    world: EngineWorld = _module_of(name).open_world(spec)
+    return world
 
 
 def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> RawEngineModel:
@@ -146,13 +111,14 @@ def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = (
         EnvironmentFault: The engine is not installed.
         Unloadable: The engine does not open the file.
     """
-    return _class_of(name).load_raw(urdf, root, package_dirs)
+    loaded: RawEngineModel = _module_of(name).load_raw(urdf, root, package_dirs)
+    return loaded
 
 
-def _class_of(name: str) -> type[Engine]:
-    """The class of an engine; its library is imported here, one in a process."""
+def _module_of(name: str) -> ModuleType:
+    """The module of an engine; its library is imported here, one in a process."""
     try:
-        module = importlib.import_module(ENGINES[name].module)
+        return importlib.import_module(ENGINES[name].module)
     except ImportError as error:
-        raise EnvironmentFault(_missing(ENGINES[name], str(error))) from error
-    return cast("type[Engine]", getattr(module, f"{name.capitalize()}Engine"))
+        engine = ENGINES[name]
+        raise EnvironmentFault(f"{not_installed(engine.title, *engine.packages)} ({error})") from error

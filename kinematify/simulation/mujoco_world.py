@@ -219,7 +219,7 @@ def _largest_inertia(
 
 
 class MujocoWorld:
-    """See `kinematify.simulation.world.EngineWorld`."""
+    """World in MuJoCo."""
 
     def __init__(self, spec: WorldSpec) -> None:
         """Copy the compiled world, so that it can be changed."""
@@ -331,7 +331,7 @@ class MujocoWorld:
         mujoco.mj_step(self.model, self.data, nstep=count)
 
     def release(self, joints: Iterable[str]) -> None:
-        """Let locked joints of the object go."""
+        """Make locked joints of the object go."""
         for name in joints:
             self.data.eq_active[self.model.equality(_LATCH + _OBJECT + name).id] = 0
 
@@ -362,11 +362,11 @@ class MujocoWorld:
         )
 
     def values(self) -> FloatArray:
-        """Of all joints of the object."""
+        """Values of all joints of the object."""
         return np.asarray(self.data.qpos[self._qpos])
 
     def robot_values(self) -> FloatArray:
-        """Of all joints of the robot."""
+        """Values of all joints of the robot."""
         return np.asarray(self.data.qpos[self._robot_qpos])
 
     def driven(self) -> tuple[FloatArray, FloatArray]:
@@ -397,7 +397,7 @@ class MujocoWorld:
         return found
 
     def depth(self) -> float:
-        """How much deeper than allowed two shapes are in each other at most."""
+        """Return how much deeper than allowed two shapes are in each other at most."""
         if not self.data.ncon:
             return 0.0
         contact = self.data.contact

@@ -1,13 +1,12 @@
-"""What the engine stages load: convex pieces, masses and inertias that engines can use, names and joints as they were.
+"""What is in worlds where a robot uses an object: convex pieces, masses that engines can use, all names and joints.
 
-`prepare` writes `prepared.urdf`, and `prepared.json`, which says what was changed to make the file loadable.
+`prepare` writes `prepared.urdf` and returns what was changed to make the file loadable.
 """
 
 from __future__ import annotations
 
-import json
 import re
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from kinematify.model.masses import PreparedInertial
 
 URDF_FILE = "prepared.urdf"
-RECORD_FILE = "prepared.json"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,32 +76,12 @@ class Prepared:
         return sum(link.mass for link in self.links)
 
 
-def write_record(prepared: Prepared, work: Path) -> None:
-    """Write `prepared.json`."""
-    record = {"links": [asdict(link) for link in prepared.links], "drives_added": list(prepared.drives_added)}
-    (work / RECORD_FILE).write_text(json.dumps(record, indent=1), encoding="utf-8")
-
-
-def load_prepared(work: Path) -> Prepared:
-    """Return what the stage `prepare` left in the folder of the run.
-
-    Raises:
-        OSError: It left nothing.
-    """
-    record = json.loads((work / RECORD_FILE).read_text(encoding="utf-8"))
-    return Prepared(
-        urdf=work / URDF_FILE,
-        links=tuple(PreparedLink(**{**link, "method": Method(link["method"])}) for link in record["links"]),
-        drives_added=tuple(record["drives_added"]),
-    )
-
-
 _MESH_FOLDER = "prepared_meshes"
 _NAME = "prepared"  # short, because PyBullet crashes on long names
 
 
 def prepare(model: Robot, work: Path, settings: PrepareSettings) -> Prepared:
-    """Write the file that engines load, and its record, into an existing folder."""
+    """Write the file that engines load into an existing folder, and return its record."""
     work = work.resolve()
     (work / _MESH_FOLDER).mkdir(exist_ok=True)
     inertials = prepared_inertials(model, settings)
@@ -118,13 +96,11 @@ def prepare(model: Robot, work: Path, settings: PrepareSettings) -> Prepared:
     )
     joints = tuple(prepared_joint(joint, settings) for joint in model.joints)
     write_robot(Robot(name=_NAME, links=links, joints=joints, loops=model.loops), work / URDF_FILE)
-    prepared = Prepared(
+    return Prepared(
         urdf=work / URDF_FILE,
         links=tuple(_record(link, pieces[link.name], inertials[link.name]) for link in model.links),
         drives_added=tuple(joint.name for joint in model.joints if lacks_drive(joint)),
     )
-    write_record(prepared, work)
-    return prepared
 
 
 def _shapes(pieces: Pieces, folder: Path, stem: str) -> tuple[Shape, ...]:

@@ -1,4 +1,4 @@
-"""Files in worlds of PyBullet, and what it says of single configurations.
+"""Files in worlds of PyBullet.
 
 PyBullet speaks in indices of its own and in tuples; nothing of either leaves this package.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import weakref
 from collections import defaultdict
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
@@ -18,11 +18,10 @@ import pybullet as bullet
 from kinematify.robot.mechanism import LeaderMechanism, joints_between
 from kinematify.robot.transforms import quaternion_of
 from kinematify.simulation.configurations import GRAVITY
-from kinematify.simulation.contacts import Contacts, deepest
-from kinematify.simulation.engine import Refused
+from kinematify.simulation.raw_model import Refused
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray, IntArray
@@ -35,8 +34,6 @@ _FLAGS = (
 )
 HULL_MARGIN = 1e-3
 """Bullet inflates convex hulls of meshes by it [m]; primitives keep their size."""
-_LARGE_INERTIA = 0.1
-"""Principal moments [kg m^2] below it are never refused."""
 _BASE = -1
 _PIN_FORCE = 1e6
 """Of a pin that closes a loop [N]: it never gives way."""
@@ -75,8 +72,6 @@ class PybulletBody:
     """PyBullet's index of each of `LeaderMechanism.joints`, -2 for lost ones, shape (J,)."""
     margin: FloatArray
     """By which each link's shapes are inflated [m], shape (L,)."""
-    mass_scale: float = 1.0
-    """Of all masses in this world over those of the file, see `load`."""
 
     @property
     def complete(self) -> bool:
@@ -89,32 +84,9 @@ class PybulletBody:
         return [int(index) for index in self.joint]
 
     @cached_property
-    def joint_infos(self) -> list[tuple[Any, ...]]:
-        """What PyBullet tells of each joint, by its index."""
-        count = self.client.getNumJoints(self.body)
-        return [self.client.getJointInfo(self.body, k) for k in range(count)]
-
-    @cached_property
-    def order(self) -> IntArray:
-        """Place of each joint among PyBullet's degrees of freedom, which follow its indices, shape (J,)."""
-        return np.argsort(np.argsort(self.joint))
-
-    @cached_property
     def link_of(self) -> dict[int, int]:
         """Link of the document by PyBullet's index."""
         return {index: link for link, index in enumerate(self.link.tolist())}
-
-    @cached_property
-    def size(self) -> float:
-        """Largest side of the box around all collision shapes at zero [m], at least 1 mm."""
-        self.place(np.zeros(len(self.joint)))
-        boxes = [
-            self.client.getAABB(self.body, index)
-            for index in self.link.tolist()
-            if self.client.getCollisionShapeData(self.body, index)
-        ]
-        corners = np.array(boxes).reshape(-1, 3)
-        return float(max(np.ptp(corners, axis=0).max(), 1e-3)) if len(corners) else 1.0
 
     def place(self, values: FloatArray) -> None:
         """Set all joints, shape (J,) [rad or m], and stop them."""
@@ -128,22 +100,6 @@ class PybulletBody:
         states = self.client.getJointStates(self.body, self.indices) or ()
         return [s[0] for s in states], [s[1] for s in states], [s[3] for s in states]
 
-    def link_states(self) -> list[tuple[tuple[float, ...], ...]]:
-        """Return PyBullet's state of every link but the root, by its index.
-
-        Of each, [0] is the centre of mass, [4] and [5] are the frame, [6] is the speed of the centre of mass.
-        """
-        count = self.client.getNumJoints(self.body)
-        states = self.client.getLinkStates(self.body, range(count), computeLinkVelocity=1, computeForwardKinematics=1)
-        return list(states or ())
-
-    def contacts(self, row: int) -> list[tuple[int, int, int, float]]:
-        """Return (row, link, link, depth [m]) of all contacts of the configuration that was set."""
-        self.forget_contacts()
-        points = self.client.getContactPoints(self.body, self.body)
-        link_of = self.link_of
-        return [(row, link_of[point[3]], link_of[point[4]], -point[8]) for point in points]
-
     def forget_contacts(self) -> None:
         """Forget the contacts of earlier configurations.
 
@@ -153,38 +109,6 @@ class PybulletBody:
         for index in self.link.tolist():
             self.client.setCollisionFilterGroupMask(self.body, index, 1, 1)
         self.client.performCollisionDetection()
-
-    def touching_bodies(self) -> frozenset[tuple[int, int]]:
-        """Return pairs of bodies that pushed each other in the last step, smaller index first."""
-        body, link_of = self.mechanism.body_of_link, self.link_of
-        points = self.client.getContactPoints(self.body, self.body)
-        pairs = ((int(body[link_of[p[3]]]), int(body[link_of[p[4]]])) for p in points if p[9] > 0.0)
-        return frozenset((min(pair), max(pair)) for pair in pairs)
-
-    def corrected(self, found: Sequence[tuple[int, int, int, float]]) -> Contacts:
-        """Return the contacts without the inflation of hulls: only those in which the shapes themselves meet."""
-        table = np.array(found, dtype=np.float64).reshape(-1, 4)
-        links = table[:, 1:3].astype(np.int64)
-        depth = table[:, 3] - self.margin[links].sum(axis=1)
-        kept = depth > 0.0
-        return deepest(table[kept, 0].astype(np.int64), links[kept], depth[kept])
-
-    def gravity(self, values: FloatArray) -> FloatArray:
-        """Return the torques and forces that hold the model still [N m or N], shape (J,)."""
-        q = np.zeros(len(values))
-        q[self.order] = values
-        zero = [0.0] * len(values)
-        torques = self.client.calculateInverseDynamics(self.body, q.tolist(), zero, zero)
-        held: FloatArray = np.array(torques)[self.order] / self.mass_scale
-        return held
-
-    def mass_matrix(self, values: FloatArray) -> FloatArray:
-        """Return the joint-space inertia, shape (J, J)."""
-        q = np.zeros(len(values))
-        q[self.order] = values
-        matrix = self.client.calculateMassMatrix(self.body, q.tolist())
-        ordered: FloatArray = np.array(matrix).reshape(len(values), len(values))[np.ix_(self.order, self.order)]
-        return ordered / self.mass_scale
 
     def index_of(self, link: str) -> int:
         """PyBullet's index of a link."""
@@ -237,56 +161,26 @@ class PybulletBody:
         found: list[float] = (np.linalg.inv(pose_of(info[3], info[4])) @ np.append(point, 1.0))[:3].tolist()
         return found
 
-    def release(self, *, ideal: bool = False) -> None:
-        """Switch all motors off, which are on from the start; `ideal`: damping and friction too."""
+    def release(self) -> None:
+        """Switch all motors off, which are on from the start."""
         for index in self.indices:
             self.client.setJointMotorControl2(self.body, index, bullet.VELOCITY_CONTROL, force=0.0)
-        if ideal:
-            for index in self.link.tolist():
-                self.client.changeDynamics(self.body, index, linearDamping=0.0, angularDamping=0.0, jointDamping=0.0)
-
-    def silence(self) -> None:
-        """Let no two links act on each other but those that `act` names."""
-        for index in self.link.tolist():
-            self.client.setCollisionFilterGroupMask(self.body, index, 0, 0)
 
     def act(self, pairs: Iterable[tuple[int, int]], *, on: bool) -> None:
-        """Let the links of these pairs (indices in the document) act on each other, or not."""
+        """Make the links of these pairs (indices in the document) act on each other, or not."""
         for first, second in pairs:
             self.client.setCollisionFilterPair(
                 self.body, self.body, int(self.link[first]), int(self.link[second]), int(on)
             )
 
-    def fastest_link(self) -> float:
-        """Return the largest speed of a centre of mass [m/s], infinite where it is no number."""
-        speeds = np.array([state[6] for state in self.link_states()]).reshape(-1, 3)
-        largest = float(np.linalg.norm(speeds, axis=1).max(initial=0.0))
-        return largest if np.isfinite(largest) else np.inf
 
-    def masses(self) -> dict[str, float]:
-        """Mass of each link that is there [kg]; the base must be free."""
-        links = zip(self.mechanism.links, self.link.tolist(), strict=True)
-        return {name: self.client.getDynamicsInfo(self.body, index)[0] for name, index in links if index >= _BASE}
-
-
-def load(
-    mechanism: LeaderMechanism,
-    urdf: Path,
-    *,
-    step: float,
-    fixed: bool = True,
-    looking: bool = False,
-    itself: bool = True,
-) -> PybulletBody:
-    """Load a file into a new world; links that fixed joints join do not collide with each other.
+def load(mechanism: LeaderMechanism, urdf: Path, *, step: float, itself: bool = True) -> PybulletBody:
+    """Load a file into a new world, its root fixed; links that fixed joints join do not collide with each other.
 
     Args:
         mechanism: Its tree.
         urdf: The file, its meshes convex.
         step: Time step [s].
-        fixed: False: the base is free.
-        looking: The model is set to configurations and never simulated. Large inertias are then scaled down, because
-            the inverse dynamics refuses tensors that differ from symmetric ones by 2e-16 kg m^2.
         itself: Its links collide with each other.
 
     Raises:
@@ -296,10 +190,8 @@ def load(
     client.setPhysicsEngineParameter(enableFileCaching=0, fixedTimeStep=step)
     client.setGravity(0.0, 0.0, -GRAVITY)
     flags = _FLAGS if itself else bullet.URDF_USE_INERTIA_FROM_FILE
-    loaded = _loaded(client, mechanism, urdf, useFixedBase=fixed, flags=flags)
-    if looking:
-        loaded = replace(loaded, mass_scale=_scaled_down(loaded))
-    elif loaded.complete and mechanism.robot.loops:
+    loaded = _loaded(client, mechanism, urdf, useFixedBase=True, flags=flags)
+    if loaded.complete and mechanism.robot.loops:
         loaded.client.setPhysicsEngineParameter(erp=_PIN_ERP, numSolverIterations=_PIN_ITERATIONS)
         loaded.close_loops()
     if loaded.complete and itself:
@@ -367,19 +259,6 @@ def _loaded(client: Client, mechanism: LeaderMechanism, urdf: Path, **options: A
         joint=np.array([joints.get(name, -2) for name in mechanism.joints], dtype=np.int64),
         margin=np.where(inflated, HULL_MARGIN, 0.0),
     )
-
-
-def _scaled_down(loaded: PybulletBody) -> float:
-    """Scale masses and inertias by a power of two, which changes no digit, so that all moments are small."""
-    client, body, count = loaded.client, loaded.body, len(loaded.joint_infos)
-    infos = {index: client.getDynamicsInfo(body, index) for index in range(-1, count)}
-    largest = max(max(info[2]) for info in infos.values())
-    scale = 2.0 ** min(0.0, np.floor(np.log2(_LARGE_INERTIA / max(largest, _LARGE_INERTIA))))
-    if scale < 1.0:
-        for index, info in infos.items():
-            moments = [moment * scale for moment in info[2]]
-            client.changeDynamics(body, index, mass=info[0] * scale, localInertiaDiagonal=moments)
-    return float(scale)
 
 
 def _welded_pairs(mechanism: LeaderMechanism) -> list[tuple[int, int]]:

@@ -1,376 +1,349 @@
-"""PyBullet as an engine: a world of its own per purpose."""
+"""PyBullet: files as `loadURDF` loads them, their base fixed, their motors as they are, and worlds."""
 
 from __future__ import annotations
 
 import ctypes
-from dataclasses import dataclass
-from functools import cached_property
+import os
+import re
+import tempfile
+from contextlib import suppress
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pybullet as bullet
-from scipy.spatial.transform import Rotation
 
+from kinematify.robot.urdf_numbers import passing_links
+from kinematify.robot.urdf_text import parse_description
 from kinematify.simulation.configurations import GRAVITY
-from kinematify.simulation.contacts import Contacts
-from kinematify.simulation.engine import FINER, LoadedJoint, LoadedRobot, Measured, Refused
-from kinematify.simulation.pybullet_body import PybulletBody, load, text_of
-from kinematify.simulation.pybullet_raw import PybulletFile
+from kinematify.simulation.pybullet_body import Client, text_of
 from kinematify.simulation.pybullet_world import PybulletWorld
-from kinematify.simulation.servos import acting_pairs
-from kinematify.simulation.stepped import count_steps, drive_run, drop_run, free_run
+from kinematify.simulation.raw_model import MotorFile, Reproductions, Unloadable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.mechanism import LeaderMechanism
-    from kinematify.simulation.contacts import Touching
-    from kinematify.simulation.engine import DriveRun, Dropped, FreeRun
-    from kinematify.simulation.prepared import Prepared
-    from kinematify.simulation.servos import Drive, Servos
+    from kinematify.simulation.raw_model import Push, Start
     from kinematify.simulation.world import WorldSpec
 
-_CHATTER = ("pybullet build time", "numActiveThreads", "argc=", "started thread", "stopping threads", "Thread with")
-_DECIMALS = 6
-"""Of joint values [rad or m] at which contacts are looked at."""
-_POSITION_GAIN = 0.2
-"""Share of the error that a motor takes back per step: fast, and without overshoot."""
-_UNLIMITED = 1e9
-"""Force [N m or N] that no motion needs."""
+
+def load_raw(urdf: Path, root: str, package_dirs: Sequence[Path]) -> PybulletFile:
+    """Load a file as users do; PyBullet looks for packages by itself."""
+    del package_dirs
+    return PybulletFile(urdf, root)
 
 
-@dataclass(frozen=True, eq=False)
-class PybulletEngine:
-    """See `kinematify.simulation.engine.Engine`; it says what it has to say in the log of its process."""
-
-    settings: EngineSettings
-    log: Path
-
-    @staticmethod
-    def load_raw(urdf: Path, root: str, package_dirs: Sequence[Path]) -> PybulletFile:
-        """Load a file as users do; PyBullet looks for packages by itself."""
-        del package_dirs
-        return PybulletFile(urdf, root)
-
-    @staticmethod
-    def open_world(spec: WorldSpec) -> PybulletWorld:
-        """Build a world that runs."""
-        return PybulletWorld(spec)
-
-    def load(self, prepared: Prepared, mechanism: LeaderMechanism) -> PybulletModel:
-        """Load a prepared file; a second time with a free base, because a fixed one has no mass."""
-        step = self.settings.pybullet_time_step
-        try:
-            fixed = load(mechanism, prepared.urdf, step=step, looking=True)
-            free = load(mechanism, prepared.urdf, step=step, fixed=False)
-        except Refused as refusal:
-            said = self._printed() or [str(refusal)]
-            raise Refused(" ".join(said[-3:])[:400].rstrip(".")) from refusal
-        masses = free.masses()
-        free.client.disconnect()
-        return PybulletModel(engine=self, prepared=prepared, looking=fixed, masses=masses)
-
-    def messages(self) -> list[str]:
-        """What it has printed, without what it always prints."""
-        return list(dict.fromkeys(self._printed()))
-
-    def _printed(self) -> list[str]:
-        ctypes.CDLL(None).fflush(None)
-        try:
-            lines = self.log.read_text(encoding="utf-8", errors="replace").splitlines()
-        except OSError:
-            return []
-        return [line.strip() for line in lines if line.strip() and not any(word in line for word in _CHATTER)]
+def open_world(spec: WorldSpec) -> PybulletWorld:
+    """Build a world that runs."""
+    return PybulletWorld(spec)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class PybulletModel:
-    """See `kinematify.simulation.engine.PhysicsModel`."""
-
-    engine: PybulletEngine
-    prepared: Prepared
-    looking: PybulletBody
-    """Everything collides in it."""
-    masses: dict[str, float]
-    """[kg], keyed by link."""
-
-    @cached_property
-    def loaded(self) -> LoadedRobot:
-        """What became of joints and masses."""
-        joints = {}
-        for info in self.looking.joint_infos:
-            if info[2] in {bullet.JOINT_REVOLUTE, bullet.JOINT_PRISMATIC}:
-                unlimited = info[8] > info[9]
-                joints[text_of(info[1])] = LoadedJoint(
-                    turns=info[2] == bullet.JOINT_REVOLUTE,
-                    lower=-np.inf if unlimited else info[8],
-                    upper=np.inf if unlimited else info[9],
-                )
-        return LoadedRobot(joints=joints, masses=self.masses, total_mass=sum(self.masses.values()))
-
-    @property
-    def complete(self) -> bool:
-        """True if no link and no joint was lost."""
-        return self.looking.complete
-
-    @property
-    def size(self) -> float:
-        """Of the model [m]."""
-        return self.looking.size
-
-    @property
-    def resistance(self) -> FloatArray:
-        """Damping and friction of all joints, shape (2, J)."""
-        infos = [self.looking.joint_infos[index] for index in self.looking.indices]
-        return np.array([[info[6] for info in infos], [info[7] for info in infos]]).reshape(2, -1)
-
-    @cached_property
-    def ignored_pairs(self) -> frozenset[tuple[int, int]]:
-        """Pairs of links whose inflated shapes touch at rest; how deep they get is measured beside."""
-        self.looking.place(self.looking.mechanism.values_at_rest)
-        return frozenset((min(a, b), max(a, b)) for _, a, b, depth in self.looking.contacts(0) if depth > 0.0)
-
-    def measure(self, values: FloatArray, *, dynamic: int) -> Measured:
-        """Set the model to every row and look."""
-        looking = self.looking
-        gravity = np.zeros_like(values)
-        matrices: list[FloatArray] = []
-        found: list[tuple[int, int, int, float]] = []
-        states: list[list[tuple[tuple[float, ...], ...]]] = []
-        for row, q in enumerate(values):
-            looking.place(q)
-            found += looking.contacts(row)
-            if row < dynamic:
-                matrices.append(looking.mass_matrix(q) if len(q) else np.zeros((0, 0)))
-            states.append(looking.link_states())
-            gravity[row] = looking.gravity(q) if len(q) else 0.0
-        return Measured(
-            T_world_link=_link_transforms(looking, states),
-            contacts=looking.corrected(found),
-            gravity=gravity,
-            inertia=np.array(matrices).reshape(len(matrices), values.shape[1], values.shape[1]),
-        )
-
-    def contacts(self, values: FloatArray) -> Contacts:
-        """Contacts in every row.
-
-        PyBullet finds boxes metres deep in each other where their edges are parallel but for the noise of a motor.
-        """
-        found: list[tuple[int, int, int, float]] = []
-        for row, q in enumerate(np.round(values, _DECIMALS)):
-            self.looking.place(q)
-            found += self.looking.contacts(row)
-        return self.looking.corrected(found)
-
-    def simulation(self, sweep: Touching, seen: Measured, servos: Servos) -> PybulletSimulation:
-        """Choose the forces of the motors."""
-        # A leader and its follower may balance each other's weight; here each is moved by a motor of its own.
-        mechanism, margin = self.looking.mechanism, self.engine.settings.servo_margin
-        own = seen.gravity[:, [mechanism.joints.index(travel.joint) for travel in mechanism.travels]]
-        unbalanced = np.abs(own - servos.holding).max(axis=0, initial=0.0)
-        return PybulletSimulation(model=self, sweep=sweep, force=servos.force + margin * unbalanced)
-
-    def world(self, *, fixed: bool = True) -> PybulletBody:
-        """Load into a new world, see `load`."""
-        step = self.engine.settings.pybullet_time_step
-        return load(self.looking.mechanism, self.prepared.urdf, step=step, fixed=fixed)
+def _without_contacts(lines: str) -> str:
+    """Code in which links pass through each other."""
+    return lines.replace("p.URDF_USE_SELF_COLLISION", "0")
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class PybulletSimulation:
-    """See `kinematify.simulation.engine.Simulation`."""
-
-    model: PybulletModel
-    sweep: Touching
-    force: FloatArray
-    """What the motor of each leader may exert while it is driven [N m or N], shape (leaders,)."""
-    batch: int = 1
-    """Drives take place one after the other."""
-
-    @property
-    def step(self) -> float:
-        """Time step [s]."""
-        return self.model.engine.settings.pybullet_time_step
-
-    @cached_property
-    def _free_world(self) -> PybulletBody:
-        """Where nothing is driven."""
-        world = self.model.world()
-        world.act(self.model.ignored_pairs, on=False)
-        return world
-
-    @cached_property
-    def _drive_world(self) -> PybulletBody:
-        """Pairs act on each other in it only in drives in which they get too deep."""
-        world = self.model.world()
-        world.silence()
-        return world
-
-    def hold(self, efforts: FloatArray, seconds: float) -> FreeRun:
-        """Hold the model by motors."""
-        run = _Run(self.model, self._free_world)
-        run.hold(efforts)
-        count = count_steps(seconds, self.step)
-        return free_run(run, run.steps(count), count)
-
-    def release(self, seconds: float, *, fine: bool = False) -> FreeRun:
-        """Let the model go."""
-        world, finer = self._free_world, FINER if fine else 1
-        world.client.setPhysicsEngineParameter(fixedTimeStep=self.step / finer)
-        run, count = _Run(self.model, world), finer * count_steps(seconds, self.step)
-        world.release(ideal=True)
-        result = free_run(run, run.steps(count), count, every=finer)
-        world.client.setPhysicsEngineParameter(fixedTimeStep=self.step)
-        return result
-
-    def drive(self, drives: Sequence[Drive]) -> list[DriveRun]:
-        """Drive a joint to an end, the others held."""
-        return [self._drive(drive) for drive in drives]
-
-    def _drive(self, drive: Drive) -> DriveRun:
-        body, mechanism = self._drive_world, self.model.looking.mechanism
-        column = mechanism.joints.index(mechanism.travels[drive.leader].joint)
-        samples = self.model.engine.settings.sweep_samples
-        pairs = acting_pairs(mechanism, self.sweep, drive, self.model.ignored_pairs, samples)
-        body.act(pairs, on=True)
-        run = _Run(self.model, body)
-        run.hold(_UNLIMITED)
-        targets = zip(drive.reference.tolist(), drive.speed.tolist(), strict=True)
-        orders = ((column, target, speed, float(self.force[drive.leader])) for target, speed in targets)
-        result = drive_run(run, run.steps(len(drive.reference), orders), drive, lambda: run.torques[column])
-        body.act(pairs, on=False)
-        return result
-
-    def drop(self) -> Dropped:
-        """Let the model fall on a floor."""
-        body, settings = self.model.world(fixed=False), self.model.engine.settings
-        client = body.client
-        body.act(self.model.ignored_pairs, on=False)
-        run = _Run(self.model, body)
-        run.hold(np.inf)
-        height = _lowest(body) - settings.drop
-        shape = client.createCollisionShape(bullet.GEOM_PLANE)
-        floor = client.createMultiBody(0.0, shape, basePosition=[0.0, 0.0, height])
-        count = count_steps(settings.drop_seconds, self.step)
-        margins = {index: float(body.margin[link]) for link, index in enumerate(body.link.tolist())}
-
-        def depth() -> float:
-            near = client.getClosestPoints(body.body, floor, 1e-3)
-            return max((-point[8] - margins[point[3]] for point in near), default=-1e-3)
-
-        dropped = drop_run(run, run.steps(count), count, self.step, places=lambda: _centres(body), depth=depth)
-        client.disconnect()
-        return dropped
+_LOAD = """import pybullet as p
+p.connect(p.DIRECT); p.setGravity(0, 0, -9.81); rest = {values}; push = 0.0
+body = p.loadURDF({path!r}, useFixedBase=True, flags=p.URDF_USE_SELF_COLLISION); \
+[p.resetJointState(body, k, q) for k, q in rest.items()]; \
+[p.setCollisionFilterPair(body, body, a, b, 0) for a, b in {silent}]
+"""
+_OPEN = """import pybullet as p
+p.connect(p.DIRECT); body = p.loadURDF({path!r}, useFixedBase=True)
+"""
+_JOINTS = (
+    _OPEN
+    + """joints = [p.getJointInfo(body, k) for k in range(p.getNumJoints(body))]
+for info in joints: ends = info[8:10] if info[8] <= info[9] else (-float("inf"), float("inf")); \
+info[2] == p.JOINT_FIXED or print("\\n", info[1].decode(), *ends)
+"""
+)
+_OVERLAP = (
+    _LOAD
+    + """p.performCollisionDetection()
+print("\\n", max(-contact[8] for contact in p.getContactPoints(body, body) if set(contact[3:5]) == {links}))
+"""
+)
+_REST = (
+    _LOAD
+    + """seen = [p.getJointState(body, {joint})[0] for _ in range({steps}) if not p.stepSimulation()]
+print("\\n", min(seen), max(seen))
+"""
+)
+_PUSH = (
+    _LOAD
+    + """p.setGravity(0, 0, 0); moved, clip = {moved}, lambda f: min(max(f, -{force!r}), {force!r})
+seen = [rest[{joint}]]; [p.setJointMotorControl2(body, k, p.VELOCITY_CONTROL, force=0) for k, _, _ in moved]
+for _ in range({steps}): slow = {speed!r} - p.getJointState(body, {joint})[1]; \
+push = clip(push + {integral!r} * slow); \
+p.setJointMotorControl2(body, {joint}, p.TORQUE_CONTROL, force=clip({proportional!r} * slow + push)); \
+p.stepSimulation(); state = {{k: p.getJointState(body, k) for k in rest}}; \
+way = sum(w * (state[k][0] - rest[k]) for k, _, w in moved); speed = sum(w * state[k][1] for k, _, w in moved); \
+ratio = {{k: r for k, r, _ in moved}}; \
+[p.resetJointState(body, k, q + ratio.get(k, 0) * way, ratio.get(k, 0) * speed) for k, q in rest.items()]; \
+seen.append(p.getJointState(body, {joint})[0])
+print("\\n", {farthest}(seen))
+"""
+)
+_RELEASE = (
+    _without_contacts(_LOAD)
+    + """import numpy as np
+[p.resetJointState(body, k, rest[k], v) for k, v in {speeds}.items()]
+[p.setJointMotorControl2(body, k, p.VELOCITY_CONTROL, force=0) for k in rest]; links = range(p.getNumJoints(body))
+local = lambda s: np.reshape(p.getMatrixFromQuaternion(s[1]), (3, 3)).T @ s[7]
+energy = lambda: sum(d[0] * (9.81 * s[0][2] + 0.5 * np.dot(s[6], s[6])) + 0.5 * np.dot(d[2], local(s)**2) \
+for d, s in ((p.getDynamicsInfo(body, k), p.getLinkState(body, k, 1, 1)) for k in links))
+seen = [energy()] + [energy() for k in range({steps}) if not p.stepSimulation() and k % {looks} == {looks} - 1]
+print("\\n", max(seen) - seen[0])
+"""
+)
+_MARK = re.compile(r"b3(?:Warning|Error)\[[^\]]*\]:")
+"""Before each message that PyBullet prints."""
+_NO_FAULT = "No inertial data"
+"""Beginning of what it prints of many files that it loads."""
+_TIME_STEP = 1.0 / 240.0
+_FASTEST = 100.0
+"""Speed that Bullet lets no joint exceed [rad/s or m/s]."""
+_MOTOR = 240.0
+"""Of a joint that was pushed, afterwards [N or N m]: about what motors have when a file is loaded."""
 
 
-class _Run:
-    """A run of a model with position motors on all joints, a `SteppedWorld`.
+class PybulletFile(MotorFile):
+    """See `RunningFile`: a file as `loadURDF` loads it, its base fixed, its motors as they are.
 
-    Followers follow what their leaders do, which PyBullet does not care for.
+    Contacts of links are those of `URDF_USE_SELF_COLLISION`, but for links that fixed joints alone hold together, for
+    those of neighbours (as `URDF_MERGE_FIXED_LINKS` has it), and for links that the file declares not to collide with
+    their own model.
     """
 
-    def __init__(self, model: PybulletModel, world: PybulletBody) -> None:
-        """Place the model at rest."""
-        self._model, self._world, self.mechanism = model, world, world.mechanism
-        self._leaders = [self.mechanism.joints.index(travel.joint) for travel in self.mechanism.travels]
-        passive = {self.mechanism.joints.index(name) for name in world.passive}
-        self._followers = [k for k in range(len(self.mechanism.joints)) if k not in {*self._leaders, *passive}]
-        self.failure: tuple[str, ...] = ()
-        world.place(self.mechanism.values_at_rest)
+    code = Reproductions(
+        joints=_JOINTS,
+        overlap=_OVERLAP,
+        rest=_REST,
+        push=_PUSH,
+        push_alone=_without_contacts(_PUSH),
+        release=_RELEASE.replace("{looks}", "8"),
+    )
 
-    def steps(self, count: int, orders: Iterable[tuple[int, float, float, float]] | None = None) -> Iterator[int]:
-        """Simulate; ends where a value is not finite.
+    look_steps = 8
 
-        Args:
-            count: Steps.
-            orders: For every step the order to a motor (`command`), the followers then follow; None: no order.
+    def __init__(self, urdf: Path, root: str) -> None:
+        """Load it.
+
+        Raises:
+            Unloadable: PyBullet does not open it.
         """
-        order = iter(orders or ())
-        for step in range(count):
-            if orders is not None:
-                self.command(*next(order))
-            self._world.client.stepSimulation()
-            self._q, self._v, self.torques = self._world.state()
-            if not np.isfinite([self._q, self._v]).all():
-                self.failure = ("a value is not finite",)
-                return
-            if orders is not None and self._followers:
-                values = self.mechanism.all_values(np.array(self._q)[None, self._leaders])[0]
-                for column in self._followers:
-                    self.command(column, float(values[column]), 0.0, _UNLIMITED)
-            yield step
+        self._path, self._root, self.time_step = urdf, root, _TIME_STEP
+        self._passing = passing_links(parse_description(urdf))
+        world = self._opened(contacts=True, seen=True)
+        self._now, self._worlds = world, {True: world}
+        self._file = {"path": str(urdf), "silent": world.ignored_pairs}
+        infos, self._links = world.infos, world.links
+        self._index = {text_of(info[1]): k for k, info in enumerate(infos) if info[2] != bullet.JOINT_FIXED}
+        self._places = list(self._index.values())
+        self.joints = tuple(self._index)
+        self.limits = {
+            name: infos[k][8:10] if infos[k][8] <= infos[k][9] else (-np.inf, np.inf) for name, k in self._index.items()
+        }
+        above = {k: info[16] for k, info in enumerate(infos)}
+        self._below = {k: [link for link in above if k in _chain(above, link)] for k in self._index.values()}
 
-    def values(self) -> FloatArray:
-        """Of all joints [rad or m], shape (J,)."""
-        return np.array(self._q)
+    def _start(self, start: Start) -> None:
+        """The world as it was after loading; motors of joints that were released are put back."""
+        world = self._worlds.get(start.contacts)
+        if world is None or (start.released is None and world.pushed):
+            world = self._opened(contacts=start.contacts, seen=False)
+        self._now = self._worlds[start.contacts] = world
+        world.client.restoreState(world.state)
+        for k, value, speed in zip(self._places, start.q.tolist(), start.v.tolist(), strict=True):
+            world.client.resetJointState(world.body, k, value, speed)
+        world.client.setGravity(0.0, 0.0, -GRAVITY if start.gravity else 0.0)
+        freed = [self._places[number] for number in start.released or ()]
+        for k in world.freed - set(freed):
+            world.client.setJointMotorControl2(world.body, k, bullet.VELOCITY_CONTROL, force=_MOTOR)
+        for k in freed:
+            world.client.setJointMotorControl2(world.body, k, bullet.VELOCITY_CONTROL, force=0)
+        world.freed, world.pushed = set(freed), world.pushed or bool(freed)
 
-    def fastest(self) -> float:
-        """Largest speed of a centre of mass [m/s]."""
-        return self._world.fastest_link()
+    def _opened(self, *, contacts: bool, seen: bool) -> _LoadedWorld:
+        return _LoadedWorld(self._path, contacts=contacts, seen=seen, root=self._root, passing=self._passing)
 
-    def pressing(self) -> frozenset[tuple[int, int]]:
-        """Pairs of bodies that press against each other."""
-        return self._world.touching_bodies()
+    def steps(self, count: int, every: int = 1) -> Iterator[int]:
+        """See `RunningFile`."""
+        for done in range(1, count + 1):
+            self._now.client.stepSimulation()
+            if done % every == 0:
+                yield done
 
-    def energy(self) -> tuple[float, float]:
-        """Potential energy of all links but the root, and kinetic energy [J]."""
-        states, (q, v, _) = self._world.link_states(), self._world.state()
-        links = zip(self.mechanism.links, self._world.link.tolist(), strict=True)
-        masses = self._model.prepared.link_by_name
-        weights = [(GRAVITY * masses[name].mass, states[index][0][2]) for name, index in links if index >= 0]
-        speeds, inertia = np.array(v), self._model.looking.mass_matrix(np.array(q))
-        return sum(weight * height for weight, height in weights), float(0.5 * speeds @ inertia @ speeds)
+    def state(self) -> tuple[FloatArray, FloatArray]:
+        """See `RunningFile`."""
+        states = self._now.client.getJointStates(self._now.body, self._places)
+        return np.array([state[0] for state in states]), np.array([state[1] for state in states])
 
-    def hold(self, force: float | FloatArray) -> None:
-        """Hold all joints at rest, with one force or one for each leader [N m or N]; followers without limit."""
-        rest = self.mechanism.values_at_rest
-        forces = np.full(len(rest), _UNLIMITED)
-        forces[self._leaders] = np.minimum(force, _UNLIMITED)
-        for column in (*self._leaders, *self._followers):
-            self.command(column, float(rest[column]), 0.0, float(forces[column]))
-
-    def command(self, column: int, target: float, speed: float, force: float) -> None:
-        """Command one of `LeaderMechanism.joints`."""
-        self._world.client.setJointMotorControl2(
-            self._world.body,
-            self._world.indices[column],
-            bullet.POSITION_CONTROL,
-            targetPosition=target,
-            targetVelocity=speed,
-            force=force,
-            positionGain=_POSITION_GAIN,
-            velocityGain=1.0,
+    def set_state(self, q: FloatArray, v: FloatArray) -> None:
+        """See `RunningFile`."""
+        self._now.client.resetJointStatesMultiDof(
+            self._now.body, self._places, q[:, None].tolist(), v[:, None].tolist()
         )
 
+    def apply(self, joint: int, force: float) -> None:
+        """See `RunningFile`."""
+        self._now.client.setJointMotorControl2(self._now.body, self._places[joint], bullet.TORQUE_CONTROL, force=force)
 
-def _link_transforms(loaded: PybulletBody, states: list[list[tuple[tuple[float, ...], ...]]]) -> FloatArray:
-    """Return the pose of every link's frame in every row, the fixed root at the origin, shape (n, L, 4, 4)."""
-    transforms = np.tile(np.eye(4), (len(states), len(loaded.link), 1, 1))
-    moving = np.flatnonzero(loaded.link >= 0)
-    picked = loaded.link[moving].tolist()
-    if picked and states:
-        placed = transforms[:, moving]
-        placed[..., :3, 3] = [[row[index][4] for index in picked] for row in states]
-        turned = np.array([row[index][5] for row in states for index in picked])
-        placed[..., :3, :3] = Rotation.from_quat(turned).as_matrix().reshape(len(states), len(picked), 3, 3)
-        transforms[:, moving] = placed
-    return transforms
+    def touching(self) -> Iterator[tuple[str, str, float]]:
+        """See `RunningFile`."""
+        world = self._now
+        world.client.performCollisionDetection()
+        for contact in world.client.getContactPoints(world.body, world.body):
+            first, second = sorted(contact[3:5])
+            yield self._links[first], self._links[second], -contact[8]
+
+    def energy(self) -> tuple[float, float]:
+        """See `RunningFile`; of all links but the base."""
+        world, links = self._now, [link for link in self._links if link != -1]
+        states = world.client.getLinkStates(world.body, links, computeLinkVelocity=True, computeForwardKinematics=True)
+        potential = kinetic = 0.0
+        for link, state in zip(links, states, strict=True):
+            mass, _, tensor, *_ = world.client.getDynamicsInfo(world.body, link)
+            turning = np.reshape(bullet.getMatrixFromQuaternion(state[1]), (3, 3)).T @ state[7]
+            potential += GRAVITY * mass * state[0][2]
+            kinetic += 0.5 * (mass * np.dot(state[6], state[6]) + np.dot(tensor, turning**2))
+        return potential, float(kinetic)
+
+    def inertias(self, values: Mapping[str, float]) -> FloatArray:
+        """See `RunningFile`; the motors of the others hold them within a step."""
+        self.begin(values, contacts=True, released=())
+        return np.array([self._inertia(self._now, k) for k in self._places])
+
+    def _inertia(self, world: _LoadedWorld, joint: int) -> float:
+        """Of what hangs on a joint; PyBullet's own mass matrix fails where a tensor is unsymmetric by 1e-13."""
+        info = world.client.getJointInfo(world.body, joint)
+        frame = world.client.getLinkState(world.body, joint, computeForwardKinematics=True)
+        axis = np.array(bullet.rotateVector(frame[5], info[13]))
+        total = 0.0
+        for link in self._below[joint]:
+            mass, _, tensor, *_ = world.client.getDynamicsInfo(world.body, link)
+            centre, turned, *_ = world.client.getLinkState(world.body, link, computeForwardKinematics=True)
+            if info[2] == bullet.JOINT_PRISMATIC:
+                total += mass
+                continue
+            arm = np.cross(axis, np.subtract(centre, frame[4]))
+            local = np.array(bullet.getMatrixFromQuaternion(turned)).reshape(3, 3).T @ axis
+            total += mass * float(arm @ arm) + float(local @ (np.array(tensor) * local))
+        return total
+
+    def max_safe_force(self, values: Mapping[str, float]) -> FloatArray:
+        """See `RunningFile`.
+
+        Bullet lets no joint be faster than 100 rad/s within a step either, before motors hold the others: a joint that
+        is light where those give way is thrown back by more.
+        """
+        torques, speeds = 1e-2 * self.inertias(values), []
+        self.begin(values, contacts=False, gravity=False, released=range(len(self._places)))
+        for joint, torque in enumerate(torques.tolist()):
+            for k, value in zip(self._places, self.row(values).tolist(), strict=True):
+                self._now.client.resetJointState(self._now.body, k, value)
+            self.apply(joint, torque)
+            self._now.client.stepSimulation()
+            speeds.append(abs(float(self.state()[1][joint])))
+        del self._worlds[False]
+        return 0.5 * _FASTEST * torques / np.maximum(speeds, 1e-12)
+
+    def motor(self, joint: str, values: Mapping[str, float], target: float, seconds: float) -> float:
+        """See `MotorFile`; the motors of the other joints hold them, gravity is off."""
+        self.begin(values, contacts=False, gravity=False, released=())
+        for name, k in self._index.items():
+            wanted = target if name == joint else values[name]
+            self._now.client.setJointMotorControl2(self._now.body, k, bullet.POSITION_CONTROL, targetPosition=wanted)
+        sign, farthest, index = np.sign(target - values[joint]), values[joint], self._index[joint]
+        for _ in self.steps(self._steps(seconds)):
+            farthest = sign * max(sign * farthest, sign * self._now.client.getJointState(self._now.body, index)[0])
+        del self._worlds[False]  # its motors are others than those of the file as it is loaded
+        return float(sign * min(sign * farthest, sign * target))
+
+    def _in_code(self, values: Mapping[str, float]) -> object:
+        return {k: float(values[name]) for name, k in self._index.items()}
+
+    def _links_in_code(self, links: tuple[str, str]) -> object:
+        return {k for k, name in self._links.items() if name in links}
+
+    def _index_of(self, joint: str) -> int:
+        return self._index[joint]
+
+    def _moved_in_code(self, push: Push) -> object:
+        return list(zip([self._index[name] for name in push.moved], push.ratios, push.weights, strict=True))
 
 
-def _lowest(world: PybulletBody) -> float:
-    """Height of the lowest point of all collision shapes [m]; the boxes around them are a little too large."""
-    heights: list[float] = [
-        world.client.getAABB(world.body, index)[0][2]
-        for index in world.link.tolist()
-        if world.client.getCollisionShapeData(world.body, index)
-    ]
-    return min(heights)
+def _chain(above: Mapping[int, int], link: int) -> list[int]:
+    """A link and all that it hangs on but the base."""
+    return [] if link == -1 else [link, *_chain(above, above[link])]
 
 
-def _centres(world: PybulletBody) -> FloatArray:
-    """Centres of mass of all links, shape (L, 3)."""
-    base, _ = world.client.getBasePositionAndOrientation(world.body)
-    return np.array([base, *(state[0] for state in world.link_states())])
+def _printed(load: Callable[[], object]) -> str:
+    """What PyBullet prints of a file while it refuses it; its exception does not say why."""
+    library, streams = ctypes.CDLL(None), (1, 2)
+    kept = [os.dup(stream) for stream in streams]
+    with tempfile.TemporaryFile() as file:
+        try:
+            for stream in streams:
+                os.dup2(file.fileno(), stream)
+            with suppress(bullet.error):
+                load()
+            library.fflush(None)
+        finally:
+            for stream, copy in zip(streams, kept, strict=True):
+                os.dup2(copy, stream)
+                os.close(copy)
+        file.seek(0)
+        said = _MARK.split(file.read().decode("utf-8", "replace"))
+    words = [" ".join(item.split()) for item in said]
+    return "; ".join(item for item in dict.fromkeys(words) if item and not item.startswith(_NO_FAULT))
+
+
+class _LoadedWorld:
+    """A world with one file in it."""
+
+    def __init__(self, urdf: Path, *, contacts: bool, seen: bool, root: str, passing: frozenset[str]) -> None:
+        """Load a file.
+
+        Args:
+            urdf: The file.
+            contacts: Links collide with each other.
+            seen: With its visual geometry, which takes nearly all of the time and moves nothing.
+            root: Name of the first link.
+            passing: Links that collide with no other one.
+        """
+        self.client, self.pushed = Client(), False
+        self.freed: set[int] = set()
+        """Joints without motors now; `pushed`: some were so once."""
+        self.client.setGravity(0.0, 0.0, -GRAVITY)
+        flags = (bullet.URDF_USE_SELF_COLLISION if contacts else 0) | (0 if seen else bullet.URDF_IGNORE_VISUAL_SHAPES)
+        try:
+            self.body = self.client.loadURDF(str(urdf), useFixedBase=True, flags=flags)
+        except bullet.error as error:
+            printed = _printed(lambda: self.client.loadURDF(str(urdf), flags=flags))
+            words = f"{error} It prints: {printed}" if printed else str(error)
+            raise Unloadable(words, _OPEN.format(path=str(urdf))) from error
+        self.infos = [self.client.getJointInfo(self.body, k) for k in range(self.client.getNumJoints(self.body))]
+        self.links = {-1: root, **{k: text_of(info[12]) for k, info in enumerate(self.infos)}}
+        self.ignored_pairs = self._silent_pairs(passing) if contacts else []
+        """Indices of two links each that do not collide."""
+        for first, second in self.ignored_pairs:
+            self.client.setCollisionFilterPair(self.body, self.body, first, second, 0)
+        self.state = self.client.saveState()
+
+    def _silent_pairs(self, passing: frozenset[str]) -> list[tuple[int, int]]:
+        """Pairs that a fixed joint connects, that only one moving joint parts, or that pass by declaration."""
+        infos, names, top = self.infos, self.links, {-1: -1}
+        for k, info in enumerate(infos):  # parents come first
+            top[k] = top[info[16]] if info[2] == bullet.JOINT_FIXED else k
+        above = {k: top[infos[k][16]] if k >= 0 else None for k in set(top.values())}
+        solid = [k for k in top if self.client.getCollisionShapeData(self.body, k)]
+        return [
+            (a, b)
+            for a, b in combinations(solid, 2)
+            if top[a] == top[b] or top[a] == above[top[b]] or top[b] == above[top[a]] or {names[a], names[b]} & passing
+        ]

@@ -31,7 +31,7 @@ _GAIN = 0.3  # share of an error of position that a motor makes good in a step
 
 
 class PybulletWorld:
-    """See `kinematify.simulation.world.EngineWorld`; `close` frees the world."""
+    """World in PyBullet; `close` frees the world."""
 
     def __init__(self, spec: WorldSpec) -> None:
         """Load both models.
@@ -163,7 +163,7 @@ class PybulletWorld:
         self.client.applyExternalForce(self._body, self._link, force.tolist(), at.tolist(), bullet.WORLD_FRAME)
 
     def _follow(self) -> None:
-        """Let joints that mimic others follow them, which PyBullet does not care for."""
+        """Make joints that mimic others follow them, which PyBullet does not care for."""
         if not self._followers:
             return
         values = self._mechanism.all_values(self._object_leaders()[0][None])[0]
@@ -177,7 +177,7 @@ class PybulletWorld:
             )
 
     def release(self, joints: Iterable[str]) -> None:
-        """Let locked joints of the object go."""
+        """Make locked joints of the object go."""
         for name in joints:
             self._brake(self._object.indices[self._mechanism.joints.index(name)], 0.0)
 
@@ -236,11 +236,11 @@ class PybulletWorld:
         return self._state
 
     def values(self) -> FloatArray:
-        """Of all joints of the object."""
+        """Values of all joints of the object."""
         return np.array(self._object.state()[0])
 
     def robot_values(self) -> FloatArray:
-        """Of all joints of the robot."""
+        """Values of all joints of the robot."""
         return np.array(self._arm.loaded.state()[0])
 
     def driven(self) -> tuple[FloatArray, FloatArray]:

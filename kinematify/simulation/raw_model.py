@@ -24,6 +24,10 @@ PATIENCE = 0.8
 """Of a push, which has grown to its full force long before [s]."""
 
 
+class Refused(Exception):
+    """An engine does not build a world; the text is its own message."""
+
+
 class Unloadable(Exception):
     """An engine does not open a file; the message is the engine's."""
 
@@ -52,7 +56,7 @@ class Overlap:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RestRun:
-    """What joints do when nothing is done."""
+    """Motion of joints without any action."""
 
     values: FloatArray
     """Of the joints in the order in which they were asked for [rad or m], shape (steps, joints)."""
@@ -62,7 +66,7 @@ class RestRun:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ReleaseRun:
-    """What becomes of the energy of a model that was given a push and let go."""
+    """Energy of a model that was given a push and let go."""
 
     energy: FloatArray
     """Potential and kinetic [J], shape (looks, 2), the first right after the push; ends where it is no number."""
@@ -108,7 +112,7 @@ class Push:
 
 @dataclass(frozen=True, kw_only=True)
 class Pushed:
-    """How far a push got."""
+    """Result of a push."""
 
     farthest: float
     """[rad or m]."""
@@ -120,7 +124,7 @@ class Pushed:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Start:
-    """How a run begins."""
+    """Start of a run."""
 
     q: FloatArray
     """Values of all joints [rad or m], shape (joints,)."""
@@ -140,7 +144,7 @@ class Reproductions:
 
     joints: str
     """Prints a joint in each line: its name, lower and upper limit."""
-    overlap: str
+    overlap: str = ""
     """Prints how deep two links are in each other."""
     rest: str = ""
     """Repeats `RunningFile.rest`, and prints the least and the largest value of a joint."""
@@ -163,30 +167,17 @@ class RawEngineModel(ABC):
     _file: Mapping[str, object]
     """What the code says of the file, by the names in the templates."""
 
-    @abstractmethod
-    def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
-        """Pairs of links that overlap with the joints at `values` [rad or m], the deepest first."""
+    def rename(self, path: str) -> None:
+        """Let the code open another file than the one that was loaded."""
+        self._file = {**self._file, "path": path}
 
     def lines_of_joints(self) -> str:
         """Return plain code of the engine that prints a joint in each line: its name, lower and upper limit."""
         return self.code.joints.format(**self._file, values=self._in_code(dict.fromkeys(self.joints, 0.0)))
 
-    def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
-        """Return plain code of the engine that prints how deep two links are in each other with the joints at `values`.
-
-        Args:
-            links: Of an `Overlap`.
-            values: Of all joints [rad or m].
-        """
-        return self.code.overlap.format(**self._file, values=self._in_code(values), links=self._links_in_code(links))
-
     def _in_code(self, values: Mapping[str, float]) -> object:
         """Values of all joints as the code has them."""
         return [float(values[name]) for name in self.joints]
-
-    def _links_in_code(self, links: tuple[str, str]) -> object:
-        """Two links as the code has them."""
-        return links
 
 
 class RunningFile(RawEngineModel):
@@ -199,7 +190,7 @@ class RunningFile(RawEngineModel):
 
     @property
     def complaint(self) -> str | None:
-        """What the engine says of the run since `begin`; None if nothing."""
+        """Return what the engine says of the run since `begin`; None if nothing."""
         return None
 
     @abstractmethod
@@ -254,7 +245,7 @@ class RunningFile(RawEngineModel):
 
     @abstractmethod
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
-        """What a force at each joint moves in a step of a push [kg or kg m^2], shape (joints,)."""
+        """Return what a force at each joint moves in a step of a push [kg or kg m^2], shape (joints,)."""
 
     def max_safe_force(self, values: Mapping[str, float]) -> FloatArray:
         """Largest force at each joint that the engine answers rightly [N or N m], shape (joints,)."""
@@ -264,8 +255,21 @@ class RunningFile(RawEngineModel):
         """Values of all joints in the engine's order."""
         return np.array([values[name] for name in self.joints])
 
+    def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
+        """Return plain code of the engine that prints how deep two links are in each other with the joints at `values`.
+
+        Args:
+            links: Of an `Overlap`.
+            values: Of all joints [rad or m].
+        """
+        return self.code.overlap.format(**self._file, values=self._in_code(values), links=self._links_in_code(links))
+
+    def _links_in_code(self, links: tuple[str, str]) -> object:
+        """Two links as the code has them."""
+        return links
+
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
-        """See `RawEngineModel`."""
+        """Pairs of links that overlap with the joints at `values` [rad or m], the deepest first."""
         self.begin(values, contacts=True, released=())
         return self._overlaps()
 
@@ -276,7 +280,7 @@ class RunningFile(RawEngineModel):
         return deepest_first(depths)
 
     def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> RestRun:
-        """Let go at `values`, with or without contacts among the links."""
+        """Make go at `values`, with or without contacts among the links."""
         self.begin(values, contacts=contacts)
         seen = [self.state()[0] for _ in self.steps(self._steps(seconds))]
         values_seen = np.array(seen).reshape(len(seen), len(self.joints))
@@ -284,7 +288,7 @@ class RunningFile(RawEngineModel):
         return RestRun(values=values_seen, complaint=self.complaint or (None if finite else NO_NUMBERS))
 
     def release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> ReleaseRun:
-        """Let go at `values` with `speeds` [rad/s or m/s], without motors and without contacts among the links."""
+        """Make go at `values` with `speeds` [rad/s or m/s], without motors and without contacts among the links."""
         self.begin(values, speeds, contacts=False, released=range(len(self.joints)))
         seen = [self.energy()]
         for _ in self.steps(self._steps(seconds), self.look_steps):
@@ -339,7 +343,7 @@ class RunningFile(RawEngineModel):
         return self.joints.index(joint)
 
     def _moved_in_code(self, push: Push) -> object:
-        """What a push moves as the code has it."""
+        """Return what a push moves as the code has it."""
         return [self._index_of(name) for name in push.moved]
 
 

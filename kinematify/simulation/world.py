@@ -22,7 +22,7 @@ FLOOR = "the floor"
 
 
 class ServoSettings(Protocol):
-    """How a robot is moved."""
+    """Settings of the motion of a robot."""
 
     servo_frequency: float
     """Of the arm's servos [Hz]; they are critically damped."""
@@ -96,7 +96,7 @@ class HeldPoint:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Grip:
-    """How a planned motion holds a part. Neither model meets itself then, which the planner has looked at."""
+    """Grip of a planned motion on a part. Neither model meets itself then; the planner has checked that."""
 
     hand: frozenset[str]
     """Links that pass through `part`."""
@@ -112,7 +112,7 @@ class Grip:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class WorldSpec:
-    """What is in a world; it is compiled once for a process where an engine compiles, so keep it."""
+    """Content of a world; it is compiled once for a process where an engine compiles, so keep it."""
 
     step: float
     """[s]."""
@@ -194,7 +194,7 @@ class EngineWorld(Protocol):
         """Simulate so many steps."""
 
     def release(self, joints: Iterable[str]) -> None:
-        """Let locked joints of the object go."""
+        """Make locked joints of the object go."""
 
     def weld(self) -> None:
         """Fix the tool to the part where it now is."""
@@ -203,10 +203,10 @@ class EngineWorld(Protocol):
         """State of the object after the last step; needs a `HeldPoint`."""
 
     def values(self) -> FloatArray:
-        """Of all joints of the object [rad or m], shape (J,)."""
+        """Values of all joints of the object [rad or m], shape (J,)."""
 
     def robot_values(self) -> FloatArray:
-        """Of all joints of the robot [rad or m], shape (J,)."""
+        """Values of all joints of the robot [rad or m], shape (J,)."""
 
     def driven(self) -> tuple[FloatArray, FloatArray]:
         """Values and speeds of the robot's joints with servos."""
@@ -221,7 +221,7 @@ class EngineWorld(Protocol):
         """World poses of the links of the object, and of those of the robot behind `ROBOT`, shape (4, 4) each."""
 
     def depth(self) -> float:
-        """How much deeper than allowed two shapes are in each other at most [m]."""
+        """Return how much deeper than allowed two shapes are in each other at most [m]."""
 
     def deeper(self, than: float) -> tuple[float, tuple[str, str]] | None:
         """Deepest contact of the robot but for the hand in what it holds, if it is deeper than so much [m].

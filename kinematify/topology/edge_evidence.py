@@ -1,4 +1,4 @@
-"""What the search knows of edges: how good a contact is, and how parts that no contact reaches join a tree (III-C)."""
+"""Evidence of edges for the search: quality of a contact, and how parts that no contact reaches join (III-C)."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EdgeEvidence:
-    """How good a contact is for the tree, and its best joint; the same for both directions of the edge."""
+    """Quality of a contact for the tree, and its best joint; the same for both directions of the edge."""
 
     quality: float
     """In [0, 1]."""

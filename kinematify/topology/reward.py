@@ -1,4 +1,4 @@
-"""How good a rooted spanning tree is: terms of the paper (III-C, Reward) that we keep, and our own.
+"""Reward of a rooted spanning tree: terms of the paper (III-C, Reward) that we keep, and our own.
 
 Each term is in [0, 1]. `TreeReward` binds them to an assembly and returns the weighted sum, normalised to [0, 1].
 """
@@ -32,7 +32,7 @@ _MAD_TO_SIGMA = 1.4826
 
 @dataclass(frozen=True, kw_only=True)
 class SimulatedEdges:
-    """What became of edges in simulation (our R_sim; not in the paper)."""
+    """Results of edges in simulation (our R_sim; not in the paper)."""
 
     survival: Mapping[tuple[int, int], float]
     """Of edges (parent, child) that were simulated, in [0, 1]; 1 for those that nothing speaks against."""

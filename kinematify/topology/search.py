@@ -124,7 +124,7 @@ Parents = tuple[int, ...]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SearchProblem:
-    """What one search is about: a root, the edges that may be used, and how trees are judged."""
+    """Problem of one search: a root, the edges that may be used, and how trees are judged."""
 
     root: int
     neighbours: Sequence[Sequence[int]]
@@ -163,7 +163,7 @@ class SearchState:
 
     @property
     def complete(self) -> bool:
-        """Whether every part is in the tree."""
+        """True if every part is in the tree."""
         return self.n_visited == self.problem.n
 
     def apply(self, action: Action) -> list[int]:

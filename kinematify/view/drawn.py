@@ -1,4 +1,4 @@
-"""What stands in the picture of the page: bodies, the axes of joints, what glows, ground and light (viser's scene)."""
+"""Content of the 3D scene of the page: bodies, the axes of joints, what glows, ground and light (viser's scene)."""
 
 from __future__ import annotations
 
@@ -137,13 +137,19 @@ class DrawnModel:
         self._axes[joint.name] = self._add_lines(f"/axes/{joint.name}", points, color, visible=visible)
 
     def step_back(self, client: viser.ClientHandle) -> None:
+<<<<<<< HEAD
         """Let a window that is higher than wide see the whole model."""
         if client.camera.aspect < 1.0:
+=======
+        """Make a window that is higher than wide see the whole model, above the panel that lies over its lower half."""
+        aspect = client.camera.aspect
+        if aspect < 1.0:
+>>>>>>> main
             eye, target = self._scene.camera
             _aim(client, eye - target, target)
 
     def fit(self, q: Mapping[str, float]) -> None:
-        """Let every page see the whole model in a configuration, from the side from which it looks."""
+        """Make every page see the whole model in a configuration, from the side from which it looks."""
         low, high = self._scene.extent(q)
         size = 1.1 * max(float(np.linalg.norm(high - low)), self._scene.size)
         for client in self._server.get_clients().values():
@@ -161,7 +167,7 @@ class DrawnModel:
         )
 
     def let_glow(self, top: str, color: Color | None) -> None:
-        """Let a part glow, or no more."""
+        """Make a part glow, or no more."""
         handle = self._glows.get(top)
         if color is None or top not in self._frames:
             if handle is not None:

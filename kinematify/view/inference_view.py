@@ -1,4 +1,4 @@
-"""What `inference.json` of a model folder tells of its joints, as the page shows it."""
+"""Joints of `inference.json` of a model folder, as the page shows it."""
 
 from __future__ import annotations
 

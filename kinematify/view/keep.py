@@ -31,7 +31,7 @@ _ALONG = np.cos(np.radians(1.0))
 
 @dataclass(frozen=True, kw_only=True)
 class Kept:
-    """What was written."""
+    """Files that were written."""
 
     hints: tuple[str, ...]
     """Of the joint that was chosen, as they are typed behind ``--hint``."""
@@ -51,7 +51,7 @@ class ModelFolder:
         """Models of the folder, the present one last."""
 
     def keep(self, part: str, chosen: JointAlternative) -> Kept:
-        """Let a part move as a candidate says, and write the model.
+        """Make a part move as a candidate says, and write the model.
 
         Raises:
             InputError: The folder holds no model of this version, or it was changed by hand.
@@ -125,7 +125,7 @@ class ModelFolder:
 
     @property
     def can_undo(self) -> bool:
-        """Whether a joint was chosen here."""
+        """True if a joint was chosen here."""
         return len(self._steps) > 1
 
     def undo(self) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import tempfile
+import warnings
 from collections.abc import Mapping
 from numbers import Real
 from pathlib import Path
@@ -11,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.errors import DescriptionError, EnvironmentFault, InputError
+from kinematify.errors import DescriptionError, InputError
 from kinematify.model.output import urdf_of
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -56,6 +58,8 @@ class LoadedModel:
         self.robot: Robot = read_robot(urdf, package_dirs=package_dirs, appearance=True)
         """Links, joints and meshes."""
         self._package_dirs = package_dirs
+        for note in self.robot.notes:
+            warnings.warn(note, stacklevel=3)
 
     def __repr__(self) -> str:
         """Name, file and joints that move."""
@@ -206,7 +210,5 @@ def _colored(trimesh: Any, mesh: Any) -> Any:
 
 
 def _engine(module: str, package: str) -> Any:
-    try:
-        return importlib.import_module(module)
-    except ImportError as error:
-        raise EnvironmentFault(f"{module} is not installed. Run `pip install {package}`.") from error
+    require(f"A model of {module}", package)
+    return importlib.import_module(module)

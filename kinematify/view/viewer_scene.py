@@ -106,7 +106,7 @@ class ViewScene:
 
     @cached_property
     def surfaces(self) -> dict[str, tuple[Surface, ...]]:
-        """What is seen of every group by material, in the frame of its top link, keyed by that.
+        """Return what is seen of every group by material, in the frame of its top link, keyed by that.
 
         Where the model states no colour at all, every group has one of its own.
         """
@@ -193,7 +193,7 @@ class ViewScene:
         return tuple(self._tried)
 
     def tried(self, joint: str) -> JointAlternative | None:
-        """What a joint is tried as; None: as the file says."""
+        """Return what a joint is tried as; None: as the file says."""
         return self._tried.get(joint)
 
     def line_of(self, joint: Joint) -> tuple[FloatArray, FloatArray]:

@@ -9,9 +9,9 @@ from functools import partial
 from io import StringIO
 from typing import TYPE_CHECKING
 
-from kinematify.errors import EnvironmentFault
 from kinematify.model.output import MODEL_FILE, RECORD_FILE
 from kinematify.robot.read import read_robot
+from kinematify.versions import require
 from kinematify.view.inference_view import Shown, declared_chains, shown_with
 from kinematify.view.viewer_scene import ViewScene
 
@@ -73,12 +73,9 @@ class Window:
             InputError: The model cannot be read.
             EnvironmentFault: viser is not installed.
         """
-        try:
-            import viser  # noqa: PLC0415  # an extra
-        except ImportError as error:
-            raise EnvironmentFault(
-                "The viewer needs the package viser, which is not installed. Run `pip install kinematify[view]`."
-            ) from error
+        require("The viewer", "viser")
+        import viser  # noqa: PLC0415  # slow to load
+
         from kinematify.view.server import ModelViewer  # noqa: PLC0415  # needs viser
 
         shown = read_model(urdf, package_dirs)

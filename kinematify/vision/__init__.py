@@ -1,1 +1,1 @@
-"""What a vision-language model says of joints, added to what the geometry says (paper section III-D)."""
+"""Answers of a vision-language model about joints, added to what the geometry says (paper section III-D)."""

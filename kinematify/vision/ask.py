@@ -25,7 +25,7 @@ _NAMED = 5
 
 @dataclass(frozen=True, kw_only=True)
 class Voting:
-    """What came of asking."""
+    """Result of the questions."""
 
     voter: str
     answers: Mapping[str, Answer]
@@ -40,7 +40,7 @@ class Voting:
 
     @property
     def reached(self) -> bool:
-        """Whether there was an answer, or nothing to ask."""
+        """True if there was an answer, or nothing to ask."""
         return not self.answers or any(not answer.fault for answer in self.answers.values())
 
     def as_json(self) -> dict[str, Any]:
@@ -55,7 +55,7 @@ class Voting:
         }
 
     def described(self) -> str:
-        """How many questions were answered, what changed, and why there were no answers."""
+        """Return how many questions were answered, what changed, and why there were no answers."""
         usable = [answer for answer in self.answers.values() if not answer.fault]
         changed = [result.child for result in self.results if result.changed]
         lines = [

@@ -48,12 +48,12 @@ class ChatOracle:
 
     @property
     def name(self) -> str:
-        """Of the model and where it is, for the record."""
+        """Name of the model and where it is, for the record."""
         return f"{self.model} at {self.url}"
 
     @property
     def at_once(self) -> int:
-        """See `JointOracle`."""
+        """Implement `JointOracle`."""
         return self.config.concurrency
 
     @property
@@ -62,7 +62,7 @@ class ChatOracle:
         return self.cache / f"record-{hashlib.sha256(self.name.encode()).hexdigest()[:16]}.json"
 
     def ask(self, questions: Sequence[JointQuestion]) -> list[Answer]:
-        """See `JointOracle`."""
+        """Implement `JointOracle`."""
         from kinematify.generate.providers.service import Service  # noqa: PLC0415 - most calls ask nobody
 
         try:

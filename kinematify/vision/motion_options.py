@@ -39,7 +39,7 @@ def offered(joint: JointEstimate, part: Part, config: VisionConfig) -> tuple[Joi
 
 
 def chosen_candidate(joint: JointEstimate) -> JointCandidate | None:
-    """What was chosen, as a candidate; None if it is fixed."""
+    """Return what was chosen, as a candidate; None if it is fixed."""
     if joint.kind is JointType.FIXED:
         return None
     known = next((item for item in joint.alternatives if is_same(joint, item)), None)
@@ -50,7 +50,7 @@ def chosen_candidate(joint: JointEstimate) -> JointCandidate | None:
 
 
 def look_alike(one: JointCandidate, other: JointCandidate, size: float, config: VisionConfig) -> bool:
-    """Whether two candidates of a part of this diagonal [m] cannot be distinguished in a picture."""
+    """True if two candidates of a part of this diagonal [m] cannot be distinguished in a picture."""
     if one.kind.turns != other.kind.turns:
         return False
     if abs(float(one.axis @ other.axis)) < np.cos(np.radians(config.same_axis_deg)):

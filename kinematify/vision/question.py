@@ -1,4 +1,4 @@
-"""What is asked of a joint, in words, and what an answer may be."""
+"""Question about a joint, in words, and what an answer may be."""
 
 from __future__ import annotations
 
@@ -61,14 +61,14 @@ class JointQuestion:
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """What may be answered."""
+        """Return what may be answered."""
         if not self.options:
             return (*TYPES, FIXED, UNSURE)
         return (*(str(number + 1) for number in range(len(self.options))), FIXED, NONE, UNSURE)
 
     @property
     def text(self) -> str:
-        """What is asked, in words; it names no part."""
+        """Return what is asked, in words; it names no part."""
         through = ", and shown see-through where they hide the red part" if self.see_through else ""
         said = [f"{number}: {'turns' if item.kind.turns else 'slides'}." for number, item in enumerate(self.options, 1)]
         asked = _MOTIONS.format(count=len(said), list=" ".join(said)) if said else _TYPES
@@ -89,7 +89,7 @@ class JointQuestion:
 
 @dataclass(frozen=True, kw_only=True)
 class Answer:
-    """What somebody says of one joint."""
+    """Answer about one joint."""
 
     choice: str = UNSURE
     """One of `JointQuestion.choices`."""
@@ -107,7 +107,7 @@ class Answer:
         return int(self.choice) - 1 if self.choice.isdecimal() else None
 
     def counts(self, least: float) -> bool:
-        """Whether it is an answer at all, and its voter at least this sure."""
+        """True if it is an answer at all, and its voter at least this sure."""
         return self.choice != UNSURE and self.confidence >= least
 
 

@@ -70,7 +70,7 @@ def around(assembly: Assembly, parts: Sequence[int]) -> FloatArray:
 
 
 def corners(low: FloatArray, high: FloatArray) -> FloatArray:
-    """Of a box, shape (8, 3)."""
+    """Corners of a box, shape (8, 3)."""
     picks = np.array(np.meshgrid([0, 1], [0, 1], [0, 1])).reshape(3, -1).T
     return np.where(picks, high, low)
 
@@ -115,7 +115,7 @@ def find_viewpoints(
 
 
 def _clarity(view: Viewpoint, options: Sequence[JointCandidate]) -> float:
-    """How well motions are seen from somewhere, in [0, 1]: slides from their side, turns neither along nor across."""
+    """Rate how well motions are seen from a point, in [0, 1]: slides from the side, turns neither along nor across."""
     if not options:
         return 1.0
     along = np.array([abs(float(item.axis @ view.towards)) for item in options])

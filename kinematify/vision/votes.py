@@ -42,7 +42,7 @@ _ALIKE = 0.06  # congruent parts: shares of extents and distances that differ by
 
 @dataclass(frozen=True, kw_only=True)
 class VoterRecord:
-    """How often a voter was right on questions whose truth was known."""
+    """Record of a voter: how often a voter was right on questions whose truth was known."""
 
     right: int
     asked: int
@@ -56,7 +56,7 @@ class VoterRecord:
 
 @dataclass(frozen=True, kw_only=True)
 class VoteResult:
-    """What came of asking about one joint."""
+    """Result of the question about one joint."""
 
     child: str
     answer: Answer
@@ -203,14 +203,14 @@ def _named(inference: Inference, source: int, place: int, picked: JointCandidate
 
 
 def same_on_twin(one: Part, motion: JointCandidate, twin: Part, other: JointCandidate) -> bool:
-    """Whether a motion of a part is, up to its symmetries, that of a congruent part."""
+    """True if a motion of a part is, up to its symmetries, that of a congruent part."""
     if motion.kind.turns != other.kind.turns:
         return False
     return bool(np.allclose(_invariants(one, motion), _invariants(twin, other), rtol=0.0, atol=_ALIKE))
 
 
 def _invariants(part: Part, motion: JointCandidate) -> FloatArray:
-    """What turning and mirroring a part with its motion leaves as it is: spreads and a distance, shares of its size."""
+    """Return invariants of a part with its motion under turns and mirrors: spreads, a distance, shares of its size."""
     corners = part.vertices[part.faces].mean(axis=1) - part.centroid
     weights = part.face_areas / max(part.area, 1e-300)
     spread = np.einsum("i,ij,ik->jk", weights, corners, corners)
@@ -226,7 +226,7 @@ def _invariants(part: Part, motion: JointCandidate) -> FloatArray:
 
 
 def prior(joint: JointEstimate, options: Options, config: VisionConfig) -> FloatArray:
-    """How likely each option, fixed, and anything else is before an answer, sum 1, shape (options + 2,).
+    """Return how likely each option, fixed, and anything else is before an answer, sum 1, shape (options + 2,).
 
     Args:
         joint: As geometry chose it; its confidence less the doubt of its parent is that of the choice.
@@ -256,7 +256,7 @@ def place_of_choice(joint: JointEstimate, options: Options) -> int | None:
 
 
 def posterior(before: FloatArray, named: BoolArray, reliability: float) -> FloatArray:
-    """How likely each option, fixed, and anything else is after an answer, sum 1, shape (options + 2,).
+    """Return how likely each option, fixed, and anything else is after an answer, sum 1, shape (options + 2,).
 
     Args:
         before: From `prior`.

@@ -112,7 +112,7 @@ def test_what_changes_nothing_is_not_planted(tmp_path: Path) -> None:
     assert "wrong parent" not in planted
 
 
-FACT = {"check": "KV342", "severity": "error", "blame": "kinematics", "joint": "hinge", "link": None, "pair": None}
+FACT = {"check": "KV342", "severity": "error", "cause": "kinematics", "joint": "hinge", "link": None, "pair": None}
 NOTE = {**FACT, "severity": "note"}
 PLANTED = PlantedFault(how="turned", joint="hinge", links=("door",))
 
@@ -127,12 +127,12 @@ PLANTED = PlantedFault(how="turned", joint="hinge", links=("door",))
         ([FACT], [NOTE], Verdict.FOUND),
         ([{**NOTE, "joint": "other"}], [], Verdict.MISSED),
         ([{**FACT, "joint": "other"}], [], Verdict.ELSEWHERE),
-        ([{**FACT, "blame": "physics"}], [], Verdict.ELSEWHERE),
+        ([{**FACT, "cause": "physics"}], [], Verdict.ELSEWHERE),
         ([{**FACT, "joint": None, "link": "door"}], [], Verdict.FOUND),
         ([{**FACT, "joint": None, "pair": ["frame", "door"]}], [], Verdict.FOUND),
         ([{**FACT, "joint": None, "link": "frame"}], [], Verdict.ELSEWHERE),
         ([], [], Verdict.MISSED),
     ],
 )
-def test_only_a_new_finding_with_name_and_blame_counts(found: list, untouched: list, verdict: Verdict) -> None:
+def test_only_a_new_finding_with_name_and_cause_counts(found: list, untouched: list, verdict: Verdict) -> None:
     assert judge(FAULTS[0], PLANTED, found, untouched).verdict is verdict

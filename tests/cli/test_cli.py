@@ -125,7 +125,7 @@ def test_doctor_reports_this_environment(capsys: pytest.CaptureFixture[str]) -> 
     answer = json.loads(capsys.readouterr().out)
     states = {entry["package"]: entry["state"] for entry in answer["packages"]}
     assert answer["schema"] == 1
-    assert states["mujoco"] == states["torch"] == "ok"
+    assert states["mujoco"] == states["viser"] == "ok"
     assert set(states) == set(doctor.MODULES)
 
 
@@ -141,9 +141,9 @@ def finding(**changes: object) -> doctor.PackageState:
 @pytest.mark.parametrize(
     ("changes", "status", "text"),
     [
-        ({"state": "missing", "installed": None}, 3, "pip install 'mujoco>=4.0,<5'"),
+        ({"state": "missing", "installed": None}, 3, "pip install 'mujoco>=3.6'"),
         ({"state": "missing", "installed": None, "optional": True}, 0, "missing (optional)"),
-        ({"state": "version", "installed": "3.1.0"}, 3, "pip install 'mujoco>=4.0,<5'"),
+        ({"state": "version", "installed": "3.1.0"}, 3, "pip install 'mujoco>=3.6'"),
         ({"state": "broken", "problem": "ImportError: libGL"}, 3, "ImportError: libGL"),
         ({}, 0, "Everything works."),
     ],

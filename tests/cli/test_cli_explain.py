@@ -22,10 +22,10 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> str:
 
 def test_a_check_is_explained_in_any_case(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     add_checks(monkeypatch)
-    text = said(capsys, "kv496")
+    text = said(capsys, "kv896")
     for part in (
-        "KV496  Doors & drawers of KV496",
-        FAMILIES["KV4"],
+        "KV896  Doors & drawers of KV896",
+        FAMILIES["KV8"],
         "error",
         "kinematics",
         "mujoco",

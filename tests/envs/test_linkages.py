@@ -73,16 +73,7 @@ def test_to_pybullet_closes_the_loops(model: Path) -> None:
     assert max(loop_gaps(without_followers(loaded.robot), values).values()) < 1e-3 * diagonal
 
 
-def test_each_engine_keeps_the_loop_closed_over_the_range(model: Path) -> None:
-    asked = ["KV413", "KV513", "KV913"]
-    report = validate(model / "model.urdf", selected=asked, engines=("mujoco", "pybullet", "drake"))
-    ran = [item for item in report.checks if item.check in asked]
-    assert len(ran) == 3
-    assert {item.status.name for item in ran} == {"PASS"}, [item.message for item in report.findings]
-    assert all(item.measured["widest_gap"] > 0.0 for item in ran)
-
-
-def test_a_loop_whose_ends_are_apart_is_a_finding_of_the_engine(model: Path, tmp_path: Path) -> None:
+def test_a_loop_whose_ends_are_apart_is_a_finding(model: Path, tmp_path: Path) -> None:
     folder = tmp_path / "open"
     shutil.copytree(model, folder)
     document = etree.parse(folder / "model.urdf")
@@ -90,7 +81,7 @@ def test_a_loop_whose_ends_are_apart_is_a_finding_of_the_engine(model: Path, tmp
     x, y, z = map(float, str(point.get("value")).split())
     point.set("value", f"{x} {y} {z + 0.05}")
     document.write(folder / "model.urdf")
-    report = validate(folder / "model.urdf", selected=["KV413"], engines=("mujoco",))
-    found = [item for item in report.findings if item.check == "KV413"]
+    report = validate(folder / "model.urdf", selected=["KV230"], engines=())
+    found = [item for item in report.findings if item.check == "KV230"]
     assert found
     assert all(item.value == pytest.approx(0.05, abs=0.01) for item in found)

@@ -360,4 +360,4 @@ def test_the_smoke_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert json.loads((out / "baseline.json").read_text())["night"] == name
     assert run_command(["nightly", "-o", str(out), "--accept", "none"]) == 2
     runs = [json.loads(line) for line in (out / name / "runs.jsonl").read_text().splitlines()]
-    assert {run["families"].get("KV4") for run in runs if run["what"] == "validation"} == {"pass"}
+    assert {run["families"].get("KV8") for run in runs if run["what"] == "validation"} == {"pass"}

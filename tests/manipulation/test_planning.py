@@ -23,7 +23,7 @@ from kinematify.manipulation.robot_place import object_motion
 from kinematify.manipulation.sampling_planner import search_manifold
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
-from kinematify.validation.finding import Blame, Severity, Status
+from kinematify.validation.finding import Cause, Severity, Status
 from kinematify.validation.run import validate
 from tests.manipulation.furniture import SETTINGS, write_covered_drawer, write_door_cabinet, write_drawer_cabinet
 
@@ -122,7 +122,7 @@ def test_manifold_search_keeps_the_constraint(arm: Arm, drawer: Scene, drawer_pl
         assert np.linalg.norm(arm.error(state[:-1], puller.target_at(targets, state[-1]))) < 2e-3
 
 
-def test_drawer_that_slides_sideways_is_blamed_on_its_joint(arm: Arm, tmp_path: Path) -> None:
+def test_drawer_that_slides_sideways_points_to_its_joint(arm: Arm, tmp_path: Path) -> None:
     scene = scene_of(write_drawer_cabinet(tmp_path / "cabinet.urdf", axis="0 1 0"))
     plan = plan_pull(arm, scene, "slide", SETTINGS.task)
     assert plan.failure is Failure.JAMS
@@ -213,7 +213,7 @@ def test_validate_says_who_can_act(tmp_path: Path, axis: str, verdict: str) -> N
         assert [(f.check, f.severity) for f in found] == [("KV705", Severity.NOTE)], found
         assert found[0].value == pytest.approx(1.0)
     else:
-        assert any(f.severity is Severity.ERROR and f.blame is Blame.KINEMATICS for f in found)
+        assert any(f.severity is Severity.ERROR and f.cause is Cause.KINEMATICS for f in found)
     assert {c.status for c in report.checks if c.check == "KV707"} == {Status.SKIPPED}
 
 

@@ -23,7 +23,7 @@ from kinematify.refinement.repair import Fix, fix_urdf
 from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import DEFAULT_ENGINES
-from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
+from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
 from kinematify.validation.run.report import ValidationReport
 from kinematify.validation.summary import JointSummary
 
@@ -255,7 +255,7 @@ def test_an_axis_that_the_file_omits_is_written(tmp_path: Path) -> None:
     model = hinged(tmp_path, '<limit lower="0" upper="1.5" effort="5" velocity="1"/>', 0.09)
     model.write_text(model.read_text(encoding="utf-8").replace('<axis xyz="0 0 1"/>', ""), encoding="utf-8")
     blocked = Finding(
-        check="KV310", severity=Severity.ERROR, blame=Blame.KINEMATICS, message="", remedy="", joint="hinge"
+        check="KV310", severity=Severity.ERROR, cause=Cause.KINEMATICS, message="", remedy="", joint="hinge"
     )
     report = ValidationReport(
         model="",

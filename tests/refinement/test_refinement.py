@@ -33,7 +33,6 @@ from kinematify.refinement.hints import parse_hints, with_hints
 from kinematify.refinement.joint_plan import Plan
 from kinematify.refinement.simulate import Simulator
 from kinematify.robot.joint_type import JointType
-from kinematify.simulation.engines import ENGINES
 from kinematify.validation.failure_rates import LINE, TYPE, shipped_rates
 from kinematify.validation.finding import Severity
 from tests.objects import BUILDERS
@@ -95,11 +94,11 @@ def test_a_drawer_along_the_wrong_axis_finds_the_right_one_again() -> None:
 
 
 def test_a_joint_that_nothing_speaks_against_but_the_shape_is_measured_and_replaced() -> None:
-    """It is no candidate, and no failure blames its line."""
+    """It is no candidate, and no failure points to its line."""
     right = joint_above(inferred("edge_door"), "door")
     tilted = right.axis + np.array([0.0, 0.6, 0.0])
     refinement = refine(with_joint(inferred("edge_door"), "door", axis=tilted, upper=0.1), seconds=60.0)
-    assert not {"door: axis", "door: type"} & set(refinement.history.rounds[0].blamed)
+    assert not {"door: axis", "door: type"} & set(refinement.history.rounds[0].suspected)
     assert refinement.history.rounds[0].score < -load_config().refine.lead_elsewhere
     found = joint_above(refinement.inference, "door")
     assert abs(float(found.axis @ right.axis)) == pytest.approx(1.0, abs=1e-3)
@@ -434,17 +433,6 @@ def test_no_time_is_refused() -> None:
         refine(inferred("drawer"), seconds=0.0)
 
 
-def test_a_missing_engine_ends_with_its_own_status_and_changes_nothing(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    write_inference(mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0)), tmp_path / "out", preview=False)
-    before = file_hashes(tmp_path / "out")
-    monkeypatch.setitem(ENGINES, "pybullet", replace(ENGINES["pybullet"], package="absent"))
-    assert run(["refine", str(tmp_path / "out"), "--force", "--tier", "engines", "--no-preview"]) == 3
-    assert "PyBullet was asked for" in capsys.readouterr().err
-    assert file_hashes(tmp_path / "out") == before
-
-
 def test_ctrl_c_in_the_middle_of_a_trial_keeps_the_best_round_and_a_whole_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -523,7 +511,7 @@ def test_what_only_fails_in_an_engine_is_tried_there_again() -> None:
     refinement = refine(blocked, tier="engines", rounds=1, settings=blind)
     first = refinement.history.rounds[0]
     assert first.motion_errors == 0
-    assert any(failed.startswith(("KV4", "KV5", "KV8")) for failed in first.failed)
+    assert any(failed.startswith("KV8") for failed in first.failed)
     found = joint_above(refinement.inference, "drawer")
     assert abs(float(found.axis @ right.axis)) == pytest.approx(1.0, abs=1e-3)
     assert refinement.history.rounds[refinement.history.kept].errors == 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 from pathlib import Path
 
 import numpy as np
@@ -200,16 +201,40 @@ def test_package_addresses_are_found(tmp_path: Path, how: str) -> None:
     assert read_robot(path, package_dirs=dirs).links[0].has_geometry
 
 
-def test_missing_mesh_names_link_file_and_option(tmp_path: Path) -> None:
-    path = urdf(tmp_path, link("arm", visual('<mesh filename="package://nowhere/m.stl"/>')))
-    with pytest.raises(DescriptionError, match=r"package://nowhere/m\.stl.*link arm.*--package-dir"):
+@pytest.mark.parametrize(
+    ("inside", "note"),
+    [
+        ('<geometry><mesh filename="package://nowhere/m.stl"/></geometry>', r"package://nowhere/m\.stl.*--package-dir"),
+        ('<geometry><mesh filename="http://localhost/m.stl"/></geometry>', "http://localhost"),
+        ('<geometry><mesh filename=""/></geometry>', "names the file ''"),
+        ('<geometry><mesh filename="bad.stl"/></geometry>', r"bad\.stl"),
+        ('<geometry><mesh filename="scene.wrl"/></geometry>', r"scene\.wrl"),
+        ('<geometry><cone size="1"/></geometry>', "<cone>"),
+        ("<geometry/>", "no geometry element"),
+        ("", "no geometry element"),
+    ],
+)
+@pytest.mark.parametrize("tag", ["visual", "collision"])
+def test_what_has_no_usable_geometry_is_left_out_with_a_note(tmp_path: Path, tag: str, inside: str, note: str) -> None:
+    for name in ("bad.stl", "scene.wrl"):
+        (tmp_path / name).write_bytes(b"nonsense" * 50)
+    robot = read_robot(urdf(tmp_path, link("arm", f"{BOX}<{tag}>{inside}</{tag}>")))
+    assert robot.links[0].has_geometry
+    assert len(robot.notes) == 1
+    assert robot.notes[0].startswith(f"A {tag} is omitted (line 1). ")
+    assert "link arm" in robot.notes[0]
+    assert re.search(note, robot.notes[0])
+
+
+def test_a_quaternion_turns_and_a_namespace_is_read(tmp_path: Path) -> None:
+    turned = joint("j", "continuous", "a", "b", '<origin xyz="0 0 1" quat_xyzw="0 0 0.5 0.5"/>')
+    path = urdf(tmp_path, link("a", BOX), link("b", BOX), turned)
+    path.write_text(path.read_text().replace("<robot", '<robot xmlns="http://drake.mit.edu"', 1))
+    T = read_robot(path).joints[0].T_parent_child
+    np.testing.assert_allclose(T, [[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 1], [0, 0, 0, 1]], atol=1e-12)
+    path.write_text(path.read_text().replace("0.5 0.5", "0 0"))
+    with pytest.raises(DescriptionError, match=r"quat_xyzw.*zero"):
         read_robot(path)
-
-
-def test_broken_mesh_names_its_link(tmp_path: Path) -> None:
-    (tmp_path / "m.stl").write_bytes(b"nonsense" * 50)
-    with pytest.raises(DescriptionError, match=r"link arm.*m\.stl"):
-        read_robot(urdf(tmp_path, link("arm", visual('<mesh filename="m.stl"/>'))))
 
 
 def two(kind: str, inside: str = "") -> tuple[str, ...]:
@@ -240,8 +265,6 @@ def two(kind: str, inside: str = "") -> tuple[str, ...]:
         (two("floating"), "freely"),
         (two("planar"), "freely"),
         ((link("a", visual('<box size="1 -2 1"/>')),), "below zero"),
-        ((link("a", visual('<cone size="1"/>')),), "<cone>"),
-        ((link("a", "<visual/>"),), "no geometry element"),
         (('<link name=""/>',), "no name"),
     ],
 )

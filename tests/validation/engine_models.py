@@ -8,12 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinematify.config.validation import load_settings
-from kinematify.robot.read import read_robot
-from kinematify.simulation.prepared import prepare
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult
 from kinematify.validation.stage import Recorder, StageRequest
-from kinematify.validation.summary import JointCurve
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -139,7 +136,6 @@ class FindingGroup:
 
     results: dict[str, CheckResult]
     work: Path
-    curves: tuple[JointCurve, ...] = ()
 
     def worst(self, check: str) -> list[str]:
         """Severities of the findings of a check."""
@@ -149,9 +145,8 @@ class FindingGroup:
 def prepared_request(
     model: Model, folder: Path, settings: ValidationSettings | None = None, *, seconds: float = 100.0
 ) -> StageRequest:
-    """Write a model, prepare it for the engines, and return the request of a stage."""
+    """Write a model and return the request of a stage."""
     path, settings = model.write(folder), settings or load_settings()
-    prepare(read_robot(path), folder, settings.prepare)
     return StageRequest(
         urdf=path,
         package_dirs=(),
@@ -168,11 +163,4 @@ def tell(run: Callable[[StageRequest, Recorder], None], request: StageRequest) -
     run(request, Recorder(reported.append, request.selected))
     results = [item for item in reported if isinstance(item, CheckResult)]
     assert len({item.check for item in results}) == len(results)
-    curves = tuple(item for item in reported if isinstance(item, JointCurve))
-    return FindingGroup(results={item.check: item for item in results}, work=request.work, curves=curves)
-
-
-def engine_settings(**changes: Any) -> ValidationSettings:
-    """Return the shipped settings with those of the engines changed."""
-    settings = load_settings()
-    return settings.model_copy(update={"engines": settings.engines.model_copy(update=changes)})
+    return FindingGroup(results={item.check: item for item in results}, work=request.work)

@@ -8,7 +8,7 @@ import pytest
 import trimesh
 
 from kinematify.cli.verdict import describe
-from kinematify.validation.finding import Status
+from kinematify.validation.finding import Severity, Status
 from kinematify.validation.run import validate
 
 LIMIT = '<limit lower="0" upper="0.05" effort="10" velocity="1"/>'
@@ -67,13 +67,26 @@ def test_what_is_odd_is_reported_in_one_sentence_at_its_line(case: str, tmp_path
     assert len(describe(report).splitlines()) <= 30
 
 
-def test_checks_that_a_missing_mesh_blocks_are_counted_in_a_line(tmp_path: Path) -> None:
+def test_checks_that_a_broken_text_blocks_are_counted_in_a_line(tmp_path: Path) -> None:
     path = tmp_path / "model.urdf"
-    path.write_text(robot(shape=mesh("gone.obj")))
+    path.write_text(robot().replace("</robot>", ""))
     report = validate(path, workers=1)
     blocked = sum(item.status is Status.BLOCKED for item in report.checks)
-    (line,) = [line for line in describe(report).splitlines() if line.startswith("  blocked (")]
+    (line,) = [line for line in describe(report, everything=True).splitlines() if line.startswith("  blocked (")]
     assert line.startswith(f"  blocked ({blocked} checks): ")
+
+
+@pytest.mark.parametrize(("collides", "severity"), [(False, Severity.WARNING), (True, Severity.ERROR)])
+def test_a_missing_mesh_is_one_finding_and_the_rest_is_judged(
+    tmp_path: Path, collides: bool, severity: Severity
+) -> None:
+    path, tag = tmp_path / "model.urdf", "collision" if collides else "visual"
+    lost = f"<{tag}><geometry>{mesh('gone.obj')}</geometry></{tag}>"
+    path.write_text(robot().replace("</link>", f"{lost}</link>", 1))
+    report = validate(path, engines=("mujoco",), workers=1)
+    assert not [item.check for item in report.checks if item.status is Status.BLOCKED]
+    assert [item.severity for item in report.findings if item.check == "KV141"] == [severity]
+    assert "MuJoCo 1 of 1 joints move" in report.as_loaded
 
 
 def test_names_and_meshes_in_any_script_are_kept(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from kinematify.generate.procedural.solids import box, union
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_about
 from kinematify.validation.checks import checks_of
-from kinematify.validation.finding import Blame, CheckResult, Severity, Status
+from kinematify.validation.finding import Cause, CheckResult, Severity, Status
 from kinematify.validation.run import validate
 from kinematify.validation.summary import JointSummary
 from tests.household import (
@@ -78,7 +78,7 @@ def test_an_axis_turned_by_20_deg_is_off_every_direction(
 ) -> None:
     finding, *facts = findings(judged(turned(build(), child, 20.0, about), tmp_path))
     assert {fact.check for fact in facts} <= {"KV349"}
-    assert (finding.check, finding.joint, finding.blame) == ("KV342", f"{child}_joint", Blame.KINEMATICS)
+    assert (finding.check, finding.joint, finding.cause) == ("KV342", f"{child}_joint", Cause.KINEMATICS)
     assert finding.value == pytest.approx(20.0, abs=1.0)  # the line of two barrels is measured from drawn points
     assert finding.severity in (Severity.ERROR, Severity.WARNING)
 
@@ -141,7 +141,7 @@ def test_a_contact_that_opens_about_a_wrong_line_is_a_fact(bad: Build, opens: fl
     known = bad()
     report = validate(write(known, tmp_path), selected={check.id for check in checks_of("KV34")}, engines=())
     (finding,) = [finding for finding in report.findings if finding.check.startswith("KV34")]
-    assert (finding.check, finding.severity, finding.blame) == ("KV349", Severity.WARNING, Blame.KINEMATICS)
+    assert (finding.check, finding.severity, finding.cause) == ("KV349", Severity.WARNING, Cause.KINEMATICS)
     (child,) = [part for part in known.parts if finding.joint == f"{part.name}_joint"]
     assert finding.value is not None
     assert finding.limit is not None

@@ -48,7 +48,7 @@ def test_json_of_several_models_is_a_line_each() -> None:
     assert [value["model"] for value in values] == ["models/door.urdf", "models/arm.xacro", "b.urdf"]
     assert [value["verdict"] for value in values] == ["fail", "unusable", "fail"]
     assert values[1]["error"] == UNUSABLE.message
-    assert {value["schema"] for value in values} == {1}
+    assert {value["schema"] for value in values} == {2}
 
 
 def suites(outcomes: list[Outcome]) -> Any:
@@ -61,7 +61,7 @@ def test_junit_has_a_suite_per_model_and_a_case_per_check_and_engine() -> None:
     cases = root[0].findall("testcase")
     assert len(cases) == 5
     assert cases[0].get("name") == "KV396 Doors & drawers of KV396"
-    assert cases[2].get("name") == "KV496 Doors & drawers of KV496 [mujoco]"
+    assert cases[2].get("name") == "KV896 Doors & drawers of KV896 [mujoco]"
     assert all(case.get("classname").startswith("models/door.urdf.") for case in cases)
     assert all(float(case.get("time")) == 0.25 for case in cases)
 
@@ -227,7 +227,7 @@ def test_html_has_every_finding_once_and_filters_for_it() -> None:
     assert "They touch at rest." in page.text
     offered = {(a["name"], a["value"]) for tag, a in page.tags if tag == "input"}
     assert {("severity", str(card["data-severity"])) for card in cards} <= offered
-    assert {("blame", str(card["data-blame"])) for card in cards} <= offered
+    assert {("cause", str(card["data-cause"])) for card in cards} <= offered
     assert len(page.of_class("suppressed")) == 1
 
 

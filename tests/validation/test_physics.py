@@ -12,7 +12,7 @@ from lxml import etree
 
 from kinematify.config.validation import load_settings
 from kinematify.validation.checks import CHECKS, checks_of
-from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
+from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
 from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.stages.asset import run
 from tests.validation.engine_models import Box, Model, Part
@@ -149,7 +149,7 @@ def test_without_readable_meshes_nothing_is_said_of_physics(tmp_path: Path) -> N
 def test_a_bad_mass_is_an_error_at_its_link(good: Path, mass: str) -> None:
     found = counted(edited(good, "//link[@name='door']/inertial/mass", value=mass))
     assert {finding.link for finding in found} == {"door"}
-    assert {finding.blame for finding in found} == {Blame.PHYSICS}
+    assert {finding.cause for finding in found} == {Cause.PHYSICS}
     assert Severity.ERROR in {finding.severity for finding in found}
 
 
@@ -203,7 +203,7 @@ def test_a_heavy_body_on_a_light_one_is_found_at_the_joint(tmp_path: Path) -> No
 def test_an_inertia_that_no_body_has_is_an_error_where_it_moves(good: Path, check: str, attributes: dict) -> None:
     found = counted(edited(good, "//link[@name='door']/inertial/inertia", **attributes))
     assert (found[0].check, found[0].link, found[0].severity) == (check, "door", Severity.ERROR)
-    assert found[0].blame is Blame.PHYSICS
+    assert found[0].cause is Cause.PHYSICS
 
 
 def test_an_inertia_in_the_base_harms_less(good: Path) -> None:
@@ -280,7 +280,7 @@ def test_one_inertia_for_links_of_different_size_is_a_placeholder(good: Path) ->
         edited(good, f"//link[@name='{link}']/inertial/mass", value="2")
         edited(good, f"//link[@name='{link}']/inertial/inertia", ixx="0.01", iyy="0.01", izz="0.01")
     (finding,) = checked(good)["KV210"].findings
-    assert (finding.link, finding.blame) == ("body", Blame.PHYSICS)
+    assert (finding.link, finding.cause) == ("body", Cause.PHYSICS)
     assert "3 links" in finding.message
     edited(good, "//link[@name='knob']/inertial/inertia", izz="0.011")
     assert checked(good)["KV210"].findings == (), "two alike are a pair"
@@ -318,7 +318,7 @@ def test_the_mass_that_is_suggested_is_that_of_the_link_and_not_of_all_that_it_i
 
 def test_degrees_for_radians_are_an_error_at_the_joint(good: Path) -> None:
     finding = only(edited(good, "//joint[@name='door_joint']/limit", lower="-90", upper="90"), "KV220")
-    assert (finding.joint, finding.severity, finding.blame) == ("door_joint", Severity.ERROR, Blame.KINEMATICS)
+    assert (finding.joint, finding.severity, finding.cause) == ("door_joint", Severity.ERROR, Cause.KINEMATICS)
     assert "1.5708" in finding.remedy
 
 
@@ -370,7 +370,7 @@ def test_a_range_without_zero_is_noted(good: Path) -> None:
 @pytest.mark.parametrize("value", [None, "0", "-1"])
 def test_a_joint_without_a_drive_is_named(good: Path, attribute: str, value: str | None) -> None:
     finding = only(edited(good, "//joint[@name='drawer_joint']/limit", **{attribute: value}), "KV223")
-    assert (finding.joint, finding.blame) == ("drawer_joint", Blame.PHYSICS)
+    assert (finding.joint, finding.cause) == ("drawer_joint", Cause.PHYSICS)
     assert attribute in finding.message
 
 
@@ -415,7 +415,7 @@ def test_weight_is_compared_with_effort(tmp_path: Path) -> None:
 
 def test_one_link_without_collision_is_named_and_all_are_one_finding(good: Path) -> None:
     finding = only(removed(good, "//link[@name='drawer']/collision"), "KV240")
-    assert (finding.link, finding.blame) == ("drawer", Blame.PHYSICS)
+    assert (finding.link, finding.cause) == ("drawer", Cause.PHYSICS)
     finding = only(removed(good, "//collision"), "KV240")
     assert "None of the 3 bodies" in finding.message
 

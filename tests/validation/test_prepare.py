@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -28,10 +27,7 @@ from kinematify.model.masses import lifted
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import rpy_of
-from kinematify.simulation.prepared import Prepared, load_prepared
-from kinematify.validation.checks import CHECKS
-from kinematify.validation.stage import Recorder, StageRequest
-from kinematify.validation.stages.prepare import run
+from kinematify.simulation.prepared import Prepared, prepare
 from tests.engines import quiet
 
 SETTINGS = load_settings()
@@ -51,21 +47,10 @@ def changed(**prepare: float) -> ValidationSettings:
 
 
 def prepared(urdf: Path, settings: ValidationSettings = SETTINGS) -> Prepared:
-    """What the stage leaves."""
+    """What is written, with its record."""
     work = urdf.parent / "work"
     work.mkdir(exist_ok=True)
-    reported: list[object] = []
-    request = StageRequest(
-        urdf=urdf,
-        package_dirs=(),
-        work=work,
-        settings=settings,
-        selected=frozenset(CHECKS),
-        deadline=time.process_time() + 60.0,
-    )
-    run(request, Recorder(reported.append, request.selected))
-    assert not reported, "it tells no checks"
-    return load_prepared(work)
+    return prepare(read_robot(urdf), work, settings.prepare)
 
 
 def link(name: str, inside: str) -> str:

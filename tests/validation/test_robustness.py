@@ -49,7 +49,7 @@ def test_the_same_number_gives_the_same_model(base: Base, tmp_path: Path) -> Non
 
 
 def test_stages_without_a_selected_check_do_not_start() -> None:
-    stages = later_stages(["mujoco", "pybullet"])
+    stages = later_stages()
     assert needed(stages, {"KV101", "KV201"}) == []
-    assert [stage.name for stage in needed(stages, {"KV401"})] == ["prepare", "mujoco"]
+    assert [stage.name for stage in needed(stages, {"KV301"})] == ["geometry"]
     assert needed(stages, set(CHECKS)) == stages

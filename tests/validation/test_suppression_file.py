@@ -24,10 +24,10 @@ def written(folder: Path, text: str) -> Path:
 
 
 def test_rules_are_read_as_written(tmp_path: Path) -> None:
-    text = "- {check: kv396, where: 'hinge_*', reason: soft seal}\n- {check: 'KV4*', reason: ' later '}\n"
+    text = "- {check: kv396, where: 'hinge_*', reason: soft seal}\n- {check: 'KV8*', reason: ' later '}\n"
     assert load_suppressions(written(tmp_path, text)) == (
         Suppression(check="KV396", where="hinge_*", reason="soft seal"),
-        Suppression(check="KV4*", where="*", reason="later"),
+        Suppression(check="KV8*", where="*", reason="later"),
     )
 
 

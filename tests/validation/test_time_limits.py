@@ -115,13 +115,13 @@ def test_what_was_not_finished_is_no_finding_and_ends_with_3(
     words = ["validate", str(model), "--engines", "none", "--checks", "KV34*", "--budget", "4"]
     assert run([*words, "--json", str(tmp_path / "report.json")]) == status
     report = json.loads((tmp_path / "report.json").read_text())
-    blamed = [item["message"] for item in report["findings"] if item["severity"] != "note"]
+    suspected = [item["message"] for item in report["findings"] if item["severity"] != "note"]
     left = [item for item in report["checks"] if (item["check"], item["engine"]) in CHECKS_LEFT]
     if status == 0:
-        assert "crashed with SIGSEGV" in blamed[0]
+        assert "crashed with SIGSEGV" in suspected[0]
         assert {item["status"] for item in left} == {"blocked"}
         return
-    assert blamed == []
+    assert suspected == []
     assert {item["status"] for item in left} == {"skipped"}
     assert all(item["reason"].startswith("not finished: the stage evidence was stopped") for item in left)
     assert all(f"to finish: kinematify validate {model} --budget 8" in item["reason"] for item in left)

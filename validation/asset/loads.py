@@ -1,4 +1,4 @@
-"""What the joints of a robot must bear against gravity."""
+"""Loads that the joints of a robot must bear against gravity."""
 
 from __future__ import annotations
 

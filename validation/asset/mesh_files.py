@@ -9,6 +9,7 @@ import numpy as np
 
 from kinematify.errors import AssemblyError
 from kinematify.robot.mesh_file import merged, read_meshes
+from kinematify.robot.urdf_geometry import NoShape
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -69,10 +70,10 @@ class MeshFile:
 
 
 def open_mesh_files(robot: _Element, source: GeometrySource, settings: FileSettings) -> tuple[MeshFile, ...]:
-    """Open every mesh file once; those that can be read also go into the cache of `source`.
+    """Open every mesh file once; they, or why they cannot be read, also go into the cache of `source`.
 
     Args:
-        robot: The document; the pre-check has found all its mesh files.
+        robot: The document, which has passed the pre-check; files that are nowhere are left out.
         source: Where its meshes are looked up.
         settings: Caps.
     """
@@ -81,7 +82,10 @@ def open_mesh_files(robot: _Element, source: GeometrySource, settings: FileSetti
         name = link.get("name") or ""
         for tag in ("visual", "collision"):
             for element in link.iterfind(f"{tag}/geometry/mesh"):
-                path = source.resolved(element.get("filename") or "", f"link {name}")
+                try:
+                    path = source.resolved(element.get("filename") or "", f"link {name}")
+                except NoShape:
+                    continue  # the pre-check has a finding for it
                 use = MeshUse(link=name, tag=tag, line=int(str(element.sourceline)))
                 uses.setdefault(path, []).append(use)
     return tuple(_opened(path, tuple(users), source, settings) for path, users in uses.items())
@@ -104,5 +108,5 @@ def _opened(path: Path, uses: tuple[MeshUse, ...], source: GeometrySource, setti
     else:
         mesh = merged(parts, path.stem)
         units = frozenset(part.unit for part in parts if part.unit)
-        source.cache[path] = mesh
+    source.cache[path] = fault if mesh is None else mesh
     return MeshFile(path=path, uses=uses, mesh=mesh, fault=fault, units=units)

@@ -1,4 +1,4 @@
-"""What the checks of mesh files look at: each file opened once, its surface measured when first asked for."""
+"""Mesh files as the checks see them: each file opened once, its surface measured when first asked for."""
 
 from __future__ import annotations
 
@@ -44,9 +44,7 @@ class MeshContext:
         return open_mesh_files(self._robot, self._source, self.settings)
 
     @cached_property
-    def _read(self) -> Robot | str | None:
-        if any(file.mesh is None for file in self.files):
-            return None
+    def _read(self) -> Robot | str:
         try:
             with np.errstate(all="ignore"):  # what is not finite is reported by a check
                 return parse_robot(self._robot, self._request.urdf, self._source)
@@ -55,13 +53,12 @@ class MeshContext:
 
     @property
     def fault(self) -> str | None:
-        """Why the model cannot be read although all its mesh files can."""
+        """Why the model cannot be read, whatever its mesh files are."""
         return self._read if isinstance(self._read, str) else None
 
     @property
     def model(self) -> Robot:
         """The model; only to be asked for where nothing was found against its meshes."""
-        assert self._read is not None
         assert not isinstance(self._read, str)
         return self._read
 
@@ -77,5 +74,5 @@ class MeshContext:
 
     @cached_property
     def gaps(self) -> list[tuple[str, float, float]]:
-        """See `gaps_between`."""
+        """Implement `gaps_between`."""
         return list(gaps_between(self.model, self.extents))

@@ -1,4 +1,4 @@
-"""What the triangles of one mesh file are like as a surface."""
+"""Quality of the triangles of one mesh file as a surface."""
 
 from __future__ import annotations
 

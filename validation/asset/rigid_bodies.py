@@ -1,4 +1,4 @@
-"""What the checks of declared physics measure once: rigid bodies with their mass, and the room that links take."""
+"""Rigid bodies with their mass, and the room that links take."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Room:
         return ConvexHull(thickened(self.points, max(_THINNEST * self.diagonal, 1e-9)))
 
     def outside(self, point: FloatArray) -> float:
-        """How far a point lies outside the hull at least [m], negative inside."""
+        """Return how far a point lies outside the hull at least [m], negative inside."""
         return float((self.hull.equations[:, :3] @ point + self.hull.equations[:, 3]).max())
 
 
@@ -186,7 +186,7 @@ class Physics:
 
     @cached_property
     def diagonal(self) -> float:
-        """Of the model at zero [m]; 0 without geometry."""
+        """Diagonal of the model at zero [m]; 0 without geometry."""
         poses = forward_kinematics(self.model, {})
         placed = [
             body.room.points @ poses[body.links[0].name][:3, :3].T + poses[body.links[0].name][:3, 3]

@@ -7,17 +7,11 @@ import difflib
 from kinematify.errors import InputError
 from kinematify.validation.check import REGISTRY, Check
 from kinematify.validation.checks import (  # noqa: F401 - each registers its checks
-    agreement,
     as_loaded,
     collision_geometry,
-    contact_agreement,
     declared_limits,
     declared_masses,
     drives,
-    engine_drive,
-    engine_loading,
-    engine_rest,
-    engine_stability,
     evidence,
     file_joints,
     file_names,

@@ -11,10 +11,9 @@ from kinematify.robot.mesh_paths import GLTF_SUFFIXES
 from kinematify.simulation.engines import ENGINES
 from kinematify.simulation.raw_model import MovesFreely, Unloadable
 from kinematify.validation.check import CauseScope, FeedbackRow, OpenCheck, check
-from kinematify.validation.checks.engine_rest import FLOOR_OF_ENERGY, find_growth
-from kinematify.validation.checks.follow import IN_ENGINES, NOT_A_BODY
+from kinematify.validation.checks.follow import AT_REST, NOT_A_BODY
 from kinematify.validation.checks.needs import late
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -38,9 +37,10 @@ _MESH_REFUSED = re.compile(r"no decoder found for mesh|invalid mesh filename ext
 _READS = {
     "mujoco": "OBJ, STL and MSH",
     "pybullet": "OBJ, STL and DAE",
-    "drake": "OBJ, VTK and glTF (.gltf)",
 }
 """Formats of meshes, by engine."""
+_FLOOR_OF_ENERGY = 1e-5
+"""Growth that does not count, fraction of the energy of a fall of the whole model by its own size."""
 _SUFFIX = re.compile(r"\.(?:glb|gltf|stl|dae|ply|obj|3mf|off)\b", re.IGNORECASE)
 
 
@@ -61,22 +61,32 @@ def nothing_moves(context: AsLoadedContext) -> str | None:
     title="As loaded: the engine opens the file",
     fails="As loaded: the engine does not open the file as it is",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
     engines=_ENGINES,
     follows={**dict.fromkeys(NOT_A_BODY, CauseScope.BODY), "KV138": CauseScope.MODEL},
 )
 def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     """The untouched file, loaded with the engine's own defaults (`MjModel.from_xml_path`; `loadURDF` with a fixed
     base; `buildModelFromUrdf`), is there with every joint that moves, and with its limits. Like all of KV8xx it is an
-    error if it fails in every engine, or in one of those that `--engines` names, else a warning.
+    error if it fails in every engine, or in one of those that `--engines` names, else a warning. So is a file that an
+    engine opens only from a copy with absolute paths of its meshes; the other checks look at that copy then.
 
-    Why it matters: Everything else is said of a prepared copy; this is what users load.
+    Why it matters: This is what users load.
 
     Remedy: Do what the engine's message asks for. MuJoCo resolves no package:// and reads STL, OBJ and MSH only; it
     looks for meshes beside the file unless `<mujoco><compiler strippath="false"/></mujoco>` is in it.
     """
     if isinstance(context.loading, MovesFreely) and context.floats:
         return
+    if isinstance(context.bare, Unloadable) and not isinstance(context.loading, Unloadable):
+        result.find(
+            f"{context.title} does not open the file as it is: {context.bare}. It opens a copy with "
+            "absolute paths of the meshes, of which its other findings are.",
+            _remedy_of_loading(context, str(context.bare)),
+            severity=Severity.WARNING,
+            cause=Cause.ENGINE,
+            reproduction=context.bare.reproduction,
+        )
     if isinstance(context.loading, Unloadable):
         result.find(
             f"{context.title} does not open the file as it is: {context.loading}.",
@@ -136,11 +146,10 @@ def _remedy_of_loading(context: AsLoadedContext, message: str) -> str:
 
 
 def _remedy_of_format(context: AsLoadedContext, message: str) -> str:
-    """What to do with a mesh in a format that the engine does not read."""
+    """Return what to do with a mesh in a format that the engine does not read."""
     given = _SUFFIX.findall(message)
     suffix = given[-1].lower() if given else "another format"
-    other = ".obj" if context.engine == "drake" else ".obj or .stl"
-    said = f"{context.title} reads {_READS[context.engine]} meshes, not {suffix}: export them as {other}"
+    said = f"{context.title} reads {_READS[context.engine]} meshes, not {suffix}: export them as .obj or .stl"
     if suffix in GLTF_SUFFIXES:
         return f"{said}; kinematify fix MODEL.urdf -o OUT.urdf writes such copies."
     return f"{said} and name those in the file."
@@ -151,9 +160,9 @@ def _remedy_of_format(context: AsLoadedContext, message: str) -> str:
     title="As loaded: nothing overlaps at rest",
     fails="As loaded: links overlap at rest",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
-    engines=_ENGINES,
-    follows=IN_ENGINES,
+    cause=Cause.PHYSICS,
+    engines=_RUNNING,
+    follows={**AT_REST, "KV802": CauseScope.PAIR},
     needs=(not_loaded,),
 )
 def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -177,7 +186,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
                 value=overlap.depth,
                 limit=limit,
                 unit="m",
-                reproduction=context.loaded.lines_of_overlap(overlap.links, context.values),
+                reproduction=context.running.lines_of_overlap(overlap.links, context.values),
             )
 
 
@@ -186,10 +195,10 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
     title="As loaded: left alone, joints stay in range and are not thrown",
     fails="As loaded: left alone, a joint leaves its range or is thrown",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     engines=_RUNNING,
     feedback=FeedbackRow.AS_LOADED,
-    follows={**IN_ENGINES, "KV802": CauseScope.CONTACT},
+    follows={**AT_REST, "KV802": CauseScope.CONTACT, "KV803": CauseScope.JOINT},
     needs=(not_loaded, nothing_moves, late),
 )
 def stays(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -220,7 +229,7 @@ def stays(result: OpenCheck, context: AsLoadedContext) -> None:
 
 
 def _leaves(context: AsLoadedContext, travel: Travel) -> bool:
-    """Whether contacts move a joint that nothing else moves, or it ends beyond its range."""
+    """True if contacts move a joint that nothing else moves, or it ends beyond its range."""
     return _thrown_by(context, travel) is not None or _beyond(context, travel) > context.still(travel)
 
 
@@ -232,7 +241,7 @@ def _leaves_plainly(context: AsLoadedContext, travel: Travel) -> bool:
 
 
 def _at_most_warning(context: AsLoadedContext, *, plainly: bool) -> Severity | None:
-    """What an engine shows only with a flag that its users have to ask for is no error."""
+    """Return what an engine shows only with a flag that its users have to ask for is no error."""
     return None if context.flag is None or plainly else Severity.WARNING
 
 
@@ -247,7 +256,7 @@ def _thrown_by(context: AsLoadedContext, travel: Travel) -> Overlap | None:
 
 
 def _beyond(context: AsLoadedContext, travel: Travel, run: RestRun | None = None) -> float:
-    """How far beyond its range a joint ends that was left alone [rad or m]; 0 without limits."""
+    """Return how far beyond its range a joint ends that was left alone [rad or m]; 0 without limits."""
     last = float(context.way(run or context.left_alone, travel)[-1])
     return max(travel.lower - last, last - travel.upper) if travel.limited else 0.0
 
@@ -284,10 +293,10 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
     title="As loaded: a hand moves each joint over its range",
     fails="As loaded: a hand cannot move a joint over its range",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     engines=_RUNNING,
     feedback=FeedbackRow.AS_LOADED,
-    follows={**IN_ENGINES, "KV802": CauseScope.CONTACT, "KV803": CauseScope.CONTACT},
+    follows={**AT_REST, "KV802": CauseScope.CONTACT, "KV803": CauseScope.CONTACT, "KV804": CauseScope.JOINT},
     needs=(not_loaded, nothing_moves, late),
 )
 def moves(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -333,7 +342,7 @@ def _moving(
 
 
 def _free_without_contacts(context: AsLoadedContext, run: VelocityProbe) -> bool:
-    """Whether a push that fell short gets to the end where nothing touches."""
+    """True if a push that fell short gets to the end where nothing touches."""
     return run.without_contacts is not None and context.arrives(run, run.without_contacts)
 
 
@@ -362,7 +371,7 @@ def _find_short(result: OpenCheck, context: AsLoadedContext, run: VelocityProbe,
 
 
 def _severity(run: VelocityProbe) -> Severity | None:
-    """How bad it is that contacts keep a joint from its end: over half of the way it works, and it is a warning."""
+    """Return the severity of contacts that keep a joint from its end: a warning if it gets over half of the way."""
     if not run.free:
         return Severity.NOTE
     way = abs(run.end - run.travel.rest)
@@ -391,7 +400,7 @@ def _shown(value: float) -> str:
     title="As loaded: limits hold under load",
     fails="As loaded: a joint is pressed through its limit",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     engines=_RUNNING,
     follows={
         **dict.fromkeys(("KV221", "KV801"), CauseScope.JOINT),
@@ -436,7 +445,7 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
     title="As loaded: nothing gains energy",
     fails="As loaded: energy comes out of nothing",
     severity=Severity.ERROR,
-    blame=Blame.ENGINE,
+    cause=Cause.ENGINE,
     engines=_RUNNING,
     follows=NOT_A_BODY,
     needs=(not_loaded, nothing_moves, late),
@@ -458,15 +467,21 @@ def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
         result.find(
             f"Given a push and let go in {context.title}, the model comes apart: {run.complaint}.",
             "Give every moving link a plausible mass and inertia, and every joint a damping that is not negative.",
-            blame=Blame.PHYSICS,
+            cause=Cause.PHYSICS,
             reproduction=reproduction,
         )
         return
-    find_growth(
-        result,
-        run.energy,
-        floor=FLOOR_OF_ENERGY * context.fall,
-        share=context.settings.energy,
-        how=f"Given a push and let go in {context.title}",
-        reproduction=reproduction,
-    )
+    total, kinetic = run.energy.sum(axis=1), float(run.energy[:, 1].max())
+    growth = float(np.max(total - total[0]))
+    limit = max(_FLOOR_OF_ENERGY * context.fall, context.settings.energy * kinetic)
+    result.measured |= {"growth_J": max(0.0, growth), "kinetic_J": kinetic}
+    if growth > limit:
+        result.find(
+            f"Given a push and let go in {context.title}, the model gains {growth:.3g} J, "
+            f"{growth / max(kinetic, 1e-12):.0%} of its largest kinetic energy.",
+            "Correct inertia tensors and overlaps at rest, or simulate with a smaller time step.",
+            value=growth,
+            limit=limit,
+            unit="J",
+            reproduction=reproduction,
+        )

@@ -8,7 +8,7 @@ import numpy as np
 
 from kinematify.validation.check import check
 from kinematify.validation.checks.needs import something_collides
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from kinematify.config.validation import PhysicsSettings
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     title="Links have collision geometry",
     fails="A link has no collision geometry",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
 )
 def missing_collisions(result: OpenCheck, physics: Physics) -> None:
     """Every body with geometry has collision geometry, and so has each of its links that projects from the rest by
@@ -50,7 +50,7 @@ def missing_collisions(result: OpenCheck, physics: Physics) -> None:
 
 
 def _uncovered(result: OpenCheck, physics: Physics, body: Body) -> None:
-    """What lies within the hull of its body is decoration, unless nearly all links of the file have collisions."""
+    """Report bare links; what is within the hull of its body is decoration, unless nearly all have some."""
     solid = {name for other in physics.bodies for name in other.rooms}
     exception = len(solid - set(physics.collision)) <= max(1.0, physics.settings.bare_minority * len(solid))
     felt = body.placed({name: physics.collision[name] for name in body.rooms if name in physics.collision})
@@ -70,7 +70,7 @@ def _uncovered(result: OpenCheck, physics: Physics, body: Body) -> None:
 
 
 def _stands_out(body: Body, name: str, felt: Room) -> float:
-    """How far a link projects from the hull of what its body collides with, fraction of the link's diagonal."""
+    """Return how far a link projects from the hull of what its body collides with, fraction of the link's diagonal."""
     placed = body.placed({name: body.rooms[name]})
     if placed is None or placed.diagonal == 0.0:
         return 0.0
@@ -82,7 +82,7 @@ def _stands_out(body: Body, name: str, felt: Room) -> float:
     title="Collision geometry is where the visual geometry is",
     fails="Collision geometry is beside the visual geometry",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     needs=(something_collides,),
 )
 def displaced_collisions(result: OpenCheck, physics: Physics) -> None:
@@ -151,7 +151,7 @@ def _vector(values: FloatArray) -> str:
     title="Collision meshes are nearly convex",
     fails="A collision mesh is far from its hull",
     severity=Severity.NOTE,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     needs=(something_collides,),
 )
 def inflated_hulls(result: OpenCheck, physics: Physics) -> None:
@@ -187,7 +187,7 @@ def inflated_hulls(result: OpenCheck, physics: Physics) -> None:
     title="Collision geometry is light",
     fails="Collision geometry is heavy",
     severity=Severity.NOTE,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     needs=(something_collides,),
 )
 def heavy_collisions(result: OpenCheck, physics: Physics) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.check import check
 from kinematify.validation.checks.needs import something_follows, something_moves
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,7 +30,7 @@ _ROUND_TOLERANCE = 0.3
     title="Ranges of joints are plausible",
     fails="The range of a joint is implausible",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     needs=(something_moves,),
 )
 def implausible_ranges(result: OpenCheck, physics: Physics) -> None:
@@ -114,7 +114,7 @@ def _slide(result: OpenCheck, physics: Physics, joint: Joint) -> None:
     title="Ranges of joints are not empty",
     fails="The range of a joint is empty",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     needs=(something_moves,),
 )
 def empty_ranges(result: OpenCheck, physics: Physics) -> None:
@@ -143,7 +143,7 @@ def empty_ranges(result: OpenCheck, physics: Physics) -> None:
     title="Zero lies within the limits",
     fails="Zero lies outside the limits",
     severity=Severity.NOTE,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     needs=(something_moves,),
 )
 def zero_outside(result: OpenCheck, physics: Physics) -> None:
@@ -173,7 +173,7 @@ def zero_outside(result: OpenCheck, physics: Physics) -> None:
     title="Mimic joints stay within their limits",
     fails="A mimic joint leaves its limits",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     needs=(something_follows,),
 )
 def mimics_beyond_limits(result: OpenCheck, physics: Physics) -> None:
@@ -223,7 +223,7 @@ def _beyond(result: OpenCheck, joint: Joint, reach: tuple[float, float]) -> None
         f"The joint {joint.name} follows its leader from {reach[0]:.4g} to {reach[1]:.4g}, beyond its own "
         f"limits {joint.lower:.4g} to {joint.upper:.4g}: engines let the two fight.",
         "Make the limits of both joints agree with multiplier and offset.",
-        blame=Blame.KINEMATICS,
+        cause=Cause.KINEMATICS,
         joint=joint.name,
         link=joint.child,
         value=beyond,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.validation.check import CauseScope, check
 from kinematify.validation.checks.needs import something_moves, something_weighs
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from kinematify.robot.robot import Inertial, Link
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     title="Bodies that move have a mass",
     fails="A body that moves has no mass",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     needs=(something_moves,),
 )
 def missing_masses(result: OpenCheck, physics: Physics) -> None:
@@ -69,7 +69,7 @@ def _suggested(room: Room | None) -> str:
     title="Masses are above zero",
     fails="A mass is not above zero",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
 )
 def masses_not_positive(result: OpenCheck, physics: Physics) -> None:
     """No mass is zero or negative. Zero is allowed for a frame that is fixed to something with a mass, and a note for a
@@ -120,7 +120,7 @@ def _not_positive(result: OpenCheck, body: Body, link: Link, inertial: Inertial)
     title="Masses are plausible",
     fails="A mass is implausible",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     needs=(something_weighs,),
 )
 def implausible_masses(result: OpenCheck, physics: Physics) -> None:
@@ -154,7 +154,7 @@ def implausible_masses(result: OpenCheck, physics: Physics) -> None:
     title="Densities are plausible",
     fails="A density is implausible",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     follows={"KV203": CauseScope.BODY},
     needs=(something_weighs,),
 )
@@ -209,7 +209,7 @@ def _density(result: OpenCheck, body: Body, density: float, limit: float, severi
     title="Neighbours have comparable masses",
     fails="A light link carries a heavy one",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     follows={"KV203": CauseScope.BODY, "KV206": CauseScope.BODY},
     needs=(
         something_moves,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.check import CauseScope, check
 from kinematify.validation.checks.needs import something_moves, something_weighs
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from kinematify.robot.robot import Joint
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     title="Joints state effort and velocity",
     fails="Joints state no effort or velocity",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     follows={"KV221": CauseScope.JOINT},
     needs=(something_moves,),
 )
@@ -44,7 +44,7 @@ def missing_drives(result: OpenCheck, physics: Physics) -> None:
 
 
 def _lacking(joint: Joint) -> str:
-    """What a joint has not, as words that follow its name."""
+    """Return what a joint has not, as words that follow its name."""
     if not joint.has_limit:
         # Continuous joints may do without a limit; PyBullet then has no bound on force and speed.
         return "" if joint.declared_kind == "continuous" else "has no <limit>, so no effort and no velocity"
@@ -70,7 +70,7 @@ def _drive(result: OpenCheck, message: str, joint: Joint) -> None:
     title="Damping and friction are plausible",
     fails="Damping or friction is implausible",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     needs=(something_moves,),
 )
 def implausible_dynamics(result: OpenCheck, physics: Physics) -> None:
@@ -120,7 +120,7 @@ def _dynamics(result: OpenCheck, joint: Joint, name: str, value: float, limit: f
     title="Joints can bear the weight",
     fails="A joint cannot bear the weight",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     needs=(
         something_moves,
         something_weighs,

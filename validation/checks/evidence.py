@@ -15,7 +15,7 @@ import numpy as np
 
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.check import CauseScope, FeedbackRow, check
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from kinematify.config.validation import EvidenceSettings
@@ -28,7 +28,7 @@ _NAMED = 8
 
 _opinion = partial(
     check,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     doubts=True,
     opinion=True,
     follows={"KV341": CauseScope.JOINT, "KV350": CauseScope.BODY},
@@ -40,7 +40,7 @@ _opinion = partial(
     title="The axes run along the parts",
     fails="Several axes are off the parts by the same few degrees",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
 )
 def askew_together(result: OpenCheck, case: JointCase) -> None:
     """Fewer than evidence.askew_joints axes run between evidence.askew_deg and evidence.unknown_deg off every direction
@@ -73,7 +73,7 @@ def askew_together(result: OpenCheck, case: JointCase) -> None:
     title="A child hangs on what it touches",
     fails="A child touches another link than its parent",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     feedback=FeedbackRow.NOT_CARRIED,
     doubts=True,
     opinion=True,
@@ -320,7 +320,7 @@ def opens_inwards(result: OpenCheck, case: JointCase) -> None:
     title="A slide stays with its parent",
     fails="A slide leaves its parent",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     follows={"KV321": CauseScope.JOINT, "KV320": CauseScope.JOINT},
 )
 def leaves_guides(result: OpenCheck, case: JointCase) -> None:
@@ -353,7 +353,7 @@ def leaves_guides(result: OpenCheck, case: JointCase) -> None:
     title="The range is usual for such a part",
     fails="The range is unusual for such a part",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
 )
 def unusual_range(result: OpenCheck, case: JointCase) -> None:
     """No limited range is a whole turn, mostly to one side (evidence.whole_turn). Outside linkages, an upright panel
@@ -394,7 +394,7 @@ def unusual_range(result: OpenCheck, case: JointCase) -> None:
 
 
 def _turns_round(lower: float, upper: float, settings: EvidenceSettings) -> bool:
-    """Whether a range is a whole turn or more, mostly to one side; wrists go as far to both."""
+    """True if a range is a whole turn or more, mostly to one side; wrists go as far to both."""
     span = upper - lower
     return bool(np.degrees(span) >= settings.whole_turn and abs(lower + upper) > settings.lopsided * span)
 
@@ -421,7 +421,7 @@ def _wide(result: OpenCheck, case: JointCase, name: str, span: float, limit: flo
     title="A part stays with what carries it along its line",
     fails="A part lifts off what carries it, and not about another line",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     feedback=FeedbackRow.LINE,
     doubts=True,
 )

@@ -11,7 +11,7 @@ from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
 from kinematify.validation.checks.file_numbers import finite_numbers
 from kinematify.validation.document import shown
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -43,7 +43,7 @@ _UNITS = {"revolute": "rad", "prismatic": "m"}
     title="Joint types are known",
     fails="A joint type is unknown",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
 )
 def unknown_types(result: OpenCheck, urdf: Urdf) -> None:
     """Every type is revolute, continuous, prismatic, fixed, floating or planar.
@@ -70,7 +70,7 @@ def unknown_types(result: OpenCheck, urdf: Urdf) -> None:
     title="Joint types are supported",
     fails="A joint type is not supported",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
 )
 def free_types(result: OpenCheck, urdf: Urdf) -> None:
     """No floating or planar joint is below a link with geometry. Above the root body it is a note: it states that
@@ -119,7 +119,7 @@ def _free(result: OpenCheck, joint: JointElement, solid: str | None) -> None:
     title="Axes have a direction",
     fails="An axis has no direction",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
 )
 def zero_axes(result: OpenCheck, urdf: Urdf) -> None:
     """No axis of a joint that moves has a length of `zero_axis` or less.
@@ -146,7 +146,7 @@ def zero_axes(result: OpenCheck, urdf: Urdf) -> None:
     title="Axes have unit length",
     fails="An axis does not have unit length",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
 )
 def unnormalised_axes(result: OpenCheck, urdf: Urdf) -> None:
     """The length of an axis is one within `unit_axis_tolerance`; it is only a note within `rounded_axis_tolerance`.
@@ -176,7 +176,7 @@ def unnormalised_axes(result: OpenCheck, urdf: Urdf) -> None:
     title="Joints with limits state them",
     fails="A joint lacks its limits",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
 )
 def missing_limits(result: OpenCheck, urdf: Urdf) -> None:
     """Every revolute and prismatic joint has a <limit>; one that states neither lower nor upper is a warning.
@@ -198,9 +198,9 @@ def missing_limits(result: OpenCheck, urdf: Urdf) -> None:
                 f'Add <limit lower="..." upper="..." effort="..." velocity="..."/> with the range in {unit}'
                 + (', or write type="continuous".' if turns else "."),
                 joint=joint.name,
-                unit=unit,
-                line=line_of(joint.element),
                 harmless=turns,  # it is read as continuous
+                unit=unit,
+                line=line_of(joint.element),  # it is read as continuous
             )
         elif limit.get("lower") is None and limit.get("upper") is None:
             result.find(
@@ -219,7 +219,7 @@ def missing_limits(result: OpenCheck, urdf: Urdf) -> None:
     title="Limits stand in order",
     fails="Lower and upper limit are swapped",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
 )
 def swapped_limits(result: OpenCheck, urdf: Urdf) -> None:
     """lower is not above upper.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
 from kinematify.validation.document import shown
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,7 +23,7 @@ _HARMFUL = re.compile(r"""[\s<>&"'/\\|*?:;,]""")
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
-@check("KV110", title="Names are present", fails="Names are missing", severity=Severity.ERROR, blame=Blame.ASSET)
+@check("KV110", title="Names are present", fails="Names are missing", severity=Severity.ERROR, cause=Cause.ASSET)
 def missing_names(result: OpenCheck, urdf: Urdf) -> None:
     """Every link and joint has a name; the robot should have one.
 
@@ -47,7 +47,7 @@ def missing_names(result: OpenCheck, urdf: Urdf) -> None:
         )
 
 
-@check("KV111", title="Names are unique", fails="Names are used twice", severity=Severity.ERROR, blame=Blame.ASSET)
+@check("KV111", title="Names are unique", fails="Names are used twice", severity=Severity.ERROR, cause=Cause.ASSET)
 def repeated_names(result: OpenCheck, urdf: Urdf) -> None:
     """No two links, and no two joints, have the same name.
 
@@ -78,7 +78,7 @@ def repeated_names(result: OpenCheck, urdf: Urdf) -> None:
     title="Names are usable elsewhere",
     fails="Names break other tools",
     severity=Severity.WARNING,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def odd_names(result: OpenCheck, urdf: Urdf) -> None:
     """Names hold no spaces, slashes, quotes and the like; a link below a joint is not called world. Other signs that

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
-from kinematify.validation.document import blame_of, shown
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.document import cause_of, shown
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,7 +24,7 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _Counts = dict[str, dict[str, tuple[int, ...]]]
 """Tag -> attribute -> counts of numbers that are right, the usual one first."""
 
-_ORIGIN: dict[str, tuple[int, ...]] = {"xyz": (3,), "rpy": (3,)}
+_ORIGIN: dict[str, tuple[int, ...]] = {"xyz": (3,), "rpy": (3,), "quat_xyzw": (4,)}
 _JOINT: _Counts = {
     "origin": _ORIGIN,
     "axis": {"xyz": (3,)},
@@ -74,7 +74,7 @@ class _Field:
     title="Numbers are finite and complete",
     fails="Numbers are missing or not finite",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def unreadable_numbers(result: OpenCheck, urdf: Urdf) -> None:
     """Every attribute that holds numbers holds the right count of plain, finite ones.
@@ -91,7 +91,7 @@ def unreadable_numbers(result: OpenCheck, urdf: Urdf) -> None:
             f"{field.called} is {_what(field.text, values)}; expected {_COUNTS[field.counts[0]]}.",
             _remedy(field.text),
             severity=Severity.WARNING if field.element.tag == "color" else None,
-            blame=blame_of(field.element),
+            cause=cause_of(field.element),
             joint=field.joint,
             link=field.link,
             line=line_of(field.element),
@@ -126,7 +126,7 @@ def _remedy(text: str) -> str:
     title="Numbers are of a plausible size",
     fails="Numbers have an implausible size",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def implausible_numbers(result: OpenCheck, urdf: Urdf) -> None:
     """No number is larger than `max_number` (a warning for effort, velocity, damping and friction), and no roll, pitch
@@ -149,7 +149,7 @@ def implausible_numbers(result: OpenCheck, urdf: Urdf) -> None:
                 f"{field.called} turns by {largest:g} rad, more than a whole turn; it looks like degrees.",
                 f"Write {math.radians(largest):.6g} if degrees were meant.",
                 severity=Severity.WARNING,
-                blame=blame_of(field.element),
+                cause=cause_of(field.element),
                 value=abs(largest),
                 limit=settings.max_angle,
                 unit="rad",
@@ -172,7 +172,7 @@ def _huge(result: OpenCheck, field: _Field, value: float, limit: float) -> None:
             else "Write the true value; all lengths are in metres."
         ),
         severity=Severity.WARNING if drive else None,
-        blame=blame_of(field.element),
+        cause=cause_of(field.element),
         joint=field.joint,
         link=field.link,
         value=value,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections import defaultdict
 from dataclasses import dataclass
@@ -9,11 +10,11 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from kinematify.errors import DescriptionError
-from kinematify.robot.mesh_paths import MESH_SUFFIXES, find_mesh
+from kinematify.robot.mesh_paths import MESH_SUFFIXES, find_mesh, near_mesh
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
 from kinematify.validation.document import shown
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,15 +33,19 @@ class _Reference:
     link: str
     filename: str
     line: int
+    collides: bool
     path: Path | None
     """None where there is no such file."""
     fault: str
     """Why there is none."""
+    collides: bool
+    """It belongs to a collision element."""
 
 
-@check("KV141", title="Mesh files exist", fails="A mesh file is missing", severity=Severity.ERROR, blame=Blame.ASSET)
+@check("KV141", title="Mesh files exist", fails="A mesh file is missing", severity=Severity.ERROR, cause=Cause.ASSET)
 def missing_files(result: OpenCheck, urdf: Urdf) -> None:
-    """Every file name leads to a file, through packages where it says so.
+    """Every file name leads to a file, through packages where it says so; for what is only seen it is a warning. All
+    else is checked without the element.
 
     Why it matters: The link is invisible and collides with nothing, or the model does not load.
 
@@ -48,16 +53,22 @@ def missing_files(result: OpenCheck, urdf: Urdf) -> None:
     """
     # what a link shows and collides with is often one file
     missing = {(item.link, item.filename): item for item in reversed([*_references(urdf)]) if item.path is None}
-    for reference in reversed(missing.values()):
+    felt = {(item.link, item.filename) for item in _references(urdf) if item.collides}
+    for key, reference in reversed(missing.items()):
+        near = near_mesh(reference.filename, urdf.folder, urdf.package_dirs)
         result.find(
             reference.fault,
-            _remedy(reference.filename, urdf.folder),
+            _remedy(reference.filename)
+            if near is None
+            else f"There is {os.path.relpath(near, urdf.folder)}; `kinematify fix` writes that path.",
+            severity=None if key in felt else Severity.WARNING,
             link=reference.link,
             line=reference.line,
+            harmless=True,
         )
 
 
-def _remedy(filename: str, folder: Path) -> str:
+def _remedy(filename: str) -> str:
     if "$(" in filename or "${" in filename:
         return "This is an expression of xacro: expand the file with `xacro FILE > robot.urdf`."
     if filename.startswith(("package://", "model://")):
@@ -69,15 +80,7 @@ def _remedy(filename: str, folder: Path) -> str:
         return "This path is on the drive of a Windows machine: copy the mesh and write its path relative to the URDF."
     if filename.startswith(("/", "file:")):
         return "Absolute paths hold on one machine only: write the path relative to the URDF."
-    near = _same_but_for_case(folder / filename.replace("\\", "/"))
-    return f"Did you mean {near.name}? Every letter counts." if near else "Put the file there, or correct the path."
-
-
-def _same_but_for_case(path: Path) -> Path | None:
-    try:
-        return next((item for item in path.parent.iterdir() if item.name.lower() == path.name.strip().lower()), None)
-    except (OSError, ValueError):
-        return None
+    return "Put the file there, or correct the path; `kinematify fix` leaves the element out."
 
 
 @check(
@@ -85,10 +88,11 @@ def _same_but_for_case(path: Path) -> Path | None:
     title="Mesh formats can be read",
     fails="A mesh format cannot be read everywhere",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
-    """Every mesh is of a format that is read here; formats that MuJoCo does not read are a note.
+    """Every mesh is of a format that is read here, a warning where only a visual is not, which the other checks then do
+    without; formats that MuJoCo does not read are a note.
 
     Why it matters: Each reader knows other formats; what it does not know it drops or refuses.
 
@@ -101,8 +105,10 @@ def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
             result.find(
                 f"The mesh {shown(reference.filename)} of the link {reference.link} is of no format that can be read.",
                 f"Convert it to one of {', '.join(MESH_SUFFIXES)}, for example with Blender.",
+                severity=None if reference.collides else Severity.WARNING,
                 link=reference.link,
                 line=reference.line,
+                harmless=True,
             )
         elif suffix not in _BY_ENGINES:
             converted[suffix].append(reference)
@@ -122,7 +128,7 @@ def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
     title="Mesh files have names of their own",
     fails="Mesh files share a name",
     severity=Severity.NOTE,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def repeated_base_names(result: OpenCheck, urdf: Urdf) -> None:
     """No two different mesh files have the same name without folder and suffix.
@@ -155,7 +161,7 @@ def repeated_base_names(result: OpenCheck, urdf: Urdf) -> None:
     title="Mesh paths hold elsewhere",
     fails="Mesh paths hold on one machine only",
     severity=Severity.NOTE,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def bound_paths(result: OpenCheck, urdf: Urdf) -> None:
     """No mesh path is absolute or written with backslashes.
@@ -188,7 +194,14 @@ def _references(urdf: Urdf) -> Iterator[_Reference]:
             filename = mesh.get("filename") or ""
             if filename.strip():
                 path, fault = _found(filename, link, urdf)
-                yield _Reference(link=link, filename=filename, line=line_of(mesh), path=path, fault=fault)
+                yield _Reference(
+                    link=link,
+                    filename=filename,
+                    line=line_of(mesh),
+                    path=path,
+                    fault=fault,
+                    collides=element.tag == "collision",
+                )
 
 
 def _found(filename: str, link: str, urdf: Urdf) -> tuple[Path | None, str]:

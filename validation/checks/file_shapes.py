@@ -9,8 +9,8 @@ from lxml import etree
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
 from kinematify.validation.checks.file_numbers import finite_numbers
-from kinematify.validation.document import blame_of, shown
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.document import cause_of, shown
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,7 +29,7 @@ _KNOWN = ("mesh", *_SIZES)
     title="Sizes of primitives are above zero",
     fails="A primitive has no usable size",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def bad_sizes(result: OpenCheck, urdf: Urdf) -> None:
     """Every length of a box, sphere, cylinder or capsule is above zero. A length of zero is a warning: such a shape
@@ -49,7 +49,7 @@ def bad_sizes(result: OpenCheck, urdf: Urdf) -> None:
                     f"{shown(shape.get(attribute))}; every length must be above zero.",
                     "Write the true size in metres, or delete the element.",
                     severity=Severity.WARNING if min(values) == 0.0 else None,
-                    blame=blame_of(element),
+                    cause=cause_of(element),
                     link=link,
                     value=min(values),
                     limit=0.0,
@@ -63,7 +63,7 @@ def bad_sizes(result: OpenCheck, urdf: Urdf) -> None:
     title="Scales of meshes are plausible",
     fails="The scale of a mesh is implausible",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def bad_scales(result: OpenCheck, urdf: Urdf) -> None:
     """No factor of a mesh scale is zero (`zero_scale`); a negative one is a note.
@@ -105,10 +105,11 @@ def bad_scales(result: OpenCheck, urdf: Urdf) -> None:
     title="Geometry elements are complete",
     fails="A geometry element is incomplete",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def malformed_shapes(result: OpenCheck, urdf: Urdf) -> None:
-    """Every visual and collision holds one known shape with the attributes that it needs.
+    """Every visual and collision holds one known shape with the attributes that it needs; for a visual it is a warning.
+    All else is checked without the element.
 
     Why it matters: Readers stop, or drop the shape in silence.
 
@@ -121,9 +122,11 @@ def malformed_shapes(result: OpenCheck, urdf: Urdf) -> None:
             result.find(
                 f"A {element.tag} of the link {link} {message}.",
                 remedy,
-                blame=blame_of(element),
+                severity=Severity.WARNING if element.tag == "visual" else None,
+                cause=cause_of(element),
                 link=link,
                 line=line_of(element),
+                harmless=True,
             )
 
 

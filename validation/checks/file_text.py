@@ -11,8 +11,9 @@ from lxml import etree
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.robot.urdf_text import has_doctype
 from kinematify.validation.check import check
+from kinematify.validation.checks.file_numbers import finite_numbers
 from kinematify.validation.document import shown
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -57,7 +58,7 @@ _DOCTYPE = re.compile(rb"<!(DOCTYPE|ENTITY)\b")
     title="The file is well-formed XML",
     fails="The file is not well-formed XML",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def syntax_problems(result: OpenCheck, source: UrdfText) -> None:
     """The XML parser reads the whole file.
@@ -80,7 +81,7 @@ def syntax_problems(result: OpenCheck, source: UrdfText) -> None:
     title="No DOCTYPE and no entities",
     fails="The file has a DOCTYPE or entities",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def doctype_problems(result: OpenCheck, source: UrdfText) -> None:
     """The file declares neither a DOCTYPE nor entities.
@@ -105,7 +106,7 @@ def doctype_problems(result: OpenCheck, source: UrdfText) -> None:
     title="The file stays within the caps",
     fails="The file is larger than the caps",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def cap_problems(result: OpenCheck, urdf: Urdf) -> None:
     """Elements, links and joints, and how deep links hang one below the other, stay below `max_elements`, `max_links`
@@ -141,7 +142,7 @@ def cap_problems(result: OpenCheck, urdf: Urdf) -> None:
     title="Lines and names are short enough",
     fails="Lines or names are too long",
     severity=Severity.WARNING,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def long_text(result: OpenCheck, urdf: Urdf) -> None:
     """No line is longer than `max_line_bytes`, no name longer than `max_name`.
@@ -179,7 +180,7 @@ def long_text(result: OpenCheck, urdf: Urdf) -> None:
     title="Elements stand once and in their place",
     fails="Elements are repeated or misplaced",
     severity=Severity.WARNING,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def displaced_elements(result: OpenCheck, urdf: Urdf) -> None:
     """Elements that may occur once in their parent occur once, and known elements are where URDF expects them.
@@ -226,7 +227,7 @@ def _displaced(result: OpenCheck, child: _Element, parent: _Element) -> None:
     )
 
 
-@check("KV106", title="Elements are known", fails="Elements are unknown", severity=Severity.NOTE, blame=Blame.ASSET)
+@check("KV106", title="Elements are known", fails="Elements are unknown", severity=Severity.NOTE, cause=Cause.ASSET)
 def unknown_elements(result: OpenCheck, urdf: Urdf) -> None:
     """Elements that neither URDF nor the usual extensions define are counted by kind.
 
@@ -249,6 +250,44 @@ def unknown_elements(result: OpenCheck, urdf: Urdf) -> None:
             value=len(elements),
             line=line_of(elements[0]),
         )
+
+
+@check(
+    "KV107",
+    title="Rotations are written as every reader knows",
+    fails="Rotations are written as few readers know",
+    severity=Severity.WARNING,
+    cause=Cause.ASSET,
+)
+def quaternions(result: OpenCheck, urdf: Urdf) -> None:
+    """No rotation is written as quat_xyzw of URDF 1.1 and later, unless it is none. All other checks read it.
+
+    Why it matters: MuJoCo, PyBullet, Pinocchio and most importers skip the attribute without a word and do not turn
+    the frame.
+
+    Remedy: Write roll, pitch and yaw (rpy); `kinematify fix` does it.
+    """
+    turned = [
+        origin
+        for origin in urdf.robot.iter("origin")
+        if not _is_unturned(finite_numbers(origin.get("quat_xyzw") or "") or [])
+    ]
+    if turned:
+        parent = turned[0].getparent()
+        owner = urdf.robot if parent is None else parent
+        result.find(
+            f"{_called(owner)} has quat_xyzw={shown(turned[0].get('quat_xyzw'))} (in the file: {len(turned)}); MuJoCo, "
+            "PyBullet and Pinocchio skip the attribute and do not turn the frame.",
+            "Write rpy instead; `kinematify fix` does it.",
+            value=len(turned),
+            line=line_of(turned[0]),
+            link=_owner(owner, "link"),
+            joint=_owner(owner, "joint"),
+        )
+
+
+def _is_unturned(quaternion: list[float]) -> bool:
+    return len(quaternion) != 4 or not any(quaternion[:3])
 
 
 def _structure(robot: _Element) -> Iterator[_Element]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
 from kinematify.validation.document import shown
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _SHOWN = 8
 
 
-@check("KV120", title="There are links", fails="There is no link", severity=Severity.ERROR, blame=Blame.ASSET)
+@check("KV120", title="There are links", fails="There is no link", severity=Severity.ERROR, cause=Cause.ASSET)
 def no_links(result: OpenCheck, urdf: Urdf) -> None:
     """The <robot> has at least one <link>.
 
@@ -44,7 +44,7 @@ def no_links(result: OpenCheck, urdf: Urdf) -> None:
     title="Parents and children exist",
     fails="A parent or child does not exist",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
 )
 def dangling_ends(result: OpenCheck, urdf: Urdf) -> None:
     """Every joint names a parent and a child, and both are links of the file.
@@ -77,7 +77,7 @@ def dangling_ends(result: OpenCheck, urdf: Urdf) -> None:
     title="Parent and child differ",
     fails="A joint joins a link to itself",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
 )
 def self_joined(result: OpenCheck, urdf: Urdf) -> None:
     """No joint joins a link to itself.
@@ -102,7 +102,7 @@ def self_joined(result: OpenCheck, urdf: Urdf) -> None:
     title="Each link has one parent",
     fails="A link has two parents",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
 )
 def second_parents(result: OpenCheck, urdf: Urdf) -> None:
     """No link is the child of two joints.
@@ -129,7 +129,7 @@ def second_parents(result: OpenCheck, urdf: Urdf) -> None:
 
 
 @check(
-    "KV124", title="No circle of links", fails="Links form a circle", severity=Severity.ERROR, blame=Blame.KINEMATICS
+    "KV124", title="No circle of links", fails="Links form a circle", severity=Severity.ERROR, cause=Cause.KINEMATICS
 )
 def cycles(result: OpenCheck, urdf: Urdf) -> None:
     """Following joints downward never leads back to a link above.
@@ -174,7 +174,7 @@ def _closing_joints(urdf: Urdf) -> Iterator[tuple[JointElement, list[str]]]:
     title="There is one root",
     fails="There is more than one root",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
 )
 def second_roots(result: OpenCheck, urdf: Urdf) -> None:
     """One link carries all others.
@@ -205,7 +205,7 @@ def second_roots(result: OpenCheck, urdf: Urdf) -> None:
 
 
 @check(
-    "KV126", title="No link is isolated", fails="A link is isolated", severity=Severity.ERROR, blame=Blame.KINEMATICS
+    "KV126", title="No link is isolated", fails="A link is isolated", severity=Severity.ERROR, cause=Cause.KINEMATICS
 )
 def isolated_links(result: OpenCheck, urdf: Urdf) -> None:
     """Every link hangs on a joint or carries one, unless it is the only link.
@@ -231,7 +231,7 @@ def isolated_links(result: OpenCheck, urdf: Urdf) -> None:
     title="Leaders of mimic joints exist",
     fails="The leader of a mimic joint does not exist",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
 )
 def dangling_mimics(result: OpenCheck, urdf: Urdf) -> None:
     """Every <mimic> names a joint of the file.
@@ -257,7 +257,7 @@ def dangling_mimics(result: OpenCheck, urdf: Urdf) -> None:
     title="Mimic joints follow a leader",
     fails="Mimic joints follow each other in a circle",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
 )
 def mimic_circles(result: OpenCheck, urdf: Urdf) -> None:
     """Followers do not follow each other in a circle, nor in chains of more than `max_mimic_chain`; a follower of a

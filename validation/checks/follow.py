@@ -6,10 +6,6 @@ from kinematify.validation.check import CauseScope
 
 AT_REST = {"KV301": CauseScope.PAIR, "KV302": CauseScope.PAIR}
 """Two bodies are in each other as the file is."""
-IN_ENGINES = {**AT_REST, "KV332": CauseScope.PAIR}
-"""Two bodies are in each other where engines collide their hulls."""
-ON_THE_WAY = {"KV312": CauseScope.JOINT, "KV310": CauseScope.JOINT, "KV311": CauseScope.JOINT}
-"""Exact geometry blocks a joint."""
 NOT_A_BODY = {
     "KV201": CauseScope.MODEL,
     "KV202": CauseScope.MODEL,

@@ -10,7 +10,7 @@ import numpy as np
 
 from kinematify.validation.check import check
 from kinematify.validation.checks.needs import something_weighs
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,7 +29,7 @@ _ROUNDING = 1e-9
     title="Inertia tensors are positive definite",
     fails="An inertia tensor is not positive definite",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     needs=(something_weighs,),
 )
 def tensors_not_positive(result: OpenCheck, physics: Physics) -> None:
@@ -107,7 +107,7 @@ def _better_tensor(body: Body, link: Link) -> str:
     title="Principal moments satisfy the triangle inequality",
     fails="Principal moments are those of no body",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     needs=(something_weighs,),
 )
 def moments_out_of_proportion(result: OpenCheck, physics: Physics) -> None:
@@ -152,7 +152,7 @@ def _proportionate(tensor: FloatArray) -> bool:
     title="Inertia fits the geometry",
     fails="An inertia does not fit its geometry",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     needs=(something_weighs,),
 )
 def radii_of_gyration(result: OpenCheck, physics: Physics) -> None:
@@ -191,7 +191,7 @@ def radii_of_gyration(result: OpenCheck, physics: Physics) -> None:
     title="Links of different size have different inertias",
     fails="Links of different size have one mass and one inertia",
     severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     needs=(something_weighs,),
 )
 def copied_inertias(result: OpenCheck, physics: Physics) -> None:
@@ -244,7 +244,7 @@ class _Misfit:
 
     @property
     def factor(self) -> float:
-        """How far the two are apart, above 1."""
+        """Return how far the two are apart, above 1."""
         return max(self.radius / self.farthest, self.farthest / self.radius)
 
 
@@ -282,7 +282,7 @@ def _centre(body: Body, link: Link, inertial: Inertial) -> FloatArray:
     title="Centres of mass lie in the geometry",
     fails="A centre of mass lies outside the geometry",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    cause=Cause.PHYSICS,
     needs=(something_weighs,),
 )
 def centres_outside(result: OpenCheck, physics: Physics) -> None:

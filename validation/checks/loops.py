@@ -9,7 +9,7 @@ import numpy as np
 from kinematify.robot.linkage import linkages, loop_gaps
 from kinematify.robot.robot import joint_ends, rest_configuration
 from kinematify.validation.check import check
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from kinematify.robot.linkage import Linkage
@@ -32,7 +32,7 @@ def something_closes(physics: Physics) -> str | None:
     title="Loops stay closed over the range of their driver",
     fails="A loop opens, or cannot move",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     needs=(something_closes,),
 )
 def loops_close(result: OpenCheck, physics: Physics) -> None:
@@ -108,7 +108,7 @@ _SHORT = 0.02
     title="Links that share a pin are joined there",
     fails="A linkage is open where two links share a pin",
     severity=Severity.NOTE,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
 )
 def open_linkage(result: OpenCheck, pin: SharedPin) -> None:
     """Two links that no joint joins, and that are both round about one line where they touch (topology.pin_score), do

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.validation.check import check
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from kinematify.validation.asset.mesh_look import MeshContext
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     title="Mesh files can be read",
     fails="A mesh file cannot be read",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def unreadable(result: OpenCheck, look: MeshContext) -> None:
     """Every mesh file that the URDF names opens, is complete, not larger than `max_mesh_bytes`, and its faces refer to
-    vertices that it has.
+    vertices that it has; for a mesh that is only seen it is a warning. All else is checked without it.
 
     Why it matters: A truncated or lying mesh is dropped in silence by PyBullet, which also reads past the end of
     its arrays where a face of an OBJ refers to a vertex that is not there; MuJoCo refuses to load the model.
@@ -32,9 +32,11 @@ def unreadable(result: OpenCheck, look: MeshContext) -> None:
         if file.mesh is None:
             result.find(
                 f"The mesh {file.called} cannot be used. {file.fault}",
-                "Export it again and check that it opens in a viewer.",
+                "Export it again and check that it opens in a viewer; `kinematify fix` leaves it out.",
+                severity=None if file.collides else Severity.WARNING,
                 link=file.first.link,
                 line=file.first.line,
+                harmless=True,
             )
     if look.fault is not None:
         result.find(look.fault, "Fix what the message names.")
@@ -45,7 +47,7 @@ def unreadable(result: OpenCheck, look: MeshContext) -> None:
     title="Mesh coordinates are finite",
     fails="Mesh coordinates are not finite",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def wild_coordinates(result: OpenCheck, look: MeshContext) -> None:
     """Every coordinate is a finite number of at most `max_number`.
@@ -73,7 +75,7 @@ def wild_coordinates(result: OpenCheck, look: MeshContext) -> None:
     title="Meshes have a usable number of triangles",
     fails="A mesh has too few or too many triangles",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def triangle_counts(result: OpenCheck, look: MeshContext) -> None:
     """All meshes together have at most `max_faces` triangles; a single mesh with more than `stl_faces` is a warning.
@@ -108,7 +110,7 @@ def triangle_counts(result: OpenCheck, look: MeshContext) -> None:
         )
 
 
-@check("KV153", title="Meshes have a thickness", fails="A mesh is flat", severity=Severity.WARNING, blame=Blame.ASSET)
+@check("KV153", title="Meshes have a thickness", fails="A mesh is flat", severity=Severity.WARNING, cause=Cause.ASSET)
 def flat_meshes(result: OpenCheck, look: MeshContext) -> None:
     """No mesh is thinner than `flat` times its diagonal; for meshes that are only seen it is a note.
 
@@ -123,7 +125,7 @@ def flat_meshes(result: OpenCheck, look: MeshContext) -> None:
                 f"{quality.diagonal:.3g}. MuJoCo cannot make a hull of it.",
                 "Give it a thickness, or use a thin box for the collision.",
                 severity=None if file.collides else Severity.NOTE,
-                blame=Blame.PHYSICS if file.collides else None,
+                cause=Cause.PHYSICS if file.collides else None,
                 link=file.first.link,
                 line=file.first.line,
                 value=quality.thickness,
@@ -136,7 +138,7 @@ def flat_meshes(result: OpenCheck, look: MeshContext) -> None:
     title="Triangles have an area",
     fails="Triangles have no area",
     severity=Severity.WARNING,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def degenerate_faces(result: OpenCheck, look: MeshContext) -> None:
     """At most `degenerate_share` of the triangles of a mesh have no area; for meshes that are only seen it is a note.
@@ -160,7 +162,7 @@ def degenerate_faces(result: OpenCheck, look: MeshContext) -> None:
             )
 
 
-@check("KV155", title="Meshes are closed", fails="A mesh has open edges", severity=Severity.NOTE, blame=Blame.ASSET)
+@check("KV155", title="Meshes are closed", fails="A mesh has open edges", severity=Severity.NOTE, cause=Cause.ASSET)
 def open_meshes(result: OpenCheck, look: MeshContext) -> None:
     """Mesh files that do not enclose a volume are counted.
 
@@ -188,7 +190,7 @@ def open_meshes(result: OpenCheck, look: MeshContext) -> None:
     title="Triangles face outward",
     fails="Triangles face inward or share edges",
     severity=Severity.WARNING,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def inward_faces(result: OpenCheck, look: MeshContext) -> None:
     """No closed collision mesh is inside out; triangles with a twin that faces the other side make sheets that are seen
@@ -233,7 +235,7 @@ def inward_faces(result: OpenCheck, look: MeshContext) -> None:
     title="Meshes state neither unit nor axes",
     fails="Meshes state a unit or axes that readers treat differently",
     severity=Severity.WARNING,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def stated_units(result: OpenCheck, look: MeshContext) -> None:
     """Meshes that state a unit or an up axis of their own are named, because readers differ in whether they apply it.

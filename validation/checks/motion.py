@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.validation.check import CauseScope, FeedbackRow, check
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.geometry.formatting import (
     BARELY,
     SLIMMER,
@@ -38,7 +38,7 @@ _LIMBS = 2
     title="A joint does not drive its child into its parent",
     fails="A joint drives its child into its parent",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     feedback=FeedbackRow.INTO_PARENT,
     doubts=True,
 )
@@ -95,7 +95,7 @@ def through_parent(result: OpenCheck, motion: JointMotion) -> None:
     title="A joint does not drive its child into other bodies",
     fails="A joint drives its child into another body",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     feedback=FeedbackRow.OTHER_PARENT,
     follows={"KV312": CauseScope.JOINT, "KV310": CauseScope.JOINT},
 )
@@ -151,7 +151,7 @@ def into_others(result: OpenCheck, motion: JointMotion) -> None:
 
 
 def _folds(motion: JointMotion, meeting: Meeting) -> bool:
-    """Whether a chain of joints reaches itself, and not at once.
+    """True if a chain of joints reaches itself, and not at once.
 
     One body carries the other with others between them, or both stand on limbs of their own.
     """
@@ -165,7 +165,7 @@ def _folds(motion: JointMotion, meeting: Meeting) -> bool:
     title="Limits fit the free travel",
     fails="A limit lies beyond the free travel",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     feedback=FeedbackRow.END,
     follows={"KV310": CauseScope.JOINT},
 )
@@ -218,7 +218,7 @@ def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
     title="Parts stay with what carries them",
     fails="A part leaves what carries it",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     feedback=FeedbackRow.DERAILED,
     doubts=True,
     follows={"KV321": CauseScope.JOINT},
@@ -261,7 +261,7 @@ def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
     title="A slide ends before its guide does",
     fails="A slide runs out of its guide",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     feedback=FeedbackRow.GUIDE,
 )
 def out_of_guide(result: OpenCheck, motion: JointMotion) -> None:
@@ -310,7 +310,7 @@ def _limit(motion: JointMotion, end: str, value: float) -> str:
 
 
 def _shorter(motion: JointMotion, end: str, value: float) -> str:
-    """What to do where a joint is stopped early: a limit there, unless hardly any range would be left."""
+    """Return what to do where a joint is stopped early: a limit there, unless hardly any range would be left."""
     if motion.left < _CRIPPLED:
         return "Correct the joint's axis or place, or the shapes of the two; a limit there would leave little range."
     return f"{_limit(motion, end, value)}; if the part should go farther, its axis or its place is wrong."
@@ -321,7 +321,7 @@ def _value(motion: JointMotion, value: float) -> str:
 
 
 def _words(motion: JointMotion, meeting: Meeting) -> str:
-    """What meets, how deep and where."""
+    """Return what meets, how deep and where."""
     first, second = motion.look.links_at(meeting.pair, {motion.sweep.leader: meeting.at})
     place = _value(motion, meeting.at)
     if meeting.passed:
@@ -351,7 +351,7 @@ def _meet(
         f"{message} {said}" if unseen else message if collides else f"{message} {UNFELT}",
         SLIMMER if unseen else remedy,
         severity=severity or (Severity.ERROR if wrong else Severity.WARNING),
-        blame=Blame.PHYSICS if unseen else None,
+        cause=Cause.PHYSICS if unseen else None,
         joint=motion.joint,
         pair=motion.look.links_at(meeting.pair, {motion.sweep.leader: meeting.at}),
         q=configuration(motion.scene, {motion.sweep.leader: meeting.at}),

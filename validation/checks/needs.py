@@ -1,4 +1,4 @@
-"""What several checks need, each as the reason why there is nothing to look at, or None."""
+"""Needs of several checks, each as the reason why there is nothing to look at, or None."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from kinematify.validation.finding import not_finished
 if TYPE_CHECKING:
     from kinematify.validation.as_loaded_context import AsLoadedContext
     from kinematify.validation.asset.rigid_bodies import Physics
-    from kinematify.validation.engine_context import EngineContext
 
 
 def something_moves(physics: Physics) -> str | None:
@@ -34,26 +33,6 @@ def something_collides(physics: Physics) -> str | None:
     return None if physics.collision else "no link has collision geometry"
 
 
-def nothing_moves(context: EngineContext) -> str | None:
-    """In an engine, a joint that moves."""
-    return None if context.mechanism.travels else "no joint moves"
-
-
-def nothing_closes(context: EngineContext) -> str | None:
-    """In an engine, a loop joint."""
-    return None if context.declared.loops else "no loop joint closes a chain"
-
-
-def no_geometry(context: EngineContext) -> str | None:
-    """In an engine, something that can touch a floor."""
-    return None if any(link.pieces for link in context.prepared.links) else "no link has geometry"
-
-
-def late(context: AsLoadedContext | EngineContext) -> str | None:
+def late(context: AsLoadedContext) -> str | None:
     """In an engine, time for one more run."""
     return not_finished("time ran out before it") if context.request.remaining <= 0.0 else None
-
-
-def not_driven(context: EngineContext) -> str | None:
-    """In an engine, joints that were driven or can be."""
-    return None if "drives" in vars(context) else nothing_moves(context) or late(context)

@@ -6,7 +6,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from kinematify.validation.check import FeedbackRow, check
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.geometry.formatting import BARELY, SLIMMER, UNSEEN, configuration, in_document_order, length
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     title="Bodies without a joint between them are apart at rest",
     fails="Bodies without a joint between them overlap at rest",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
     feedback=FeedbackRow.AS_GIVEN,
 )
 def strangers_overlap(result: OpenCheck, look: GeometryContext) -> None:
@@ -45,7 +45,7 @@ def strangers_overlap(result: OpenCheck, look: GeometryContext) -> None:
     title="Parent and child overlap only at their joint",
     fails="Parent and child are in each other at rest",
     severity=Severity.WARNING,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
     feedback=FeedbackRow.AS_GIVEN,
 )
 def neighbours_overlap(result: OpenCheck, look: GeometryContext) -> None:
@@ -86,7 +86,7 @@ def _overlap(
         if unseen
         else "Correct the mesh or its <origin>, or cut the parts so that they only touch; the overlap is tolerated "
         "in all later checks.",
-        blame=Blame.PHYSICS if unseen else None,
+        cause=Cause.PHYSICS if unseen else None,
         severity=Severity.ERROR if wrong else Severity.WARNING,
         joint=joint,
         pair=look.links_at(rest.pair, {}),
@@ -102,7 +102,7 @@ def _overlap(
     title="Parts touch what carries them",
     fails="A part touches nothing that carries it",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     feedback=FeedbackRow.NOT_CARRIED,
 )
 def hovering(result: OpenCheck, look: GeometryContext) -> None:
@@ -140,7 +140,7 @@ def hovering(result: OpenCheck, look: GeometryContext) -> None:
     title="Nothing has to be tolerated",
     fails="What is tolerated, and why",
     severity=Severity.NOTE,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def tolerated(result: OpenCheck, look: GeometryContext) -> None:
     """Nothing: it lists the pairs whose contact other checks do not count (joined and in contact at rest, in contact

@@ -1,4 +1,4 @@
-"""KV331 to KV333: several joints at once, what engines see that collide convex hulls, and joints of twins."""
+"""KV331 and KV333: several joints at once, and joints of twins."""
 
 from __future__ import annotations
 
@@ -6,18 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.check import CauseScope, FeedbackRow, check
-from kinematify.validation.checks.follow import AT_REST
-from kinematify.validation.finding import Blame, Severity, not_finished
-from kinematify.validation.geometry.formatting import configuration, joint_value, length
+from kinematify.validation.check import CauseScope, check
+from kinematify.validation.finding import Cause, Severity, not_finished
+from kinematify.validation.geometry.formatting import configuration
 from kinematify.validation.geometry.mirror_pairs import twins_at_odds
 
 if TYPE_CHECKING:
     from kinematify.robot.robot import Joint
     from kinematify.validation.check import OpenCheck
     from kinematify.validation.geometry.look import GeometryContext
-
-_HULL_SAMPLES = 24
 
 
 def _two_joints(look: GeometryContext) -> str | None:
@@ -29,7 +26,7 @@ def _two_joints(look: GeometryContext) -> str | None:
     title="Configurations of all joints are free",
     fails="Configurations of all joints collide",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     follows={"KV301": CauseScope.PAIR, "KV311": CauseScope.PAIR},
     needs=(lambda look: not_finished("time ran out before it") if look.random is None else None,),
 )
@@ -66,62 +63,12 @@ def free_configurations(result: OpenCheck, look: GeometryContext) -> None:
     )
 
 
-def _two_bodies_that_collide(look: GeometryContext) -> str | None:
-    links = look.scene.model.link_by_name
-    seen = sum(any(links[name].collisions for name in body.links) for body in look.scene.bodies)
-    return "fewer than two bodies have collision geometry" if seen < 2 else None
-
-
-@check(
-    "KV332",
-    title="Engines' hulls leave the motion free",
-    fails="Engines' hulls block a motion that the surfaces leave free",
-    severity=Severity.WARNING,
-    blame=Blame.PHYSICS,
-    feedback=FeedbackRow.COLLISION,
-    follows=AT_REST,
-    prepared=True,
-    needs=(_two_bodies_that_collide,),
-)
-def hulls_block(result: OpenCheck, look: GeometryContext) -> None:
-    """Where the exact surfaces are clear, so are the convex hulls of the collision shapes, which engines collide
-    instead (neighbours only if the parent is the base). What the file declares concave="yes" is omitted: PyBullet
-    collides its surface then.
-
-    Why it matters: A drawer in a hollow cabinet is stuck in an engine although nothing is wrong with its joint.
-
-    Remedy: Cut the collision meshes into convex pieces.
-    """
-    for done, sweep in enumerate(look.sweeps):
-        if not look.in_time():
-            result.leave(f"{len(look.sweeps) - done} joints")
-            return
-        found = look.hulls.blocked(sweep, _HULL_SAMPLES)
-        if found is None:
-            continue
-        joint = sweep.travel.joint
-        first, second = look.links_at(found.pair, {sweep.leader: found.at})
-        result.find(
-            f"The surfaces of {first} and {second} stay clear, but their convex hulls, which engines collide, "
-            f"are {length(found.depth)} deep in each other at {joint_value(found.at, turns=sweep.travel.turns)} of "
-            f"{joint}, and in the way over {found.share:.0%} of its free range.",
-            "Cut the collision meshes into convex pieces (kinematify export --to urdf, or CoACD); the joint "
-            "itself is right.",
-            joint=joint,
-            pair=(first, second),
-            q=configuration(look.scene, {sweep.leader: found.at}),
-            value=found.depth,
-            limit=found.tolerance,
-            unit="m",
-        )
-
-
 @check(
     "KV333",
     title="Twins move alike",
     fails="Twins do not move alike",
     severity=Severity.WARNING,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     needs=(_two_joints,),
 )
 def unlike_twins(result: OpenCheck, look: GeometryContext) -> None:

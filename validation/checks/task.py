@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kinematify.manipulation.plan_request import Failure, Hold
 from kinematify.simulation.engines import engines_that_hold
 from kinematify.validation.check import FeedbackRow, check
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from kinematify.validation.check import OpenCheck
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     title="The task can be set up",
     fails="The task cannot be set up",
     severity=Severity.ERROR,
-    blame=Blame.TASK,
+    cause=Cause.TASK,
 )
 def task_set_up(result: OpenCheck, task: RobotTask) -> None:
     """The object has a joint that moves, its size is that of a thing that an arm can use (objects of common
@@ -38,7 +38,7 @@ def task_set_up(result: OpenCheck, task: RobotTask) -> None:
     title="A gripper finds a hold",
     fails="A gripper finds no hold",
     severity=Severity.WARNING,
-    blame=Blame.TASK,
+    cause=Cause.TASK,
 )
 def no_hold(result: OpenCheck, task: RobotTask) -> None:
     """On what the joint moves there is a place that two parallel pads can take: seen from outside, with opposite sides
@@ -58,7 +58,7 @@ def no_hold(result: OpenCheck, task: RobotTask) -> None:
     title="An arm reaches the hold",
     fails="No arm reaches the hold",
     severity=Severity.ERROR,
-    blame=Blame.TASK,
+    cause=Cause.TASK,
     feedback=FeedbackRow.NO_WAY,
 )
 def out_of_reach(result: OpenCheck, task: RobotTask) -> None:
@@ -79,7 +79,7 @@ def out_of_reach(result: OpenCheck, task: RobotTask) -> None:
     title="A way leads to the hold",
     fails="No way leads to the hold",
     severity=Severity.ERROR,
-    blame=Blame.TASK,
+    cause=Cause.TASK,
     feedback=FeedbackRow.NO_WAY,
 )
 def no_path(result: OpenCheck, task: RobotTask) -> None:
@@ -98,7 +98,7 @@ def no_path(result: OpenCheck, task: RobotTask) -> None:
     title="An arm opens the joint",
     fails="An arm does not open the joint",
     severity=Severity.ERROR,
-    blame=Blame.TASK,
+    cause=Cause.TASK,
     feedback=FeedbackRow.NO_WAY,
 )
 def not_opened(result: OpenCheck, task: RobotTask) -> None:
@@ -121,7 +121,7 @@ def not_opened(result: OpenCheck, task: RobotTask) -> None:
     title="The joint leaves its part the way that a pull needs",
     fails="The joint blocks the way that a pull needs",
     severity=Severity.ERROR,
-    blame=Blame.KINEMATICS,
+    cause=Cause.KINEMATICS,
     feedback=FeedbackRow.NO_WAY,
 )
 def jams(result: OpenCheck, task: RobotTask) -> None:
@@ -141,7 +141,7 @@ def jams(result: OpenCheck, task: RobotTask) -> None:
     title="The plan works in simulation",
     fails="The plan fails in simulation",
     severity=Severity.ERROR,
-    blame=Blame.TASK,
+    cause=Cause.TASK,
     engines=engines_that_hold(Hold.WELD),
 )
 def plan_fails(result: OpenCheck, task: RobotTask) -> None:
@@ -152,7 +152,7 @@ def plan_fails(result: OpenCheck, task: RobotTask) -> None:
     Why it matters: A plan that an engine does not follow fails in training: masses, efforts or convex pieces are in
     the way.
 
-    Remedy: Check the collision geometry beside the part (KV332) and the masses; the plan itself is free of
+    Remedy: Check the collision geometry beside the part (KV804) and the masses; the plan itself is free of
     collisions.
     """
     task.tell_executions(result, Hold.WELD)
@@ -163,7 +163,7 @@ def plan_fails(result: OpenCheck, task: RobotTask) -> None:
     title="Friction alone holds",
     fails="Friction alone does not hold",
     severity=Severity.NOTE,
-    blame=Blame.TASK,
+    cause=Cause.TASK,
     engines=engines_that_hold(Hold.CONTACT),
 )
 def slips(result: OpenCheck, task: RobotTask) -> None:
@@ -178,7 +178,7 @@ def slips(result: OpenCheck, task: RobotTask) -> None:
 
 
 @check(
-    "KV709", title="Films of the task are written", fails="Films of the task", severity=Severity.NOTE, blame=Blame.TASK
+    "KV709", title="Films of the task are written", fails="Films of the task", severity=Severity.NOTE, cause=Cause.TASK
 )
 def films(result: OpenCheck, task: RobotTask) -> None:
     """Nothing: it names the films. Each shows the first execution of a plan, as a GIF, and beside it a still of its

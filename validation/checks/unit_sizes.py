@@ -8,7 +8,7 @@ import numpy as np
 
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.check import check
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from kinematify.validation.asset.extents import Extent
@@ -24,7 +24,7 @@ _MILLIMETRES = 1000.0
     title="Links are in the same unit",
     fails="A link is in another unit than the others",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def unit_slips(result: OpenCheck, look: MeshContext) -> None:
     """No link is more than `oversize` times as large as the largest other one, none with a mesh file `undersize` times
@@ -47,14 +47,14 @@ def unit_slips(result: OpenCheck, look: MeshContext) -> None:
         elif too_small and others <= settings.large and extent.diagonal * _MILLIMETRES <= settings.large:
             _tell_out_of_proportion(result, extent, others, 1.0 / settings.undersize)
     if max((extent.diagonal for extent in extents.values()), default=0.0) < settings.tiny:
-        return  # all meshes are in another unit, which the size of the model tells; no origin is to blame
+        return  # all meshes are in another unit, which the size of the model tells; no origin is the cause
     for joint, gap, size in look.gaps:
         if gap > settings.apart * size:
             result.find(
                 f"The joint {joint} holds its link {gap:.4g} m away from the link above, which is {gap / size:.0f} "
                 f"times the sizes of both ({size:.3g} m).",
                 "Write the origin of the joint in metres; it looks like millimetres or centimetres.",
-                blame=Blame.KINEMATICS,
+                cause=Cause.KINEMATICS,
                 joint=joint,
                 link=look.model.joint_by_name[joint].child,
                 value=gap,
@@ -90,7 +90,7 @@ def _likely_factor(ratio: float) -> str:
     title="The model has a plausible size",
     fails="The model has an implausible size",
     severity=Severity.ERROR,
-    blame=Blame.ASSET,
+    cause=Cause.ASSET,
 )
 def model_size(result: OpenCheck, look: MeshContext) -> None:
     """The diagonal of the model at zero lies between `small` and `large`; above `huge` it is an error if the model has

@@ -59,7 +59,7 @@ class Bodies:
 
     @cached_property
     def qualities(self) -> Mapping[Pair, float]:
-        """How good each contact is for the tree, in [0, 1] (`joints.choice.edges`)."""
+        """Return how good each contact is for the tree, in [0, 1] (`joints.choice.edges`)."""
         pins = find_pins(self.assembly, self.graph, self.bearings, self.config)
         return edge_qualities(self.graph, assembly_stats(self.assembly), self.bearings, pins)
 
@@ -69,7 +69,7 @@ class Bodies:
         return exact_gap(self.surfaces, pair) if edge is None else edge.gap
 
     def score_line(self, pair: Pair, line: Line) -> BearingLine:
-        """How well the contact of two bodies, which must touch, turns into itself about a line."""
+        """Return how well the contact of two bodies, which must touch, turns into itself about a line."""
         edge = self.graph.by_pair[pair]
         return score_line(self.surfaces, edge, line, diagonal=self.diagonal, config=self.config.bearing)
 

@@ -34,7 +34,7 @@ _STEPS = 4
 
 @dataclass(frozen=True, kw_only=True)
 class Opening:
-    """How far half of a contact has opened, where it has opened most."""
+    """Opening of half of a contact, where it has opened most."""
 
     width: float
     """[m]"""
@@ -176,7 +176,7 @@ class JointCase:
 
     @property
     def farthest(self) -> float:
-        """How far beside a line that the bodies show an axis may run, fraction of the child's diagonal."""
+        """Return how far beside a line that the bodies show an axis may run, fraction of the child's diagonal."""
         return self.settings.linkage_distance if self.linkage else self.settings.unknown_distance
 
     @property
@@ -207,7 +207,7 @@ class JointCase:
 
     @cached_property
     def opened(self) -> tuple[Opening, Opening] | None:
-        """How far the contact opens about the declared line and about the one that fits best, if that is much less.
+        """Return the opening of the contact about the declared line and about the best one, if that is much less.
 
         None where the two bodies touch at too few places to say so, and in linkages also where the other line runs
         across the declared one without a bearing about it: what a leg without bearings touches says little.

@@ -1,4 +1,4 @@
-"""What the contact geometry says of every declared joint, in figures; `judge` decides what they mean.
+"""Evidence of the contact geometry for every declared joint, in figures; `judge` decides what they mean.
 
 Candidates are those that the inference would weigh, and its fitted choice judges them, without names; the declared
 joint stands among them, and its parent among all bodies that the child touches.
@@ -42,7 +42,7 @@ _BALL = 0.08  # spread of the radii; a sphere of 20 triangles has 0.07, a cube 0
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ParentEvidence:
-    """How the child hangs on its declared parent, beside the other bodies that it touches."""
+    """Evidence of the parent: how the child hangs on its declared parent, beside the other bodies that it touches."""
 
     touches: bool
     """The declared parent touches the child."""

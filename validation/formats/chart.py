@@ -30,7 +30,7 @@ class Series:
 
 @dataclass(frozen=True, kw_only=True)
 class Axes:
-    """What the axes of a chart say."""
+    """Labels of the axes of a chart."""
 
     x: str
     y: str

@@ -9,9 +9,9 @@ import struct
 from typing import TYPE_CHECKING
 
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.formats.html_frame import badge, page, table, text
-from kinematify.validation.formats.html_motion import curves, show_button, viewer
+from kinematify.validation.formats.html_motion import show_button, viewer
 from kinematify.validation.formats.report_content import (
     Table,
     block_of,
@@ -96,13 +96,13 @@ def _counts(report: ValidationReport) -> tuple[str, ...]:
 
 
 def _filters(outcomes: Sequence[Outcome]) -> str:
-    """Boxes for the severities and blames that occur; nothing where there is nothing to choose."""
+    """Boxes for the severities and causes that occur; nothing where there is nothing to choose."""
     findings = [finding for outcome in outcomes if not isinstance(outcome, Unusable) for finding in outcome.findings]
     if not findings:
         return ""
     severities = [item for item in Severity if any(finding.severity is item for finding in findings)]
-    blames = [item for item in Blame if any(finding.blame is item for finding in findings)]
-    boxes = [_box("severity", item.value) for item in severities] + [_box("blame", item.value) for item in blames]
+    causes = [item for item in Cause if any(finding.cause is item for finding in findings)]
+    boxes = [_box("severity", item.value) for item in severities] + [_box("cause", item.value) for item in causes]
     return f'<div class="filters">Show {"".join(boxes)}<span id="shown" class="faint"></span></div>'
 
 
@@ -124,7 +124,6 @@ def _section(index: int, outcome: Outcome, picture: bytes, scene: str) -> str:
         _picture(picture),
         _table("Families", family_table(outcome), f"families-{index}", _COUNTS),
         _table("Joints", joint_table(outcome), f"joints-{index}") if outcome.joints else "",
-        curves(outcome),
         _pair_matrix(index, outcome.pairs),
         _pairs(index, outcome),
         _checks(index, outcome),
@@ -188,7 +187,7 @@ def _finding(block: FindingBlock, anchor: str, button: str) -> str:
     severity = block.severity.value
     return (
         f'<div id="{anchor}" class="finding {severity}{" suppressed" if block.suppressed else ""}" '
-        f'data-severity="{severity}" data-blame="{finding.blame.value}">'
+        f'data-severity="{severity}" data-cause="{finding.cause.value}">'
         f'<p><strong>{severity} <a href="#check-{finding.check}">{text(block.title)}</a></strong> {block.cause} '
         f'<a class="faint" href="#{anchor}" aria-label="Link to this finding">#</a></p>'
         + (f'<p class="faint">{text(block.facts)}</p>' if block.facts else "")
@@ -202,7 +201,7 @@ def _finding(block: FindingBlock, anchor: str, button: str) -> str:
 
 
 def _consequences(block: FindingBlock) -> str:
-    """What follows from a finding, folded up; nothing if nothing does."""
+    """Return what follows from a finding, folded up; nothing if nothing does."""
     items = "".join(
         f'<li><a href="#check-{item.check}">{text(title(item))}</a>: {text(item.message)}'
         f"{_code(item.reproduction or '')}</li>"
@@ -307,7 +306,7 @@ def _checks(index: int, report: ValidationReport) -> str:
 
 
 def _explained(outcomes: Sequence[Outcome]) -> str:
-    """What each check looks at of which a finding is shown."""
+    """Return what each check looks at of which a finding is shown."""
     found = {f.check for outcome in outcomes if not isinstance(outcome, Unusable) for f in outcome.findings}
     checks = [CHECKS[name] for name in sorted(found)]
     if not checks:

@@ -1,4 +1,4 @@
-"""What every HTML page shares: the frame with its policy, style and script, tables, badges and escaped text."""
+"""Frame of every HTML page: policy, style and script, tables, badges and escaped text."""
 
 from __future__ import annotations
 

@@ -1,26 +1,15 @@
-"""What moves, in a page: the object with a slider per joint, and how each engine drove the joints."""
+"""What moves, in a page: the object with a slider per joint."""
 
 from __future__ import annotations
 
 import json
-import math
 from typing import TYPE_CHECKING, Any
 
-from kinematify.simulation.engines import ENGINES
-from kinematify.validation.formats.chart import Axes, Series, line_chart
 from kinematify.validation.formats.html_frame import text
-from kinematify.validation.formats.report_content import TURNING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
-    from kinematify.validation.run.report import ValidationReport
-    from kinematify.validation.summary import JointCurve, JointSummary
-
-_LINES = {"first": "solid line", "second": "dashed line", "third": "dotted line"}
-_STYLES = dict(zip((name for name, engine in ENGINES.items() if engine.runs and engine.prepared), _LINES, strict=False))
-_WIDTH = 275
-"""Of a chart [px]: four stand side by side."""
 _STEPS = 200
 """Positions of a slider."""
 
@@ -72,60 +61,3 @@ def show_button(index: int, q: dict[str, float], links: Sequence[str], words: st
     shown = text(json.dumps({"q": q, "links": list(links), "joint": joint}))
     attributes = f'data-show="{shown}" data-scene="{scene_name(index)}"'
     return f'<button type="button" class="plain" {attributes}>{text(words)}</button>'
-
-
-def curves(report: ValidationReport) -> str:
-    """Return four charts per joint with the engines over each other; empty if none was driven."""
-    if not report.curves:
-        return ""
-    engines = dict.fromkeys(curve.engine for curve in report.curves)
-    lines = ", ".join(f"{ENGINES[engine].title}: {_LINES[_STYLES[engine]]}" for engine in engines)
-    names = dict.fromkeys(curve.joint for curve in report.curves)
-    known = {joint.joint: joint for joint in report.joints}
-    charts = "".join(
-        _joint_charts(name, [c for c in report.curves if c.joint == name], known.get(name)) for name in names
-    )
-    return (
-        "<h3>How the engines drove the joints</h3>"
-        f'<p class="faint">From rest to both ends by a servo, all other joints held. {lines}. Shaded: free travel by '
-        f"exact geometry; dotted: declared limits.</p>{charts}"
-    )
-
-
-def _joint_charts(name: str, driven: Sequence[JointCurve], joint: JointSummary | None) -> str:
-    turning = joint is None or joint.kind in TURNING
-    scale, unit = (180.0 / math.pi, "deg") if turning else (1000.0, "mm")
-    measures: tuple[tuple[str, str, Callable[[JointCurve], Sequence[float]]], ...] = (
-        ("reached", unit, lambda c: [scale * value for value in c.reached]),
-        ("behind the command", unit, lambda c: [scale * (a - b) for a, b in zip(c.commanded, c.reached, strict=True)]),
-        ("torque" if turning else "force", "N m" if turning else "N", lambda c: c.force),
-        ("deeper than allowed", "mm", lambda c: [1000.0 * value for value in c.depth]),
-    )
-    charts = "".join(
-        line_chart(title, _series(driven, scale, pick), _axes(joint, scale, unit, words), width=_WIDTH, legend=False)
-        for title, words, pick in measures
-    )
-    return f'<h4>{text(name)}</h4><div class="charts">{charts}</div>'
-
-
-def _series(driven: Sequence[JointCurve], scale: float, pick: Callable[[JointCurve], Sequence[float]]) -> list[Series]:
-    """One line per engine: the way to the lower end from behind, then the one to the upper end."""
-    found = []
-    for engine in dict.fromkeys(curve.engine for curve in driven):
-        points: list[tuple[float, float]] = []
-        for curve in sorted((c for c in driven if c.engine == engine), key=lambda c: c.upper):
-            way = [(scale * x, y) for x, y in zip(curve.commanded, pick(curve), strict=True) if math.isfinite(y)]
-            points += way if curve.upper else way[::-1]
-        if points:
-            found.append(Series(label=ENGINES[engine].title, points=tuple(points), style=_STYLES[engine]))
-    return found
-
-
-def _axes(joint: JointSummary | None, scale: float, unit: str, y: str) -> Axes:
-    x = f"commanded [{unit}]"
-    if joint is None:
-        return Axes(x=x, y=f"[{y}]")
-    free = joint.free_travel
-    limits = tuple(scale * value for value in joint.declared_limits or () if math.isfinite(value))
-    band = None if free is None else (scale * free[0], scale * free[1])
-    return Axes(x=x, y=f"[{y}]", band=band, limits=limits)

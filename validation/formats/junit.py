@@ -66,13 +66,13 @@ def _add_case(suite: _Element, model: str, check: CheckResult) -> None:
         name=printable(lasting_title(check)),
         time=f"{check.seconds:.3f}",
     )
-    counted = [finding for finding in check.findings if finding.suppressed is None and finding.cause is None]
+    counted = [finding for finding in check.findings if finding.suppressed is None and finding.follows_from is None]
     failing = [finding for finding in counted if finding.severity is Severity.ERROR]
     others = [finding for finding in check.findings if finding not in failing]
     if failing:
         # A check that fell over did not come to an answer: that is an error of the test, not a failure of the model.
         tag = "error" if check.status is Status.BLOCKED else "failure"
-        element = etree.SubElement(case, tag, message=printable(failing[0].message), type=failing[0].blame.value)
+        element = etree.SubElement(case, tag, message=printable(failing[0].message), type=failing[0].cause.value)
         element.text = "\n\n".join(_text(finding) for finding in failing)
     elif check.status in (Status.SKIPPED, Status.BLOCKED):
         etree.SubElement(case, "skipped", message=printable(f"{check.status.value}: {check.reason or 'no reason'}"))
@@ -84,10 +84,10 @@ def _text(finding: Finding) -> str:
     about = [part for part in (where(finding), measure(finding)) if part]
     about += [f"line {finding.line}"] if finding.line is not None else []
     lines = [
-        f"{finding.severity.value} ({finding.blame.value}): {finding.message}",
+        f"{finding.severity.value} ({finding.cause.value}): {finding.message}",
         *(["  " + "; ".join(about)] if about else []),
         f"  Remedy: {finding.remedy}",
-        *([f"  Follows from: {finding.cause.message}"] if finding.cause is not None else []),
+        *([f"  Follows from: {finding.follows_from.message}"] if finding.follows_from is not None else []),
         *([f"  Suppressed: {finding.suppressed}"] if finding.suppressed is not None else []),
     ]
     return printable("\n".join(lines))

@@ -1,4 +1,4 @@
-"""What is said of a model and of each finding, in words and numbers: the content of all formats and of the terminal.
+"""Content of all reports and of the terminal: statements about a model and about each finding.
 
 A format marks up blocks and tables and decides nothing about what they say.
 """
@@ -63,7 +63,7 @@ def configuration(q: Mapping[str, float] | None) -> str:
 
 
 def measure(finding: Finding) -> str:
-    """What was measured against its limit, with the unit; empty if nothing was."""
+    """Return what was measured against its limit, with the unit; empty if nothing was."""
     unit = f" {finding.unit}" if finding.unit else ""
     if finding.value is None:
         return "" if finding.limit is None else f"limit {number(finding.limit)}{unit}"
@@ -136,7 +136,7 @@ def check_table(report: ValidationReport) -> Table:
 
 
 def is_pair_note(item: FindingGroup) -> bool:
-    """Whether a finding is a note on a pair, such as why it may touch: often hundreds, so no block each."""
+    """True if a finding is a note on a pair, such as why it may touch: often hundreds, so no block each."""
     return item.finding.severity is Severity.NOTE and item.finding.pair is not None and not item.consequences
 
 
@@ -193,7 +193,7 @@ def family(check: str) -> str:
 
 
 def summary_words(report: ValidationReport) -> str:
-    """What follows the verdict: how much was found, what ran, how long it took and what is not finished."""
+    """Return what follows the verdict: how much was found, what ran, how long it took and what is not finished."""
     severities, statuses = severity_counts(report), status_counts(report)
     ran = statuses.get(Status.PASS, 0) + statuses.get(Status.FAIL, 0)
     left = [f"{statuses[item]} {item.value}" for item in (Status.SKIPPED, Status.BLOCKED) if statuses.get(item)]
@@ -226,7 +226,7 @@ def _listed(checks: Sequence[str]) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class FindingBlock:
-    """What is said of a finding, or of several that say the same of different places; empty words are not shown."""
+    """Statement about a finding, or of several that say the same of different places; empty words are not shown."""
 
     findings: tuple[Finding, ...]
     severity: Severity
@@ -257,7 +257,7 @@ def block_of(group: Sequence[FindingGroup]) -> FindingBlock:
         findings=tuple(item.finding for item in group),
         severity=first.severity,
         title=_titled(first.check, CHECKS[first.check].fails, *(item.finding.engine for item in group)),
-        cause=f"(cause: {first.blame.value})",
+        cause=f"(cause: {first.cause.value})",
         facts="; ".join(fact for fact in _facts(first) if fact),
         message=first.message,
         also=f"Also: {others}." if (others := _others(group)) else "",
@@ -284,7 +284,7 @@ def blocks(
     for item in groups:
         finding = item.finding
         engine = None if where(finding) and not by_engine else finding.engine
-        key = (finding.check, engine, finding.severity, finding.blame, finding.suppressed)
+        key = (finding.check, engine, finding.severity, finding.cause, finding.suppressed)
         words = _pattern(finding) if alike or not where(finding) else ""
         grouped.setdefault((*key, words), []).append(item)
     apart = ([group] if len(group) >= together else [[item] for item in group] for group in grouped.values())

@@ -49,7 +49,7 @@ _NO_INERTIAL = Inertial(mass=1.0, center_of_mass=np.zeros(3), tensor=np.eye(3), 
 
 @dataclass(frozen=True, kw_only=True)
 class Drawing:
-    """What a page shows of a model; a report stands without it."""
+    """Drawing of a model in a page; a report stands without it."""
 
     picture: bytes = b""
     """PNG of the model at rest and moved; empty if it could not be drawn in time."""

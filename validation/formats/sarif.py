@@ -75,7 +75,7 @@ def _rule(check: Check) -> dict[str, Any]:
         "fullDescription": {"text": check.verifies},
         "help": {"text": plain, "markdown": marked},
         "defaultConfiguration": {"level": _LEVELS[check.severity]},
-        "properties": {"tags": [family(check.id), check.blame.value, *check.engines]},
+        "properties": {"tags": [family(check.id), check.cause.value, *check.engines]},
     }
 
 
@@ -138,7 +138,7 @@ def _properties(group: FindingGroup) -> dict[str, Any]:
     finding = group.finding
     values: dict[str, Any] = {
         "title": title(finding),
-        "blame": finding.blame.value,
+        "cause": finding.cause.value,
         "engine": finding.engine,
         "value": finding.value,
         "limit": finding.limit,

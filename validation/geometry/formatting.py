@@ -1,4 +1,4 @@
-"""How findings about geometry write numbers and names."""
+"""Numbers and names in findings about geometry."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the checks by geometry look at, measured when first asked for: overlaps at rest, the sweep of each joint.
+"""Context of the checks by geometry, measured when first asked for: overlaps at rest, the sweep of each joint.
 
 The FCL trees and signed distances of the bodies are built once and shared by all of them.
 """
@@ -20,7 +20,6 @@ from kinematify.geometry.together import looked_at, random_rows
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.finding import not_finished
 from kinematify.validation.geometry.formatting import in_document_order
-from kinematify.validation.geometry.hulls import HullView
 from kinematify.validation.summary import PairSummary, PairTable
 
 if TYPE_CHECKING:
@@ -84,19 +83,19 @@ class GeometryContext:
         return frozenset(index for index, collides in enumerate(solid) if not collides) if any(solid) else frozenset()
 
     def collides(self, pair: Pair) -> bool:
-        """Whether both bodies have collision geometry, or no body of the model has any."""
+        """True if both bodies have collision geometry, or no body of the model has any."""
         return not self.bare & set(pair)
 
     def felt_by_engines(self, pair: Pair) -> bool:
-        """Whether engines collide two bodies by default: neighbours pass each other, but for those of the base."""
+        """True if engines collide two bodies by default: neighbours pass each other, but for those of the base."""
         return pair not in self.scene.connection_of or self.scene.bodies[pair[0]].group == 0
 
     def thickness(self, pair: Pair) -> float:
-        """Of the thinner of two bodies [m]: no penetration is deeper."""
+        """Thickness of the thinner of two bodies [m]: no penetration is deeper."""
         return min(_thickness(solid) for solid in self.overlap.solids(pair))
 
     def clear(self, pair: Pair, values: Mapping[int, float]) -> bool:
-        """Whether the visible surfaces of two bodies do not meet, both being visible.
+        """True if the visible surfaces of two bodies do not meet, both being visible.
 
         Args:
             pair: The bodies.
@@ -151,7 +150,7 @@ class GeometryContext:
         return allowed_pairs(self.scene, self.allowance, self.random)
 
     def links_at(self, pair: Pair, values: Mapping[int, float]) -> tuple[str, str]:
-        """Of two bodies the links that are deepest in each other, or else nearest, in the order of the document.
+        """Return the links of two bodies that are deepest in each other, or else nearest, in the order of the document.
 
         Args:
             pair: The bodies.
@@ -177,7 +176,7 @@ class GeometryContext:
         return (first, second) if first in self.scene.bodies[connection.parent].links else (second, first)
 
     def on_an_axle(self, connection: Connection) -> bool:
-        """Whether a child turns without end about a line that runs through its parent's box too, as wheels do."""
+        """True if a child turns without end about a line that runs through its parent's box too, as wheels do."""
         joint = self.scene.model.joint_by_name[connection.joints[-1]]
         if joint.kind is not JointType.CONTINUOUS:
             return False
@@ -200,11 +199,6 @@ class GeometryContext:
     @cached_property
     def _overlap_of_links(self) -> OverlapQueries:
         return OverlapQueries(self._links_apart)
-
-    @cached_property
-    def hulls(self) -> HullView:
-        """The bodies as engines see them that collide convex hulls."""
-        return HullView(self.scene, self.sweeper, self.allowance)
 
     def pair_table(self) -> PairTable:
         """Return what is known of every pair that touches at rest or meets while one joint moves."""
@@ -249,7 +243,7 @@ def _thickness(solid: Solid) -> float:
 
 
 def _runs_through_box(solid: Solid, point: FloatArray, axis: FloatArray) -> bool:
-    """Whether a line runs through the box of a solid, body frame."""
+    """True if a line runs through the box of a solid, body frame."""
     slope = np.where(axis == 0.0, 1e-12, axis)
     ends = np.sort([(solid.low - point) / slope, (solid.high - point) / slope], axis=0)
     return bool(ends[0].max() <= ends[1].min())
@@ -274,13 +268,13 @@ class JointMotion:
 
     @property
     def has_stops(self) -> bool:
-        """Whether the file says where it stops: it has limits, and they are not half a turn to both sides."""
+        """True if the file says where it stops: it has limits, and they are not half a turn to both sides."""
         travel = self.sweep.travel
         half_turns = travel.turns and max(travel.lower, -travel.upper) < -(np.pi - _NEARLY)
         return travel.limited and not half_turns
 
     def late(self, meeting: Meeting) -> bool:
-        """Whether it turns by `geometry.early_turn` before two bodies meet."""
+        """True if it turns by `geometry.early_turn` before two bodies meet."""
         travel = self.sweep.travel
         return travel.turns and abs(meeting.first - travel.rest) > np.radians(self.scene.settings.early_turn)
 
@@ -291,7 +285,7 @@ class JointMotion:
         return self if visible is None else JointMotion(look=visible, sweep=visible.sweep(self.sweep.leader))
 
     def parted(self, pair: Pair) -> tuple[float, float]:
-        """How much farther apart than at rest a pair gets at most [m], and at which value [rad or m]."""
+        """Return how much farther apart than at rest a pair gets at most [m], and at which value [rad or m]."""
         gaps = [(gap, value) for side in self.sweep.sides for other, gap, value in side.gaps if other == pair]
         gap, value = max(gaps, default=(0.0, self.sweep.travel.rest))
         return gap - self.look.allowance.gap(pair), value
@@ -307,7 +301,7 @@ class JointMotion:
         return next((m for m in side.meetings if m.pair in self.sweep.own and self.counts(m)), None)
 
     def counts(self, meeting: Meeting) -> bool:
-        """Whether a meeting counts: a contact that is alike all along is no stop, and what does not collide is seen.
+        """True if a meeting counts: a contact that is alike all along is no stop, and what does not collide is seen.
 
         Where the file gives a body no collision geometry, its visible surfaces must meet the other's visible ones.
         """
@@ -328,7 +322,7 @@ class JointMotion:
         }
 
     def _is_alike(self, meeting: Meeting, side: SweepSide) -> bool:
-        """Whether the same points of what moves are in the other body from soon after the onset to the declared end.
+        """True if the same points of what moves are in the other body from soon after the onset to the declared end.
 
         A carriage on a rail is so; what a stop meets gets deeper, and what goes through a wall gets there with others.
         """
@@ -348,7 +342,7 @@ class JointMotion:
         return bool(always.any() and always.sum() >= _ALIKE * ever.sum())
 
     def penetration(self, meeting: Meeting) -> float:
-        """How deep two bodies are in each other [m]: never more than the thinner one, nor than a slide has moved."""
+        """Return the depth of two bodies in each other [m]: at most the thinner one, and what a slide has moved."""
         deep = min(meeting.depth, self.look.thickness(meeting.pair))
         moved = abs(meeting.at - meeting.first)
         return deep if self.sweep.travel.turns or moved == 0.0 else min(deep, moved)
@@ -363,17 +357,17 @@ class JointMotion:
         return max(high - low, 0.0) / self.sweep.travel.range if self.sweep.travel.range else 0.0
 
     def free_way(self, side: SweepSide) -> float:
-        """How far the child goes to a side before it meets its parent [rad or m]."""
+        """Return how far the child goes to a side before it meets its parent [rad or m]."""
         meeting = self.own_first(side)
         return abs((side.reached if meeting is None else meeting.first) - self.sweep.travel.rest)
 
     def early(self, side: SweepSide) -> bool:
-        """Whether a side is blocked at once."""
+        """True if a side is blocked at once."""
         limit = self.scene.settings.early * self.sweep.travel.range
         return self.own_first(side) is not None and self.free_way(side) < limit
 
     def one_sided(self, sign: float) -> bool:
-        """Whether only the blocked side is permitted to speak of, and the other one is free for half of the range."""
+        """True if only the blocked side is permitted to speak of, and the other one is free for half of the range."""
         other, travel = self.side(-sign), self.sweep.travel
         permitted = abs(other.declared - travel.rest)
         return permitted < self.scene.settings.early * travel.range and self.free_way(other) >= 0.5 * travel.range
@@ -383,14 +377,14 @@ class JointMotion:
         return self.sweep.sides[0 if sign < 0 else 1]
 
     def seen(self, meeting: Meeting) -> float:
-        """How deep the visible geometry of the two gets into each other on that side [m], 0 where it stays clear."""
+        """Return the depth that the visible geometry of two reaches on that side [m], 0 where it stays clear."""
         if self.as_seen is self:
             return meeting.depth
         found = self.as_seen.side(meeting.at - self.sweep.travel.rest).meetings
         return max((seen.depth for seen in found if seen.pair == meeting.pair and seen.inside), default=0.0)
 
     def clearable(self, meeting: Meeting) -> bool:
-        """Whether some other joint at one of its ends keeps the two apart where they are deepest."""
+        """True if some other joint at one of its ends keeps the two apart where they are deepest."""
         scene = self.scene
         rows = []
         for leader in scene.between(meeting.pair) - {self.sweep.leader}:

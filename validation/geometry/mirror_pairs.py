@@ -77,7 +77,7 @@ class _Part:
 
     @property
     def ends(self) -> FloatArray:
-        """Of its range, from rest [rad or m]."""
+        """Ends of its range, from rest [rad or m]."""
         return np.array([self.joint.lower - self.rest, self.joint.upper - self.rest])
 
 
@@ -163,13 +163,13 @@ def _tolerance(scene: Scene, part: _Part) -> float:
 
 
 def _lands(boxes: list[FloatArray], box: FloatArray, same: float) -> bool:
-    """Whether a box that was mapped is one of some others."""
+    """True if a box that was mapped is one of some others."""
     mapped = np.sort(box, axis=0)
     return any(bool(np.abs(mapped - other).max() <= same) for other in boxes)
 
 
 def _difference(scene: Scene, first: _Part, second: _Part, sign: FloatArray) -> str | None:
-    """What differs under one symmetry: None if nothing does, "" if it is no such pair."""
+    """Return what differs under one symmetry: None if nothing does, "" if it is no such pair."""
     turns = first.joint.kind is JointType.REVOLUTE
     kinds = first.joint.kind is second.joint.kind
     axis = sign * first.axis * (np.prod(sign) if turns else 1.0)
@@ -191,7 +191,7 @@ def _difference(scene: Scene, first: _Part, second: _Part, sign: FloatArray) -> 
 def _other_line(
     scene: Scene, first: _Part, second: _Part, sign: FloatArray, axis: FloatArray, *, turns: bool
 ) -> str | None:
-    """How the mapped line of the first joint differs from that of the second: None if not, "" if it is not clear."""
+    """Return the difference of the mapped line of one joint from the other's: None if equal, "" if not clear."""
     angle = np.degrees(np.arccos(np.clip(abs(axis @ second.axis), 0.0, 1.0)))
     off = _mapped(first.point, sign, first, second) - second.point
     off = off - (off @ second.axis) * second.axis if angle <= _SAME_DEG else off
@@ -209,7 +209,7 @@ def _other_line(
 
 
 def _fits(scene: Scene, first: _Part, second: _Part, sign: FloatArray, most: float) -> bool:
-    """Whether the surface of one part, mapped, is that of the other one."""
+    """True if the surface of one part, mapped, is that of the other one."""
     T = scene.at_rest[first.child]
     points = scene.bodies[first.child].solid.points[::_SOME] @ T[:3, :3].T + T[:3, 3]
     T = scene.at_rest[second.child]

@@ -17,17 +17,18 @@ from kinematify.config.validation import load_settings
 from kinematify.errors import DescriptionError
 from kinematify.manipulation.plan_request import PriorFinding
 from kinematify.robot.read import read_robot
-from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine
+from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine, why_not_run
 from kinematify.validation.checks import CHECKS
+from kinematify.validation.document_copy import LEFT_OUT, readable_copy, resolved_copy
 from kinematify.validation.environment import environment
-from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status, not_finished
+from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
+from kinematify.validation.left_model import has_model
 from kinematify.validation.lines import with_lines
 from kinematify.validation.run.causes import with_causes
-from kinematify.validation.run.loaded_findings import across_engines, confirm_on_raw_model, with_refusals
-from kinematify.validation.run.opinions import evidence_before_blame
+from kinematify.validation.run.loaded_findings import across_engines, with_refusals
+from kinematify.validation.run.opinions import demote_inference_findings, join_facts
 from kinematify.validation.run.plan import (
-    agreement_stage,
     as_loaded_stages,
     asset_stage,
     keys,
@@ -38,8 +39,9 @@ from kinematify.validation.run.plan import (
 from kinematify.validation.run.report import ValidationReport
 from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.stages.precheck import precheck
-from kinematify.validation.summary import JointCurve, JointSummary, PairTable
+from kinematify.validation.summary import JointSummary, PairTable
 from kinematify.validation.suppression import suppress
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -48,6 +50,7 @@ if TYPE_CHECKING:
     from kinematify.manipulation.plan_request import TaskRequest
     from kinematify.robot.robot import Robot
     from kinematify.validation.check import Check
+    from kinematify.validation.document_copy import DocumentCopy
     from kinematify.validation.isolation import Stage, StageEnd
     from kinematify.validation.run.plan import CheckKey
     from kinematify.validation.summary import Summary
@@ -75,8 +78,8 @@ def validate(
         package_dirs: Where packages lie (``package://``).
         settings: Thresholds and budgets; the shipped ones if absent.
         selected: Ids of the checks to run; all if absent. Those of file and meshes always run, and their errors count.
-        engines: Of `kinematify.simulation.engines.ENGINES`; checks of others that every installation has are reported
-            as skipped.
+        engines: Of `kinematify.simulation.engines.ENGINES`; all that are installed if absent. Checks of others are
+            reported as skipped, with the reason.
         suppressions: Findings that do not count.
         task: What a robot is to do with the object (KV7xx); without one these checks are not in the report.
         workers: Processes at a time; as many as there are cores if absent.
@@ -87,12 +90,14 @@ def validate(
 
     Raises:
         InputError: `path` is not a URDF at all (missing, unreadable, binary, xacro, MJCF).
-        EnvironmentFault: An engine was asked for that is not installed.
+        EnvironmentFault: An engine was asked for that is not installed, or a task without what plans it.
     """
     for engine in engines:
         require_engine(engine)
+    if task is not None:
+        require("A robot arm", "pin", "coal", "ompl")
     chosen = tuple(engine for engine in ENGINES if engine in engines)
-    checks = _checks(task, chosen)
+    checks = _checks(task)
     wanted = frozenset(checks) if selected is None else frozenset(checks) & frozenset(selected)
     run = _Run(path=Path(path), selected=wanted, progress=progress, task=task, engines=chosen, checks=checks)
     settings = settings or load_settings()
@@ -114,7 +119,7 @@ def validate(
 
 
 _GUARDS = frozenset(check for check in CHECKS if check.startswith("KV1"))
-"""Checks of file and meshes: they always run, and their errors always count, since nothing else can run after one."""
+"""Checks of file and meshes: they always run, and their errors always count."""
 _MESH_GUARDS = frozenset(check for check in _GUARDS if check.startswith("KV15"))
 _LAST_GUARD = "KV152"
 """Called when every mesh file has been opened and read."""
@@ -123,17 +128,12 @@ _LAST_GUARD = "KV152"
 _DOUBTS = frozenset(name for name, check in CHECKS.items() if check.doubts)
 """What the stage of a task wants to know of the joints: whether parent, axis, place, type and direction are right."""
 _LEEWAY = 20.0
-"""Processor time that the comparison of engines has at least, and the stage of a task to end what it is at [s]."""
+"""Processor time that the stage of a task has to end what it is at [s]."""
 
 
-def _checks(task: TaskRequest | None, engines: Sequence[str]) -> dict[str, Check]:
-    """Checks of the report; those of a task and of engines that not every installation has only when asked for."""
-    known = {None, *DEFAULT_ENGINES, *engines}
-    return {
-        name: replace(check, engines=tuple(engine for engine in check.engines if engine in known))
-        for name, check in CHECKS.items()
-        if (task is not None or not name.startswith("KV7")) and known & {*(check.engines or (None,))}
-    }
+def _checks(task: TaskRequest | None) -> dict[str, Check]:
+    """Checks of the report; those of a task only when it was asked for."""
+    return {name: check for name, check in CHECKS.items() if task is not None or not name.startswith("KV7")}
 
 
 class _Run:
@@ -158,18 +158,15 @@ class _Run:
         self._progress = progress or (lambda stage, fraction: None)
         self._results: dict[CheckKey, CheckResult] = {}
         self._joints: dict[str, JointSummary] = {}
-        self._curves: list[JointCurve] = []
         self._pairs: PairTable | None = None
         self._why: dict[CheckKey, tuple[Status, str]] = {}
-        self._failures: dict[str, str] = {}
-        self._late: set[str] = set()
         self._started = time.perf_counter()
 
     def all(self, request: StageRequest, workers: int) -> None:
         """Run everything that can run."""
         if self.task is not None:
             request = replace(request, selected=request.selected | _DOUBTS)
-        later = needed(later_stages(self.engines), request.selected)
+        later = needed(later_stages(), request.selected)
         plain = [
             stage
             for stage in as_loaded_stages(self.engines)
@@ -179,54 +176,86 @@ class _Run:
         asset_request = replace(request, selected=request.selected | _GUARDS)
         usable = precheck(asset_request, Recorder(self._take, asset_request.selected))
         self._progress("pre-check", 0.05)
-        if not usable:
-            self._explain_rest(Status.BLOCKED, "the pre-check found errors that no engine may see")
+        copy = self._readable(asset_request)
+        if not usable and copy is None:
+            self._explain_rest(
+                Status.BLOCKED,
+                f"the pre-check found errors that keep the file from being read: {self._ids(self._broken())}",
+            )
             return
-        (asset,) = run_stages([asset_stage()], asset_request, workers=1, ahead=[*later, *plain])
-        self._take_end(asset)
+        spent, late = self._read_meshes(asset_request, copy, [*later, *plain])
+        if (
+            self._fault_of_meshes(request.work) is not None
+            and not late
+            and (again := self._readable(asset_request)) is not None
+        ):
+            copy = again
+            more, late = self._read_meshes(asset_request, copy, [])
+            spent += more
         self._progress("meshes and declared physics", 0.15)
-        if asset.late:
+        if late:
             self._explain_rest(Status.SKIPPED, not_finished("time ran out before the meshes were checked"))
             return
-        request = replace(request, deadline=max(0.0, request.deadline - asset.seconds))
-        fault = self._fault_of_meshes()
+        request = replace(request, deadline=max(0.0, request.deadline - spent))
+        fault = self._fault_of_meshes(request.work) if copy is None else None
+        if copy is not None and not copy.only_visuals:
+            fault = f"the pre-check found errors in what collides or moves: {self._ids(self._broken())}"
         if fault is not None:
             self._explain_rest(Status.BLOCKED, fault)
             return
         for number, end in enumerate(run_stages(later, request, workers=workers)):
             self._take_end(end)
             self._progress(end.stage.name, 0.15 + 0.8 * (number + 1) / len(later))
-        self._explain(
-            [key for key in self._missing() if key[1] in set(ENGINES) - set(self.engines)],
-            Status.SKIPPED,
-            "the engine was not asked for",
-        )
-        self._load_plainly(plain, request, workers)
-        self._compare(request, self.engines)
+        for name in set(ENGINES) - set(self.engines):
+            self._explain([key for key in self._missing() if key[1] == name], Status.SKIPPED, why_not_run(name))
+        self._load_plainly(plain, request, workers, request.urdf if copy is None else copy.path)
         if self.task is not None:
             self._use(request, self.engines)
 
-    def _load_plainly(self, stages: list[Stage], request: StageRequest, workers: int) -> None:
+    def _broken(self) -> list[Finding]:
+        """What keeps the document from being read: errors of file and meshes, but for shapes that are left out."""
+        found = [result for key, result in self._results.items() if key[0] in _GUARDS - LEFT_OUT]
+        return [item for result in found for item in result.findings if item.severity is Severity.ERROR]
+
+    def _readable(self, request: StageRequest) -> DocumentCopy | None:
+        """A copy without what is broken; None where nothing is, or where it cannot be read at all."""
+        broken = self._broken()
+        blocked = [
+            key for key, result in self._results.items() if result.status is Status.BLOCKED and not result.findings
+        ]
+        if not broken or any(key[0] not in _MESH_GUARDS for key in blocked):
+            return None
+        return readable_copy(request, broken, "readable.urdf")
+
+    def _ids(self, findings: Iterable[Finding]) -> str:
+        return ", ".join(sorted({finding.check for finding in findings})) or "the errors above"
+
+    def _read_meshes(
+        self, request: StageRequest, copy: DocumentCopy | None, ahead: Sequence[Stage]
+    ) -> tuple[float, bool]:
+        """Run the checks of meshes and declared physics; processor time [s], and whether it ran out."""
+        before = dict(self._results)
+        given = request if copy is None else replace(request, urdf=copy.path)
+        (asset,) = run_stages([asset_stage()], given, workers=1, ahead=ahead)
+        self._take_end(asset)
+        if copy is not None:
+            for key in [key for key in self._results if key[0].startswith(("KV15", "KV2"))]:
+                result = before[key] if key in before and _has_error(before[key]) else self._results[key]
+                sure = (finding for finding in result.findings if result is before.get(key) or not copy.doubts(finding))
+                self._results[key] = result.with_findings(sure)
+        return asset.seconds, asset.late
+
+    def _load_plainly(self, stages: list[Stage], request: StageRequest, workers: int, readable: Path) -> None:
         """Look at the untouched file in engines; what the exact geometry knows of the joints is known by now."""
         free = {name: joint.free_travel for name, joint in self._joints.items() if joint.free_travel is not None}
-        for end in run_stages(stages, replace(request, free_travel=free), workers=workers):
+        left_out = [item for key, result in self._results.items() if key[0] in LEFT_OUT for item in result.findings]
+        resolved = resolved_copy(replace(request, urdf=readable), "resolved.urdf", left_out) if stages else None
+        for end in run_stages(stages, replace(request, free_travel=free, resolved=resolved), workers=workers):
             self._take_end(end)
             self._progress(end.stage.name, 0.95)
 
-    def _compare(self, request: StageRequest, engines: Sequence[str]) -> None:
-        """Hold the engines against each other; it is quick, and runs even where no time is left."""
-        request = replace(
-            request,
-            deadline=max(request.deadline, _LEEWAY),
-            engines=tuple(engines),
-            failures=self._failures,
-            late=frozenset(self._late),
-        )
-        for end in run_stages(needed([agreement_stage()], request.selected), request, workers=1):
-            self._take_end(end)
-
     def _use(self, request: StageRequest, engines: Sequence[str]) -> None:
-        """Let a robot use the object; it has time of its own."""
+        """Make a robot use the object; it has time of its own."""
         seconds = _task_seconds(request.settings)
         request = replace(request, deadline=seconds + _LEEWAY, suspects=self._suspects(), task_engines=tuple(engines))
         self._progress("task", 0.96)
@@ -240,7 +269,7 @@ class _Run:
             for key, result in self._results.items()
             if key[0] in _DOUBTS
             for finding in result.findings
-            if finding.blame is Blame.KINEMATICS and finding.joint and finding.severity is not Severity.NOTE
+            if finding.cause is Cause.KINEMATICS and finding.joint and finding.severity is not Severity.NOTE
         ]
         found.sort(key=lambda finding: finding.severity is Severity.ERROR)
         return {
@@ -257,19 +286,16 @@ class _Run:
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
         results = [self._result(key) for key in keys(list(self.checks.values()))]
         robot = _bodies(self.path)
-        results = evidence_before_blame(
-            confirm_on_raw_model(across_engines(with_refusals(with_lines(results, robot)), self.engines))
+        results = demote_inference_findings(
+            join_facts(across_engines(with_refusals(with_lines(results, robot)), self.engines))
         )
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)
         checks = with_causes(checks, robot)
-        facts = environment(
-            settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted, engines=self.engines
-        )
+        facts = environment(settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted)
         return ValidationReport(
             model=str(self.path),
             checks=checks,
             joints=tuple(self._in_order(robot)),
-            curves=tuple(sorted(self._curves, key=lambda curve: curve.engine)),  # they come in as stages end
             pairs=self._pairs,
             environment=facts,
         )
@@ -282,8 +308,6 @@ class _Run:
     def _take(self, result: CheckResult | Summary) -> None:
         if isinstance(result, JointSummary):
             self._joints[result.joint] = _merged(self._joints.get(result.joint), result)
-        elif isinstance(result, JointCurve):
-            self._curves.append(result)
         elif isinstance(result, PairTable):
             self._pairs = result
         else:
@@ -294,23 +318,23 @@ class _Run:
             self._take(result)
         if end.failure is None:
             return
-        self._failures[end.stage.name] = end.failure
         left = [key for key in end.stage.checks if key not in self._results and key[0] in self.selected]
         reason = f"the stage {end.stage.name} {end.failure}"
         if end.late:
-            self._late.add(end.stage.name)
             self._explain(left, Status.SKIPPED, not_finished(reason))
             return
-        if left and not end.failure.startswith("did not run"):
+        if left:
             self._results[left[0]] = _fallen(left[0], end)
         self._explain(left, Status.BLOCKED, reason)
 
-    def _fault_of_meshes(self) -> str | None:
+    def _fault_of_meshes(self, work: Path) -> str | None:
         """Why no later stage may open the meshes; None if they may."""
         if (_LAST_GUARD, None) not in self._results:
             return "the meshes could not be checked, and no other stage may trip over them"
+        if has_model(work):
+            return None
         faults = [key[0] for key, result in self._results.items() if key[0] in _MESH_GUARDS and _has_error(result)]
-        return f"the meshes cannot be used, see {', '.join(faults)}" if faults else None
+        return f"the meshes cannot be used, see {', '.join(faults)}"
 
     def _missing(self) -> Iterable[CheckKey]:
         return [key for key in keys(list(self.checks.values())) if key not in self._results and key not in self._why]
@@ -357,7 +381,7 @@ def _has_error(result: CheckResult) -> bool:
 
 
 def _merged(before: JointSummary | None, now: JointSummary) -> JointSummary:
-    """What two stages know of one joint together."""
+    """Return what two stages know of one joint together."""
     if before is None:
         return now
     return replace(
@@ -373,7 +397,7 @@ def _fallen(key: CheckKey, end: StageEnd) -> CheckResult:
     finding = Finding(
         check=check,
         severity=Severity.WARNING if engine is None else Severity.ERROR,
-        blame=Blame.ENGINE,
+        cause=Cause.ENGINE,
         engine=engine,
         message=f"The stage {end.stage.name} {end.failure} during this check or right before it.",
         remedy="Fix the other findings first and run again; if it stays, report it with the model.",

@@ -35,12 +35,12 @@ def group_by_cause(findings: Iterable[Finding]) -> tuple[FindingGroup, ...]:
     findings = tuple(findings)
     under: dict[int, list[Finding]] = {}
     for finding in findings:
-        if finding.cause is not None:
-            under.setdefault(id(finding.cause), []).append(finding)
+        if finding.follows_from is not None:
+            under.setdefault(id(finding.follows_from), []).append(finding)
     return tuple(
         FindingGroup(finding=finding, consequences=tuple(under.get(id(finding), ())))
         for finding in findings
-        if finding.cause is None
+        if finding.follows_from is None
     )
 
 
@@ -71,25 +71,29 @@ def with_causes(results: Sequence[CheckResult], robot: Robot | None) -> tuple[Ch
     for finding in findings:
         if id(finding) in above:
             cause = final[id(roots[id(finding)])]
-            final[id(finding)] = replace(finding, cause=cause, suppressed=finding.suppressed or cause.suppressed)
+            final[id(finding)] = replace(finding, follows_from=cause, suppressed=finding.suppressed or cause.suppressed)
     return tuple(replace(result, findings=tuple(final[id(item)] for item in result.findings)) for result in results)
 
 
 def _cause(finding: Finding, findings: Sequence[Finding], subjects: _Subjects) -> Finding | None:
-    """Return the worst finding that a finding directly follows from; a note explains nothing worse than a note."""
+    """Return the worst finding that a finding directly follows from; a note explains nothing worse than a note.
+
+    What several engines find alike follows from the first of them.
+    """
     follows = CHECKS[finding.check].follows
+    earlier = findings[: next(number for number, other in enumerate(findings) if other is finding)]
     fits = [
         other
         for check, shared in follows.items()
-        for other in findings
-        if other.check == check and other is not finding and subjects.share(other, finding, shared)
+        for other in (earlier if check == finding.check else findings)
+        if other.check == check and subjects.share(other, finding, shared)
     ]
     fits = [item for item in fits if item.severity is not Severity.NOTE or finding.severity is Severity.NOTE]
     return min(fits, key=lambda item: _ORDER.index(item.severity), default=None)
 
 
 class _Subjects:
-    """What findings are about, by bodies: engines and checks name different links of one body."""
+    """Subjects of findings, by bodies: engines and checks name different links of one body."""
 
     def __init__(self, robot: Robot | None) -> None:
         groups = () if robot is None else rigid_groups(robot)
@@ -97,7 +101,7 @@ class _Subjects:
         self._joints = {} if robot is None else robot.joint_by_name
 
     def share(self, cause: Finding, finding: Finding, shared: CauseScope) -> bool:
-        """Whether two findings are both about what a cause and its consequence must share."""
+        """True if two findings are both about what a cause and its consequence must share."""
         if shared is CauseScope.MODEL:
             return True
         if shared is CauseScope.CONTACT and finding.pair is None:

@@ -1,4 +1,4 @@
-"""From findings to feedback: which decision each failure blames, as plain data (design section 5).
+"""From findings to feedback: which decision each failure points to, as plain data (design section 5).
 
 A failure seldom proves anything. Each signal carries a weight in log odds, the unit in which the inference adds up its
 own evidence (`failure_rates` measures it), and the search decides. Failures that are not the search's to fix are
@@ -14,10 +14,10 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from kinematify.robot.joint_type import JointType
-from kinematify.validation.check import ENGINE_FAMILIES, FeedbackRow
+from kinematify.validation.check import FeedbackRow
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.failure_rates import LINE, PARENT, RANGE, TYPE, shipped_rates
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -80,13 +80,13 @@ class UnfixableFinding:
 
     check: str
     joint: str | None
-    blame: str
+    cause: str
     reason: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class Feedback:
-    """What the failures of one model say about the decisions behind it."""
+    """Feedback of the failures of one model on the decisions behind it."""
 
     edges: tuple[EdgeSignal, ...] = ()
     lines: tuple[JointSignal, ...] = ()
@@ -95,7 +95,7 @@ class Feedback:
     left: tuple[UnfixableFinding, ...] = ()
 
     def __bool__(self) -> bool:
-        """Whether the search has something to act on."""
+        """True if the search has something to act on."""
         return bool(self.edges or self.lines or self.types or self.ranges)
 
     def against(self, child: str) -> float:
@@ -106,7 +106,7 @@ class Feedback:
         return max(_worst_of_each(self.lines, child), _worst_of_each(self.types, child))
 
     def has_error(self, child: str) -> bool:
-        """Whether an error, not only warnings, speaks against the joint of a part."""
+        """True if an error, not only warnings, speaks against the joint of a part."""
         return any(item.error for item in (*self.lines, *self.types) if item.child == child)
 
     def failed_at(self, child: str) -> frozenset[float]:
@@ -120,17 +120,15 @@ class Feedback:
 
 
 def only_collision_meets(finding: Finding) -> bool:
-    """Whether the exact geometry saw no visible parts meet, so that nothing speaks against the joint."""
-    return finding.blame is Blame.PHYSICS and finding.check.startswith("KV3")
+    """True if the exact geometry saw no visible parts meet, so that nothing speaks against the joint."""
+    return finding.cause is Cause.PHYSICS and finding.check.startswith("KV3")
 
 
 def _worst_of_each(signals: Iterable[JointSignal], child: str) -> float:
     worst: dict[str, float] = {}
     for signal in signals:
         if signal.child == child:
-            family, number = signal.check[:3], signal.check[3:]
-            failure = number if family in ENGINE_FAMILIES.values() else signal.check
-            worst[failure] = max(signal.weight, worst.get(failure, 0.0))
+            worst[signal.check] = max(signal.weight, worst.get(signal.check, 0.0))
     return sum(worst.values())
 
 
@@ -191,7 +189,7 @@ class _Case:
     left: list[UnfixableFinding] = field(default_factory=list)
 
     def has(self, *checks: str, joint: str | None = None) -> bool:
-        """Whether one of the checks found something that counts, of one joint if it is given."""
+        """True if one of the checks found something that counts, of one joint if it is given."""
         return any(
             item.check in checks and item.severity is not Severity.NOTE and (joint is None or item.joint == joint)
             for item in self.findings
@@ -265,10 +263,10 @@ class _Case:
                 )
             )
 
-    def leave(self, finding: Finding, reason: str, blame: Blame | None = None) -> None:
+    def leave(self, finding: Finding, reason: str, cause: Cause | None = None) -> None:
         """Note that the search does nothing about a finding, and why."""
-        known = blame or finding.blame
-        self.left.append(UnfixableFinding(check=finding.check, joint=finding.joint, blame=known.value, reason=reason))
+        known = cause or finding.cause
+        self.left.append(UnfixableFinding(check=finding.check, joint=finding.joint, cause=known.value, reason=reason))
 
 
 def _route(case: _Case, finding: Finding) -> None:
@@ -278,8 +276,8 @@ def _route(case: _Case, finding: Finding) -> None:
         return
     if row is FeedbackRow.AS_GIVEN:
         case.leave(finding, "they overlap as given; the cause is the cut of the parts, not an axis")
-    elif row is FeedbackRow.COLLISION or only_collision_meets(finding):
-        case.leave(finding, "only collision geometry is in the way; decompose it", Blame.PHYSICS)
+    elif only_collision_meets(finding):
+        case.leave(finding, "only collision geometry is in the way; decompose it", Cause.PHYSICS)
     elif row is FeedbackRow.EXPORTER:
         case.leave(finding, "frames, masses or files disagree; that is for the exporter to fix")
     elif row in _ROWS and finding.joint is not None and finding.joint in case.joints:
@@ -366,7 +364,7 @@ def _out_of_guide(case: _Case, finding: Finding, joint: Joint) -> None:
 
 
 def _upwards(finding: Finding) -> bool:
-    """Whether the joint was above zero where the failure was seen."""
+    """True if the joint was above zero where the failure was seen."""
     return (finding.q or {}).get(finding.joint or "", 0.0) >= 0.0
 
 
@@ -378,26 +376,6 @@ def _type_doubted(case: _Case, finding: Finding, joint: Joint) -> None:
     case.against_type(finding, joint, "the parts look as if they moved otherwise")
 
 
-def _not_reached(case: _Case, finding: Finding, joint: Joint) -> None:
-    """KV405 and KV505: a drive that gets stuck, unless hulls or a known contact explain it."""
-    if case.has("KV332", "KV403", "KV503", joint=finding.joint) or finding.blame is not Blame.KINEMATICS:
-        case.leave(finding, "only the hulls that engines collide are in the way", Blame.PHYSICS)
-    else:
-        case.against_line(finding, joint, f"{finding.engine} cannot drive it to its end")
-
-
-def _unstable(case: _Case, finding: Finding, joint: Joint) -> None:
-    """Escaped limits, explosions and energy: masses and overlaps first."""
-    if case.has("KV201", "KV202", "KV204", "KV205", "KV207", "KV301", "KV302", "KV403", "KV503"):
-        case.leave(finding, "fix masses and overlaps at rest first", Blame.PHYSICS)
-    else:
-        case.against_line(finding, joint, "unstable though masses and rest are fine")
-
-
-def _sinks(case: _Case, finding: Finding, joint: Joint) -> None:
-    case.against_line(finding, joint, "it does not stay where it was given")
-
-
 def _as_loaded(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV803 and KV804: the written file, whose pieces leave every free motion free, does not move as it should."""
     case.against_all(finding, joint, f"as loaded, {finding.engine} does not move it as it should")
@@ -406,7 +384,7 @@ def _as_loaded(case: _Case, finding: Finding, joint: Joint) -> None:
 def _no_way(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV703 to KV706: only what fails from several places of the robot speaks against the joint."""
     if finding.check != "KV706" and case.placements.get(finding.joint or "", 0.0) < case.config.placements:
-        case.leave(finding, "too few places of the robot were tried to name the joint as the cause", Blame.TASK)
+        case.leave(finding, "too few places of the robot were tried to name the joint as the cause", Cause.TASK)
     else:
         case.against_all(finding, joint, "no way leads through its range")
 
@@ -420,9 +398,6 @@ _ROWS: dict[FeedbackRow | None, Callable[[_Case, Finding, Joint], None]] = {
     FeedbackRow.GUIDE: _out_of_guide,
     FeedbackRow.LINE: _line_doubted,
     FeedbackRow.TYPE: _type_doubted,
-    FeedbackRow.NOT_REACHED: _not_reached,
-    FeedbackRow.UNSTABLE: _unstable,
-    FeedbackRow.SINKS: _sinks,
     FeedbackRow.AS_LOADED: _as_loaded,
     FeedbackRow.NO_WAY: _no_way,
 }

@@ -1,4 +1,4 @@
-"""What the checks of the untouched file say together, over all engines that loaded it (KV8xx), and about others."""
+"""Joint result of the checks of the untouched file over all engines that loaded it (KV8xx)."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
-from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Blame, Severity, Status
+from kinematify.validation.finding import Cause, Severity, Status
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -18,8 +17,6 @@ if TYPE_CHECKING:
 _FAMILY, _OPENS, _MOVES, _ENERGY = "KV8", "KV801", "KV804", "KV806"
 _TENSORS = ("KV204", "KV205")
 """Checks of inertia tensors, for which engines refuse files."""
-_CONTACTS = ("KV802", "KV803", _MOVES)
-"""Checks that tell of contacts."""
 
 
 def as_loaded_words(checks: Sequence[CheckResult]) -> str:
@@ -34,14 +31,15 @@ def as_loaded_words(checks: Sequence[CheckResult]) -> str:
     parts = []
     for engine, opening in opened.items():
         title, found = ENGINES[engine].title, moved.get(engine)
-        if any(finding.joint is None for finding in opening.findings):
+        if "joints" not in opening.measured and opening.findings:
             parts.append(f"{title} does not open the file")
         elif found is not None and "right" in found.measured:
             joints = "" if parts and "joints move" in parts[0] else " joints move"
             parts.append(f"{title} {found.measured['right']:.0f} of {found.measured['joints']:.0f}{joints}")
         elif not ENGINES[engine].runs and "read" in opening.measured:
             parts.append(f"{title} reads {opening.measured['read']:.0f} of {opening.measured['joints']:.0f}")
-    words = [f"as loaded: {', '.join(parts)}"] if parts else []
+    absent = [f"{ENGINES[name].title} is not installed" for name in opened if name not in DEFAULT_ENGINES]
+    words = [f"as loaded: {', '.join([*parts, *absent])}"] if parts else []
     for name, found in moved.items():
         entry = ENGINES[name or ""]
         if entry.contact_flag and found.measured.get("with_contacts", math.inf) < found.measured.get("right", 0.0):
@@ -84,7 +82,7 @@ def with_refusals(checks: Sequence[CheckResult]) -> list[CheckResult]:
 def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> list[CheckResult]:
     """Make errors of the untouched file warnings where another engine has none, and say which.
 
-    What blames an engine and only one shows is a note then, and a warning where no other engine runs the file.
+    What is laid to an engine and only one shows is a note then, and a warning where no other engine runs the file.
 
     Args:
         checks: All results.
@@ -111,36 +109,6 @@ def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> lis
     ]
 
 
-def confirm_on_raw_model(checks: Sequence[CheckResult]) -> list[CheckResult]:
-    """Make contacts that only a prepared copy shows notes, where an engine moved the joints of the untouched file.
-
-    The copy lets parent and child touch and gives links without collision geometry their visual one, which no engine
-    does by itself.
-
-    Args:
-        checks: All results.
-    """
-    if not any(check.check == _MOVES and "joints" in check.measured and not check.unfinished for check in checks):
-        return list(checks)
-    shown = [finding for check in checks if check.check in _CONTACTS for finding in check.findings]
-    joints = {finding.joint for finding in shown if finding.severity is not Severity.NOTE}
-    pairs = {frozenset(finding.pair) for finding in shown if finding.pair is not None}
-
-    def worded(finding: Finding) -> Finding:
-        counts = finding.blame is not Blame.PHYSICS or finding.joint in joints - {None}
-        if counts or finding.severity is Severity.NOTE or (finding.pair and frozenset(finding.pair) in pairs):
-            return finding
-        return replace(
-            finding,
-            severity=Severity.NOTE,
-            message=f"{finding.message} Only our prepared copy shows it, no engine that loads the file itself.",
-        )
-
-    return [
-        check.with_findings(map(worded, check.findings)) if CHECKS[check.check].prepared else check for check in checks
-    ]
-
-
 def _across(finding: Finding, errors: Sequence[Finding], ran: Mapping[str, set[str | None]]) -> Finding:
     failing = {
         other.engine
@@ -150,7 +118,7 @@ def _across(finding: Finding, errors: Sequence[Finding], ran: Mapping[str, set[s
     works = [entry.title for name, entry in ENGINES.items() if name in ran.get(finding.check, set()) - failing]
     if finding.severity is not Severity.ERROR:
         return finding
-    alone = finding.blame is Blame.ENGINE and not any(
+    alone = finding.cause is Cause.ENGINE and not any(
         other.check == finding.check and other.engine != finding.engine for other in errors
     )
     if not works:

@@ -1,4 +1,4 @@
-"""Evidence before blame: what only our own inference holds against a joint is a note until a fact agrees.
+"""Facts before opinions: what only our own inference holds against a joint is a note until a fact agrees.
 
 A fact is something that a user can measure or see without us: an overlap, a part that leaves, a drive that stops. Over
 published robots that work, 27 of 28 findings of the inference alone were wrong, so no score of ours makes a file fail.
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.validation.check import FeedbackRow
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from kinematify.validation.finding import CheckResult, Finding
 
 
-def evidence_before_blame(results: Sequence[CheckResult]) -> list[CheckResult]:
+def demote_inference_findings(results: Sequence[CheckResult]) -> list[CheckResult]:
     """Return the results with the opinions about each joint as one note, unless an error of fact is about that joint.
 
     Of a joint whose line a fact doubts, the opinions about its line are omitted: the fact names the better one.
@@ -32,13 +32,42 @@ def evidence_before_blame(results: Sequence[CheckResult]) -> list[CheckResult]:
     spoken: dict[str | None, list[Finding]] = {}
     apart: list[Finding] = []
     for finding in _findings(results, opinion=True):
-        if finding.joint in facts or finding.blame is Blame.ENGINE:  # a crash of the stage is no opinion
+        if finding.joint in facts or finding.cause is Cause.ENGINE:  # a crash of the stage is no opinion
             continue
         group = apart if finding.joint in lines and _doubts_line(finding) else spoken.setdefault(finding.joint, [])
         group.append(finding)
     notes = {id(group[0]): _note(group) for group in spoken.values()}
     folded = {id(finding) for group in (*spoken.values(), apart) for finding in group}
-    return [_without_blame(result, notes, folded) if CHECKS[result.check].opinion else result for result in results]
+    return [_as_notes(result, notes, folded) if CHECKS[result.check].opinion else result for result in results]
+
+
+_LIFTS = "KV349"
+_SWEPT = ("KV310", "KV311", "KV312", "KV320")
+"""What exact sweeps measure of one joint."""
+
+
+def join_facts(results: Sequence[CheckResult]) -> list[CheckResult]:
+    """Make it an error that a part lifts off its bearing (KV349) where its sweep goes wrong too: two facts, one axis.
+
+    Args:
+        results: Of all checks of a run.
+    """
+    swept: dict[str | None, list[str]] = {}
+    for finding in _findings(results, opinion=False):
+        if finding.check in _SWEPT and finding.severity is not Severity.NOTE and finding.cause is Cause.KINEMATICS:
+            swept.setdefault(finding.joint, []).append(finding.check)
+
+    def joined(finding: Finding) -> Finding:
+        others = swept.get(finding.joint)
+        if finding.check != _LIFTS or finding.severity is not Severity.WARNING or not others:
+            return finding
+        also = f"{finding.message} Its sweep speaks against the same line ({', '.join(dict.fromkeys(others))})."
+        return replace(finding, severity=Severity.ERROR, message=also)
+
+    return [
+        replace(result, findings=tuple(map(joined, result.findings))) if result.check == _LIFTS else result
+        for result in results
+    ]
 
 
 def _findings(results: Sequence[CheckResult], *, opinion: bool) -> list[Finding]:
@@ -46,7 +75,7 @@ def _findings(results: Sequence[CheckResult], *, opinion: bool) -> list[Finding]
 
 
 def _proves(finding: Finding) -> bool:
-    return finding.severity is Severity.ERROR and finding.blame is Blame.KINEMATICS and finding.joint is not None
+    return finding.severity is Severity.ERROR and finding.cause is Cause.KINEMATICS and finding.joint is not None
 
 
 def _doubts_line(finding: Finding) -> bool:
@@ -64,7 +93,7 @@ def _note(group: Sequence[Finding]) -> Finding:
     )
 
 
-def _without_blame(result: CheckResult, notes: dict[int, Finding], folded: set[int]) -> CheckResult:
+def _as_notes(result: CheckResult, notes: dict[int, Finding], folded: set[int]) -> CheckResult:
     return result.with_findings(
         notes.get(id(item), item) for item in result.findings if id(item) in notes or id(item) not in folded
     )

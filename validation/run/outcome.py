@@ -1,4 +1,4 @@
-"""What became of each model of a run over several: a report, or the reason why there is none."""
+"""Outcome of each model of a run over several: a report, or the reason why there is none."""
 
 from __future__ import annotations
 
@@ -34,6 +34,11 @@ class Unusable:
         """Always 2."""
         return ExitStatus.UNUSABLE
 
+    def status_at(self, least: Severity) -> int:
+        """Always 2, whatever the least severity is that counts."""
+        del least
+        return self.exit_status
+
     def as_json(self) -> dict[str, Any]:
         """The same keys as a report's, with the reason under ``error``."""
         return {"schema": SCHEMA, "model": self.model, "verdict": self.verdict, "error": self.message}
@@ -44,7 +49,7 @@ Outcome = ValidationReport | Unusable
 
 def severity_counts(report: ValidationReport) -> Mapping[Severity, int]:
     """Findings that count, by severity; what follows from another one does not count beside it."""
-    return Counter(finding.severity for finding in report.counted if finding.cause is None)
+    return Counter(finding.severity for finding in report.counted if finding.follows_from is None)
 
 
 def status_counts(report: ValidationReport) -> Mapping[Status, int]:

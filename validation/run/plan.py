@@ -6,17 +6,14 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from kinematify.simulation.engines import ENGINES
-from kinematify.validation.checks import CHECKS, checks_of
+from kinematify.validation.checks import checks_of
 from kinematify.validation.isolation import Stage
 from kinematify.validation.stages import (
     asset,
-    engine_agreement,
     evidence_stage,
     geometry,
     loaded_file,
-    prepare,
-    robot_task,
-    run_engine,
+    task_run,
 )
 
 if TYPE_CHECKING:
@@ -41,15 +38,14 @@ def asset_stage() -> Stage:
     )
 
 
-def later_stages(chosen: Sequence[str]) -> list[Stage]:
-    """Everything that moves the model, the longest first; engines that were not chosen are omitted."""
-    stages = [
-        Stage(name="prepare", run=prepare.run, checks=(), imports=("kinematify.simulation.prepared",)),
+def later_stages() -> list[Stage]:
+    """What looks at the model without an engine, the longest first."""
+    return [
         Stage(
             name="geometry",
             run=geometry.run,
             checks=keys(checks_of("KV30", "KV31", "KV32", "KV33")),
-            imports=("kinematify.validation.geometry.look", "kinematify.validation.geometry.exact_contacts"),
+            imports=("kinematify.validation.geometry.look",),
         ),
         Stage(
             name="evidence",
@@ -60,19 +56,6 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
             ),
         ),
     ]
-    for name in (name for name in chosen if ENGINES[name].prepared):
-        checks = tuple(key for key in keys(CHECKS.values()) if key[1] == name and not key[0].startswith(("KV7", "KV8")))
-        stages.append(
-            Stage(
-                name=name,
-                run=partial(run_engine.run, engine=name),
-                checks=checks,
-                after=("prepare",),
-                imports=("kinematify.validation.engine_context",),
-                library=_library(ENGINES[name]),
-            )
-        )
-    return stages
 
 
 def as_loaded_stages(chosen: Sequence[str]) -> list[Stage]:
@@ -91,29 +74,18 @@ def as_loaded_stages(chosen: Sequence[str]) -> list[Stage]:
 
 
 def _library(engine: EngineEntry) -> str | None:
-    """What can be loaded once for all stages of an engine; none that may be missing."""
-    return None if engine.prints_when_loaded or engine.extra else engine.module
-
-
-def agreement_stage() -> Stage:
-    """Compares what the engines left; it comes after all of them, whether they ended well or not."""
-    checks = tuple(key for key in keys(checks_of("KV6")) if key[1] is None)
-    imports = ("kinematify.validation.engine_results",)
-    return Stage(name="agreement", run=engine_agreement.run, checks=checks, imports=imports)
+    """Return what can be loaded once for all stages of an engine; none that may be missing."""
+    return None if engine.prints_when_loaded else engine.module
 
 
 def task_stage() -> Stage:
     """A robot uses the object; it comes after all others, since it wants to know which joints they doubt."""
-    return Stage(name="task", run=robot_task.run, checks=keys(checks_of("KV7")))
+    return Stage(name="task", run=task_run.run, checks=keys(checks_of("KV7")))
 
 
 def needed(stages: Sequence[Stage], selected: Collection[str]) -> list[Stage]:
-    """Return the stages that tell a selected check, with those that they come after; the agreement needs all."""
-    if any(check.id in selected for check in checks_of("KV6")):
-        return list(stages)
-    wanted = [stage for stage in stages if any(check in selected for check, _ in stage.checks)]
-    names = {stage.name for stage in wanted} | {name for stage in wanted for name in stage.after}
-    return [stage for stage in stages if stage.name in names]
+    """Return the stages that tell a selected check."""
+    return [stage for stage in stages if any(check in selected for check, _ in stage.checks)]
 
 
 def keys(checks: Iterable[Check]) -> tuple[CheckKey, ...]:

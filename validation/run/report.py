@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
     from kinematify.validation.finding import CheckResult, Finding
     from kinematify.validation.run.causes import FindingGroup
-    from kinematify.validation.summary import JointCurve, JointSummary, PairTable
+    from kinematify.validation.summary import JointSummary, PairTable
 
-SCHEMA = 1
+SCHEMA = 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,8 +30,6 @@ class ValidationReport:
     """Path as it was given."""
     checks: tuple[CheckResult, ...]
     joints: tuple[JointSummary, ...] = ()
-    curves: tuple[JointCurve, ...] = ()
-    """As the engines drove the joints, those that ran."""
     pairs: PairTable | None = None
     """None if the exact geometry was not looked at."""
     environment: Mapping[str, Any] = field(default_factory=dict)
@@ -69,18 +67,23 @@ class ValidationReport:
 
     @property
     def as_loaded(self) -> str:
-        """How many joints move in the untouched file, by engine; empty if no engine loaded it."""
+        """Return how many joints move in the untouched file, by engine; empty if no engine loaded it."""
         return as_loaded_words(self.checks)
 
     @property
     def exit_status(self) -> int:
         """1 with an error, else 3 if a check was not finished, else 0."""
-        if self.verdict == "fail":
+        return self.status_at(Severity.ERROR)
+
+    def status_at(self, least: Severity) -> int:
+        """1 with a finding of at least a severity, else 3 if a check was not finished, else 0."""
+        order = list(Severity)
+        if any(order.index(finding.severity) <= order.index(least) for finding in self.counted):
             return ExitStatus.FAILURES
         return ExitStatus.FAULT if self.unfinished else ExitStatus.FINE
 
     def as_json(self) -> dict[str, Any]:
-        """The report as JSON values (design 2.3, schema 1); absent values and non-finite numbers are null."""
+        """The report as JSON values (schema 2); absent values and non-finite numbers are null."""
         return {
             "schema": SCHEMA,
             "model": self.model,
@@ -95,7 +98,8 @@ class ValidationReport:
     def _findings_json(self) -> list[dict[str, Any]]:
         place = {id(finding): number for number, finding in enumerate(self.findings)}
         return [
-            _finding_json(finding) | {"follows_from": None if finding.cause is None else place[id(finding.cause)]}
+            _finding_json(finding)
+            | {"follows_from": None if finding.follows_from is None else place[id(finding.follows_from)]}
             for finding in self.findings
         ]
 
@@ -116,7 +120,7 @@ def _finding_json(finding: Finding) -> dict[str, Any]:
     return {
         "check": finding.check,
         "severity": finding.severity.value,
-        "blame": finding.blame.value,
+        "cause": finding.cause.value,
         "joint": finding.joint,
         "link": finding.link,
         "pair": None if finding.pair is None else list(finding.pair),

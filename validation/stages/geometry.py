@@ -23,11 +23,7 @@ AT_REST, IN_MOTION, TOGETHER = checks_of("KV30"), checks_of("KV31", "KV32"), che
 
 def run(request: StageRequest, recorder: Recorder) -> None:
     """Look at the model at rest and in motion; see `kinematify.validation.stage`."""
-    from kinematify.geometry.overlap import OverlapQueries
     from kinematify.geometry.scene import colliding_shapes, read_scene
-    from kinematify.simulation.configurations import write_poses
-    from kinematify.validation.engine_results import EXACT
-    from kinematify.validation.geometry.exact_contacts import exact_contacts
     from kinematify.validation.geometry.look import GeometryContext
     from kinematify.validation.left_model import model_of
 
@@ -52,11 +48,6 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     recorder.summarise(look.pair_table())
     for entry in TOGETHER:
         recorder.run(entry, look)
-    if recorder.wants("KV604") and look.in_time():
-        # The engines are given copies in which links without collision geometry collide by their visual one.
-        as_prepared = read_scene(model, request.settings.geometry, solids=scene.solids) if scene.stand_ins else scene
-        overlap = OverlapQueries(as_prepared) if scene.stand_ins else look.overlap
-        write_poses(request.work, EXACT, exact_contacts(as_prepared, overlap, request.settings))
 
 
 def _tell_motion(entry: Check, look: GeometryContext, recorder: Recorder) -> None:

@@ -47,14 +47,14 @@ class PourTask:
 
     @cached_property
     def planned(self) -> PourPlan:
-        """What became of the plan."""
+        """Return what became of the plan."""
         assert self._vessels is not None
         settings = self.request.settings
         return plan_pour(self.arm, *self._vessels, self.request.work, settings, seed=settings.seed)
 
     @cached_property
     def world(self) -> Loaded | None:
-        """What the engines load; None where there is no plan that could be executed."""
+        """Return what the engines load; None where there is no plan that could be executed."""
         motion = self.planned.motion
         return None if motion is None else load(motion, self.request.work, self.request.settings.prepare)
 

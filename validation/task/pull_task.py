@@ -26,7 +26,7 @@ from kinematify.manipulation.robot_place import object_box, standing_at
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.check import REGISTRY
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -93,7 +93,7 @@ class PullTask:
 
     @cached_property
     def plans(self) -> list[PullPlan]:
-        """What came of each joint, as long as there was time."""
+        """Return what came of each joint, as long as there was time."""
         found = []
         for joint in self.joints:
             if self.remaining <= 0.0:
@@ -109,7 +109,7 @@ class PullTask:
 
     @cached_property
     def worlds(self) -> list[Loaded]:
-        """What the engines load, for each plan that leads anywhere."""
+        """Return what the engines load, for each plan that leads anywhere."""
         model = self.request.work / OBJECT_FILE
         found = [motion_of(plan, self.arm.robot, model) for plan in self.plans]
         motions = [motion for motion in found if motion is not None]
@@ -205,7 +205,7 @@ class PullTask:
         _ = self.plans
 
     def tell_failures(self, result: OpenCheck, *failures: Failure) -> None:
-        """Add what failed at these steps, and blame the joint where the geometry doubts it."""
+        """Add what failed at these steps, and cause the joint where the geometry doubts it."""
         for plan in self.plans:
             if plan.failure in failures:
                 self._tell_failure(result, plan)
@@ -225,18 +225,18 @@ class PullTask:
             Failure.JAMS: f"{plan.joint} jams at {plan.free:.0%} of its range, whoever pulls: {plan.words}.",
         }
         assert plan.failure is not None
-        message, blame, severity, remedy = messages[plan.failure], None, None, REGISTRY[result.id].remedy
+        message, cause, severity, remedy = messages[plan.failure], None, None, REGISTRY[result.id].remedy
         if plan.failure is Failure.NO_WAY:
             severity = Severity.NOTE
         elif suspect is not None:
             message += f" The joint itself is doubtful, {suspect.check}: {suspect.message}"
-            blame, remedy = Blame.KINEMATICS, f"Correct the joint as {suspect.check} says, and plan again."
+            cause, remedy = Cause.KINEMATICS, f"Correct the joint as {suspect.check} says, and plan again."
         elif plan.failure is Failure.COVERED:
             severity = Severity.WARNING
             remedy = "Open what is in the way first."
         stop = plan.stop
         result.find(
-            message, remedy, severity=severity, blame=blame, joint=plan.joint, value=plan.fraction, limit=limit,
+            message, remedy, severity=severity, cause=cause, joint=plan.joint, value=plan.fraction, limit=limit,
             pair=stop.pair if stop is not None else None,
         )  # fmt: skip
 

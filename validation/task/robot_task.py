@@ -1,4 +1,4 @@
-"""What the checks of KV7xx ask of a task, whatever it is."""
+"""Interface of every task of KV7xx."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What has changed since another night, in classes: quality can fail a night, timing is only reported."""
+"""Differences from another night, in classes: quality can fail a night, timing is only reported."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Class(StrEnum):
-    """Of a change."""
+    """Class of a change."""
 
     NEW = "new"
     """A problem that was not there."""
@@ -100,7 +100,7 @@ def compare(
 
 
 def counts(changes: Iterable[Change]) -> dict[str, int]:
-    """How many changes there are of each class, classes without any included."""
+    """Return how many changes there are of each class, classes without any included."""
     found = Counter(change.kind for change in changes)
     return {kind.value: found.get(kind, 0) for kind in Class}
 

@@ -221,7 +221,7 @@ def _linked(run: Run) -> str:
 
 
 def _has_problems(run: Run) -> bool:
-    """Whether a run has a section."""
+    """True if a run has a section."""
     return bool(run.problems) or not run.answered
 
 

@@ -69,7 +69,7 @@ _ACCURACY, _VALIDATION = 0.45, 0.97  # shares of the time at which these are don
 
 @dataclass(frozen=True, kw_only=True)
 class NightRequest:
-    """What to run."""
+    """Request of a night."""
 
     settings: NightlySettings
     out: Path
@@ -89,7 +89,7 @@ class NightRequest:
 
 @dataclass(frozen=True, kw_only=True)
 class NightResult:
-    """What came of it."""
+    """Result of a night."""
 
     night: Night
     place: Path

@@ -51,7 +51,7 @@ class Problem:
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """What came of one run."""
+    """Result of one run."""
 
     scenario: str
     """Hash of all that makes two runs comparable: input, pose, thresholds, but not the code under test."""
@@ -77,7 +77,7 @@ class Run:
 
     @property
     def place(self) -> RunKey:
-        """What it is a run of."""
+        """Return the key of the run."""
         return self.object, self.what, self.case
 
     @property

@@ -41,7 +41,7 @@ _STATES = ("fail", "warn", "blocked", "pass", "skipped")
 
 @dataclass(frozen=True, kw_only=True)
 class NightValidation:
-    """What to validate."""
+    """Models to validate in a night."""
 
     item: BenchObject
     scenario: str

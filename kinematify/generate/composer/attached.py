@@ -150,7 +150,7 @@ def _on_part(blueprint: Blueprint, carrier: Part, wanted: MechanismSpec, clearan
 
 
 def _pad(carrier: Part, place: FloatArray, size: FloatArray, deep: float) -> Manifold | None:
-    """What is between the back of a plate and an uneven surface, in the plate's frame; None if it meets none of it.
+    """Return the solid between the back of a plate and an uneven surface, in the plate's frame; None if there is none.
 
     Args:
         carrier: Part with the surface.
@@ -166,7 +166,7 @@ def _pad(carrier: Part, place: FloatArray, size: FloatArray, deep: float) -> Man
 
 
 def _stays_clear(made: Blueprint, carrier: str, plate: str) -> bool:
-    """Whether a plate is not in what carries it or in a handle there, and meets nothing while its carrier moves."""
+    """True if a plate is not in what carries it or in a handle there, and meets nothing while its carrier moves."""
     own, joint = carried_by(plate, made.joints), made.joint_above.get(carrier)
     moves = joint is not None and math.isfinite(joint.upper - joint.lower)
     for value in np.linspace(joint.lower, joint.upper, _STEPS) if joint is not None and moves else [0.0]:
@@ -260,14 +260,14 @@ def _swept(blueprint: Blueprint, carrier: Part) -> list[FloatArray]:
 
 
 def _before(bounds: FloatArray, middle: FloatArray, size: FloatArray, deepest: float) -> bool:
-    """Whether a box is before or at a place, within the room that the mechanism takes."""
+    """True if a box is before or at a place, within the room that the mechanism takes."""
     low, high = bounds.min(axis=0), bounds.max(axis=0)
     apart = (np.abs(0.5 * (low + high)[[0, 2]] - middle) > 0.5 * ((high - low)[[0, 2]] + size) + 0.002).any()
     return not apart and float(low[1]) < deepest
 
 
 def _depth(corners: FloatArray, x: float, z: float) -> float:
-    """How far behind a point of a side's plane its surface is; infinite where there is none."""
+    """Return how far behind a point of a side's plane its surface is; infinite where there is none."""
     place = np.array([x, z])
     a, b, c = (corners[:, k][:, [0, 2]] - place for k in range(3))
     areas = np.stack([p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0] for p, q in ((b, c), (c, a), (a, b))], axis=1)

@@ -1,4 +1,4 @@
-"""What a specification asks of the composer: which mechanisms go on a body, where, and how large the body is."""
+"""Request of a specification to the composer: which mechanisms go on a body, where, and how large the body is."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _SHORTEST, _LONGEST = 0.05, 20.0  # [m]
 
 @dataclass(kw_only=True)
 class Asked:
-    """What a specification asks of a body."""
+    """Request of a specification to a body."""
 
     specification: Specification
     body: BodyKind
@@ -119,7 +119,7 @@ class Asked:
         return (), None
 
     def _is_counted(self, part: PartSpecification) -> bool:
-        """Whether a number or `a` counts it, and no `the` takes up what was named before: `the left one`."""
+        """True if a number or `a` counts it, and no `the` takes up what was named before: `the left one`."""
         tokens, first = self.specification.tokens, min(part.claims[0].at)
         if part.is_share:
             return False
@@ -164,7 +164,7 @@ class Asked:
         return side, 0
 
     def granted(self, *, nothing_wanted: bool = False) -> list[MechanismSpec]:
-        """What the body has without being asked for."""
+        """Return what the body has without being asked for."""
         body = self.body
         named = [*self.excluded, *(item.mechanism for item in self.wanted)]
         granted = {**body.always, **({} if self.wanted and not nothing_wanted else body.usual)}
@@ -207,7 +207,7 @@ class Asked:
         return found[0], found[1], found[2]
 
     def scale(self) -> float:
-        """Of lengths that are not asked for: `a small cart`."""
+        """Scale of lengths that are not asked for: `a small cart`."""
         scale = 1.0
         for k in range(min(self.specification.name)):
             if (word := self.specification.tokens[k].given) in SIZE_WORDS:
@@ -327,7 +327,7 @@ def _phrase(count: int, *words: str | None) -> str:
 
 
 def _several(mechanism: MechanismKind) -> int:
-    """How many are meant that are not counted: what stands on wheels has four."""
+    """Return how many are meant that are not counted: what stands on wheels has four."""
     return 4 if mechanism.arranged in ("axles", "corners") else 2
 
 

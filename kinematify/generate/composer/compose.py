@@ -71,7 +71,7 @@ class MechanismSpec:
 
     @property
     def title(self) -> str:
-        """What it is called, singular."""
+        """Return what it is called, singular."""
         return self.said or self.mechanism.words[0]
 
     @property
@@ -103,7 +103,7 @@ class Composition:
 
     @property
     def title(self) -> str:
-        """What the object is called."""
+        """Return what the object is called."""
         return self.said or self.body.words[0]
 
 
@@ -261,7 +261,7 @@ def _on_lid(place: Placement, lid: str) -> Placement:
 
 
 def _by_side(composition: Composition, sides: dict[str, BodySide]) -> dict[str, list[MechanismSpec]]:
-    """What goes on which side; wheels and other pairs are divided between left and right."""
+    """Return what goes on which side; wheels and other pairs are divided between left and right."""
     found: dict[str, list[MechanismSpec]] = {side: [] for side in sides}
     body = composition.title
     for asked in sorted(composition.wanted, key=lambda item: item.mechanism.arranged == "grid"):
@@ -437,7 +437,7 @@ def _axles(side: BodySide, line: Bay, count: int) -> list[Bay]:
 
 
 def _beside_wheels(strip: Bay, wheels: Sequence[Bay]) -> Bay:
-    """What wheels leave free of a strip: the middle between two, what is above them where there are others."""
+    """Return what wheels leave free of a strip: the middle between two, what is above them where there are others."""
     if not wheels or strip.bottom >= wheels[0].top:
         return strip
     if len(wheels) == 2:

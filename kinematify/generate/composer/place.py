@@ -41,12 +41,12 @@ class Placement:
 
     @property
     def middle(self) -> tuple[float, float, float]:
-        """Of the area, on the surface [m]."""
+        """Middle of the area, on the surface [m]."""
         return 0.5 * (self.area.left + self.area.right), 0.0, 0.5 * (self.area.bottom + self.area.top)
 
     @property
     def radius(self) -> float:
-        """Of the largest circle in the area [m]."""
+        """Radius of the largest circle in the area [m]."""
         return 0.5 * min(self.area.width, self.area.height)
 
     @property
@@ -56,7 +56,7 @@ class Placement:
 
     @property
     def named(self) -> dict[str, Any]:
-        """What steps may name: what is said of the place, its middle `x`, `z`, and how `deep` holes may go [m]."""
+        """Names for steps: what is said of the place, its middle `x`, `z`, and how `deep` holes may go [m]."""
         x, _, z = self.middle
         # Behind a side that may be hollow, only its wall is sure to be there.
         deep = min(0.02, self.area.wall) if self.hollow else 0.8 * self.area.depth

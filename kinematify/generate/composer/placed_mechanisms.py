@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @cache
 def _steps() -> Mapping[str, Sequence[Step]]:
-    """How each is built, keyed by name."""
+    """Return how each is built, keyed by name."""
     found: Mapping[str, Sequence[Step]] = read_table(Path(__file__).with_name("mechanism_steps.yaml"))
     return found
 

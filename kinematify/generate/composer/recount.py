@@ -45,7 +45,7 @@ class _Place:
 
     @property
     def is_there(self) -> bool:
-        """Whether it is that part itself."""
+        """True if it is that part itself."""
         return bool(np.allclose(self.transform, np.eye(3, 4), atol=1e-4))
 
 
@@ -190,7 +190,7 @@ def _placed(blueprint: Blueprint, ones: Sequence[str], places: Sequence[_Place],
 
 
 def _carrier_with_room(made: Blueprint, part: Part, added: Sequence[str], gap: float) -> Part | None:
-    """What carries parts, with room for those that are added; None if that is too much, or if they are farther off.
+    """Return the carrier of parts with room for added ones; None if that is too much, or if they are farther off.
 
     Args:
         made: With the parts that are added.
@@ -228,7 +228,7 @@ def _carrier_with_room(made: Blueprint, part: Part, added: Sequence[str], gap: f
 
 
 def _swept(made: Blueprint, name: str, solid: Manifold) -> Manifold:
-    """What a part is in while its joint moves, with some room about it."""
+    """Return what a part is in while its joint moves, with some room about it."""
     joint, box = made.joint_above[name], np.array(solid.bounding_box()).reshape(2, 3)
     factors = (np.ptp(box, axis=0) + 2.0 * _ROOM) / np.ptp(box, axis=0)
     middle = box.mean(axis=0)

@@ -38,7 +38,7 @@ _ASIDE = 0.25  # of its length, from which on a part is beside what carries it
 
 
 def size_of(bounds: FloatArray, size: str) -> float:
-    """How large a box is [m]: along its axis of the world, else its longest side, or its least where it is thick."""
+    """Return the size of a box [m]: along its axis of the world, else its longest side, or its least if thick."""
     extents = np.ptp(bounds, axis=0)
     return float(extents[_axis(extents, size)])
 
@@ -158,7 +158,7 @@ def _longer(closed: Blueprint, part: Part, size: str, metres: float) -> Part:
 
 
 def _meets(made: Blueprint, name: str) -> float:
-    """How deep a part is in others at most while it moves [m]."""
+    """Return how deep a part is in others at most while it moves [m]."""
     joint, own = made.joint_above[name], {name}
     others = [solid_of(part) for part in made.parts if part.name not in own]
     solid = solid_of(next(part for part in made.parts if part.name == name))

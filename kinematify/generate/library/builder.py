@@ -32,7 +32,7 @@ _ROUND = (solids.cylinder, solids.cone, solids.tube, solids.torus, solids.rod, s
 
 @dataclass(frozen=True, kw_only=True)
 class ModelingStyle:
-    """How one person models, whatever the object is."""
+    """Modelling style of one person, whatever the object is."""
 
     gap: float
     """Clearance where parts move past each other [m]; less on small parts."""
@@ -178,18 +178,18 @@ class ObjectBuilder:
         ajar: bool = True,
         rest: float = 0.0,
     ) -> None:
-        """Let a part turn within limits [rad]; `rest` is where it is unless it is drawn `ajar`, which it may be."""
+        """Make a part turn within limits [rad]; `rest` is where it is unless it is drawn `ajar`, which it may be."""
         shown = self._shown(child, lower, upper, rest, ajar=ajar)
         self._hang(JointType.REVOLUTE, child, parent, axis, pivot, shown)
 
     def spin(self, child: str, parent: str, axis: Point, pivot: Point) -> None:
-        """Let a part turn without end."""
+        """Make a part turn without end."""
         self._hang(JointType.CONTINUOUS, child, parent, axis, pivot, (-math.inf, math.inf, 0.0))
 
     def slide(
         self, child: str, parent: str, axis: Point, upper: float, lower: float = 0.0, *, ajar: bool = True
     ) -> None:
-        """Let a part slide within limits [m]."""
+        """Make a part slide within limits [m]."""
         shown = self._shown(child, lower, upper, 0.0, ajar=ajar)
         self._hang(JointType.PRISMATIC, child, parent, axis, (0.0, 0.0, 0.0), shown)
 
@@ -198,13 +198,13 @@ class ObjectBuilder:
         self._hang(JointType.FIXED, child, parent, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
     def follow(self, child: str, leader: str, multiplier: float = 1.0) -> None:
-        """Let the joint of a part follow that of another one."""
+        """Make the joint of a part follow that of another one."""
         place = [joint.child for joint in self.joints].index(child)
         follows = Mimic(joint=leader, multiplier=multiplier, offset=0.0)
         self.joints[place] = replace(self.joints[place], value=0.0, mimic=follows)
 
     def close(self, child: str, parent: str, pivot: Point) -> None:
-        """Let two parts share a pin besides the joints of the tree."""
+        """Close a loop: two parts share a pin besides the joints of the tree."""
         self.loops.append((parent, child, pivot))
 
     def _shown(self, child: str, lower: float, upper: float, rest: float, *, ajar: bool) -> _Motion:
@@ -227,7 +227,7 @@ class ObjectBuilder:
 
     @property
     def looks(self) -> Mapping[str, Look]:
-        """Of all parts."""
+        """Looks of all parts."""
         return {name: part.look for name, part in self._parts.items()}
 
     def solids(self) -> Mapping[str, Manifold]:
@@ -244,7 +244,7 @@ class ObjectBuilder:
 
 @contextmanager
 def drawn_on(workshop: Workshop, clearance: float, rest: float = 0.0) -> Iterator[ObjectBuilder]:
-    """Let a careful hand add parts to an object that is there, and change its parts.
+    """Return a builder that lets a careful hand add parts to an object that is there, and change its parts.
 
     Args:
         workshop: With the object; parts are drawn in its frame.

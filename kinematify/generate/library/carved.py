@@ -85,7 +85,7 @@ def add_door(
 
 
 def _mimic(leader: str, multiplier: float = 1.0) -> Mimic:
-    """What a joint follows: the leader's child part, and how many times as far it goes."""
+    """Return what a joint follows: the leader's child part, and how many times as far it goes."""
     return Mimic(joint=leader, multiplier=multiplier, offset=0.0)
 
 
@@ -109,7 +109,7 @@ _NAMES: Mapping[str, Any] = {
 
 @cache
 def _pieces() -> Sequence[Step]:
-    """What steps that carve may call besides functions."""
+    """Return what steps that carve may call besides functions."""
     found: Sequence[Step] = read_table(Path(__file__).with_name("pieces.yaml"))
     return found
 

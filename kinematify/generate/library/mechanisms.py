@@ -1,4 +1,4 @@
-"""What moves on an object, as the hand at work draws it: wheels, knobs, levers, rods; leaves and drawers are panels.
+"""Moving parts of an object, as the hand at work draws it: wheels, knobs, levers, rods; leaves and drawers are panels.
 
 `out` is the direction in which a surface looks, a unit vector along an axis of the world.
 """
@@ -161,7 +161,7 @@ def knob(
 def _shaft(
     d: ObjectBuilder, name: str, parent: str, at: FloatArray, radius: float, out: FloatArray, deep: float, gap: float
 ) -> None:
-    """Let a part that stands `gap` before its parent turn in a hole of it, where this hand makes holes."""
+    """Make a part that stands `gap` before its parent turn in a hole of it, where this hand makes holes."""
     if d.style.has_bore:
         d.cut(parent, d.cylinder(radius + 1.5 * d.gap(radius), at - deep * out, at + radius * out))
         d.part(name, d.cylinder(radius, at - (deep - max(gap, 1e-3 * deep)) * out, at + (gap + 0.2 * radius) * out))

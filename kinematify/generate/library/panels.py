@@ -31,7 +31,7 @@ def seam(d: ObjectBuilder, size: float, thick: float) -> float:
 
 
 def surround(d: ObjectBuilder, name: str, wide: float, low: float, high: float, front: float, *, sill: bool) -> None:
-    """What a leaf closes: a frame, a wall with an opening, or two posts, from `front` backward."""
+    """Return what a leaf closes: a frame, a wall with an opening, or two posts, from `front` backward."""
     kind = d.pick("frame", "frame", "wall", "posts")
     side = d.draw(0.3, 1.0) if kind == "wall" else d.draw(0.03, 0.12)
     back = front + d.draw(0.05, 0.2)

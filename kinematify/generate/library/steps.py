@@ -161,7 +161,7 @@ class StepRunner:
             self.run(step["do"], names)
 
     def _followed(self, step: Step) -> Callable[[dict[str, Any]], Any]:
-        """What `define` does: names that its steps give stay inside."""
+        """Return what `define` does: names that its steps give stay inside."""
 
         def followed(inner: dict[str, Any]) -> Any:
             self.run(step["do"], inner)

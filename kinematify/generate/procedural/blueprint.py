@@ -96,7 +96,7 @@ class Blueprint:
 
     @cached_property
     def assembly(self) -> Assembly:
-        """What an inference is given: the parts alone."""
+        """Return what an inference is given: the parts alone."""
         return Assembly(parts=self.parts, source=self.name)
 
     def moved(self, values: Mapping[str, float]) -> Blueprint:

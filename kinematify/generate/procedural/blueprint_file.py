@@ -104,7 +104,7 @@ class Repetition(_Described):
 
 
 class _Placed(_Described):
-    """What every primitive has; it is made about the origin, turned, moved, then repeated, then mirrored."""
+    """Fields of every primitive; it is made about the origin, turned, moved, then repeated, then mirrored."""
 
     xyz: Vector = (0.0, 0.0, 0.0)
     """Of its middle [m]."""
@@ -286,7 +286,7 @@ class PrismShape(_Round):
 
 
 class LatheShape(_Round):
-    """What a polygon sweeps that is turned about the axis."""
+    """Shape swept by a polygon that is turned about the axis."""
 
     kind: Literal["lathe"]
     outline: Outline
@@ -368,7 +368,7 @@ class PartDescription(_Described):
         return color
 
     def solid(self, counts: Mapping[str, int]) -> Manifold:
-        """What is left of its shapes; `counts` as for a primitive."""
+        """Return what is left of its shapes; `counts` as for a primitive."""
         solid = union(*(shape.solid(counts) for shape in self.shapes))
         return solid - union(*(shape.solid(counts) for shape in self.subtract)) if self.subtract else solid
 
@@ -382,7 +382,7 @@ class MimicDescription(_Described):
 
 
 class JointDescription(_Described):
-    """How one part moves on another one."""
+    """Joint of one part on another one."""
 
     type: Literal["revolute", "continuous", "prismatic", "fixed"]
     parent: Name

@@ -29,7 +29,7 @@ def solid_of(part: Part) -> Manifold:
 
 
 def depth_of(one: Manifold, other: Manifold) -> float:
-    """How deep two solids are in each other: the least extent of what they share [m]."""
+    """Return how deep two solids are in each other: the least extent of what they share [m]."""
     shared = one ^ other
     if shared.is_empty():
         return 0.0
@@ -58,7 +58,7 @@ def moving_with(name: str, joints: Sequence[BlueprintJoint]) -> set[str]:
 
 
 def may_go(blueprint: Blueprint, name: str, lower: float, upper: float) -> bool:
-    """Whether a joint with limits may have wider ones: nothing comes in the way, and a slide stays in its guide.
+    """True if a joint with limits may have wider ones: nothing comes in the way, and a slide stays in its guide.
 
     Parts may be as deep in each other as they are within the present range, or by 2 mm. A slide stays guided if it is
     no farther from what does not move, even 15 % beyond the new end. A joint of a closed chain may not: the chain

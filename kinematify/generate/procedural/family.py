@@ -75,7 +75,7 @@ class Values:
         return float(self._values[name])
 
     def count(self, name: str) -> int:
-        """How many."""
+        """Return how many."""
         return int(self._values[name])
 
     def choice(self, name: str) -> str:

@@ -1,4 +1,4 @@
-"""How the front of a piece of furniture is divided: rows and columns of doors, drawers and shelves.
+"""Layout of the front of a piece of furniture: rows and columns of doors, drawers and shelves.
 
 Written ``2*door / 3*drawer``: a slash stacks, a bar sets side by side, brackets group, and a count repeats (doors
 side by side, all else stacked). Rows count from the top, columns from the left, as one reads.

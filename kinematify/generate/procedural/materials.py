@@ -1,4 +1,4 @@
-"""What bodies are made of: a density for the mass, a colour and a surface for the eye."""
+"""Materials of bodies: a density for the mass, a colour and a surface for the eye."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What may be asked of a family: lengths, angles, shares, counts and choices; and tables in YAML that say it."""
+"""Parameters of a family: lengths, angles, shares, counts and choices; and tables in YAML that say it."""
 
 from __future__ import annotations
 

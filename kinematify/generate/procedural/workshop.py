@@ -159,13 +159,13 @@ class Workshop:
         return name
 
     def painted(self, *solids: Manifold, material: str, color: str | RGB | None = None) -> Sequence[Manifold]:
-        """Let solids look other than the body that they become part of; returns them."""
+        """Make solids look other than the body that they become part of; returns them."""
         for solid in solids:
             self._painted.update(dict.fromkeys(solid.to_mesh64().run_original_id, (material, color)))
         return solids
 
     def as_handle(self, *solids: Manifold) -> Sequence[Manifold]:
-        """Let solids look like the handles of this object; returns them."""
+        """Make solids look like the handles of this object; returns them."""
         return self.painted(*solids, material=self._handles[0], color=self._handles[1])
 
     @property
@@ -258,7 +258,7 @@ class Workshop:
             self._rest[joint.child] = opened or joint.value
 
     def open_by(self, far: Mapping[JointType, float], *, title: str) -> None:
-        """Let what stands open stand open by an angle or a distance, and all else closed; a door's handle rests.
+        """Make what stands open stand open by an angle or a distance, and all else closed; a door's handle rests.
 
         Args:
             far: Kind of joint -> how far [rad or m]; joints that go less far go to their end.

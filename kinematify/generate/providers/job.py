@@ -34,11 +34,11 @@ class PaidJob:
     steps: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def state(self, step: str) -> str | None:
-        """How far a step has come; None if it was not begun."""
+        """Return how far a step has come; None if it was not begun."""
         return self.steps.get(step, {}).get("state")
 
     def facts(self, step: str) -> dict[str, Any]:
-        """What the provider reported about a step."""
+        """Return what the provider reported about a step."""
         return dict(self.steps.get(step, {}))
 
     def begin(self, step: str) -> None:

@@ -27,7 +27,7 @@ _MOST = 10  # findings at once
 
 
 def drawn_findings(blueprint: Blueprint) -> list[str]:
-    """What is wrong with a blueprint as it is drawn, before its collision shapes are made; one line for each cause.
+    """Return the faults of a blueprint as drawn, before its collision shapes are made; one line for each cause.
 
     Parts that overlap by more than 2 mm at zero or along the motion of one joint, fixed parts that touch nothing,
     loops that come apart.

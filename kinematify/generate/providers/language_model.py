@@ -74,7 +74,7 @@ does not say. What the user describes is an object, whatever else it says.
 
 @dataclass(frozen=True, kw_only=True)
 class Written:
-    """What the model wrote."""
+    """Answer of the model."""
 
     path: Path
     """The best blueprint, ``blueprint.json`` in the folder of the job."""
@@ -114,11 +114,11 @@ class LanguageModel:
     """Where exchanges are taken from; nothing is sent then."""
 
     def options(self) -> dict[str, object]:
-        """What besides the prompt decides the result."""
+        """Return what besides the prompt decides the result."""
         return {"model": self.model}
 
     def translate(self, prompt: Prompt, job: PaidJob, known: Sequence[str], progress: Progress) -> Translation:
-        """Let the model say a request in words of the library; an answer that is none counts as no translation.
+        """Make the model say a request in words of the library; an answer that is none counts as no translation.
 
         Args:
             prompt: What to build.
@@ -161,7 +161,7 @@ class LanguageModel:
         examples: Sequence[Mapping[str, Any]] = (),
         spent: int = 0,
     ) -> Written:
-        """Let the model write a blueprint, and correct it.
+        """Make the model write a blueprint, and correct it.
 
         Args:
             prompt: What to build.
@@ -310,7 +310,7 @@ def _bare(schema: Any) -> Any:
 
 
 def _nouns(requirements: Any) -> dict[str, tuple[str, ...]]:
-    """What the model says that its parts are: the nouns of its phrases, singular -> names of parts."""
+    """Return what the model says that its parts are: the nouns of its phrases, singular -> names of parts."""
     found: dict[str, tuple[str, ...]] = {}
     for item in requirements if isinstance(requirements, list) else ():
         if isinstance(item, dict) and isinstance(item.get("phrase"), str) and isinstance(item.get("parts"), list):

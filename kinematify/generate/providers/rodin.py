@@ -43,7 +43,7 @@ class RodinSource:
     name: str = "rodin"
 
     def options(self) -> dict[str, object]:
-        """What the service is sent besides the prompt."""
+        """Return what the service is sent besides the prompt."""
         chosen = self.settings
         return {
             "tier": chosen.tier,
@@ -53,7 +53,7 @@ class RodinSource:
         }
 
     def generate(self, prompt: Prompt, job: PaidJob, progress: Progress) -> Generated:
-        """See `PartSource`."""
+        """Implement `PartSource`."""
         out = job.folder / OUTPUT_FOLDER
         if job.state(_FILES) != DONE:
             self._check_budget(job)

@@ -232,7 +232,7 @@ def _words(error: Exception | None) -> str:
 
 
 def _incomplete(path: Path, size: int) -> str | None:
-    """What is missing of a file; a GLB says how long it is."""
+    """Return what is missing of a file; a GLB says how long it is."""
     if not size:
         return "it is empty"
     with path.open("rb") as file:

@@ -129,7 +129,7 @@ class Provenance:
 
 @dataclass(frozen=True, kw_only=True)
 class Generated:
-    """What a generator made."""
+    """Result of a generator."""
 
     path: Path
     """File or folder that `kinematify.load_assembly` reads."""
@@ -143,11 +143,11 @@ class PartSource(Protocol):
 
     @property
     def name(self) -> str:
-        """What jobs of it are called."""
+        """Return what jobs of it are called."""
         ...
 
     def options(self) -> dict[str, object]:
-        """What besides the prompt decides the result: part of the identity of a job."""
+        """Return what besides the prompt decides the result: part of the identity of a job."""
         ...
 
     def generate(self, prompt: Prompt, job: PaidJob, progress: Progress) -> Generated:
@@ -221,7 +221,7 @@ class RecordingSource(_Taped):
     """Asks the source, and keeps what it made."""
 
     def generate(self, prompt: Prompt, job: PaidJob, progress: Progress) -> Generated:
-        """See `PartSource`."""
+        """Implement `PartSource`."""
         made = self.source.generate(prompt, job, progress)
         place = self.folder / job.digest[:_NAMED]
         try:
@@ -242,7 +242,7 @@ class ReplayedSource(_Taped):
     """Gives what was recorded for the same request, and nothing else."""
 
     def generate(self, prompt: Prompt, job: PaidJob, progress: Progress) -> Generated:
-        """See `PartSource`.
+        """Implement `PartSource`.
 
         Raises:
             InputError: Nothing was recorded for this request.

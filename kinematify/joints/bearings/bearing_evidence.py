@@ -1,4 +1,4 @@
-"""What either part of a contact shows near the other one: surface samples, feature edges and circles, with weights.
+"""Evidence of either part of a contact near the other one: surface samples, feature edges and circles, with weights.
 
 Bearings and rails (`scores.py`) are fitted to the same evidence.
 """
@@ -107,7 +107,7 @@ def contact_centroid(sides: Sides) -> FloatArray:
 
 @dataclass(frozen=True, kw_only=True)
 class _Fade:
-    """How evidence loses weight with its distance beyond the gap."""
+    """Weight of evidence by its distance beyond the gap."""
 
     gap: float
     scale: float

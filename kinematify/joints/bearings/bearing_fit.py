@@ -128,7 +128,7 @@ def _fitted(
 
 
 def _is_larger(one: Part, other: Part) -> bool:
-    """Whether a part has more surface than another one, or where they are alike lies higher."""
+    """True if a part has more surface than another one, or where they are alike lies higher."""
     alike = abs(one.area - other.area) <= _ALIKE * other.area
     return bool(one.centroid[2] > other.centroid[2]) if alike else one.area > other.area
 
@@ -357,7 +357,7 @@ def _circle_lines(side: BearingSide, count: int, rng: np.random.Generator) -> Li
 
 
 def _circle_votes(lines: Lines, n_first: int, *, diagonal: float, config: BearingConfig) -> FloatArray:
-    """How many circles of either side share each circle's line (geometric mean), shape (C,).
+    """Return how many circles of either side share each circle's line (geometric mean), shape (C,).
 
     Args:
         lines: Axes of all circles; the first `n_first` belong to the first side.

@@ -108,7 +108,7 @@ def _to_learn(
 
 
 def _roughness(surfaces: Sequence[PartSurface], pair: Pair) -> float:
-    """Of the rougher part of a contact [deg]."""
+    """Roughness of the rougher part of a contact [deg]."""
     return max(surfaces[part].roughness for part in pair)
 
 
@@ -137,7 +137,7 @@ class _Shapes:
         return self._clouds[part]
 
     def alike(self, first: int, second: int) -> bool:
-        """Whether two parts have about the same outer size and shape, however they are turned."""
+        """True if two parts have about the same outer size and shape, however they are turned."""
         if not all(len(self.cloud(part)) for part in (first, second)):
             return False
         one, other = (_spreads(self.cloud(part)) for part in (first, second))
@@ -229,7 +229,7 @@ class _Voter:
         self._config = config
 
     def opinion(self, line: Line) -> BearingLine:
-        """What is known of a line, or of one next to it: motions are less exact than bearings."""
+        """Return what is known of a line, or of one next to it: motions are less exact than bearings."""
         for own in self.bearing.lines:
             if self._near(own.line, line, 1.0):
                 return own
@@ -286,7 +286,7 @@ def _mean(mine: BearingLine, others: Sequence[BearingLine]) -> BearingLine:
 
 
 def same_line(one: BearingLine, other: BearingLine, diagonal: float, config: BearingConfig) -> bool:
-    """Whether two lines of one contact are one, within the tolerance at which they are kept apart."""
+    """True if two lines of one contact are one, within the tolerance at which they are kept apart."""
     cosine = np.cos(np.radians(config.apart_angle))
     close = float(np.linalg.norm(one.pivot - other.pivot)) < config.apart * diagonal
     return bool(abs(float(one.axis @ other.axis)) > cosine and close)

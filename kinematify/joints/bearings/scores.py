@@ -1,4 +1,4 @@
-"""How much of the evidence near a contact turns into itself about a line, or slides along itself in a direction."""
+"""Scores of the evidence near a contact: the share that turns or slides into itself about a line or direction."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ class TwinJoints:
         return finer if apart < self._config.tolerance * self._diagonal(second) else motion
 
     def _contact_misses(self, model: Edge, twin: Edge, motion: RigidMotion) -> float:
-        """How far the contact of one edge lies from that of the other one after a motion [m]; 0 without contacts."""
+        """Measure how far the contact of one edge is from that of the other after a motion [m]; 0 without contacts."""
         here, there = self._contact(model), self._contact(twin)
         if here is None or there is None:
             return 0.0

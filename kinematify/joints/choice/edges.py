@@ -1,4 +1,4 @@
-"""How good a contact edge is for the tree: what is measured of it, weighed by fitted weights.
+"""Quality of a contact edge for the tree: what is measured of it, weighed by fitted weights.
 
 A spanning tree T has the probability exp(sum of s_e over its edges) / Z, where s_e = w . x_e is linear in the
 measurements x_e and Z sums over all spanning trees of the contact graph (matrix-tree theorem, Kirchhoff 1847). The fit
@@ -108,7 +108,7 @@ def edge_probabilities(pairs: Sequence[Pair], scores: FloatArray, n: int) -> tup
 def edge_measurements(
     graph: ContactGraph, stats: Sequence[PartStats], bearings: Mapping[Pair, EdgeBearing], pins: EdgePins
 ) -> FloatArray:
-    """What is measured of every contact edge, in the order of the graph, shape (m, len(MEASUREMENTS)).
+    """Return what is measured of every contact edge, in the order of the graph, shape (m, len(MEASUREMENTS)).
 
     Args:
         graph: Contacts with their samples, bridges, and clusters of congruent parts.

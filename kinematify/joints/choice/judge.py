@@ -82,7 +82,7 @@ class Posterior:
 
     @cached_property
     def _worth(self) -> FloatArray:
-        """How right each hypothesis would be where another one is the true joint (`rightness`), shape (h, h).
+        """Return how right each hypothesis would be where another one is the true joint (`rightness`), shape (h, h).
 
         So lines that lie side by side share what is likely of a hinge there, and none loses to a slide alone.
         """
@@ -116,7 +116,7 @@ class Posterior:
 
     @property
     def confidence(self) -> float:
-        """How likely type and direction are right: of all hypotheses that agree with the best one in both."""
+        """Return how likely type and direction are right: of all hypotheses that agree with the best one in both."""
         return float(min(self.believed[self._agree[self.best]].sum(), 1.0))
 
     @property
@@ -147,7 +147,7 @@ class Posterior:
 
 
 def rightness(degrees: FloatArray, apart: FloatArray) -> FloatArray:
-    """How right a joint of the right type is, in [0, 1]: what the fit aims at, and what the choice expects.
+    """Return how right a joint of the right type is, in [0, 1]: what the fit aims at, and what the choice expects.
 
     Args:
         degrees: Angle between its direction and the true one [deg].
@@ -217,7 +217,7 @@ def kind_said(name: str) -> int | None:
 
 
 def _said_of(word: str, *, otherwise: int | None) -> int | None:
-    """Of a word, its singular, or what it ends with ("hingedoor")."""
+    """Return the number that is said of a word, its singular, or what it ends with ("hingedoor")."""
     for form in (word, word.removesuffix("s")):
         if form in _KIND_OF:
             return _KIND_OF[form]

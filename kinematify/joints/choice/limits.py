@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class End(NamedTuple):
-    """How far a joint goes one way."""
+    """Distance that a joint goes one way."""
 
     motion: float
     """From the given pose, not negative [rad or m]."""
@@ -43,7 +43,7 @@ Ways = tuple[End, End]
 def free_ways(
     scene: JointScene, sweep: Callable[[Sequence[int]], Sweep], obstacles: Sequence[int], share: float
 ) -> Ways:
-    """How far one joint goes both ways until more than a share of the part has met others, and which it meets.
+    """Return how far one joint goes both ways until more than a share of the part has met others, and which it meets.
 
     Args:
         scene: The pair.
@@ -244,7 +244,7 @@ def closing_turns(
 
 
 def _can_turn(ratio: float, turn: float, free: FloatArray, config: JointsConfig) -> bool:
-    """Whether a panel gets as far as to come nearer by a ratio.
+    """True if a panel gets as far as to come nearer by a ratio.
 
     Where it then lies on its body all over, that it met something on the way is an overlap of the meshes at its hinge.
     """
@@ -358,7 +358,7 @@ def _is_runner(scene: JointScene, axis: FloatArray, free: FloatArray, length: fl
 
 
 def _standing_out(scene: JointScene, direction: FloatArray) -> float:
-    """How far the front of a drawer stands before the body, without its own handle [m]; 0 if it does not.
+    """Return how far the front of a drawer stands before the body, without its own handle [m]; 0 if it does not.
 
     What leaves upwards is a lid: it lies where it is put, and would fall in if it could go lower.
     """
@@ -405,7 +405,7 @@ def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray, config: J
 
 
 def _is_sheath(scene: JointScene, axis: FloatArray) -> bool:
-    """Whether the child goes round what it slides on, as caps and sleeves do: such a part is drawn off.
+    """True if the child goes round what it slides on, as caps and sleeves do: such a part is drawn off.
 
     Buttons and stoppers sit in what they slide in.
     """
@@ -434,7 +434,7 @@ def _outwards(scene: JointScene, axis: FloatArray) -> float:
 
 
 def guided_travel(scene: JointScene, direction: FloatArray, config: JointsConfig) -> float | None:
-    """How far the child slides along `direction` before its guide lets it go [m]; None where no guide is seen.
+    """Return how far the child slides along `direction` before its guide lets it go [m]; None where no guide is seen.
 
     The guide is the surface of the contact that runs along the way. A carriage keeps all of its own surface on a long
     rail, a rod fills a short collar all the time, and both may go until that ends; of a telescope each half leaves the

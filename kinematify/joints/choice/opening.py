@@ -89,7 +89,7 @@ def _directions(m: MeasuredHypotheses, point: FloatArray) -> FloatArray:
 
 
 def customary_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> float:
-    """Of links in series and of what nothing stops: the freer way opens, else the one that rises.
+    """Return the sign of links in series and of free parts: the freer way opens, else the one that rises.
 
     Args:
         scene: The pair.
@@ -193,7 +193,7 @@ def opening_odds(scorer: Scorer, sides: Mapping[str, FloatArray]) -> float:
 
 
 def side_columns(sides: Mapping[str, FloatArray], names: Sequence[str]) -> NDArray[Any]:
-    """What the trees read of either side: by how much it is ahead of the other one, and the mean, shape (2, 2 n)."""
+    """Return the columns of either side: by how much it is ahead of the other, and the mean, shape (2, 2 n)."""
     values = columns_of(sides, names, 2)
     ahead = np.round(values - values[::-1], 6)  # rounding is no lead
     mean = np.broadcast_to(values.mean(axis=0), values.shape)
@@ -205,7 +205,7 @@ _STOPPED = 1.0  # the same of what meets something on its way, as a tyre its mud
 
 
 def is_continuous(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> bool:
-    """Whether a turn has no end: wheels, knobs and propellers, but not links in series, of which each has its stops.
+    """True if a turn has no end: wheels, knobs and propellers, but not links in series, of which each has its stops.
 
     Args:
         scene: The pair.
@@ -223,7 +223,7 @@ def is_continuous(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: 
 
 
 def turning_columns(measured: Mapping[str, FloatArray], row: int, names: Sequence[str]) -> NDArray[Any]:
-    """What the trees read of one hypothesis, shape (n,)."""
+    """Return what the trees read of one hypothesis, shape (n,)."""
     known = {name: measured[name][row : row + 1] for name in names if name in measured}
     return np.asarray(columns_of(known, names, 1)[0])
 
@@ -241,7 +241,7 @@ def rigid_odds(kinds: IntArray, measured: Mapping[str, FloatArray]) -> float:
 
 
 def rigid_columns(kinds: IntArray, measured: Mapping[str, FloatArray], names: Sequence[str]) -> NDArray[Any]:
-    """What the trees read of one edge: of a turn, of a slide, and the number of hypotheses, shape (2 n + 1,)."""
+    """Return what the trees read of one edge: of a turn, of a slide, and the number of hypotheses, shape (2 n + 1,)."""
     support = np.nan_to_num(measured["rules_score"], nan=-np.inf)
     values = columns_of(measured, names, len(kinds))
     found: list[NDArray[Any]] = []

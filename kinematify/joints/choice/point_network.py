@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scale:
-    """What the network reads of the columns: each spread evenly over [-1, 1], and which are missing."""
+    """Scale of the columns as the network reads them: each spread evenly over [-1, 1], and which are missing."""
 
     knots: NDArray[Any]
     """Quantiles of each column, ascending and each once, then the last one repeated, shape (f, k)."""
@@ -77,7 +77,7 @@ class SetNetwork:
     """Shape (s, h)."""
 
     def compared(self, k: int, inputs: NDArray[Any]) -> NDArray[Any]:
-        """What one of the networks makes of hypotheses with inputs (m, n) beside each other, shape (m, h)."""
+        """Return what one of the networks makes of hypotheses with inputs (m, n) beside each other, shape (m, h)."""
         own = swish(inputs @ self.embed[k] + self.embed_bias[k])
         shared = own @ self.share[k] + self.share_bias[k]
         of_all = np.concatenate([shared.mean(axis=0), shared.max(axis=0)])
@@ -87,7 +87,7 @@ class SetNetwork:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Network(SetNetwork):
-    """What is measured of all hypotheses of an edge as inputs."""
+    """Network of the measurements of all hypotheses of an edge as inputs."""
 
     scale: Scale
     verdicts: BoolArray
@@ -124,7 +124,7 @@ _AT_ONCE = 8  # hypotheses: what is said of their points fits the cache
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PointNetwork(SetNetwork):
-    """What is said of points as inputs, 6 q of them, and `LINE_INPUTS` of the lines."""
+    """Network of points: 6 q of them, and `LINE_INPUTS` of the lines."""
 
     first: FloatArray
     """Shape (s, POINT_INPUTS, p)."""
@@ -172,7 +172,7 @@ def point_groups(labels: IntArray) -> list[IntArray]:
 def point_inputs(
     cloud: Cloud, hypotheses: Hypotheses, rows: IntArray
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """What the network reads of every point as some hypotheses move it, and of their lines.
+    """Return what the network reads of every point as some hypotheses move it, and of their lines.
 
     Lengths are in diagonals of the child. Axes are turned away from the parent first, so that nothing depends on their
     sign; nor does anything on the heading of the object, unless both parts have their middle on one upright line, where

@@ -89,7 +89,7 @@ class Scorer:
     """Asked which of those that move is right; None as above."""
 
     def probabilities(self, hypotheses: Hypotheses, measured: Mapping[str, FloatArray], cloud: Cloud) -> FloatArray:
-        """How likely each hypothesis of an edge is the right one.
+        """Return how likely each hypothesis of an edge is the right one.
 
         Args:
             hypotheses: Of the edge.
@@ -114,7 +114,7 @@ class Scorer:
         return likely
 
     def sums(self, columns: NDArray[Any]) -> FloatArray:
-        """What the trees say of each row of columns (n, f), shape (n,)."""
+        """Return what the trees say of each row of columns (n, f), shape (n,)."""
         trees = np.arange(len(self.feature))[None]
         node = np.zeros((len(columns), len(self.feature)), dtype=np.int64)
         rows = np.arange(len(columns))[:, None]
@@ -130,7 +130,7 @@ class Scorer:
 
 
 def base_columns(kinds: IntArray, measured: Mapping[str, FloatArray]) -> FloatArray:
-    """What the trees start from: the score within the kind, the odds of the kind, and being fixed, shape (h, 3)."""
+    """Return the start of the trees: the score within the kind, the odds of the kind, being fixed, shape (h, 3)."""
     score = np.nan_to_num(np.clip(measured["rules_score"], -6.0, 0.0))
     return np.stack([score, np.clip(measured["rules_odds"], -6.0, 6.0), kinds == FIXED], axis=1)
 

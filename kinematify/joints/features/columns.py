@@ -50,7 +50,7 @@ class Features:
 
     @property
     def type_cues(self) -> dict[str, float]:
-        """What speaks for sliding or for turning."""
+        """Return what speaks for sliding or for turning."""
         cues = self.groups[VERDICTS].items()
         return {name.removeprefix(TYPE): float(value[0]) for name, value in cues if name.startswith(TYPE)}
 
@@ -107,7 +107,7 @@ def _cues(scene: JointScene, turns: Ranked, slides: Ranked) -> Values:
 
 
 def _verdicts(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> Values:
-    """What the weighted sums of cues say of each hypothesis, and the cues of the type, (h,) each.
+    """Return what the weighted sums of cues say of each hypothesis, and the cues of the type, (h,) each.
 
     They were written while objects were looked at. Half of what is fitted does not see them.
     """

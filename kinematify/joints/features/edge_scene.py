@@ -65,14 +65,14 @@ def front_of(
 
 
 def is_level_plate(frame: BoxFrame) -> bool:
-    """Whether a part is thin upwards, as what is trodden on."""
+    """True if a part is thin upwards, as what is trodden on."""
     sides = np.sort(frame.extents)
     return bool(abs(float(frame.axes[frame.thin] @ UP)) > np.cos(np.radians(30.0)) and sides[0] < 0.5 * sides[1])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Handle:
-    """What a person would pull: a bump on the outer side of a panel, or small parts mounted on it."""
+    """Handle that a person pulls: a bump on the outer side of a panel, or small parts mounted on it."""
 
     centre: FloatArray
     """World frame [m], shape (3,)."""
@@ -205,7 +205,7 @@ def _rail_lead(bearing: EdgeBearing | None) -> float:
 
 
 def _is_round(bearing: EdgeBearing | None, config: RailsConfig) -> bool:
-    """Whether the contact is about as round as it is extruded, or more; where it is neither, that says nothing."""
+    """True if the contact is about as round as it is extruded, or more; where it is neither, that says nothing."""
     if bearing is None or not bearing.lines or bearing.lines[0].score < config.rounded_least:
         return False
     return 0.0 < _rail_lead(bearing) < config.rounded_lead
@@ -318,7 +318,7 @@ def _leaf_twins(graph: ContactGraph, tree: KinematicTree, edge: tuple[int, int])
 
 
 def _journal(cache: PartCache, parent: int, child: int, frame: BoxFrame, config: JointsConfig) -> Journal | None:
-    """What the parent holds the child by, within the band of their contact."""
+    """Return what the parent holds the child by, within the band of their contact."""
     edge = cache.graph.by_pair.get((min(parent, child), max(parent, child)))
     if edge is None:
         return None
@@ -412,7 +412,7 @@ def _compactness(frame: BoxFrame, contact: ContactView, config: JointsConfig) ->
 
 
 def _disc(cache: PartCache, part: int, frame: BoxFrame) -> float:
-    """How round the part is seen along its thin direction, 0 for a square, 1 for a disc."""
+    """Return how round the part is seen along its thin direction, 0 for a square, 1 for a disc."""
     plane = np.delete(np.arange(3), frame.thin)
     flat = frame.local(cache.samples(part).points)[:, plane] - (frame.centre @ frame.axes.T)[plane]
     angles = np.arctan2(flat[:, 1], flat[:, 0])
@@ -424,14 +424,14 @@ def _disc(cache: PartCache, part: int, frame: BoxFrame) -> float:
 
 
 def rolls(cache: PartCache, part: int, frame: BoxFrame) -> bool:
-    """Whether a part is a disc standing on the floor on which the whole object stands."""
+    """True if a part is a disc standing on the floor on which the whole object stands."""
     level = abs(float(frame.axes[frame.thin] @ UP)) < 0.1
     lowest = cache.assembly.parts[part].bounds[0, 2] - cache.assembly.bounds[0, 2]
     return bool(level and lowest < 0.01 * cache.diagonal and _disc(cache, part, frame) > 0.5)
 
 
 def _stands(cache: PartCache, part: int, config: JointsConfig) -> bool:
-    """Whether a part reaches the floor, or nearly so, as a bin on wheels."""
+    """True if a part reaches the floor, or nearly so, as a bin on wheels."""
     rise = cache.assembly.parts[part].bounds[0, 2] - cache.assembly.bounds[0, 2]
     return bool(rise < config.front_cues.low * np.ptp(cache.assembly.bounds[:, 2]))
 
@@ -453,7 +453,7 @@ def _pedal_direction(cache: PartCache, body: int, frame: BoxFrame, config: Joint
 
 
 def _is_plate(sides: FloatArray, upright: bool, config: JointsConfig) -> bool:
-    """Whether a slab of these ascending sides is thin; narrow doors of fridges are thick, but high."""
+    """True if a slab of these ascending sides is thin; narrow doors of fridges are thick, but high."""
     if sides[0] < config.panel_thinness * sides[1]:
         return True
     thick = sides[0] < config.thick_door * sides[1]
@@ -461,7 +461,7 @@ def _is_plate(sides: FloatArray, upright: bool, config: JointsConfig) -> bool:
 
 
 def _walls(cache: PartCache, parent: int, frame: BoxFrame) -> BoolArray:
-    """Whether the parent stands in the way from the child's centre along +x, +y, +z, -x, -y, -z of its frame, (6,)."""
+    """Test whether the parent is in the way from the child's centre along +x, +y, +z, -x, -y, -z of its frame."""
     steps = cache.diagonal * np.concatenate([frame.axes, -frame.axes])
     hits = cache.first_hits(parent, np.tile(frame.centre, (6, 1)), steps)
     return np.isfinite(hits)

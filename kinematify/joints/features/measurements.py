@@ -1,4 +1,4 @@
-"""What is measured of every hypothesis of a joint: one row of continuous numbers each, which the fitted choice reads.
+"""Measurements of every hypothesis of a joint: one row of continuous numbers each, which the fitted choice reads.
 
 A measurement is pure: it reads geometry alone, no verdict of another one, and no kind of object. Motion is measured
 relative to the overlap at rest, because solids that stand in each other are a way of modelling: a point of the child
@@ -196,7 +196,7 @@ def motion(m: MeasuredHypotheses) -> Values:
 
 
 def contact_motion(m: MeasuredHypotheses) -> Values:
-    """How much of the contact is kept, and what gap opens, after a small and a larger step either way."""
+    """Return how much of the contact is kept, and what gap opens, after a small and a larger step either way."""
     h, scene = m.hypotheses, m.scene
     own = m.child.points[m.few]
     touching = scene.contact.points[m.few_contact]
@@ -444,7 +444,7 @@ def where(m: MeasuredHypotheses) -> Values:
 
 
 def symmetry(m: MeasuredHypotheses) -> Values:
-    """What the child is carried onto by its motion: itself all around, by a fold of the circle, or along the way.
+    """Measure what the motion carries the child onto: itself all around, by a fold of the circle, or along a line.
 
     Distances of moved points to the surface at rest, in shares of the reach; 0 for a disc about its axle, small after a
     third of a turn for a wheel of three spokes, small along its way for a rail.
@@ -477,7 +477,7 @@ def symmetry(m: MeasuredHypotheses) -> Values:
 
 
 def _outline(m: MeasuredHypotheses, points: FloatArray) -> Values:
-    """How round the outline about each line is: least over largest radius of twelve sectors, and their spread."""
+    """Measure how round the outline about each line is: least over largest radius of twelve sectors, their spread."""
     h = m.hypotheses
     sector, apart = _sectors(m, points)
     radius = np.zeros((len(h), 12))
@@ -510,7 +510,7 @@ def _across_pair(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _twist(m: MeasuredHypotheses, points: FloatArray, normals: FloatArray) -> FloatArray:
-    """How much the surface winds about each line, as the blades of a propeller do, in [0, 1], shape (h,)."""
+    """Return how much the surface winds about each line, as the blades of a propeller do, in [0, 1], shape (h,)."""
     h = m.hypotheses
     along = normals @ h.axes.T
     way = m.velocity(points)
@@ -521,7 +521,7 @@ def _twist(m: MeasuredHypotheses, points: FloatArray, normals: FloatArray) -> Fl
 
 
 def axle(m: MeasuredHypotheses) -> Values:
-    """Whether the line is an axle: how high above the floor beside its reach, what it meets on either side."""
+    """Test whether the line is an axle: how high above the floor beside its reach, what it meets on either side."""
     h, scene = m.hypotheses, m.scene
     radius = np.maximum(m.radii(m.child.points[m.few]).max(axis=1), 0.02 * m.unit)
     foot = scene.centre - m.arms
@@ -566,7 +566,7 @@ def standing_in(m: MeasuredHypotheses) -> Values:
 
 
 def mirror(m: MeasuredHypotheses) -> Values:
-    """Whether a joint is as symmetric as what it moves: a drawer and its handle do not say on which side to hinge.
+    """Test whether a joint is as symmetric as what it moves: a drawer and its handle do not say on which side to hinge.
 
     Planes through the child's centre along its box. Where the child, its contact and the parent around it are alike on
     both sides, a joint that differs from its mirror image chooses a side without a reason.
@@ -613,7 +613,7 @@ def _mirrored_gap(m: MeasuredHypotheses, part: int, points: FloatArray, normal: 
 
 
 def hollow(m: MeasuredHypotheses) -> Values:
-    """What of the child is around its own centre: a drawer is open above, a cap below, a ring along its line."""
+    """Return what of the child is around its own centre: a drawer is open above, a cap below, a ring along its line."""
     h, scene = m.hypotheses, m.scene
     reach = 2.0 * m.unit
 
@@ -635,7 +635,7 @@ def hollow(m: MeasuredHypotheses) -> Values:
 
 
 def around(m: MeasuredHypotheses) -> Values:
-    """How far around the line the contact reaches, and the child within that reach: an axle is held on all sides."""
+    """Measure how far around the line the contact and the child in it reach: an axle is held on all sides."""
     return {
         "contact_around": _around(m, m.scene.contact.points[m.few_contact]),
         "shared_around": _around(m, np.concatenate(m.shared)),
@@ -697,7 +697,7 @@ def handle(m: MeasuredHypotheses) -> Values:
 
 
 def opening(m: MeasuredHypotheses) -> Values:
-    """What the motion is for: how much more of the child, and of what it covers, can be seen from outside."""
+    """Return what the motion is for: how much more of the child, and of what it covers, can be seen from outside."""
     scene, h = m.scene, m.hypotheses
     rng = np.random.default_rng(11)
     reach = 2.0 * scene.diagonal
@@ -744,7 +744,7 @@ def _outward_rays(
 def _blocked(
     m: MeasuredHypotheses, parts: Sequence[int], starts: FloatArray, ends: FloatArray, reach: float
 ) -> BoolArray:
-    """Whether rays from starts through ends (c, n, 3 each) meet any of the parts within `reach` [m], shape (c, n)."""
+    """Test whether rays from starts through ends (c, n, 3) meet any of the parts within `reach` [m], shape (c, n)."""
     result = np.zeros(starts.shape[:2], dtype=bool)
     flat, steps = starts.reshape(-1, 3), (ends - starts).reshape(-1, 3) * reach
     for part in parts:

@@ -217,7 +217,7 @@ def contact_clearance(
 
 
 def slide_clearance(scene: JointScene, direction: FloatArray, config: JointsConfig) -> FloatArray | None:
-    """How far the contact slides along + and - a direction [m], shape (2,), inf if never stopped; None as above."""
+    """Measure how far the contact slides along +/- a direction [m], shape (2,), inf if never stopped; None as above."""
     points = _followed(scene, config)
     return None if points is None else _slid(scene, points, direction, config)
 

@@ -1,4 +1,4 @@
-"""What holds two parts, asked where the tree may depend on it: journals, shafts that pass, leaves on one pin."""
+"""Pins that hold two parts, asked where the tree may depend on it: journals, shafts that pass, leaves on one pin."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def coaxial_carriers(lines: Mapping[Pair, BearingLine], *, angle: float, distanc
 
 
 def has_journal(cache: PartCache, pair: Pair, config: JointsConfig) -> bool:
-    """Whether a pin, barrel or shaft of one part sits in the other; looking from the smaller one.
+    """True if a pin, barrel or shaft of one part sits in the other; looking from the smaller one.
 
     Leaves that lie edge to edge, fingers and drawers touch as well as a hinge does, but nothing of one goes round the
     other.
@@ -127,7 +127,7 @@ def has_journal(cache: PartCache, pair: Pair, config: JointsConfig) -> bool:
 
 
 def passes(cache: PartCache, pair: Pair, line: BearingLine, config: JointsConfig) -> bool:
-    """Whether one part turns all around a line without meeting the other."""
+    """True if one part turns all around a line without meeting the other."""
     small, large = _by_size(cache, pair)
     points = moving_points(cache, small, config.sweep)
     swept = sweep_turns(cache, points, line.axis[None], line.pivot[None], (large,), limit=np.pi, config=config.sweep)
@@ -168,7 +168,7 @@ def leaf_pairs(
     passing: AbstractSet[Pair],
     config: JointsConfig,
 ) -> tuple[frozenset[Pair], frozenset[Pair]]:
-    """Of parts on one pin: pairs next to each other, and pairs with a third part between them.
+    """Return the pairs of parts on one pin: next to each other, and with a third part between them.
 
     The magazine of a stapler lies between base and arm: the arm rests on it and pushes it down, so that the outer
     leaf moves with the middle one and not with what lies beyond.

@@ -29,7 +29,7 @@ CAP = 2.5  # the most that one cue says
 
 
 def rank_slides(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> Ranked:
-    """What cues say of directions along which the child may slide, best first.
+    """Return what cues say of directions along which the child may slide, best first.
 
     Args:
         scene: The pair.
@@ -94,7 +94,7 @@ def _small_way(scene: JointScene, points: FloatArray, axes: FloatArray, config: 
 
 
 def _flush(scene: JointScene, axes: FloatArray, free: FloatArray) -> FloatArray:
-    """How close the leading face is to the outside of the body, in lengths of the part, for the free way out."""
+    """Return how close the leading face is to the outside of the body, in lengths of the part, for the free way out."""
     samples = scene.cache.samples(scene.child).points @ axes.T
     body = scene.cache.samples(scene.parent).points @ axes.T
     length = np.maximum(np.ptp(samples, axis=0), 1e-12)

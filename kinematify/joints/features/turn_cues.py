@@ -39,7 +39,7 @@ CAP, BEARING_BONUS = 1.5, 4.0  # the most that one cue says, and what a bearing 
 
 
 def rank_turns(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> Ranked:
-    """What cues say of lines about which the child may turn, best first.
+    """Return what cues say of lines about which the child may turn, best first.
 
     Args:
         scene: The pair.
@@ -138,7 +138,7 @@ def _separation(scene: JointScene, lines: Hypotheses, sign: FloatArray, config: 
 
 
 def _contact_cues(scene: JointScene, lines: Hypotheses, config: JointsConfig) -> dict[str, FloatArray]:
-    """How close to the line the parts touch, and how close the line runs to the parent."""
+    """Return how close to the line the parts touch, and how close the line runs to the parent."""
     along = (scene.frame.local(scene.cache.samples(scene.child).points)).T
     half = 0.5 * np.ptp(along, axis=1)
     span = np.abs(lines.axes @ scene.frame.axes.T) @ half
@@ -269,7 +269,7 @@ def _heel(scene: JointScene, lines: Hypotheses, arms: FloatArray) -> FloatArray:
 
 
 def _body_behind(scene: JointScene, arms: FloatArray) -> FloatArray:
-    """How much more of the body stands above the lid on the hinge's side than opposite, in [-1, 1]."""
+    """Return how much more of the body stands above the lid on the hinge's side than opposite, in [-1, 1]."""
     samples = scene.cache.samples(scene.parent)
     top = float(scene.cache.assembly.parts[scene.child].bounds[1, 2])
     above = samples.points[:, 2] > top

@@ -37,7 +37,7 @@ leaves have up to a tenth, one drawer behind the whole front of a cabinet is hal
 
 
 def type_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> dict[str, float]:
-    """What speaks for sliding or for turning, in terms of `WEIGHTS`.
+    """Return what speaks for sliding or for turning, in terms of `WEIGHTS`.
 
     Args:
         scene: The pair.
@@ -98,7 +98,7 @@ def _held_rail(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsC
 
 
 def _clearance_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: JointsConfig) -> dict[str, float]:
-    """What the contact itself lets go: a key, skirt or groove stops turning, a bead, barrel or fork stops sliding."""
+    """Return the motions that the contact stops: a key, skirt or groove turning, a bead, barrel or fork sliding."""
     few = _near_best(scene, turns, config)
     clearance = contact_clearance(scene, turns.axes[few], turns.lines.pivots[few], slides.axes[0], config)
     if clearance is None:
@@ -122,7 +122,7 @@ def _clearance_cues(scene: JointScene, turns: Ranked, slides: Ranked, config: Jo
 
 
 def _extruded(scene: JointScene, direction: FloatArray, config: JointsConfig) -> bool:
-    """Whether the contact's rail runs along a direction and leads its best line by as much as that of any slide."""
+    """True if the contact's rail runs along a direction and leads its best line by as much as that of any slide."""
     rail = None if scene.bearing is None else scene.bearing.rail
     return rail is not None and abs(float(rail.axis @ direction)) > 0.99 and scene.rail_lead > config.rails.lead_full
 
@@ -155,7 +155,7 @@ def _room_cues(scene: JointScene, slides: Ranked) -> dict[str, float]:
 
 
 def _depth(scene: JointScene, slides: Ranked) -> float:
-    """How far a part reaches along its best slide over the smaller side of its front, behind which drawers are deep."""
+    """Return the reach of a part along its best slide over the smaller side of its front: drawers are deep."""
     along = np.abs(scene.frame.axes @ slides.axes[0])
     extents = scene.frame.upper - scene.frame.lower
     face = np.sort(extents[np.argsort(-along)[1:]])

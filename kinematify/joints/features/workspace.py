@@ -161,7 +161,7 @@ class PartCache:
         return distances, closest, normals
 
     def inside(self, part: int, points: FloatArray) -> BoolArray:
-        """Whether points (n, 3) in the world frame lie inside the solid of a part, by winding number, shape (n,)."""
+        """Test whether points (n, 3) in the world frame are in the solid of a part, by winding number, shape (n,)."""
         lower, upper = self.assembly.parts[part].bounds
         result = all_three((points > lower) & (points < upper))
         near = np.flatnonzero(result)
@@ -172,7 +172,7 @@ class PartCache:
         return np.asarray(result)
 
     def inside_any(self, parts: Sequence[int], points: FloatArray) -> BoolArray:
-        """Whether points (n, 3) in the world frame lie inside the solid of one of some parts, shape (n,)."""
+        """Test whether points (n, 3) in the world frame lie inside the solid of one of some parts, shape (n,)."""
         result = np.zeros(len(points), dtype=bool)
         for part in parts:
             left = np.flatnonzero(~result)

@@ -1,14 +1,14 @@
 'use strict';
-/* Findings by severity and blame, tables that sort and filter, and links that open what hides their target. */
+/* Findings by severity and cause, tables that sort and filter, and links that open what hides their target. */
 
 const boxes = [...document.querySelectorAll('.filters input[type=checkbox]')];
 const findings = [...document.querySelectorAll('.finding')];
 function showFindings() {
   const off = kind => new Set(boxes.filter(b => b.name === kind && !b.checked).map(b => b.value));
-  const severities = off('severity'), blames = off('blame');
+  const severities = off('severity'), causes = off('cause');
   let shown = 0;
   for (const f of findings) {
-    f.hidden = severities.has(f.dataset.severity) || blames.has(f.dataset.blame);
+    f.hidden = severities.has(f.dataset.severity) || causes.has(f.dataset.cause);
     shown += !f.hidden;
   }
   document.getElementById('shown').textContent = shown + ' of ' + findings.length + ' findings shown';

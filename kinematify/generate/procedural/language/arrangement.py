@@ -95,7 +95,7 @@ def _place_described(words: Sequence[str], block: _Block, used: list[int]) -> No
 
 
 def _blocks(mentions: Sequence[Mention]) -> tuple[list[_Block], list[_Block]]:
-    """What is to be placed, and the one of them that each mention means."""
+    """Return what is to be placed, and the one of them that each mention means."""
     kinds = {mention.kind for mention in mentions if mention.stated}
     own: dict[str, _Block] = {}
     blocks, meant = [], []

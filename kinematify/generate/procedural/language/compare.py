@@ -108,7 +108,7 @@ class Missing:
 
 @dataclass(kw_only=True)
 class Comparison:
-    """What of a specification an object keeps."""
+    """Comparison of a specification with an object."""
 
     held: set[int] = field(default_factory=set)
     """Words that hold."""
@@ -190,7 +190,7 @@ class _Compared(Comparison):
         return next((found for found in there if self._joints_of(found)), there[0] if there else [])
 
     def counted(self, noun: str) -> int | None:
-        """How many a parameter says that there are, of what is no part of its own: handles, shelves, slots."""
+        """Return how many a parameter says that there are, of what is no part of its own: handles, shelves, slots."""
         for word in dict.fromkeys((noun, noun.rsplit(maxsplit=1)[-1])):
             name = word.replace(" ", "_")
             for key in (name, f"{name}s", f"{name}es"):
@@ -204,7 +204,7 @@ class _Compared(Comparison):
         return None
 
     def _numbers(self, noun: str, found: Sequence[Part]) -> set[int | None]:
-        """How many there are: all that are called so, those of one name, or as many as a parameter says."""
+        """Return how many there are: all that are called so, those of one name, or as many as a parameter says."""
         stems = Counter(stem_of(part.name) for part in found)
         words = {word for group in _SYNONYMS if noun.rsplit(maxsplit=1)[-1] in group for word in group} | {noun}
         names = {part.name for part in found}  # a finger has three links
@@ -288,7 +288,7 @@ class _Compared(Comparison):
                 self._not_there(part)
 
     def _fitted(self, part: PartSpecification) -> bool:
-        """Whether parts have a handle of their own, as it was asked for."""
+        """True if parts have a handle of their own, as it was asked for."""
         given = [item for item in self.handles if item[1] == ("none" if part.absent else part.noun)]
         return bool(given) and all(
             self.made.parameters.get(f"handle of {name}") == " ".join(filter(None, item[1:]))
@@ -297,7 +297,7 @@ class _Compared(Comparison):
         )
 
     def _is_on_owners(self, part: PartSpecification, found: Sequence[Part], number: int) -> bool:
-        """Whether each of those that are to have a part has one: `three drawers, all with locks`."""
+        """True if each of those that are to have a part has one: `three drawers, all with locks`."""
         specified = self.specification.owner_of(part)
         every = self.parts_called(part.of)[0] if specified else []
         owners = chosen_by_place(every, specified) if specified and every else []
@@ -340,7 +340,7 @@ class _Compared(Comparison):
         return [item for item in found if (self._carriers(item.name) | {item.name}) & chosen]
 
     def _carriers(self, name: str) -> set[str]:
-        """What carries a part, up to the root."""
+        """Return what carries a part, up to the root."""
         found: set[str] = set()
         while (joint := self.made.joint_above.get(name)) is not None:
             name = joint.parent
@@ -434,7 +434,7 @@ class _Compared(Comparison):
             self._miss(_said(part), there.at, built)
 
     def _several(self, part: PartSpecification) -> bool:
-        """Whether one part is several of something by what it is called, or by a parameter."""
+        """True if one part is several of something by what it is called, or by a parameter."""
         said = part.claims[0].words.split()[-1]
         return bool(self.counted(part.noun)) or (said in self.nouns and said not in map(stem_of, self.nouns[said]))
 
@@ -454,7 +454,7 @@ class _Compared(Comparison):
             self.names |= {part.name: f"{noun}_{k}" if several else noun for k, part in enumerate(found, start=1)}
 
     def _all_have_it(self, part: PartSpecification) -> bool:
-        """Whether one part was to have something that a parameter gives to all of its kind."""
+        """True if one part was to have something that a parameter gives to all of its kind."""
         owner = next((item for item in self.specification.parts if item.noun == part.of and item.count == 1), None)
         siblings, _ = self.parts_called(part.of)
         alike = any(claim.about == "like" for item in self.specification.parts for claim in item.claims)
@@ -473,7 +473,7 @@ class _Compared(Comparison):
         return True
 
     def _is_new(self, part: PartSpecification) -> bool:
-        """Whether an article says that a part was not named before: `a glass door and a steel door`."""
+        """True if an article says that a part was not named before: `a glass door and a steel door`."""
         first = min(part.claims[0].at)
         before = {token.given for token in self.specification.tokens[max(first - 3, 0) : first]}
         return part.count == 1 and bool(before & {*ARTICLES, "another"}) and "the" not in before
@@ -516,7 +516,7 @@ class _Compared(Comparison):
     def _part_keeps(
         self, part: PartSpecification, claim: Claim, chosen: Sequence[Part], found: Sequence[Part]
     ) -> str | None:
-        """What is wrong with a claim about some of the parts of a noun; None if it holds."""
+        """Return what is wrong with a claim about some of the parts of a noun; None if it holds."""
         joints = self._joints_of(chosen)
         if not chosen and claim.about not in (*_MOTION, *_LOOKS):
             return "a solid of another part"
@@ -545,7 +545,7 @@ class _Compared(Comparison):
         return judges[claim.about]() if claim.about in judges else "nothing says so"
 
     def _others_do(self, part: PartSpecification, chosen: Sequence[Part], found: Sequence[Part]) -> str | None:
-        """What is wrong with what only some of the parts are or do; None if the others do not."""
+        """Return what is wrong with what only some of the parts are or do; None if the others do not."""
         names = {item.name for item in (chosen[: part.count] if part.count else chosen)}
         others = [item for item in found if item.name not in names]
         said = [claim for claim in part.claims if claim.about in (*_MOTION, *_LOOKS)]
@@ -562,7 +562,7 @@ class _Compared(Comparison):
         return above or [joint for joint in carrying if joint.kind is JointType.CONTINUOUS]
 
     def _ranging(self, parts: Sequence[Part], claim: Claim) -> list[BlueprintJoint]:
-        """Of a range, the nearest joints that turn or slide as it says: a chuck spins on a quill that goes down."""
+        """Return the joints nearest to a range that move as it says: a chuck spins on a quill that goes down."""
         turns = claim.about == "range" and claim.value[0] == "angle"
         chains = [self._carrying(part.name) for part in parts] if claim.about == "range" else []
         return [joint for chain in chains for joint in [j for j in chain if j.kind.turns is turns][:1]]
@@ -576,12 +576,12 @@ class _Compared(Comparison):
         return chain
 
     def _would_move(self, part: PartSpecification) -> bool:
-        """Whether a part is one that moves wherever it is, and not the handle of each door."""
+        """True if a part is one that moves wherever it is, and not the handle of each door."""
         word = part.noun.split()[-1]
         return word in _MOVING and self.counted(part.noun) != -1 and word not in self.made.parameters.values()
 
     def _look_of(self, claim: Claim, chosen: Sequence[Part]) -> str | None:
-        """What is wrong with how parts look: a solid of one may be of another material, as the pane of a door."""
+        """Return the fault in the looks of parts: a solid of one may be of another material, as the pane of a door."""
         if chosen and (claim.about == "color" or _looks(claim, chosen) is None):
             return _looks(claim, chosen)
         word = str(claim.value).split()[-1]
@@ -611,7 +611,7 @@ class _Compared(Comparison):
         return self._opened(joints, claim.value)
 
     def _whole_keeps(self, claim: Claim) -> str | None:
-        """What is wrong with a claim about the object; None if it holds."""
+        """Return what is wrong with a claim about the object; None if it holds."""
         own = self.specification.kind.split()
         joints = [joint for joint in self.made.joints if not _covers(joint.child, own) or claim.value == "moves"]
         if claim.value in ("turns", "spins"):
@@ -670,7 +670,7 @@ class _Compared(Comparison):
         return f"it goes {math.degrees(far):.0f} degrees" if how == "angle" else f"it goes {far:.2g} m"
 
     def _opened(self, joints: Sequence[BlueprintJoint], asked: tuple[str, float]) -> str | None:
-        """What is wrong with how far joints are open: of several, the one that is open furthest is meant."""
+        """Return what is wrong with how far joints are open: of several, the one that is open furthest is meant."""
         how, much = asked
         there = {
             "share": [
@@ -720,7 +720,7 @@ class _Compared(Comparison):
         return [float(np.linalg.norm(one - other)) for k, one in enumerate(pins) for other in pins[:k]]
 
     def _is_on_other(self, part: PartSpecification, place: Claim) -> bool:
-        """Whether a place is one of another part: at the bottom of the handle."""
+        """True if a place is one of another part: at the bottom of the handle."""
         own = _OF_ANY_OBJECT | set(self.specification.kind.split())
         behind = (claim for claim in part.claims if claim.about == "relation" and min(claim.at) == max(place.at) + 1)
         return any(claim.value[0] == "of" and claim.value[1].split()[-1] not in own for claim in behind)
@@ -768,31 +768,31 @@ def compare(
 
 
 def _is_one(part: PartSpecification) -> bool:
-    """Whether it is one of several, by its place."""
+    """True if it is one of several, by its place."""
     return part.count == 1 and any(claim.about == "place" for claim in part.claims)
 
 
 def _on_sides(part: PartSpecification) -> bool:
-    """Whether one is asked for on either side."""
+    """True if one is asked for on either side."""
     places = [claim for claim in part.claims if claim.about == "place" and claim.value in ("side", "end")]
     said = [set(claim.words.split()) for claim in places if not claim.words.startswith("to ")]  # it moves there
     return any(words & {"each", "either", "both", "every"} for words in said)
 
 
 def _total(part: PartSpecification) -> int | None:
-    """How many there are: two on each side are four, and two on both sides are two."""
+    """Return how many there are: two on each side are four, and two on both sides are two."""
     words = {word for claim in part.claims if claim.about == "place" for word in claim.words.split()}
     doubled = _on_sides(part) and part.count and ("both" not in words or part.count % 2)
     return 2 * part.count if doubled and part.count else part.count
 
 
 def _covers(name: str, own: Sequence[str]) -> bool:
-    """Whether a part only covers or controls something, and does not give the object its name."""
+    """True if a part only covers or controls something, and does not give the object its name."""
     return any(f"_{stem_of(name)}".endswith(f"_{word}") and word not in own for word in _COVERS)
 
 
 def _ends_with(name: str, word: str) -> bool:
-    """Whether a name ends with a word; ``drawer_0_top`` is the top one of some drawers, and no top."""
+    """True if a name ends with a word; ``drawer_0_top`` is the top one of some drawers, and no top."""
     stems = [stem for stem in (stem_of(name), lemma(stem_of(name))) if f"_{stem}".endswith(f"_{word}")]
     return any(word not in PLACES or not stem.removesuffix(f"_{word}")[-1:].isdigit() for stem in stems)
 

@@ -131,7 +131,7 @@ def _opposites(words: Sequence[str]) -> Iterator[_Fault]:
 
 
 def _larger_than_all(specification: Specification, words: Sequence[str]) -> Iterator[_Fault]:
-    """What is larger than itself, or than the whole that it is a part of."""
+    """Return what is larger than itself, or than the whole that it is a part of."""
     own = specification.kind.split()[-1]
     for k, word in enumerate(words[:-1]):
         behind = next((other for other in words[k + 2 :] if other not in ("the", "its", "whole")), "")
@@ -158,7 +158,7 @@ def _too_far(part: PartSpecification, specification: Specification) -> Iterator[
 
 
 def _moves_closed(part: PartSpecification, specification: Specification) -> Iterator[_Fault]:
-    """What is fixed and swings, what is locked and open, what is open in a closed object."""
+    """Return what is fixed and swings, what is locked and open, what is open in a closed object."""
     said = {claim.about: claim for claim in part.claims}
     opened = next((claim for claim in part.claims if claim.about == "open" and claim.value[1] > 0.0), None)
     moves = opened or next((claim for claim in part.claims if claim.about in ("moves", "way", "range", "hinge")), None)

@@ -93,7 +93,7 @@ def _grid(reading: ParseState, k: int) -> tuple[int, int, int] | None:
 
 
 def _gridded(reading: ParseState, k: int, end: int) -> tuple[Parameter, int] | None:
-    """What stands in the grid, and the word that says so: one of the next, or the nearest one before."""
+    """Return what stands in the grid, and the word that says so: one of the next, or the nearest one before."""
     for at in (*range(end, end + _ADJECTIVES + 1), *range(k - 1, -1, -1)):
         for parameter in reading.family.parameters:
             nouns = nouns_of(parameter)
@@ -170,7 +170,7 @@ def _with_those_left_out(reading: ParseState, counts: list[_Count]) -> list[_Cou
 
 
 def _names_something_else(reading: ParseState, k: int, counts: list[_Count], count: _Count) -> bool:
-    """Whether word k belongs to another thing that is counted, which a bare number behind it would mean."""
+    """True if word k belongs to another thing that is counted, which a bare number behind it would mean."""
     if any(other.first <= k < other.where.stop for other in counts if other is not count):
         return True
     nouns = {noun for p in reading.family.parameters if isinstance(p.default, int) for noun in nouns_of(p)}
@@ -216,7 +216,7 @@ def _mentions(reading: ParseState, parameter: Parameter, count: _Count, total: i
 
 
 def _total(reading: ParseState, count: _Count) -> int:
-    """How many a count means: one door on either side is two doors, and so is two doors on both sides."""
+    """Return how many a count means: one door on either side is two doors, and so is two doors on both sides."""
     number = count.number or 0
     if _on_both_sides(reading, count.where.stop) and (number % 2 or reading.text(count.where.stop + 1) == "each"):
         return 2 * number

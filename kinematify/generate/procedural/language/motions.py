@@ -66,7 +66,7 @@ _ABOUT, _LARGE = 0.2, 0.3  # of a part's diagonal from its middle to its axis; o
 
 
 def goes(blueprint: Blueprint, joint: BlueprintJoint, way: str) -> bool:
-    """Whether a part goes somewhere when it opens."""
+    """True if a part goes somewhere when it opens."""
     part = next(part for part in blueprint.parts if part.name == joint.child)
     value = min(joint.upper, _QUARTER) if joint.kind.turns else joint.upper
     middle = part.bounds.mean(axis=0)
@@ -81,7 +81,7 @@ def goes(blueprint: Blueprint, joint: BlueprintJoint, way: str) -> bool:
 
 
 def turns_about_itself(blueprint: Blueprint, joint: BlueprintJoint) -> bool:
-    """Whether a large part turns about its middle, as a swivel chair does and a cabinet with a door does not."""
+    """True if a large part turns about its middle, as a swivel chair does and a cabinet with a door does not."""
     bounds = next(part for part in blueprint.parts if part.name == joint.child).bounds
     middle, size = bounds.mean(axis=0), float(np.linalg.norm(np.ptp(bounds, axis=0)))
     aside = float(np.linalg.norm(np.cross(joint.axis, middle - joint.pivot)))
@@ -110,5 +110,5 @@ _MOVES: dict[str, Callable[[Blueprint, BlueprintJoint], bool]] = {
 
 
 def moves_so(blueprint: Blueprint, joint: BlueprintJoint, how: str) -> bool:
-    """Whether a joint moves as one of the values of `MOTIONS` says."""
+    """True if a joint moves as one of the values of `MOTIONS` says."""
     return _MOVES[how](blueprint, joint)

@@ -1,4 +1,4 @@
-"""How far something is open: a share, an angle or a distance."""
+"""Opening of an object: a share, an angle or a distance."""
 
 from __future__ import annotations
 

@@ -250,13 +250,13 @@ def head_of(
 
 
 def _counts(tokens: Sequence[Token], k: int) -> bool:
-    """Whether a number stands before word k, and no article."""
+    """True if a number stands before word k, and no article."""
     before = tokens[k - 1] if k else None
     return before is not None and before.number is not None and before.given not in (*ARTICLES, *KINDS)
 
 
 def may_follow(tokens: Sequence[Token], k: int) -> bool:
-    """Whether a word behind a name leaves it the head: a size, a state, a look or a verb, no other noun."""
+    """True if a word behind a name leaves it the head: a size, a state, a look or a verb, no other noun."""
     token = tokens[k]
     word = token.given
     known = (
@@ -331,7 +331,7 @@ class _Parser(Words):
         return self.tokens[k].given if 0 <= k < len(self.tokens) else ""
 
     def noun(self, part: _Draft) -> str:
-        """What a part is called, singular."""
+        """Return what a part is called, singular."""
         words = lemmas(self.tokens, part.nouns)
         of = nouns_in(words[-1]) if words else ()
         return " ".join([*words[:-1], *([noun for noun in of if noun in self.mechanisms] or words[-1:])[:1]])
@@ -361,11 +361,11 @@ class _Parser(Words):
             k = max(self._part(k + 2) if self._says(k, ("of", "which")) else self._clause(k), k + 1)
 
     def _is_mechanism(self, k: int) -> bool:
-        """Whether a word, as in `wheels` or `wheeled`, names a mechanism."""
+        """True if a word, as in `wheels` or `wheeled`, names a mechanism."""
         return any(noun in self.mechanisms for noun in nouns_in(self.given(k)))
 
     def _clause(self, k: int) -> int:
-        """What begins at word k: another part, or what is said of the last one."""
+        """Return what begins at word k: another part, or what is said of the last one."""
         word = self.given(k)
         if self._is_share(k):
             return self._share(k)
@@ -387,12 +387,12 @@ class _Parser(Words):
         return self._joined(k) if word in _JOINERS else self._said_behind(k)
 
     def _is_of_one(self, k: int) -> bool:
-        """Whether a verb is of one thing: `is`, `opens`."""
+        """True if a verb is of one thing: `is`, `opens`."""
         word = self.given(k)
         return word in ("is", "has") or (word.endswith("s") and (word in MOTIONS or word in GOING))
 
     def _joined(self, k: int) -> int:
-        """What stands behind `and` or a comma: another part, or what is said of the object."""
+        """Return what stands behind `and` or a comma: another part, or what is said of the object."""
         if self._is_share(k + 1):
             return self._share(k + 1)
         if begins := self._place_first(k + 1):
@@ -438,7 +438,7 @@ class _Parser(Words):
         return self.current if self.current is not self.whole and (each or is_one) else None
 
     def _is_about_whole(self, k: int) -> bool:
-        """Whether what stands behind a comma is a size, a look or a state alone."""
+        """True if what stands behind a comma is a size, a look or a state alone."""
         end = k
         while end < len(self.tokens) and self.given(end) not in (*_BEGINS_PART, "."):
             end += 1
@@ -456,14 +456,14 @@ class _Parser(Words):
         return bool(words) and not [w for w in plain if w not in sizes and w not in ("x", "by", "half", "made")]
 
     def _is_adjective(self, word: str) -> bool:
-        """Whether a word is of a look, a size or a state."""
+        """True if a word is of a look, a size or a state."""
         return (
             word in COLOR_WORDS or word in MATERIAL_WORDS or word in SIZE_WORDS or word in OPENNESS
             or word in PLAIN_WORDS or word in ("dark", "light")
         )  # fmt: skip
 
     def _begins_noun(self, k: int) -> bool:
-        """Whether a noun phrase begins at word k, and no verb phrase: `and tilts`, `and can be folded`."""
+        """True if a noun phrase begins at word k, and no verb phrase: `and tilts`, `and can be folded`."""
         word = self.given(k)
         if word in _BEING or not word or self.tokens[k].is_sign or word in _BEGINS_PART or word in _PREPOSITIONS:
             return word in ("each", "all", "both") and self._begins_noun(k + 1)
@@ -474,7 +474,7 @@ class _Parser(Words):
         return not verb or self._noun_behind(k)
 
     def _noun_behind(self, k: int) -> bool:
-        """Whether a noun follows word k before the clause ends: `sliding door`, not `slides out`."""
+        """True if a noun follows word k before the clause ends: `sliding door`, not `slides out`."""
         for at in range(k + 1, min(k + 6, len(self.tokens))):
             word = self.given(at)
             ends = word in _BEGINS_PART or word in _PREPOSITIONS or word in _BEING or word in _GOES
@@ -495,7 +495,7 @@ class _Parser(Words):
         return False
 
     def _has(self, k: int, part: _Draft) -> bool:
-        """Whether a word says that a part has another one: what is lockable has a lock."""
+        """True if a word says that a part has another one: what is lockable has a lock."""
         noun, count = HAVING.get(self.given(k), ("", 1))
         without = self.given(k).removesuffix("less")
         if without != self.given(k) and without in self.mechanisms:
@@ -551,17 +551,17 @@ class _Parser(Words):
         return k
 
     def _is_one_of_copies(self, part: _Draft, again: Sequence[int]) -> bool:
-        """Whether one of several objects is meant by its place, so that what it has is there."""
+        """True if one of several objects is meant by its place, so that what it has is there."""
         placed = any(claim.about == "place" for claim in part.claims)
         return bool(again) and placed and self.current is self.whole and (self.whole.count or 1) > 1
 
     def _is_share(self, k: int) -> bool:
-        """Whether word k begins `two of which`, `half of them`, `all but one`, `one of glass`, `two red`."""
+        """True if word k begins `two of which`, `half of them`, `all but one`, `one of glass`, `two red`."""
         counted = [part for part in self.parts if (part.count or 0) > 1]
         return bool(counted) and self._shared(k)[0] > 0
 
     def _shared(self, k: int) -> tuple[int, int]:
-        """How many of those that were named last are meant at word k, and the word behind; none: 0."""
+        """Return how many of those that were named last are meant at word k, and the word behind; none: 0."""
         every = next((part.count or 0 for part in reversed(self.parts) if (part.count or 0) > 1), 0)
         number = self.tokens[k].number if k < len(self.tokens) and self.given(k) not in ARTICLES else None
         if self.given(k) == "all" and self.number(k + 1):  # all five of them
@@ -787,7 +787,7 @@ class _Parser(Words):
         return self._size(k, part)
 
     def _is_mirror(self, k: int) -> bool:
-        """Whether a mirror is meant, and not what something is made of."""
+        """True if a mirror is meant, and not what something is made of."""
         return self.given(k) == "mirror" and not self._noun_behind(k)
 
     def _size(self, k: int, part: _Draft) -> int:
@@ -815,7 +815,7 @@ class _Parser(Words):
         return end - k
 
     def _said_behind(self, k: int) -> int:
-        """What is said of a part behind its noun: a verb, a place, a state, a look, or what it stands on."""
+        """Return what is said of a part behind its noun: a verb, a place, a state, a look, or what it stands on."""
         word, part, before = self.given(k), self.current, self.given(k - 1)
         able = word in OPENNESS and before in (*_RELATIVE, *_CAN)
         taken = 0 if able else self._answers(k, part) or self._open(k, part) or (self._range(k) if word == "up" else 0)

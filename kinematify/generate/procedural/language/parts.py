@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def part_nouns(family: Family, made: Blueprint) -> dict[tuple[str, ...], tuple[str, ...]]:
-    """How the parts of an object may be called, singular words -> their names without numbers."""
+    """Return how the parts of an object may be called, singular words -> their names without numbers."""
     stems = {stem_of(part.name) for part in made.parts}
     found: dict[tuple[str, ...], set[str]] = {}
     for stem in stems:

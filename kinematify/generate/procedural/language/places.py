@@ -38,7 +38,7 @@ _TOUCH = 0.02  # [m] between what touches, with handles and gaps
 def wrong_place(
     closed: Blueprint, place: str, chosen: Sequence[Part], found: Sequence[Part], *, on_each: bool = False
 ) -> str | None:
-    """What is wrong with where parts are; None if they are at a place of the whole.
+    """Return what is wrong with where parts are; None if they are at a place of the whole.
 
     Args:
         closed: The object with all joints at their zero.
@@ -76,7 +76,7 @@ def wrong_place(
 
 
 def wrong_relation(preposition: str, chosen: Sequence[Part], others: Sequence[Part]) -> str | None:
-    """What is wrong with where parts are, seen from others; None if they are there.
+    """Return what is wrong with where parts are, seen from others; None if they are there.
 
     Args:
         preposition: ``above``, ``in front of``, ``each``: on each of them.
@@ -103,13 +103,13 @@ def wrong_relation(preposition: str, chosen: Sequence[Part], others: Sequence[Pa
 
 
 def touch(one: Part, other: Part) -> bool:
-    """Whether the boxes of two parts meet, or nearly so."""
+    """True if the boxes of two parts meet, or nearly so."""
     (low, high), (other_low, other_high) = one.bounds, other.bounds
     return bool((np.minimum(high, other_high) - np.maximum(low, other_low) > -_TOUCH).all())
 
 
 def mirrored(closed: Blueprint, found: Sequence[Part]) -> str | None:
-    """What is wrong with two parts that are to be mirror images across a plane from front to back."""
+    """Return what is wrong with two parts that are to be mirror images across a plane from front to back."""
     bounds = {part.name: part.bounds for part in closed.parts}
     boxes = [bounds[part.name] for part in found]
     middle = np.mean([box.mean(axis=0)[0] for box in boxes])
@@ -142,7 +142,7 @@ def chosen_by_place(found: Sequence[Part], part: PartSpecification) -> list[Part
 
 
 def number_there(closed: Mapping[str, FloatArray], names: Sequence[str], place: str) -> int | None:
-    """How many parts are at a place and not at the opposite one; None where no place says so.
+    """Return how many parts are at a place and not at the opposite one; None where no place says so.
 
     Args:
         closed: Middles of parts, shape (3,) each [m].
@@ -163,13 +163,13 @@ def share_within(box: FloatArray, other: FloatArray) -> float:
 
 
 def _reaches(box: FloatArray, other: FloatArray) -> bool:
-    """Whether a box comes near a side of another one, or out of it."""
+    """True if a box comes near a side of another one, or out of it."""
     near = _EDGE_SHARE * np.ptp(other, axis=0)[:2]
     return bool((np.abs(box[:, :2] - other[:, :2]) < near).any() or share_within(box, other) < _MOSTLY)
 
 
 def _is_beside(one: Part, other: Part) -> bool:
-    """Whether two parts meet or are as high, no farther from each other than the larger of them is long."""
+    """True if two parts meet or are as high, no farther from each other than the larger of them is long."""
     (low, high), (other_low, other_high) = one.bounds, other.bounds
     between = np.maximum(low, other_low) - np.minimum(high, other_high)
     far = max(float((high - low).max()), float((other_high - other_low).max()))
@@ -177,7 +177,7 @@ def _is_beside(one: Part, other: Part) -> bool:
 
 
 def _is_before(one: Part, other: Part, sign: int) -> bool:
-    """Whether a part is in front of another one (sign -1) or behind it (1), and not beside it."""
+    """True if a part is in front of another one (sign -1) or behind it (1), and not beside it."""
     (low, high), (other_low, other_high) = one.bounds, other.bounds
     across = np.minimum(high, other_high) - np.maximum(low, other_low)
     return bool(across[0] > 0.0 and across[2] > 0.0 and sign * (low + high - other_low - other_high)[1] > 0.0)

@@ -85,7 +85,7 @@ class ParseState(Words):
 
 
 def nouns_of(parameter: Parameter) -> tuple[str, ...]:
-    """What a count or a size is called, singular."""
+    """Return what a count or a size is called, singular."""
     own = parameter.name.replace("_", " ")
     counted = isinstance(parameter.default, int)
     return (own.removesuffix("s") if counted else own, *parameter.words, *NOUNS.get(parameter.name, ()))

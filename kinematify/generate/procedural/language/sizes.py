@@ -160,13 +160,13 @@ def _lengths(reading: ParseState) -> None:
 
 
 def _is_named_for(reading: ParseState, name: str, noun: str) -> bool:
-    """Whether a parameter is of a part by its name, or by what people call it."""
+    """True if a parameter is of a part by its name, or by what people call it."""
     parameter = reading.parameter(name)
     return noun in name.split("_") or bool(parameter and any(noun in words.split() for words in parameter.words))
 
 
 def _is_of_a_part(reading: ParseState, k: int) -> bool:
-    """Whether what stands before word k is said of a part: `60 cm wide drawers`."""
+    """True if what stands before word k is said of a part: `60 cm wide drawers`."""
     parts = {noun for p in reading.family.parameters if isinstance(p.default, int) for noun in nouns_of(p)}
     return k not in reading.named and singular(reading.text(k), frozenset(parts)) in parts
 
@@ -191,7 +191,7 @@ def read_bare_length(reading: ParseState) -> None:
 
 
 def _is_of_whole(reading: ParseState, k: int, end: int) -> bool:
-    """Whether a length at words k to `end` stands before the object's name or by itself, and says not how far it opens.
+    """True if a length at words k to `end` stands before the object's name or by itself, and says not how far it opens.
 
     Screens are measured across their diagonal, which is no side.
     """

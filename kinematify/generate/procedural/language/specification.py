@@ -1,4 +1,4 @@
-"""What a sentence asks for: a kind of object, its parts as individuals or groups, sizes, looks, motions and places."""
+"""Request of a sentence: a kind of object, its parts as individuals or groups, sizes, looks, motions and places."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class PartSpecification:
 
     @property
     def is_share(self) -> bool:
-        """Whether it is some of the parts that were named before: `two of which`."""
+        """True if it is some of the parts that were named before: `two of which`."""
         return any(claim.about == "place" and claim.value == "first" for claim in self.claims)
 
     @property

@@ -1,4 +1,4 @@
-"""What a specification asks of a family: its parameters, and what it cannot have.
+"""Request of a specification to a family: its parameters, and what it cannot have.
 
 Driven by what the families declare: nothing here knows a family.
 """
@@ -235,7 +235,7 @@ def _built_so_that_it_matters(reading: ParseState, parameter: Parameter, made: B
 
 
 def _matters(reading: ParseState, parameter: Parameter, values: Mapping[str, Value], made: Blueprint) -> bool:
-    """Whether another value of a parameter would make another object: any other choice, one of the next numbers."""
+    """True if another value of a parameter would make another object: any other choice, one of the next numbers."""
     value = values[parameter.name]
     if isinstance(value, str):
         others: list[Value] = [choice for choice in parameter.choices if choice != value]
@@ -301,7 +301,7 @@ def _choices(reading: ParseState) -> None:
 
 
 def _is_free(reading: ParseState, where: range) -> bool:
-    """Whether words may say a choice: not taken up, but for the object's name and for a noun that was counted."""
+    """True if words may say a choice: not taken up, but for the object's name and for a noun that was counted."""
     if reading.apart & set(where):
         return False
     taken = (reading.used - reading.named) & set(where)

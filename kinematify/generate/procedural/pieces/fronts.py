@@ -26,7 +26,7 @@ class Bay(Field):
 
 @dataclass(frozen=True, kw_only=True)
 class Fitting:
-    """How fronts are mounted."""
+    """Mounting of fronts."""
 
     clearance: float
     """Gap between parts that move past each other [m]."""

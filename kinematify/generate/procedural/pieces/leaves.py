@@ -25,7 +25,7 @@ _RIB = 0.008  # between two grooves [m]
 
 @dataclass(frozen=True, kw_only=True)
 class Field:
-    """What one leaf closes: its borders in the plane of the frame [m]."""
+    """Opening that one leaf closes: its borders in the plane of the frame [m]."""
 
     left: float
     right: float
@@ -86,7 +86,7 @@ class Grooves:
 
     @property
     def depth(self) -> float:
-        """Of the frame that has room for the grooves [m]."""
+        """Depth of the frame that has room for the grooves [m]."""
         return _RIB + self.count * self._pitch
 
     @property

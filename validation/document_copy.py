@@ -1,0 +1,157 @@
+"""Copies of a document in the folder of a run: every mesh by its absolute path, without what cannot be read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from lxml import etree
+
+from kinematify.errors import DescriptionError
+from kinematify.robot.mesh_paths import find_mesh
+from kinematify.robot.urdf_text import parse_description
+from kinematify.validation.finding import Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from lxml.etree import _Element
+
+    from kinematify.validation.finding import Finding
+    from kinematify.validation.stage import StageRequest
+
+LEFT_OUT = frozenset(("KV140", "KV141", "KV142", "KV150"))
+"""Checks of shapes that reading leaves out, with a note."""
+_SHAPES = ("KV138", "KV139", "KV151", "KV152")
+"""Checks after whose errors a model is read without the shape that they name."""
+_JOINTS = ("KV127", "KV128", "KV130", "KV131", "KV134", "KV136", "KV137")
+"""The same with a fixed joint in place of the one that they name."""
+_NO_LIMIT = "KV136"
+
+
+@dataclass(frozen=True, kw_only=True)
+class DocumentCopy:
+    """A copy, and what it does without."""
+
+    path: Path
+    shapes: frozenset[str] = frozenset()
+    """Links that lack a shape."""
+    joints: frozenset[str] = frozenset()
+    """Joints that are fixed in it."""
+    only_visuals: bool = True
+    """It lacks nothing that collides or moves."""
+
+    def doubts(self, finding: Finding) -> bool:
+        """Whether a finding on the copy may come of what it lacks."""
+        return (
+            finding.link in self.shapes or finding.joint in self.joints or bool({*(finding.pair or ())} & self.shapes)
+        )
+
+
+def readable_copy(request: StageRequest, errors: Iterable[Finding], name: str) -> DocumentCopy | None:
+    """Write a copy that can be read in spite of errors of file and meshes; None where one of them forbids it.
+
+    Args:
+        request: Names the document, where packages lie, and the folder.
+        errors: Findings that keep the document from being read.
+        name: Of the copy in the folder of the run.
+    """
+    try:
+        robot = parse_description(request.urdf)
+    except DescriptionError:  # the text is not well-formed, which a finding says
+        return None
+    shapes, joints, only_visuals = set[str](), set[str](), True
+    for finding in errors:
+        if finding.check == _NO_LIMIT and _turns(robot, finding.joint):
+            continue  # it is read as continuous
+        if finding.check in _JOINTS and finding.joint is not None:
+            _fix_joint(robot, finding.joint)
+            joints.add(finding.joint)
+            only_visuals = False
+        elif finding.check in _SHAPES and finding.link is not None:
+            tags = _drop_shapes(robot, finding)
+            if not tags:
+                return None
+            shapes.add(finding.link)
+            only_visuals &= tags == {"visual"}
+        elif finding.severity is Severity.ERROR:
+            return None
+    path = request.work / name
+    _write_resolved(robot, request, path)
+    return DocumentCopy(path=path, shapes=frozenset(shapes), joints=frozenset(joints), only_visuals=only_visuals)
+
+
+def resolved_copy(request: StageRequest, name: str, left_out: Iterable[Finding]) -> Path:
+    """Write a copy that engines open wherever packages lie: absolute paths, which MuJoCo is told to keep whole.
+
+    Args:
+        request: Names the document, where packages lie, and the folder.
+        left_out: Findings of `LEFT_OUT`; the copy lacks the shapes that they are about.
+        name: Of the copy in the folder of the run.
+    """
+    robot = parse_description(request.urdf)
+    for finding in left_out:
+        if finding.severity is not Severity.NOTE:
+            _drop_shapes(robot, finding)
+    extension = robot.find("mujoco")
+    extension = etree.SubElement(robot, "mujoco") if extension is None else extension
+    compiler = extension.find("compiler")
+    compiler = etree.SubElement(extension, "compiler") if compiler is None else compiler
+    compiler.set("strippath", "false")
+    if "meshdir" in compiler.attrib:
+        del compiler.attrib["meshdir"]
+    path = request.work / name
+    _write_resolved(robot, request, path)
+    return path
+
+
+def _write_resolved(robot: _Element, request: StageRequest, path: Path) -> None:
+    folder = request.urdf.resolve().parent
+    for mesh in robot.iter("mesh"):
+        try:
+            mesh.set("filename", str(find_mesh(mesh.get("filename") or "", folder, request.package_dirs, "mesh")))
+        except DescriptionError:
+            continue  # the text has been checked: what is missing was reported
+    path.write_bytes(etree.tostring(robot, encoding="utf-8"))
+
+
+def _turns(robot: _Element, name: str | None) -> bool:
+    return any(joint.get("name") == name and joint.get("type") == "revolute" for joint in robot.findall("joint"))
+
+
+def _fix_joint(robot: _Element, name: str) -> None:
+    for joint in robot.findall("joint"):
+        if joint.get("name") == name:
+            joint.set("type", "fixed")
+            for element in (*joint.findall("axis"), *joint.findall("limit"), *joint.findall("mimic")):
+                _blank(element)
+
+
+def _drop_shapes(robot: _Element, finding: Finding) -> set[str]:
+    """Drop the shape in the line of a finding, and what names the same file in that link; return their tags."""
+    dropped = set[str]()
+    for link in robot.findall("link"):
+        if link.get("name") != finding.link:
+            continue
+        shapes = [*link.findall("visual"), *link.findall("collision")]
+        named = [
+            shape for shape in shapes if str(finding.line) in {str(element.sourceline) for element in shape.iter()}
+        ]
+        files = {mesh.get("filename") for shape in named for mesh in shape.iter("mesh")}
+        for shape in shapes:
+            if shape in named or {mesh.get("filename") for mesh in shape.iter("mesh")} & files:
+                dropped.add(str(shape.tag))
+                _blank(shape)
+    return dropped
+
+
+def _blank(element: _Element) -> None:
+    """Replace an element by a comment of as many lines, so that all others keep theirs."""
+    parent = element.getparent()
+    if parent is None:
+        return
+    text = etree.tostring(element, with_tail=False)
+    blank = etree.Comment("\n" * text.count(b"\n"))
+    blank.tail = element.tail
+    parent.replace(element, blank)
