@@ -166,9 +166,8 @@ def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeigh
     if len(indices) < 2:
         raise one_part(assembly)
     doubtful = {} if node is not None else _doubtful(label[kept], pairs, of_pairs)
-    return Grouping(
-        assembly=joined_pieces(assembly, indices),
-        groups=tuple(_group(assembly, index, chance) for index, chance in zip(indices, moves, strict=True)),
+    return replace(
+        grouped_as(pieces_of(assembly), indices, moves=moves),
         doubtful=tuple((k + 1, np.flatnonzero(owner == kept[piece])) for k, piece in doubtful.items()),
         pieces=assembly if doubtful else None,
         rejected=tuple(
@@ -196,25 +195,31 @@ def _doubtful(label: IntArray, pairs: IntArray, odds: FloatArray) -> dict[int, i
     return {} if len(found) == int((label < 0).sum()) else found
 
 
+def pieces_of(assembly: Assembly) -> Grouping:
+    """Return the grouping in which every part is a piece of its own."""
+    return Grouping(assembly=assembly, groups=tuple(Group(name=name, pieces=(name,)) for name in assembly.names))
+
+
 def grouped_as(
-    grouping: Grouping, assembly: Assembly, indices: Sequence[IntArray], names: Sequence[str] | None = None
+    grouping: Grouping,
+    indices: Sequence[IntArray],
+    *,
+    names: Sequence[str] | None = None,
+    moves: Sequence[float | None] | None = None,
 ) -> Grouping:
-    """The grouping with parts that are joined or named anew.
+    """Return the grouping with parts that are joined or named otherwise.
 
     Args:
         grouping: Groups in the order of the parts.
-        assembly: Their parts.
         indices: The parts that become each part.
         names: Of the new parts; without them each has that of its largest one.
+        moves: How likely each moves; without them that of a part that stays alone.
     """
-    found = joined_pieces(assembly, indices, names)
+    found = joined_pieces(grouping.assembly, indices, names)
+    moves = moves or [grouping.groups[index[0]].moves if len(index) == 1 else None for index in indices]
     groups = [
-        Group(
-            name=name,
-            pieces=tuple(piece for k in index for piece in grouping.groups[k].pieces),
-            moves=grouping.groups[index[0]].moves if len(index) == 1 else None,
-        )
-        for name, index in zip(found.names, indices, strict=True)
+        Group(name=name, pieces=tuple(piece for k in index for piece in grouping.groups[k].pieces), moves=likely)
+        for name, index, likely in zip(found.names, indices, moves, strict=True)
     ]
     return replace(grouping, assembly=found, groups=tuple(groups))
 
@@ -236,14 +241,10 @@ def completed(grouping: Grouping, chosen: Collection[int]) -> Grouping:
         if number in chosen:
             label[more] = number
     indices = [np.flatnonzero(label == number) for number in range(len(grouping.groups))]
-    moves = [group.moves for group in grouping.groups]
     joined = {grouping.pieces.names[k] for number, more in grouping.doubtful if number in chosen for k in more}
-    return replace(
-        grouping,
-        rejected=tuple(group for group in grouping.rejected if joined.isdisjoint(group.pieces)),
-        assembly=joined_pieces(grouping.pieces, indices),
-        groups=tuple(_group(grouping.pieces, own, chance) for own, chance in zip(indices, moves, strict=True)),
-    )
+    found = grouped_as(pieces_of(grouping.pieces), indices, moves=[group.moves for group in grouping.groups])
+    rejected = tuple(group for group in grouping.rejected if joined.isdisjoint(group.pieces))
+    return replace(grouping, assembly=found.assembly, groups=found.groups, rejected=rejected)
 
 
 def sureness(joints: Sequence[JointEstimate], config: GroupingConfig) -> dict[int, float]:
@@ -320,15 +321,12 @@ def fixed_merged(grouping: Grouping, joints: Sequence[JointEstimate], config: Gr
     if not 1 < len(kept) < len(groups):
         return grouping
     indices = [np.flatnonzero(owner == k) for k in kept]
-    assembly = joined_pieces(grouping.assembly, indices)
     gone = [group for group, k in zip(groups, owner, strict=True) if groups[k] is not group]
-    return Grouping(
-        assembly=assembly,
-        groups=tuple(
-            Group(name=name, pieces=tuple(piece for j in index for piece in groups[j].pieces), moves=groups[k].moves)
-            for name, index, k in zip(assembly.names, indices, kept, strict=True)
-        ),
+    return replace(
+        grouped_as(grouping, indices, moves=[groups[k].moves for k in kept]),
         rejected=(*sorted(gone, key=lambda group: -(group.moves or 0.0)), *grouping.rejected),
+        doubtful=(),
+        pieces=None,
     )
 
 
@@ -406,8 +404,7 @@ def joined_pieces(assembly: Assembly, groups: Sequence[IntArray], names: Sequenc
         parts=parts,
         set_aside=tuple(replace(item, nearest=into[item.nearest]) for item in assembly.set_aside),
         originals=originals,
-        original_names={**assembly.original_names, **(dict(zip(own, names, strict=True)) if names else {})},
-        segmented=True,
+        original_names={**dict(zip(own, names or own, strict=True)), **assembly.original_names},
     )
 
 
@@ -475,5 +472,4 @@ def read_groups(path: Path, assembly: Assembly) -> Grouping:
         str(given.get(group[0]) or assembly.names[_main_piece(assembly, k)])
         for group, k in zip(groups, indices, strict=True)
     ]
-    pieces = Grouping(assembly=assembly, groups=tuple(Group(name=name, pieces=(name,)) for name in assembly.names))
-    return grouped_as(pieces, assembly, indices, named)
+    return grouped_as(pieces_of(assembly), indices, names=named)

@@ -137,14 +137,8 @@ class DrawnModel:
         self._axes[joint.name] = self._add_lines(f"/axes/{joint.name}", points, color, visible=visible)
 
     def step_back(self, client: viser.ClientHandle) -> None:
-<<<<<<< HEAD
-        """Let a window that is higher than wide see the whole model."""
+        """Make a window that is higher than wide see the whole model."""
         if client.camera.aspect < 1.0:
-=======
-        """Make a window that is higher than wide see the whole model, above the panel that lies over its lower half."""
-        aspect = client.camera.aspect
-        if aspect < 1.0:
->>>>>>> main
             eye, target = self._scene.camera
             _aim(client, eye - target, target)
 
@@ -199,7 +193,7 @@ class DrawnModel:
         self._on_click(top)
 
     def look(self) -> None:
-        """Let pages look first from the side towards which the parts move."""
+        """Make pages look first from the side towards which the parts move."""
         eye, target = self._scene.camera
         camera = self._server.initial_camera
         camera.position, camera.look_at, camera.up = tuple(eye), tuple(target), (0.0, 0.0, 1.0)
@@ -254,7 +248,7 @@ class DrawnModel:
 
 
 def _aim(client: viser.ClientHandle, back: FloatArray, target: FloatArray) -> None:
-    """Let a page look at a point; in a window that is higher than wide, above the panel, from farther away.
+    """Make a page look at a point; in a window that is higher than wide, above the panel, from farther away.
 
     Args:
         client: The page.

@@ -48,7 +48,7 @@ if (!window.partName) {
   label.id = 'part-name';
   label.style.cssText = 'position:fixed;z-index:99;pointer-events:none;display:none;padding:2px 8px;' +
     'border-radius:4px;background:#222c;color:#fff;font:13px sans-serif';
-  addEventListener('pointermove', event => setTimeout(() => {
+  window.addEventListener('pointermove', event => setTimeout(() => {
     const page = window.__viserMutable, state = page?.scene?.__r3f?.root.getState();
     const names = new Map(Object.entries(page?.nodeRefFromName ?? {}).map(([name, node]) => [node, name]));
     let found;
@@ -58,7 +58,7 @@ if (!window.partName) {
     label.textContent = found ?? '';
     label.style.left = event.clientX + 14 + 'px';
     label.style.top = event.clientY + 14 + 'px';
-  }));
+  }), true);
 }"""
 """Shows the name of the part under the pointer, which viser marks but does not report."""
 _COPY = """
@@ -275,7 +275,7 @@ class Panel:
 
 
 def _introduction(shown: Shown) -> str:
-    """How to begin, the joints to look at first, and where chains of joints close."""
+    """Return how to begin, the joints to look at first, and where chains of joints close."""
     said = ["Move a slider (arrow keys move it by 1 % of the range) or click a part."]
     if shown.doubtful:
         names = _plain(", ".join(shown.doubtful))

@@ -14,6 +14,7 @@ from kinematify.assembly.part import Part
 from kinematify.assembly.pieces import connected_sheets
 from kinematify.errors import InputError
 from kinematify.grouping.groups import Group, Grouping, grouped_as, stated_groups
+from kinematify.refinement.hints import parse_hints
 from kinematify.robot.mesh_file import RawMesh
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def merge_parts(grouping: Grouping, names: Sequence[str]) -> Grouping:
         for k in range(len(inside))
         if k == first or not inside[k]
     ]
-    return grouped_as(grouping, assembly, indices)
+    return grouped_as(grouping, indices)
 
 
 def split_part(grouping: Grouping, name: str, *, tolerance: float, apart: Sequence[str] = ()) -> Grouping:
@@ -143,10 +144,14 @@ def rename_part(inference: Inference, grouping: Grouping, name: str, new: str) -
             return {renamed(key): renamed(item) for key, item in value.items()}
         return type(value)(map(renamed, value)) if isinstance(value, list | tuple) else value
 
-    found = grouped_as(grouping, assembly, [np.array([k]) for k in range(len(names))], names)
-    said = ("warnings", "hints", "refinement", "vision")
-    stated = {key: renamed(getattr(inference, key)) for key in said}
-    return replace(inference, assembly=found.assembly, grouping=found, **stated)
+    found = grouped_as(grouping, [np.array([k]) for k in range(len(names))], names=names)
+    hints = [
+        replace(hint, **{key: new for key in ("part", "parent", "twin") if getattr(hint, key) == name})
+        for hint in parse_hints(inference.hints, assembly.names)
+    ]
+    stated = {key: renamed(getattr(inference, key)) for key in ("warnings", "refinement", "vision")}
+    texts = tuple(text for hint in hints for text in hint.texts)
+    return replace(inference, assembly=found.assembly, grouping=found, hints=texts, **stated)
 
 
 def _check_part(assembly: Assembly, name: str) -> None:

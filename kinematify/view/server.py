@@ -8,6 +8,7 @@ import threading
 import time
 from dataclasses import replace
 from functools import partial
+from operator import methodcaller
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -50,7 +51,7 @@ def _connect(widget: Any, action: Callable[[Any], object]) -> None:
 
 
 class ModelViewer:
-    """What is on the page and what it does; every client sees the same.
+    """Page of a model: what it shows and does; every client sees the same.
 
     What a person tries stays in memory, as the one change that waits to be kept; only `keep` and `undo` write.
     """
@@ -101,6 +102,7 @@ class ModelViewer:
             self._marked: frozenset[str] = frozenset()
             self._colliding: frozenset[str] = frozenset()
             self._sweeping: str | None = None
+            self._sweep_start = 0.0
             self._waiting: Callable[[ModelFolder], Kept | None] | None = None
             self._apart = 0.0
             self._stale = True
@@ -115,35 +117,42 @@ class ModelViewer:
                 self.choose(chosen)
 
     def _connect_panel(self) -> None:
-        """Let the widgets act; those that change the model propose what `keep` would write."""
-        panel = self._panel
-        _connect(panel.poses, lambda event: self.take_pose(event.target.value))
-        for name, slider in panel.sliders.items():
-            _connect(slider, partial(self._slid, name))
-        _connect(panel.play, lambda _: self.play())
-        _connect(panel.choice, lambda event: self._try_choice(event.target))
-        _connect(panel.parent, lambda event: self.state("parent", event.target.value))
-        _connect(panel.twin, lambda event: self.state("twin", event.target.value))
-        _connect(panel.edit, lambda _: self.set_by_hand())
-        _connect(panel.hand_type, lambda _: self.change_kind())
-        _connect(panel.hand_limits, lambda _: self.change_line())
-        _connect(panel.keep, lambda _: self.keep())
-        _connect(panel.undo, lambda _: self.undo())
-        for button, sight in panel.places:
-            _connect(button, partial(lambda shown, _: self.show(shown), sight))
-        _connect(panel.apart, lambda event: self.take_apart(event.target.value / 100.0))
-        _connect(panel.axes, lambda event: self._drawn.show_axes(event.target.value))
-        _connect(panel.picture, lambda event: self.send_picture(event.client))
-        _connect(panel.film, lambda event: self.send_film(event.client))
-        for top, box in panel.boxes.items():
-            _connect(box, partial(lambda part, event: self._drawn.show_part(part, event.target.value), top))
+        """Make the widgets act; those that change the model propose what `keep` would write."""
+        panel, drawn = self._panel, self._drawn
+        for widget, action in (
+            (panel.poses, lambda event: self.take_pose(event.target.value)),
+            (panel.play, self._play),
+            (panel.choice, self._try_choice),
+            (panel.parent, lambda event: self.state("parent", event.target.value)),
+            (panel.twin, lambda event: self.state("twin", event.target.value)),
+            (panel.edit, lambda _: self.set_by_hand()),
+            (panel.hand_type, self._change_type),
+            (panel.hand_limits, lambda _: self.change_line()),
+            (panel.keep, lambda _: self.keep()),
+            (panel.undo, lambda _: self.undo()),
+            (panel.apart, self._take_apart),
+            (panel.axes, lambda event: drawn.show_axes(event.target.value)),
+            (panel.picture, lambda event: self.send_picture(event.client)),
+            (panel.film, lambda event: self.send_film(event.client)),
+            *((slider, partial(self._slide, name)) for name, slider in panel.sliders.items()),
+            *((button, lambda _, sight=sight: self.show(sight)) for button, sight in panel.places),
+            *(
+                (box, lambda event, top=top: drawn.show_part(top, event.target.value))
+                for top, box in panel.boxes.items()
+            ),
+        ):
+            _connect(widget, action)
         panel.undo.visible = self._folder is not None and self._folder.can_undo
-        if self._open_folder is not None:
-            panel.add_groups(self._shown.rejected, opened=self._regrouped)
-            _connect(panel.name, lambda event: self.rename(panel.clicked[-1], event.target.value))
-            _connect(panel.merge, lambda _: self.merge(*panel.clicked))
-            _connect(panel.split, lambda _: self.split(panel.clicked[-1]))
-            _connect(panel.free, lambda _: self.free(panel.may_move[panel.set_of_pieces.value]))
+        if self._open_folder is None:
+            return
+        panel.add_groups(self._shown.rejected, opened=self._regrouped)
+        for widget, words, method, arguments in (
+            (panel.name, "{} is named {}", "rename", lambda: (panel.clicked[-1], panel.name.value)),
+            (panel.merge, "{} and {} are one part", "merge", lambda: panel.clicked),
+            (panel.split, "every piece of {} is a part", "split", lambda: panel.clicked[-1:]),
+            (panel.free, "{} are a part", "free", lambda: [panel.may_move[panel.set_of_pieces.value]]),
+        ):
+            _connect(widget, lambda _, words=words, method=method, of=arguments: self.regroup(words, method, *of()))
 
     def set(self, values: Mapping[str, float]) -> None:
         """Move joints [rad or m], sliders included; names that are no leaders are passed over."""
@@ -166,29 +175,25 @@ class ModelViewer:
 
     @property
     def status(self) -> str:
-        """What the page says of collisions."""
+        """Return what the page says of collisions."""
         return str(self._panel.status.content)
 
     def run(self, stop: threading.Event) -> None:
         """Sweep what is to be swept and look for collisions until `stop` is set."""
-        start, last = time.monotonic(), ""
         first: float | None = None
         checked = time.monotonic()
         while not stop.wait(_FRAME):
-            if time.monotonic() - checked > _LOOK_AGAIN:
-                checked = time.monotonic()
+            now = time.monotonic()
+            if now - checked > _LOOK_AGAIN:
+                checked = now
                 self._follow_file()
             if first is None and self._server.get_clients():
-                first = time.monotonic()
-            name = self._sweeping
-            if name is not None:
-                if name != last:
-                    start = time.monotonic()
-                share = 0.5 - 0.5 * np.cos(2.0 * np.pi * (time.monotonic() - start) / _SWEEP_SECONDS)
+                first = now
+            if (name := self._sweeping) is not None:
+                share = 0.5 - 0.5 * np.cos(2.0 * np.pi * (now - self._sweep_start) / _SWEEP_SECONDS)
                 lower, upper = self._scene.range_of(self._scene.robot.joint_by_name[name])
                 self.set({name: float(lower + share * (upper - lower))})
-            last = name or ""
-            if first is not None and time.monotonic() - first > _HEAD_START:
+            if first is not None and now - first > _HEAD_START:
                 self._add_marks()
                 if self._stale:
                     self.look_for_collisions()
@@ -225,7 +230,7 @@ class ModelViewer:
             self.choose(joint.name)
 
     def choose(self, joint: str) -> None:
-        """Let the part of a joint glow, and show what is known of the joint."""
+        """Make the part of a joint glow, and show what is known of the joint."""
         with self._lock:
             if self._chosen != joint and joint in self._panel.sliders:
                 self.show_as_in_file()
@@ -248,7 +253,7 @@ class ModelViewer:
     # ---- what waits to be kept ---------------------------------------------------------------------------------------
 
     def _propose(self, words: str, change: Callable[[ModelFolder], Kept | None]) -> None:
-        """Let a change wait to be kept, in place of the one that did."""
+        """Make a change wait to be kept, in place of the one that did."""
         self._waiting = change
         self._panel.offer(words)
 
@@ -273,7 +278,8 @@ class ModelViewer:
                 self._panel.choice.value = self._panel.choice.options[number]
                 self._preview(item, alternative, f"{item.child} {words}")
 
-    def _try_choice(self, choice: Any) -> None:
+    def _try_choice(self, event: Any) -> None:
+        choice = event.target
         if self._chosen is not None and choice.value in choice.options:  # else its options are new
             self.try_candidate(self._chosen, choice.options.index(choice.value))
 
@@ -290,38 +296,20 @@ class ModelViewer:
             getattr(self._panel, key).value = name
             hint = Hint(part=joint.child, parent=name) if key == "parent" else Hint(part=joint.child, twin=name)
             said = f"with {name} as its parent" if key == "parent" else f"with the same joint as {name}"
-            self._propose(f"{joint.child} {said}", lambda folder: folder.state(hint))
+            self._propose(f"{joint.child} {said}", methodcaller("state", hint))
 
-    def rename(self, part: str, name: str) -> None:
-        """Propose another name of a part, which is that of its link."""
-        with self._lock:
-            self.show_as_in_file()
-            if name.strip() and name != part:
-                self._propose(f"{part} is named {name}", lambda folder: folder.rename(part, name))
-
-    def merge(self, one: str, other: str) -> None:
-        """Propose to make one part of two."""
-        self._regroup(f"{one} and {other} are one part", lambda folder: folder.merge(one, other))
-
-    def split(self, part: str) -> None:
-        """Propose to make every connected piece of a part a part."""
-        self._regroup(f"every piece of {part} is a part", lambda folder: folder.split(part))
-
-    def free(self, pieces: Sequence[str]) -> None:
-        """Propose to make one part of pieces of another one."""
-        self._regroup(f"{len(pieces)} pieces with {pieces[0]} are a part", lambda folder: folder.free(pieces))
-
-    def _regroup(self, words: str, change: Callable[[ModelFolder], Kept]) -> None:
+    def regroup(self, words: str, method: Literal["rename", "merge", "split", "free"], *arguments: Any) -> None:
+        """Propose other parts: what a method of `ModelFolder` makes of its arguments, which `words` take, too."""
         with self._lock:
             self.show_as_in_file()
             self._regrouped = True
-            self._propose(words, change)
+            self._propose(words.format(*arguments), methodcaller(method, *arguments))
 
     def _preview(self, joint: Joint, alternative: JointAlternative, words: str) -> None:
         """Move a joint as an alternative says; that waits to be kept."""
         self._try(joint.name, alternative)
         tried = self._scene.tried(joint.name) or alternative
-        self._propose(words, lambda folder: folder.keep(joint.child, tried))
+        self._propose(words, methodcaller("keep", joint.child, tried))
         self._glow()
 
     def _try(self, joint: str, alternative: JointAlternative | None) -> None:
@@ -348,7 +336,7 @@ class ModelViewer:
 
     def undo(self) -> None:
         """Write the model as it was before the last change, and show it."""
-        self._write(lambda folder: folder.undo())
+        self._write(methodcaller("undo"))
 
     def _write(self, change: Callable[[ModelFolder], Kept | None]) -> Kept | None:
         """Change the folder, say what came of it, and show what it holds: nothing else here writes."""
@@ -409,7 +397,7 @@ class ModelViewer:
             self._gizmo.remove()
         self._gizmo = None
 
-    def change_kind(self) -> None:
+    def _change_type(self, _: Any) -> None:
         """Begin the range of another type again: a quarter turn, or half of the model's size."""
         with self._lock:
             if self._gizmo is not None:
@@ -477,7 +465,7 @@ class ModelViewer:
             if name == "Opened":
                 self._drawn.fit(self._q)
 
-    def _slid(self, joint: str, event: Any) -> None:
+    def _slide(self, joint: str, event: Any) -> None:
         """Move a joint whose slider a person moves, and choose it unless a change of another one waits."""
         with self._lock:
             self._q[joint] = float(event.target.value) / self._panel.factor(joint)
@@ -485,19 +473,20 @@ class ModelViewer:
             if self._waiting is None:
                 self.choose(joint)
 
-    def play(self) -> None:
-        """Let the chosen joint go to and fro, or stop."""
+    def _play(self, _: Any) -> None:
+        """Make the chosen joint go to and fro, or stop."""
         with self._lock:
             self._sweeping = None if self._sweeping == self._chosen else self._chosen
+            self._sweep_start = time.monotonic()
 
-    def take_apart(self, share: float) -> None:
-        """Take the model apart, 0 for not at all."""
+    def _take_apart(self, event: Any) -> None:
+        """Take the model apart, 0 % for not at all."""
         with self._lock:
-            self._apart = share
+            self._apart = event.target.value / 100.0
             self._place()
 
     def send_picture(self, client: Any) -> None:
-        """Let the page of a client draw a picture from where it looks, and offer it there."""
+        """Make the page of a client draw a picture from where it looks, and offer it there."""
         width, height = _PICTURE
         pixels = client.get_render(height, width, transport_format="png")
         content = io.BytesIO()
@@ -546,7 +535,7 @@ class ModelViewer:
             self._glow()
 
     def _glow(self) -> None:
-        """Let parts glow that collide, that a finding is about, or whose joint is chosen."""
+        """Make parts glow that collide, that a finding is about, or whose joint is chosen."""
         chosen = self._chosen and self._scene.group_of(self._scene.robot.joint_by_name[self._chosen].child)
         for group in self._scene.groups:
             color = None

@@ -85,11 +85,14 @@ class ViewScene:
 
     def extent(self, q: Mapping[str, float]) -> FloatArray:
         """Return the corners of the model in a configuration, frame of the root link [m], shape (2, 3)."""
+        corners = np.array(list(self._corners(q).values()) or np.zeros((1, 2, 3)))
+        return np.stack([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])
+
+    def _corners(self, q: Mapping[str, float]) -> dict[str, FloatArray]:
+        """Lower and upper corner of every group in a configuration, frame of the root link [m], shape (2, 3) each."""
         poses = self.poses(q)
-        placed = [vertices @ poses[top][:3, :3].T + poses[top][:3, 3] for top, (vertices, _) in self.meshes.items()]
-        corners = np.concatenate(placed)
-        corners = corners if len(corners) else np.zeros((1, 3))
-        return np.stack([corners.min(axis=0), corners.max(axis=0)])
+        placed = {top: v @ poses[top][:3, :3].T + poses[top][:3, 3] for top, (v, _) in self.meshes.items() if len(v)}
+        return {top: np.stack([points.min(axis=0), points.max(axis=0)]) for top, points in placed.items()}
 
     @cached_property
     def camera(self) -> tuple[FloatArray, FloatArray]:
@@ -110,43 +113,40 @@ class ViewScene:
 
         Where the model states no colour at all, every group has one of its own.
         """
-        found = {}
-        for index, group in enumerate(self.groups):
-            vertices, faces, appearance = self._mesh(group)
-            if len(faces):
-                invented = Material().color if self._states_colors else _color(index)
-                found[group.top] = surfaces(vertices, faces, appearance or plain(invented, len(faces)))
-        return found
+        return {
+            top: surfaces(vertices, faces, appearance or plain(color, len(faces)))
+            for top, vertices, faces, appearance, color in self._bodies
+        }
 
     def posed(self, q: Mapping[str, float]) -> tuple[PosedMesh, ...]:
         """Return what is seen of every group in a configuration, frame of the root link, for pictures."""
         from kinematify.render.picture import PosedMesh  # noqa: PLC0415  # loads the ray caster
 
         poses = self.poses(q)
-        found = []
-        for index, group in enumerate(self.groups):
-            vertices, faces, appearance = self._mesh(group)
-            if len(faces):
-                T = poses[group.top]
-                color = Material().color if self._states_colors else _color(index)
-                placed = vertices @ T[:3, :3].T + T[:3, 3]
-                found.append(PosedMesh(vertices=placed, faces=faces, color=np.array(color[:3]), appearance=appearance))
-        return tuple(found)
+        return tuple(
+            PosedMesh(
+                vertices=vertices @ poses[top][:3, :3].T + poses[top][:3, 3],
+                faces=faces,
+                color=np.array(color[:3]),
+                appearance=appearance,
+            )
+            for top, vertices, faces, appearance, color in self._bodies
+        )
 
     @cached_property
-    def _states_colors(self) -> bool:
-        return any(mesh.appearance is not None for link in self.robot.links for mesh in link.meshes)
+    def _bodies(self) -> list[tuple[str, FloatArray, IntArray, Appearance | None, Rgba]]:
+        """Groups that are seen: top link, vertices, faces, appearance, and the colour of what states none."""
+        stated = any(mesh.appearance is not None for link in self.robot.links for mesh in link.meshes)
+        return [
+            (group.top, *mesh, Material().color if stated else _color(index))
+            for index, group in enumerate(self.groups)
+            if len((mesh := self._mesh(group))[1])
+        ]
 
     @cached_property
     def bounds(self) -> dict[str, FloatArray]:
         """Lower and upper corner of every group at zero, frame of the root link [m], shape (2, 3) each."""
-        zero = self.poses({})
-        found = {}
-        for top, (vertices, _) in self.meshes.items():
-            if len(vertices):
-                placed = vertices @ zero[top][:3, :3].T + zero[top][:3, 3]
-                found[top] = np.stack([placed.min(axis=0), placed.max(axis=0)])
-        return found
+        return self._corners({})
 
     def group_of(self, link: str) -> str:
         """Top link of the group that holds a link."""

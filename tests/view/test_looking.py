@@ -64,8 +64,8 @@ def test_clicks_and_widgets_that_the_program_sets_change_no_byte(number: int, na
             lambda: viewer.try_candidate(moving, 1),
             viewer.set_by_hand,
             lambda: viewer.set_limits(-5.0, 20.0),
-            lambda: viewer.rename(joint.child, "cover"),
-            lambda: viewer.merge(joint.child, joint.parent),
+            lambda: viewer.regroup("{} is {}", "rename", joint.child, "cover"),
+            lambda: viewer.regroup("{} with {}", "merge", joint.child, joint.parent),
             viewer.show_as_in_file,
         ):
             look()

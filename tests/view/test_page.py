@@ -101,7 +101,7 @@ def test_the_name_under_the_pointer_is_shown_and_a_merge_keeps_pose_and_folder(t
             window.viewer.click(part)
         moved = dict.fromkeys(window.viewer.values, 0.05)
         window.viewer.set(moved)
-        window.viewer.merge(first, last)
+        window.viewer.regroup("{} and {} are one part", "merge", first, last)
         page.get_by_text("Not written yet").wait_for(timeout=PATIENCE)
         press(page, "Keep this")
         page.get_by_text("The same from the command line").wait_for(timeout=PATIENCE)
