@@ -29,12 +29,13 @@ STAMP := $(VENV)/.setup-$(SUM)
 TOOK = echo "make $@ took $$(( $$(date +%s) - $(START) )) s"
 START := $(shell date +%s)
 
-.PHONY: help setup demo test check lint format types bench docs pictures clean
+.PHONY: help setup demo test goldens check lint format types bench docs pictures clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make demo     one sentence -> URDF -> verdict, and its joints inferred again, in out/cabinet/"
 	@echo "make test     run the tests (ARGS=... for pytest)"
+	@echo "make goldens  compare what the code makes with the committed sample"
 	@echo "make check    lint, types and the tests of the packages that differ from BASE=main; for every change"
 	@echo "make lint     ruff: rules and format"
 	@echo "make format   let ruff fix what it can"
@@ -87,7 +88,11 @@ pictures: setup
 	$(IN_VENV) tools.draw_gallery docs
 
 test: setup
-	OMP_NUM_THREADS=1 $(IN_VENV) pytest -n $(JOBS) --dist worksteal $(ARGS)
+	OMP_NUM_THREADS=1 $(IN_VENV) pytest -n $(JOBS) --dist worksteal --durations=25 $(ARGS)
+	@$(TOOK)
+
+goldens: setup
+	OMP_NUM_THREADS=1 $(IN_VENV) benchmarks.goldens check --sample --jobs $(JOBS)
 	@$(TOOK)
 
 check: lint types

@@ -46,7 +46,7 @@ _ROWS = (
 
 
 def write_results_page(root: Path) -> None:
-    """Write the figures into `README.md`, and dates and commits into `docs/results.md`.
+    """Write the figures of reports whose JSON is there into `README.md`, dates and commits into `docs/results.md`.
 
     Args:
         root: Folder of the checkout.
@@ -55,7 +55,8 @@ def write_results_page(root: Path) -> None:
         InputError: A report, a mark or the benchmark data is missing, or a linked table does not say when it was made.
     """
     results = root / "results"
-    _replace(root / "README.md", "figures", _figures(results))
+    readme = root / "README.md"
+    _replace(readme, "figures", _figures(results, _between(readme, "figures")[1]))
     page = root / "docs" / "results.md"
     _replace(page, "tables", dated(_between(page, "tables")[1], root))
 
@@ -94,10 +95,16 @@ def _made(report: Path) -> tuple[str, str]:
     return found[1], found[2]
 
 
-def _figures(results: Path) -> str:
+def _figures(results: Path, before: str) -> str:
+    """The table anew; a row whose report is not there (large JSON is not kept) stays as it was."""
+    old = {cells[0]: cells for line in before.splitlines() if (cells := tuple(line.strip("| ").split(" | ")))}
     rows = []
     for row in _ROWS:
-        report = load_report(results / f"{row.report}.json", RESULTS)
+        path = results / f"{row.report}.json"
+        if not path.is_file() and row.title in old:
+            rows.append(old[row.title])
+            continue
+        report = load_report(path, RESULTS)
         chosen = [run for run in report.records if row.fitted is None or run.object in _fitted(row)]
         rows.append((row.title, *_cells(chosen)))
     return table(("", *_FIGURES), rows)

@@ -6,6 +6,7 @@ KinematifyError
 │   ├── DescriptionError  a URDF cannot be read
 │   ├── ConfigError       a configuration is unknown or malformed
 │   └── OutputError       the output folder exists or cannot be written
+├── ExportError           a target does not read the model that was written: exit status 1
 └── EnvironmentFault      an engine or package is missing or failed: exit status 3
 
 A message is one paragraph that says what was given, what was expected and what to do.
@@ -53,6 +54,12 @@ class ConfigError(InputError):
 
 class OutputError(InputError):
     """The output place exists already or cannot be written."""
+
+
+class ExportError(KinematifyError):
+    """A target refuses the file that was written for it, or reads another model in it."""
+
+    exit_status = ExitStatus.FAILURES
 
 
 class EnvironmentFault(KinematifyError):

@@ -17,7 +17,6 @@ def affected(path: str) -> set[str]:
     [
         ("kinematify/vision/votes.py", "tests/vision/test_vision.py"),
         ("kinematify/cli/erase.py", "tests/cli/test_cli_erase.py"),  # commands are loaded late, by their names
-        ("benchmarks/studies/scaling.py", "tests/benchmarks/test_scaling.py"),
         ("validation/finding.py", "tests/validation/test_feedback.py"),  # behind a symlink
         ("kinematify/generate/procedural/pieces/leaves.py", "tests/generate/procedural/test_families.py"),
         ("tests/known.py", "tests/joints/test_kind.py"),

@@ -55,8 +55,8 @@ def measured(name: str, text: str) -> Size:
     nodes = list(ast.walk(ast.parse(text)))
     free = {
         (item.value.lineno, item.value.col_offset)
-        for node in nodes
-        for item in (node.body if isinstance(getattr(node, "body", None), list) else ())
+        for body in (getattr(node, "body", None) for node in nodes)
+        for item in (body if isinstance(body, list) else ())
         if isinstance(item, ast.Expr) and isinstance(item.value, ast.Constant) and isinstance(item.value.value, str)
     }  # docstrings, and strings below attributes
     words = tokenize.generate_tokens(io.StringIO(text).readline)

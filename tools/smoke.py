@@ -17,6 +17,7 @@ import time
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 EXAMPLE = Path(__file__).resolve().parent.parent / "examples" / "cabinet"
 SENTENCE = "a kitchen cabinet with two doors above three drawers, 80 cm wide"
@@ -73,7 +74,7 @@ def run(name: str, words: list[str], *, status: int = 0) -> str:
     return done.stdout + done.stderr
 
 
-def check_engines(report: dict, required: set[str]) -> None:
+def check_engines(report: dict[str, Any], required: set[str]) -> None:
     """An installed engine has results; one that is not says why, and which command installs it."""
     checks = report["checks"]
     for engine, module in ENGINES.items():

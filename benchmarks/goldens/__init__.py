@@ -11,6 +11,6 @@ Numbers are compared to their last bit, and these differ between processors and 
 therefore holds the versions and a hash of what this processor computes. On another platform `check` compares nothing
 unless `--portable` asks for what is the same everywhere: parses, names, kinds of joints, help, exit statuses, schemas.
 
-What is tolerated: numbers and messages of findings that rest on PyBullet or Drake, whose solvers keep what an earlier
+What is tolerated: numbers and messages of findings that rest on PyBullet, whose solver keeps what an earlier
 step or process left behind; check, severity, cause and place of these findings are exact.
 """

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 FORMAT: Final = 1
 """Raised where goldens of an earlier version of this command cannot be compared, whatever the package does."""
 _PACKAGES = (
-    "click", "coacd", "drake", "embreex", "gymnasium", "libigl", "libpinocchio", "lxml", "manifold3d", "mujoco",
+    "click", "coacd", "embreex", "gymnasium", "libigl", "libpinocchio", "lxml", "manifold3d", "mujoco",
     "numpy", "pybullet", "pydantic", "python-fcl", "scipy", "torch", "trimesh",
 )  # fmt: skip
 Hashes = dict[str, dict[str, str]]

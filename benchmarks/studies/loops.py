@@ -1,11 +1,10 @@
 """Are closed chains found, exported, and closed while they move?
 
 Linkages are drawn, cut into their parts, and inferred from these alone. *Found*: the model has as many loop joints as
-the linkage has independent loops, and the chain moves as freely as the true one. *Exported*: the MJCF and the URDF hold
-all of them. *Closed*: in the engine, the joint that drives the chain is moved from rest to both ends by its own motor
-(MuJoCo, from the exported MJCF) or by a force of the same size (Drake, from the URDF), gravity and contacts on, weight
-and friction of the whole chain made up for, and neither end of a pin is ever farther from the other than 0.1 % of the
-diagonal; the way must be made to 90 %.
+the linkage has independent loops, and the chain moves as freely as the true one. *Exported*: the MJCF holds all of
+them. *Closed*: in MuJoCo, the joint that drives the chain is moved from rest to both ends by its own motor, gravity and
+contacts on, weight and friction of the whole chain made up for, and neither end of a pin is ever farther from the other
+than 0.1 % of the diagonal; the way must be made to 90 %.
 
 The linkages are ours: they were drawn for this study, with modelled pins and holes, and seen while the code was
 written: in-sample.
@@ -37,7 +36,7 @@ from kinematify.robot.read import read_robot
 from kinematify.robot.robot import joint_ends, rest_configuration
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
     from benchmarks.study import Measured, Record, Work
     from kinematify.evaluation.result_record import Report
@@ -50,8 +49,6 @@ _REACHED = 0.9
 """Least share of its way that the driver makes."""
 _SECONDS = 3.0
 """From rest to an end."""
-_STEP = 1.0e-3
-"""Of Drake [s]; MuJoCo has that of the file."""
 _PACE = 2.0 * np.pi * 10.0
 """Of the servo [rad/s]."""
 
@@ -84,7 +81,7 @@ def measure(options: LoopOptions, work: Work) -> Measured:
 
 
 def measured(asked: Drawn) -> Record:
-    """Infer one linkage from its parts, write it, and move it in both engines."""
+    """Infer one linkage from its parts, write it, and move it."""
     start = time.perf_counter()
     blueprint = linkage(asked.kind, asked.seed)
     true = true_model(blueprint, load_config())
@@ -108,13 +105,12 @@ def measured(asked: Drawn) -> Record:
         "found": found,
     }
     diagonal = inference.assembly.diagonal
-    for engine, runs in (("mujoco", _in_mujoco(exported, robot)), ("drake", _in_drake(urdf, robot))):
-        ways = list(runs)
-        record[engine] = {
-            "pins": max((way.pins for way in ways), default=0),
-            "gap": max((way.gap for way in ways), default=float("nan")) / diagonal,
-            "reached": min((way.reached for way in ways), default=0.0),
-        }
+    ways = list(_in_mujoco(exported, robot))
+    record["mujoco"] = {
+        "pins": max((way.pins for way in ways), default=0),
+        "gap": max((way.gap for way in ways), default=float("nan")) / diagonal,
+        "reached": min((way.reached for way in ways), default=0.0),
+    }
     return {**record, "seconds": round(time.perf_counter() - start, 1)}
 
 
@@ -154,7 +150,7 @@ def _ways(robot: Robot) -> Iterator[tuple[str, float, float]]:
 
 
 def _in_mujoco(xml: Path, robot: Robot) -> Iterator[Way]:
-    import mujoco  # noqa: PLC0415 - one process for both engines, each loaded when its turn comes
+    import mujoco  # noqa: PLC0415 - only the processes of the records need it
 
     model = mujoco.MjModel.from_xml_path(str(xml))
     pins = [k for k in range(model.neq) if model.eq_type[k] == mujoco.mjtEq.mjEQ_CONNECT]
@@ -224,83 +220,6 @@ def _aim(rest: float, end: float, share: float) -> tuple[float, float]:
     return rest + 0.5 * (end - rest) * (1.0 - float(np.cos(phase))), float(speed)
 
 
-def _in_drake(urdf: Path, robot: Robot) -> Iterator[Way]:
-    from pydrake.multibody.parsing import Parser  # noqa: PLC0415 - one process for both engines
-    from pydrake.multibody.plant import AddMultibodyPlantSceneGraph  # noqa: PLC0415
-    from pydrake.multibody.tree import PdControllerGains  # noqa: PLC0415
-    from pydrake.systems.analysis import Simulator  # noqa: PLC0415
-    from pydrake.systems.framework import DiagramBuilder  # noqa: PLC0415
-
-    chain = _Chain(robot)
-
-    def built(stiffness: FloatArray, damping: FloatArray) -> tuple[Any, Any, Any]:
-        """A plant with servos, its instance and its diagram."""
-        builder = DiagramBuilder()
-        plant, _ = AddMultibodyPlantSceneGraph(builder, _STEP)
-        (instance,) = Parser(plant).AddModels(str(urdf))
-        plant.WeldFrames(plant.world_frame(), plant.GetBodyByName(robot.root).body_frame())
-        for leader, name in enumerate(chain.leaders):
-            effort = robot.joint_by_name[name].effort or np.inf
-            servo = plant.AddJointActuator(f"{name} servo", plant.GetJointByName(name), effort)
-            if stiffness.any():
-                servo.set_controller_gains(PdControllerGains(p=stiffness[leader], d=damping[leader]))
-        plant.Finalize()
-        return plant, instance, builder.Build()
-
-    for driver, rest, end in _ways(robot):
-        none = np.zeros(len(chain.leaders))
-        plant, _, _ = built(none, none)
-        dofs = [plant.GetJointByName(name).velocity_start() for name in chain.mechanism.joints]
-        stiffness, damping = _gains(_largest_inertia(plant, chain, driver, np.linspace(rest, end, 9)))
-        plant, instance, diagram = built(stiffness, damping)
-        simulator = Simulator(diagram)
-        root = simulator.get_mutable_context()
-        context = plant.GetMyMutableContextFromRoot(root)
-        places = [plant.GetJointByName(name).position_start() for name in chain.mechanism.joints]
-        values = plant.GetPositions(context)
-        values[places] = chain.start
-        plant.SetPositions(context, values)
-        wished = plant.get_desired_state_input_port(instance)
-        worst, steps, stride = 0.0, round(_SECONDS / _STEP), 5
-        ends = {link for loop in robot.loops for link in loop.links}
-        for step in range(0, steps, stride):
-            aim, speed = chain.aims(driver, rest, end, step / steps)
-            leads = chain.mechanism.leads_at(plant.GetPositions(context)[places][chain.columns])
-            weight = leads.T @ -plant.CalcGravityGeneralizedForces(context)[dofs]
-            wished.FixValue(context, [*(aim + weight / stiffness), *speed])
-            simulator.AdvanceTo((step + stride) * _STEP)
-            poses = {name: plant.GetBodyByName(name).EvalPoseInWorld(context).GetAsMatrix4() for name in ends}
-            worst = max(worst, largest_gap(robot, poses))
-        made = (float(plant.GetJointByName(driver).GetOnePosition(context)) - rest) / (end - rest)
-        yield Way(pins=plant.num_constraints() - sum(joint.mimic is not None for joint in robot.joints),
-                  gap=worst, reached=made)  # fmt: skip
-
-
-def _largest_inertia(plant: Any, chain: _Chain, driver: str, way: FloatArray) -> FloatArray:
-    """What each leader moves at most where a driver has the values of its way [kg or kg m^2], shape (leaders,)."""
-    context, most = plant.CreateDefaultContext(), np.zeros(len(chain.leaders))
-    dofs = [plant.GetJointByName(name).velocity_start() for name in chain.mechanism.joints]
-    for value in way:
-        leaders = chain.mechanism.rest.copy()
-        leaders[chain.leaders.index(driver)] = value
-        places = plant.GetPositions(context)
-        for name, one in zip(chain.mechanism.joints, chain.mechanism.all_values(leaders[None])[0], strict=True):
-            places[plant.GetJointByName(name).position_start()] = one
-        plant.SetPositions(context, places)
-        leads, inertia = chain.mechanism.leads_at(leaders), plant.CalcMassMatrix(context)
-        most = np.maximum(most, np.diag(leads.T @ inertia[np.ix_(dofs, dofs)] @ leads))
-    return most
-
-
-def largest_gap(robot: Robot, poses: Mapping[str, FloatArray]) -> float:
-    """How far the ends of a pin are apart at most [m], links standing at `poses`."""
-    ends = [
-        [(poses[link] @ np.append(point, 1.0))[:3] for link, point in zip(loop.links, loop.points, strict=True)]
-        for loop in robot.loops
-    ]
-    return max((float(np.linalg.norm(one - other)) for one, other in ends), default=0.0)
-
-
 def report(found: Report[Record]) -> list[str]:
     """One row a kind, and what failed."""
     records = found.records
@@ -309,7 +228,7 @@ def report(found: Report[Record]) -> list[str]:
     rows.append(_row("**all**", records))
     return [
         explained(__doc__),
-        table(("linkage", "drawn", "loops found", "exported", "closed in MuJoCo", "closed in Drake"), rows),
+        table(("linkage", "drawn", "loops found", "exported", "closed in MuJoCo"), rows),
         "## What failed",
         "\n".join(_failures(records)) or "Nothing.",
     ]
@@ -319,17 +238,17 @@ def _row(name: str, records: Sequence[Record]) -> tuple[str, ...]:
     counts = [
         sum(record["found"] for record in records),
         sum(_exported(record) for record in records),
-        *(sum(_holds(record, engine) for record in records) for engine in ("mujoco", "drake")),
+        sum(_holds(record) for record in records),
     ]
     return name, str(len(records)), *(f"{count} ({count / len(records):.0%})" for count in counts)
 
 
 def _exported(record: Record) -> bool:
-    return bool(record["found"] and min(record["mujoco"]["pins"], record["drake"]["pins"]) >= record["loops"])
+    return bool(record["found"] and record["mujoco"]["pins"] >= record["loops"])
 
 
-def _holds(record: Record, engine: str) -> bool:
-    run = record[engine]
+def _holds(record: Record) -> bool:
+    run = record["mujoco"]
     return bool(_exported(record) and run["gap"] <= _CLOSED and run["reached"] >= _REACHED)
 
 
@@ -342,10 +261,9 @@ def _failures(records: Sequence[Record]) -> Iterator[str]:
                 f"{record['freedom']} motions instead of {record['true_freedom']}."
             )
             continue
-        for engine in ("mujoco", "drake"):
-            if not _holds(record, engine):
-                run = record[engine]
-                yield f"{what}{engine}: largest gap {run['gap']:.2%} of the diagonal, {run['reached']:.0%} of the way."
+        if not _holds(record):
+            run = record["mujoco"]
+            yield f"{what}largest gap {run['gap']:.2%} of the diagonal, {run['reached']:.0%} of the way."
 
 
 STUDY = Study(title="Closed chains", options=LoopOptions, measure=measure, report=report)

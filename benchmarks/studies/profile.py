@@ -22,7 +22,6 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from benchmarks.studies.scaling import chain_and_branch
 from benchmarks.study import Options, Study, among, explained
 from kinematify.assembly.erasure import erase
 from kinematify.errors import InputError
@@ -74,7 +73,7 @@ COMMANDS = {
     "drawer": Command(words=_PLAIN, given="drawer", newer=("--no-validation",)),
     **{
         f"infer-{name}": Command(words=_PLAIN, given=name, newer=("--no-validation",), asked=asked)
-        for name, asked in (("cabinet_41083", 0.6), ("allegro", 0.4), ("h1", 0.4), ("200", 0.5))
+        for name, asked in (("cabinet_41083", 0.6), ("allegro", 0.4), ("h1", 0.4))
     },
     **{
         f"validate-{name}": Command(words=("validate", "IN"), given=name, asked=0.6)
@@ -157,8 +156,6 @@ def _given(command: Command, place: Path) -> Path:
     """Write what a command is given."""
     if command.given == "drawer":
         return _written(build(FAMILIES["cabinet"], {"doors": 0, "drawers": 1, "shelves": 0}).assembly.parts, place)
-    if command.given.isdigit():
-        return _written(chain_and_branch(int(command.given))[0].parts, place)
     item = next((item for item in find_objects() if item.name == command.given), None)
     if item is None:
         raise InputError(f"The benchmark has no {command.given}. Leave it out with --commands.")

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError, OutputError
-from kinematify.formats.content import read_content, renaming_notes
+from kinematify.formats.content import read_content
 from kinematify.formats.losses import losses
+from kinematify.formats.reopen import check_target
 from kinematify.model.output import urdf_of
 from kinematify.versions import require
 
@@ -73,6 +74,7 @@ def export(
         InputError: The model cannot be used, or there is no such format.
         OutputError: The file cannot be written.
         EnvironmentFault: The package that writes the format is not installed.
+        ExportError: The target refuses what was written, or reads another model in it.
     """
     if to not in FORMATS:
         raise InputError(f"There is no format {to!r} to export to. Give one of {', '.join(FORMATS)}.")
@@ -83,11 +85,10 @@ def export(
             return _srdf(urdf, path, chosen, tool=tool, gripper=gripper, package_dirs=package_dirs)
         if to == "urdf" and path.resolve() == urdf.resolve():
             raise InputError(f"{path} is the model itself. Give another file with -o.")
-        content = read_content(urdf, chosen, package_dirs=package_dirs)
+        content = read_content(urdf, to, chosen, package_dirs=package_dirs)
         _writer(to)(content, path, free=free)
-        notes = content.notes if to != "glb" else ()
-        renamed = renaming_notes(content) if to in ("mjcf", "sdf") else []
-        return Exported(path=path, notes=(*notes, *renamed), lost=losses(content.robot, to))
+        check_target(content, to, path)
+        return Exported(path=path, notes=content.notes, lost=losses(content, to))
     except OSError as error:
         reason = error.strerror or str(error)
         raise OutputError(f"{path} cannot be written: {reason}. Give a file in a folder that exists.") from error

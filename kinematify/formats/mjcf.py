@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from lxml import etree
 
-from kinematify.formats.content import GREY, MeshFiles, body_name, shown_surfaces
+from kinematify.formats.content import GREY, MeshFiles, shown_surfaces
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import quaternion_of
-from kinematify.robot.write import numbers
+from kinematify.robot.write import add
 from kinematify.simulation.configurations import PIN_SOLIMP, PIN_SOLREF
 
 if TYPE_CHECKING:
@@ -22,8 +22,12 @@ if TYPE_CHECKING:
     from kinematify.robot.appearance import Surface
     from kinematify.robot.robot import Joint, Link, Shape
 
-_PIN = {"solref": numbers(PIN_SOLREF), "solimp": numbers(PIN_SOLIMP)}
+_PIN = {"solref": PIN_SOLREF, "solimp": PIN_SOLIMP}
 _SEEN, _COLLIDES = "2", "3"  # MuJoCo's viewer shows groups 0 to 2
+
+_LEAST_RANGE = 1e-9
+_ROLLING = (0.005, 1e-4)
+"""MuJoCo's own coefficients for turns in contact."""
 
 
 def write_mjcf(content: Content, out: Path, *, free: bool) -> None:
@@ -39,14 +43,18 @@ def write_mjcf(content: Content, out: Path, *, free: bool) -> None:
     """
     meshes = MeshFiles(out)
     document = etree.Element("mujoco", model=content.robot.name)
-    etree.SubElement(document, "compiler", angle="radian", meshdir=meshes.folder.name, autolimits="true")
-    assets = etree.SubElement(document, "asset")
-    world = etree.SubElement(document, "worldbody")
-    writer = _MjcfWriter(content, meshes, assets)
-    writer.add_tree(world, free=free)
-    _add_contact(document, content)
-    _add_followers(document, content)
-    _add_motors(document, content)
+    add(document, "compiler", angle="radian", meshdir=meshes.folder.name, autolimits="true")
+    assets = add(document, "asset")
+    _MjcfWriter(content, meshes, assets).add_tree(add(document, "worldbody"), free=free)
+    if content.apart:
+        contact = add(document, "contact")
+        for first, second in content.apart:
+            add(contact, "exclude", body1=first, body2=second)
+    _add_equalities(document, content)
+    driven = [joint for joint in content.robot.joints if joint.leads and joint not in content.undriven]
+    actuators = add(document, "actuator") if driven else document
+    for joint in driven:
+        add(actuators, "motor", name=joint.name, joint=joint.name, ctrlrange=[-(joint.effort or 0.0), joint.effort])
     etree.ElementTree(document).write(out, pretty_print=True, xml_declaration=True, encoding="utf-8")
 
 
@@ -58,9 +66,9 @@ class _MjcfWriter:
 
     def add_tree(self, world: _Element, *, free: bool) -> None:
         robot = self._content.robot
-        root = etree.SubElement(world, "body", name=body_name(robot.root))
+        root = add(world, "body", name=robot.root)
         if free:
-            etree.SubElement(root, "freejoint", name="root")
+            add(root, "freejoint")
         waiting = [(root, robot.root)]
         while waiting:  # a loop: chains may be longer than Python's stack
             element, name = waiting.pop()
@@ -70,125 +78,75 @@ class _MjcfWriter:
 
     def _add_child(self, parent: _Element, joint: Joint) -> _Element:
         T = joint.T_parent_child
-        child = etree.SubElement(
-            parent, "body", name=body_name(joint.child), pos=numbers(T[:3, 3]), quat=numbers(quaternion_of(T[:3, :3]))
-        )
-        if joint.kind is JointType.FIXED:
-            return child
-        element = etree.SubElement(
-            child, "joint", name=joint.name, type="hinge" if joint.kind.turns else "slide", axis=numbers(joint.axis)
-        )
-        if np.isfinite([joint.lower, joint.upper]).all():
-            element.set("range", numbers([joint.lower, joint.upper]))
-        for key, value in (("damping", joint.damping), ("frictionloss", joint.friction)):
-            if value:
-                element.set(key, numbers([value]))
+        child = add(parent, "body", name=joint.child, pos=T[:3, 3], quat=quaternion_of(T[:3, :3]))
+        if joint.kind is not JointType.FIXED:
+            limited = np.isfinite([joint.lower, joint.upper]).all()
+            stiffness, rest = self._content.extensions.springs.get(joint.name, (None, None))
+            add(
+                child, "joint", name=joint.name, type="hinge" if joint.kind.turns else "slide", axis=joint.axis,
+                # MuJoCo takes a range without width for none.
+                range=[joint.lower, max(joint.upper, joint.lower + _LEAST_RANGE)] if limited else None,
+                damping=joint.damping, frictionloss=joint.friction, stiffness=stiffness, springref=rest,
+            )  # fmt: skip
         return child
 
     def _fill(self, element: _Element, link: Link) -> None:
-        inertial = link.inertial
-        if inertial is not None:
-            m = inertial.tensor
-            etree.SubElement(
-                element, "inertial", pos=numbers(inertial.center_of_mass), mass=numbers([inertial.mass]),
-                fullinertia=numbers([m[0, 0], m[1, 1], m[2, 2], m[0, 1], m[0, 2], m[1, 2]]),
+        if link.inertial is not None:
+            m = link.inertial.tensor
+            add(
+                element, "inertial", pos=link.inertial.center_of_mass, mass=link.inertial.mass,
+                fullinertia=[m[0, 0], m[1, 1], m[2, 2], m[0, 1], m[0, 2], m[1, 2]],
             )  # fmt: skip
         for shape in link.visuals:
-            for geom in self._seen(element, link, shape):
-                geom.set("group", _SEEN)
-                geom.set("contype", "0")
-                geom.set("conaffinity", "0")
+            if shape.kind != "mesh":
+                self._geom(element, link, shape, group=_SEEN, contype="0", conaffinity="0", rgba=shape.color or GREY)
+            else:
+                for surface in shown_surfaces(shape):
+                    self._surface(element, link, surface)
+        friction = self._content.extensions.surfaces.get(link.name)
         for shape in link.collisions:
-            self._geom(element, link, shape).set("group", _COLLIDES)
+            self._geom(element, link, shape, group=_COLLIDES, friction=friction and [friction[0], *_ROLLING])
 
-    def _seen(self, element: _Element, link: Link, shape: Shape) -> list[_Element]:
-        """A geometry for every material of what is seen."""
-        if shape.kind != "mesh":
-            geom = self._geom(element, link, shape)
-            geom.set("rgba", numbers(shape.color or GREY))
-            return [geom]
-        return [self._surface(element, link, surface) for surface in shown_surfaces(shape)]
-
-    def _surface(self, element: _Element, link: Link, surface: Surface) -> _Element:
-        geom = etree.SubElement(element, "geom", type="mesh", mass="0")
-        geom.set("mesh", self._mesh(self._meshes.write_surface(surface, link.name)))
-        material, texture = surface.material, surface.material.texture
-        if texture is None:
-            geom.set("rgba", numbers(material.color))
-            return geom
-        name = self._meshes.write_texture(texture).removesuffix(".png")
-        if self._assets.find(f"texture[@name='{name}']") is None:
-            file = f"{self._meshes.folder.name}/{name}.png"
-            etree.SubElement(self._assets, "texture", name=name, type="2d", file=file)
-        stated = f"{name}_{len(self._assets)}"
-        etree.SubElement(self._assets, "material", name=stated, texture=name, rgba=numbers(material.color))
-        geom.set("material", stated)
-        return geom
+    def _surface(self, element: _Element, link: Link, surface: Surface) -> None:
+        mesh = self._mesh(self._meshes.write_surface(surface, link.name))
+        color, texture, stated = surface.material.color, surface.material.texture, None
+        if texture is not None:
+            name = self._meshes.write_texture(texture).removesuffix(".png")
+            if self._assets.find(f"texture[@name='{name}']") is None:
+                add(self._assets, "texture", name=name, type="2d", file=f"{self._meshes.folder.name}/{name}.png")
+            stated = f"{name}_{len(self._assets)}"
+            add(self._assets, "material", name=stated, texture=name, rgba=color)
+        add(
+            element, "geom", type="mesh", mass="0", mesh=mesh, group=_SEEN, contype="0", conaffinity="0",
+            material=stated, rgba=None if stated else color,
+        )  # fmt: skip
 
     def _mesh(self, file: str) -> str:
         """Declare a mesh file and return its name."""
         name = file.removesuffix(".obj")
         # Only what is seen may be open or flat, for which a volume makes no sense.
-        etree.SubElement(self._assets, "mesh", name=name, file=file, inertia="shell")
+        add(self._assets, "mesh", name=name, file=file, inertia="shell")
         return name
 
-    def _geom(self, element: _Element, link: Link, shape: Shape) -> _Element:
-        geom = etree.SubElement(element, "geom", type=shape.kind, mass="0")
+    def _geom(self, element: _Element, link: Link, shape: Shape, **more: Any) -> None:
         if shape.kind == "mesh":
-            geom.set("mesh", self._mesh(self._meshes.write(shape, link.name)))
-            return geom
-        T = shape.T_link_shape
-        geom.set("pos", numbers(T[:3, 3]))
-        geom.set("quat", numbers(quaternion_of(T[:3, :3])))
-        geom.set("size", numbers(_half(shape)))
-        return geom
+            add(element, "geom", type="mesh", mass="0", mesh=self._mesh(self._meshes.write(shape, link.name)), **more)
+            return
+        T, size = shape.T_link_shape, np.array(shape.size)
+        # Half lengths, but the radius that is the first size of round shapes.
+        size[shape.kind != "box" :] *= 0.5
+        place = {"pos": T[:3, 3], "quat": quaternion_of(T[:3, :3]), "size": size}
+        add(element, "geom", type=shape.kind, mass="0", **place, **more)
 
 
-def _half(shape: Shape) -> list[float]:
-    """MuJoCo's sizes of a primitive: half lengths."""
-    if shape.kind == "box":
-        return [0.5 * side for side in shape.size]
-    return [shape.size[0], *(0.5 * length for length in shape.size[1:])]
-
-
-def _moves(joint: Joint) -> bool:
-    return joint.kind is not JointType.FIXED
-
-
-def _add_contact(document: _Element, content: Content) -> None:
-    if content.apart:
-        contact = etree.SubElement(document, "contact")
-        for first, second in content.apart:
-            etree.SubElement(contact, "exclude", body1=body_name(first), body2=body_name(second))
-
-
-def _add_followers(document: _Element, content: Content) -> None:
-    followers = [joint for joint in content.robot.joints if joint.mimic is not None and _moves(joint)]
-    if not followers and not content.robot.loops:
-        return
-    equality = etree.SubElement(document, "equality")
+def _add_equalities(document: _Element, content: Content) -> None:
+    equality = add(document, "equality")
     for loop in content.robot.loops:
-        (first, second), (anchor, _) = loop.links, loop.points
-        etree.SubElement(
-            equality, "connect", _PIN, name=loop.name, body1=body_name(first), body2=body_name(second),
-            anchor=numbers(anchor),
-        )  # fmt: skip
-    for joint in followers:
-        mimic = joint.mimic
-        assert mimic is not None
-        etree.SubElement(
-            equality, "joint", name=f"{joint.name} follows", joint1=joint.name, joint2=mimic.joint,
-            polycoef=numbers([mimic.offset, mimic.multiplier, 0.0, 0.0, 0.0]),
-        )  # fmt: skip
-
-
-def _add_motors(document: _Element, content: Content) -> None:
-    driven = [joint for joint in content.robot.joints if joint.leads and (joint.effort or 0) > 0]
-    if not driven:
-        return
-    actuators = etree.SubElement(document, "actuator")
-    for joint in driven:
-        assert joint.effort is not None
-        etree.SubElement(
-            actuators, "motor", name=joint.name, joint=joint.name, ctrlrange=numbers([-joint.effort, joint.effort])
-        )
+        first, second = loop.links
+        add(equality, "connect", name=loop.name, body1=first, body2=second, anchor=loop.points[0], **_PIN)
+    for joint in content.robot.joints:
+        if joint.mimic is not None:
+            add(
+                equality, "joint", name=f"{joint.name} follows", joint1=joint.name, joint2=joint.mimic.joint,
+                polycoef=[joint.mimic.offset, joint.mimic.multiplier, 0.0, 0.0, 0.0],
+            )  # fmt: skip

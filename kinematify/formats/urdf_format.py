@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from lxml import etree
+
 from kinematify.formats.content import MeshFiles
 from kinematify.model.simulable import prepared_joint
 from kinematify.robot.robot import Shape
-from kinematify.robot.write import write_robot
+from kinematify.robot.write import robot_element
 
 if TYPE_CHECKING:
     from kinematify.formats.content import Content
@@ -34,7 +37,12 @@ def write_urdf(content: Content, out: Path, *, free: bool) -> None:
     meshes = MeshFiles(out)
     links = tuple(_link(link, meshes) for link in content.robot.links)
     joints = tuple(prepared_joint(joint, content.settings) for joint in content.robot.joints)
-    write_robot(replace(content.robot, links=links, joints=joints), out)
+    document = robot_element(replace(content.robot, links=links, joints=joints))
+    owners = {(str(element.tag), element.get("name")): element for element in document}
+    for tag, name, element in content.extensions.elements:
+        (document if tag == "robot" else owners[tag, name]).append(deepcopy(element))
+    etree.indent(document)
+    etree.ElementTree(document).write(out, pretty_print=True, xml_declaration=True, encoding="utf-8")
 
 
 def _link(link: Link, meshes: MeshFiles) -> Link:

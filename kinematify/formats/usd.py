@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics, UsdShade
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade
 
 from kinematify.errors import OutputError
 from kinematify.formats.content import GREY, shown_surfaces
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".usd", ".usda", ".usdc")
 _FRICTION = 1.0
-"""Of all surfaces: MuJoCo's default, which a URDF is simulated with; USD's own is 0."""
+"""Of surfaces that state none: MuJoCo's default, which a URDF is simulated with; USD's own is 0."""
 
 
 def write_usd(content: Content, out: Path, *, free: bool) -> None:
@@ -48,14 +48,14 @@ class _UsdWriter:
     def __init__(self, content: Content, out: Path) -> None:
         self._content, self._out = content, out
         self._materials: dict[Material, Any] = {}
+        self._frictions: dict[float, Any] = {}
         self._joints: dict[str, Any] = {}
         self.stage = Usd.Stage.CreateInMemory()
         UsdGeom.SetStageUpAxis(self.stage, UsdGeom.Tokens.z)
         UsdGeom.SetStageMetersPerUnit(self.stage, 1.0)
         UsdPhysics.SetStageKilogramsPerUnit(self.stage, 1.0)
-        self._top = Sdf.Path.absoluteRootPath.AppendChild(_identifier(content.robot.name, set()))
-        taken: set[str] = {"joints", "materials", "physics_scene"}
-        self._paths = {link.name: self._top.AppendChild(_identifier(link.name, taken)) for link in content.robot.links}
+        self._top = Sdf.Path.absoluteRootPath.AppendChild(content.robot.name)
+        self._paths = {link.name: self._top.AppendChild(link.name) for link in content.robot.links}
 
     def add_all(self, *, free: bool) -> None:
         """Everything below one prim, which is the file's default."""
@@ -65,30 +65,29 @@ class _UsdWriter:
         UsdPhysics.Scene.Define(self.stage, self._top.AppendChild("physics_scene"))
         UsdPhysics.ArticulationRootAPI.Apply(top.GetPrim())
         _author(top.GetPrim(), "NewtonArticulationRootAPI", selfCollisionEnabled=(Sdf.ValueTypeNames.Bool, True))
-        self._surface_friction = self._friction()
-        poses = forward_kinematics(self._content.robot, {})
-        for link in self._content.robot.links:
-            self._add_link(link, poses[link.name])
-        taken: set[str] = set()
+        UsdGeom.Scope.Define(self.stage, self._top.AppendChild("materials"))
+        robot = self._content.robot
+        poses = forward_kinematics(robot, {})
+        for link, shown in zip(robot.links, self._content.old_links, strict=True):
+            self._add_link(link, shown, poses[link.name])
         joints = self._top.AppendChild("joints")
         UsdGeom.Scope.Define(self.stage, joints)
-        if not free:
-            path = joints.AppendChild(_identifier("root_joint", taken))
-            joint = UsdPhysics.FixedJoint.Define(self.stage, path)
-            joint.CreateBody1Rel().SetTargets([self._paths[self._content.robot.root]])
-        for joint in self._content.robot.joints:
-            self._add_joint(joint, joints.AppendChild(_identifier(joint.name, taken)))
+        pinned = [] if free else [joints.AppendChild(self._content.root_joint)]
+        for path in pinned:
+            UsdPhysics.FixedJoint.Define(self.stage, path).CreateBody1Rel().SetTargets([self._paths[robot.root]])
+        for joint, shown in zip(robot.joints, self._content.old_joints, strict=True):
+            self._add_joint(joint, shown, joints.AppendChild(joint.name))
         self._add_followers()
         self._add_motors()
-        self._add_roles(top.GetPrim(), [] if free else [joints.AppendChild("root_joint")])
-        for loop in self._content.robot.loops:
-            self._add_loop(loop, joints.AppendChild(_identifier(loop.name, taken)))
+        self._add_roles(top.GetPrim(), pinned)
+        for loop in robot.loops:
+            self._add_loop(loop, joints.AppendChild(loop.name))
         self._keep_apart()
 
-    def _add_link(self, link: Link, T_world_link: FloatArray) -> None:
+    def _add_link(self, link: Link, shown: str, T_world_link: FloatArray) -> None:
         path = self._paths[link.name]
         xform = UsdGeom.Xform.Define(self.stage, path)
-        xform.GetPrim().SetDisplayName(link.name)
+        xform.GetPrim().SetDisplayName(shown)
         _place(xform, T_world_link)
         UsdPhysics.RigidBodyAPI.Apply(xform.GetPrim())
         self._add_mass(xform.GetPrim(), link)
@@ -105,9 +104,9 @@ class _UsdWriter:
                     continue
                 prim = self._add_shape(above.AppendChild(name), shape)
                 if folder == "collisions":
-                    self._let_collide(prim, is_mesh=shape.kind == "mesh")
+                    self._let_collide(prim, link.name, is_mesh=shape.kind == "mesh")
 
-    def _let_collide(self, prim: Any, *, is_mesh: bool) -> None:
+    def _let_collide(self, prim: Any, link: str, *, is_mesh: bool) -> None:
         """USD's own schema, and the names under which MuJoCo and Newton look for it."""
         UsdPhysics.CollisionAPI.Apply(prim)
         prim.AddAppliedSchema("MjcCollisionAPI")
@@ -115,18 +114,20 @@ class _UsdWriter:
             UsdPhysics.MeshCollisionAPI.Apply(prim).CreateApproximationAttr(UsdPhysics.Tokens.convexHull)
             prim.AddAppliedSchema("NewtonMeshCollisionAPI")
         UsdShade.MaterialBindingAPI.Apply(prim).Bind(
-            self._surface_friction, UsdShade.Tokens.weakerThanDescendants, "physics"
+            self._friction(link), UsdShade.Tokens.weakerThanDescendants, "physics"
         )
 
-    def _friction(self) -> Any:
-        """The one physics material, in the scope of all materials."""
-        path = self._top.AppendChild("materials")
-        UsdGeom.Scope.Define(self.stage, path)
-        found = UsdShade.Material.Define(self.stage, path.AppendChild("friction"))
-        physics = UsdPhysics.MaterialAPI.Apply(found.GetPrim())
-        physics.CreateStaticFrictionAttr(_FRICTION)
-        physics.CreateDynamicFrictionAttr(_FRICTION)
-        return found
+    def _friction(self, link: str) -> Any:
+        """The physics material of a link, in the scope of all materials; written when first asked for."""
+        value, _ = self._content.extensions.surfaces.get(link, (_FRICTION, _FRICTION))
+        if value not in self._frictions:
+            name = f"friction_{len(self._frictions)}"
+            found = UsdShade.Material.Define(self.stage, self._top.AppendChild("materials").AppendChild(name))
+            physics = UsdPhysics.MaterialAPI.Apply(found.GetPrim())
+            physics.CreateStaticFrictionAttr(value)
+            physics.CreateDynamicFrictionAttr(value)
+            self._frictions[value] = found
+        return self._frictions[value]
 
     def _frame(self, path: Any, T: FloatArray) -> Any:
         """A frame of its own around one geometry; returns the path of the geometry."""
@@ -218,11 +219,11 @@ class _UsdWriter:
         picture.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(reader.ConnectableAPI(), "result")
         color.ConnectToSource(picture.CreateOutput("rgb", Sdf.ValueTypeNames.Float3))
 
-    def _add_joint(self, joint: Joint, path: Any) -> None:
+    def _add_joint(self, joint: Joint, shown: str, path: Any) -> None:
         kind = {JointType.FIXED: UsdPhysics.FixedJoint, JointType.PRISMATIC: UsdPhysics.PrismaticJoint}
         found = kind.get(joint.kind, UsdPhysics.RevoluteJoint).Define(self.stage, path)
         self._joints[joint.name] = found.GetPrim()
-        found.GetPrim().SetDisplayName(joint.name)
+        found.GetPrim().SetDisplayName(shown)
         found.CreateBody0Rel().SetTargets([self._paths[joint.parent]])
         found.CreateBody1Rel().SetTargets([self._paths[joint.child]])
         turn = np.eye(3) if joint.kind is JointType.FIXED else rotation_from_x(joint.axis)
@@ -260,7 +261,7 @@ class _UsdWriter:
     def _add_motors(self) -> None:
         """The motors of the MJCF export, under the names of MuJoCo's schema."""
         for joint in self._content.robot.joints:
-            if joint.leads and joint.effort:
+            if joint.leads and joint.effort and joint.effort > 0.0:
                 path = self._joints[joint.name].GetPath()
                 motor = self.stage.DefinePrim(path.AppendChild("motor"), "MjcActuator")
                 motor.CreateRelationship("mjc:target").SetTargets([path])
@@ -289,9 +290,12 @@ class _UsdWriter:
         turns = joint.kind.turns
         drive = UsdPhysics.DriveAPI.Apply(prim, "angular" if turns else "linear")
         per_degree = np.pi / 180.0 if turns else 1.0
-        drive.CreateStiffnessAttr(0.0)
+        stiffness, rest = self._content.extensions.springs.get(joint.name, (0.0, 0.0))
+        drive.CreateStiffnessAttr(stiffness * per_degree)
+        if stiffness:
+            drive.CreateTargetPositionAttr(rest / per_degree)
         drive.CreateDampingAttr(float((joint.damping or 0.0) * per_degree))
-        if joint.effort:
+        if joint.effort and joint.effort > 0.0:
             drive.CreateMaxForceAttr(float(joint.effort))
         friction, number = float(joint.friction or 0.0), Sdf.ValueTypeNames.Float
         prim.AddAppliedSchema("MjcJointAPI")
@@ -315,17 +319,6 @@ def _display(found: Any, color: Rgba) -> None:
     found.CreateDisplayColorAttr([_vector(linear_of(np.array(rgb)))])
     if opacity < 1.0:
         found.CreateDisplayOpacityAttr([float(opacity)])
-
-
-def _identifier(name: str, taken: set[str]) -> str:
-    """A name that USD allows, and that no sibling has."""
-    stem = chosen = Tf.MakeValidIdentifier(name)
-    number = 1
-    while chosen in taken:
-        number += 1
-        chosen = f"{stem}_{number}"
-    taken.add(chosen)
-    return str(chosen)
 
 
 def _primitive(stage: Any, path: Any, shape: Shape) -> Any:
@@ -366,7 +359,7 @@ def _author(prim: Any, schema: str, **values: tuple[Any, Any]) -> None:
 
 def _place(xform: Any, T: FloatArray) -> None:
     xform.AddTranslateOp().Set(Gf.Vec3d(*map(float, T[:3, 3])))
-    xform.AddOrientOp().Set(_turn(T[:3, :3]))
+    xform.AddOrientOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Quatd(*map(float, quaternion_of(T[:3, :3]))))
 
 
 def _vector(values: Iterable[float]) -> Any:

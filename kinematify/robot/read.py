@@ -177,7 +177,7 @@ _LOOPS = {
         ("ball_constraint_body_B", "name", "ball_constraint_p_BQ", "value"),
     ),
 }
-"""What closes a chain for Isaac Sim and for Drake: where both ends name their link, and their point."""
+"""What closes a chain (Isaac Sim, `drake:ball_constraint`): where both ends name their link, and their point."""
 
 
 def _loop(element: _Element, known: Sequence[str]) -> LoopJoint:

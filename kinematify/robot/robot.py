@@ -240,8 +240,8 @@ class Joint:
 class LoopJoint:
     """Two links that share a point besides the joints of the tree: it closes a chain of joints.
 
-    In a URDF it is a `drake:ball_constraint`, or a `loop_joint` of Isaac Sim, at which Drake stops; readers that know
-    trees alone leave it out.
+    In a URDF it is a `drake:ball_constraint`, or a `loop_joint` of Isaac Sim; readers that know trees alone leave it
+    out.
     """
 
     name: str

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from lxml import etree
@@ -57,69 +58,79 @@ def numbers(values: Iterable[float]) -> str:
     return " ".join(repr(float(value) + 0.0) for value in values)
 
 
+def add(parent: _Element, tag: str, text: float | Iterable[float] | str | None = None, **values: Any) -> _Element:
+    """Append an element with a text and attributes: names, or numbers with all their digits; None is left out."""
+    element = etree.SubElement(parent, tag, {key: _text(value) for key, value in values.items() if value is not None})
+    element.text = None if text is None else _text(text)
+    return element
+
+
+def _text(value: Any) -> str:
+    return value if isinstance(value, str) else numbers(np.atleast_1d(value))
+
+
 def _add_link(robot: _Element, link: Link) -> None:
-    element = etree.SubElement(robot, "link", name=link.name)
+    element = add(robot, "link", name=link.name)
     if link.inertial is not None:
-        _add_inertial(element, link.inertial)
+        inertial = add(element, "inertial")
+        add(inertial, "origin", xyz=link.inertial.center_of_mass, rpy="0 0 0")
+        add(inertial, "mass", value=link.inertial.mass)
+        add(inertial, "inertia", **moments(link.inertial))
     for number, shape in enumerate(link.visuals):
         visual = _add_shape(element, "visual", shape, link.name)
         if shape.color is not None:
             # Readers take materials of one name for one, so that every shape has one of its own.
-            material = etree.SubElement(visual, "material", name=f"{link.name}_{number}")
-            etree.SubElement(material, "color", rgba=numbers(shape.color))
+            add(add(visual, "material", name=f"{link.name}_{number}"), "color", rgba=shape.color)
     for shape in link.collisions:
         _add_shape(element, "collision", shape, link.name)
 
 
-def _add_inertial(link: _Element, inertial: Inertial) -> None:
-    element = etree.SubElement(link, "inertial")
-    etree.SubElement(element, "origin", xyz=numbers(inertial.center_of_mass), rpy="0 0 0")
-    etree.SubElement(element, "mass", value=numbers([inertial.mass]))
-    (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = inertial.tensor.tolist()
-    moments = {"ixx": ixx, "ixy": ixy, "ixz": ixz, "iyy": iyy, "iyz": iyz, "izz": izz}
-    etree.SubElement(element, "inertia", {key: numbers([value]) for key, value in moments.items()})
+def moments(inertial: Inertial) -> dict[str, float]:
+    """Return the moments of inertia [kg m^2] under the names that URDF and SDFormat have for them."""
+    return {f"i{'xyz'[i]}{'xyz'[j]}": float(inertial.tensor[i, j]) for i in range(3) for j in range(i, 3)}
 
 
 def _add_shape(link: _Element, tag: str, shape: Shape, name: str) -> _Element:
-    element = etree.SubElement(link, tag)
+    element = add(link, tag)
     _add_origin(element, shape.T_link_shape)
-    geometry = etree.SubElement(element, "geometry")
+    geometry = add(element, "geometry")
     if shape.kind == "mesh":
         if shape.file is None:
             raise ValueError(f"A mesh of the link {name} has no file. Write it, and name the file in the shape.")
-        mesh = etree.SubElement(geometry, "mesh", filename=shape.file.as_posix())
-        if (shape.scale != 1.0).any():
-            mesh.set("scale", numbers(shape.scale))
+        scale = shape.scale if (shape.scale != 1.0).any() else None
+        add(geometry, "mesh", filename=shape.file.as_posix(), scale=scale)
     elif shape.kind == "box":
-        etree.SubElement(geometry, "box", size=numbers(shape.size))
+        add(geometry, "box", size=shape.size)
     else:
-        sizes = zip(SIZES[shape.kind], shape.size, strict=True)
-        etree.SubElement(geometry, shape.kind, {key: numbers([value]) for key, value in sizes})
+        add(geometry, shape.kind, **dict(zip(SIZES[shape.kind], shape.size, strict=True)))
     return element
 
 
 def _add_joint(robot: _Element, joint: Joint) -> None:
-    element = etree.SubElement(robot, "joint", name=joint.name, type=joint.kind.value)
-    etree.SubElement(element, "parent", link=joint.parent)
-    etree.SubElement(element, "child", link=joint.child)
+    element = add(robot, "joint", name=joint.name, type=joint.kind.value)
+    add(element, "parent", link=joint.parent)
+    add(element, "child", link=joint.child)
     _add_origin(element, joint.T_parent_child)
     if joint.kind is JointType.FIXED:
         return
-    etree.SubElement(element, "axis", xyz=numbers(joint.axis))
+    add(element, "axis", xyz=joint.axis)
     limit = {"lower": joint.lower, "upper": joint.upper} if np.isfinite(joint.upper - joint.lower) else {}
-    _add_values(element, "limit", {**limit, "effort": joint.effort, "velocity": joint.velocity})
-    _add_values(element, "dynamics", {"damping": joint.damping, "friction": joint.friction})
+    for tag, values in (
+        ("limit", {**limit, "effort": joint.effort, "velocity": joint.velocity}),
+        ("dynamics", {"damping": joint.damping, "friction": joint.friction}),
+    ):
+        if any(value is not None for value in values.values()):
+            add(element, tag, **values)
     if joint.mimic is not None:
-        rule = {"multiplier": numbers([joint.mimic.multiplier]), "offset": numbers([joint.mimic.offset])}
-        etree.SubElement(element, "mimic", {"joint": joint.mimic.joint, **rule})
+        add(element, "mimic", **asdict(joint.mimic))
 
 
 def _add_loop(robot: _Element, loop: LoopJoint) -> None:
     """As Drake reads it. Isaac Sim's `loop_joint` says the same, but Drake refuses a file that has one."""
-    element = etree.SubElement(robot, drake_tag("ball_constraint"), name=loop.name)
+    element = add(robot, drake_tag("ball_constraint"), name=loop.name)
     for end, link, point, place in zip("AB", loop.links, loop.points, ("AP", "BQ"), strict=True):
-        etree.SubElement(element, drake_tag(f"ball_constraint_body_{end}"), name=link)
-        etree.SubElement(element, drake_tag(f"ball_constraint_p_{place}"), value=numbers(point))
+        add(element, drake_tag(f"ball_constraint_body_{end}"), name=link)
+        add(element, drake_tag(f"ball_constraint_p_{place}"), value=point)
 
 
 def drake_tag(name: str) -> str:
@@ -127,11 +138,5 @@ def drake_tag(name: str) -> str:
     return f"{{{DRAKE}}}{name}"
 
 
-def _add_values(parent: _Element, tag: str, values: dict[str, float | None]) -> None:
-    given = {key: numbers([value]) for key, value in values.items() if value is not None}
-    if given:
-        etree.SubElement(parent, tag, given)
-
-
 def _add_origin(parent: _Element, transform: FloatArray) -> None:
-    etree.SubElement(parent, "origin", xyz=numbers(transform[:3, 3]), rpy=numbers(rpy_of(transform[:3, :3])))
+    add(parent, "origin", xyz=transform[:3, 3], rpy=rpy_of(transform[:3, :3]))

@@ -1,20 +1,21 @@
-"""`kinematify batch` from a store into a store: an S3 server of this machine."""
+"""`run_batch` from a store into a store: fsspec's file system in memory, with a worker in this process."""
 
 from __future__ import annotations
 
-import json
-import logging
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Collection
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
+from fsspec.implementations.memory import MemoryFileSystem
 
+from kinematify.batch.run_batch import BatchRequest, run_batch
 from kinematify.cli.app import run
+from kinematify.config import load_config
+from kinematify.config.validation import load_settings
 from tests.batch.assets import write_assets
-
-pytest.importorskip("s3fs", reason="the extra `cloud` is not installed")
-moto_server = pytest.importorskip("moto.server", reason="moto is not installed")
 
 URDF = """<robot name="boxes">
 <link name="base"><visual><geometry><mesh filename="../stone.obj"/></geometry></visual></link>
@@ -24,46 +25,55 @@ URDF = """<robot name="boxes">
 STONE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
 
 
-@pytest.fixture
-def store(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
-    """The file system of a server with an empty bucket."""
-    import s3fs
+class Here:
+    """One worker, which is this process: no other one sees its memory."""
 
-    server = moto_server.ThreadedMotoServer(port=0, verbose=False)
-    logging.getLogger("werkzeug").setLevel(logging.ERROR)  # it prints every request
-    server.start()
-    host, port = server.get_host_and_port()
-    monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{host}:{port}")
-    for name in ("AWS_ACCESS_KEY_ID", "AWS_SECRET_ACCESS_KEY"):
-        monkeypatch.setenv(name, "testing")
-    monkeypatch.setenv("AWS_DEFAULT_REGION", "us-east-1")
-    s3fs.S3FileSystem.clear_instance_cache()
-    fs = s3fs.S3FileSystem()
-    fs.mkdir("bucket")
-    try:
-        yield fs
-    finally:
-        server.stop()
-        s3fs.S3FileSystem.clear_instance_cache()
+    capacity = 1
+
+    def start(self) -> Here:
+        return self
+
+    def wait(self, workers: Collection[Any]) -> list[Any]:
+        return list(workers)
+
+    def take(self, call: Callable[[], Any], timeout: float) -> None:
+        self.call = call
+
+    def answer(self) -> tuple[Any, bool]:
+        return self.call(), True
+
+    def stop(self) -> None:
+        """Nothing is left to end."""
 
 
-def test_a_library_in_a_store_is_converted_there(
-    store: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_library_in_a_store_is_converted_there(tmp_path: Path) -> None:
     write_assets(tmp_path / "assets" / "deep", 2)
     (tmp_path / "assets" / "deep" / "boxes.urdf").write_text(URDF)
     (tmp_path / "assets" / "stone.obj").write_text(STONE)
-    store.put(str(tmp_path / "assets"), "bucket/", recursive=True)
-    words = ["batch", "s3://bucket/assets/**/*.glb", "s3://bucket/assets/**/*.urdf", "-o", "s3://bucket/out"]
-    words += ["--steps", "infer", "--up", "z", "--workers", "1", "--json", "-"]
-    assert run(words) == 0
-    answer = json.loads(capsys.readouterr().out)
-    assert {record["object"]: record["status"] for record in answer["records"]} == {
-        "deep-knob_0": "ok", "deep-knob_1": "ok", "deep-boxes": "ok",
-    }  # fmt: skip
-    assert next(record["parts"] for record in answer["records"] if record["object"] == "deep-boxes") == 2
-    found = {path.removeprefix("bucket/out/") for path in store.find("bucket/out")}
-    assert found >= {"manifest.jsonl", "index.html", "objects/deep-knob_1/model.urdf"}
+    store = MemoryFileSystem()
+    store.put(str(tmp_path / "assets"), "/bucket/", recursive=True)
+    request = BatchRequest(
+        patterns=("memory://bucket/assets/**/*.glb", "memory://bucket/assets/**/*.urdf"),
+        out="memory://bucket/out",
+        config=load_config(),
+        settings=load_settings(),
+        steps=("infer",),
+        reading={"up": "z"},
+    )
+    done = run_batch(request, Here())
+    assert {record.object: record.status for record in done.records} == dict.fromkeys(
+        ("deep-knob_0", "deep-knob_1", "deep-boxes"), "ok"
+    )
+    assert next(record.parts for record in done.records if record.object == "deep-boxes") == 2
+    found = {path.removeprefix("/bucket/out/") for path in store.find("/bucket/out")}
+    assert found >= {"manifest.jsonl", "objects/deep-knob_1/model.urdf"}
     assert any(path.startswith("objects/deep-knob_1/meshes/") for path in found)
-    assert run([*words, "--resume"]) == 0
-    assert json.loads(capsys.readouterr().out)["new"] == 0
+    assert run_batch(replace(request, resume=True), Here()).new == 0
+
+
+def test_a_store_whose_package_is_missing_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "s3fs", None)
+    assert run(["batch", "s3://bucket/*.glb", "-o", str(tmp_path / "out")]) == 3
+    assert "pip install 's3fs" in capsys.readouterr().err

@@ -1,8 +1,7 @@
-"""Documents link only tables that say when they were made, and none that is older than the code."""
+"""The page of results has date and commit of every table that it links."""
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
@@ -10,24 +9,6 @@ import pytest
 from benchmarks.results_page import dated
 from kinematify.errors import InputError
 from tests.places import ROOT
-
-PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md")] + sorted((ROOT / "docs").glob("*.md"))
-
-
-def linked(page: Path) -> set[Path]:
-    """Tables in `results/` that a page links."""
-    found = re.findall(r"\]\(((?:\.\./)?results/[\w/]+\.md)", page.read_text("utf-8"))
-    return {(page.parent / path).resolve() for path in found}
-
-
-def test_no_linked_table_is_older_than_the_code() -> None:
-    tables = {table for page in PAGES for table in linked(page)}
-    assert len(tables) > 10
-    assert [table.name for table in sorted(tables) if "Older than the code" in table.read_text("utf-8")] == []
-
-
-def test_every_table_is_linked() -> None:
-    assert set((ROOT / "results").glob("*.md")) - linked(ROOT / "docs" / "results.md") == set()
 
 
 def test_dates_and_commits_are_those_of_the_tables() -> None:

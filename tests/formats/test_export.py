@@ -293,7 +293,7 @@ def test_links_and_joints_of_the_sdf_stand_where_the_urdf_has_them(urdf: Path, t
     for q, poses in zip(configurations(), expected, strict=True):
         for joint in model.findall("joint"):
             parent, child, kind = (str(joint.findtext(key)) for key in ("parent", "child", "type"))
-            if joint.get("name") == "world_joint":
+            if joint.get("name") == "root_joint":
                 assert (parent, child) == ("world", "world_link")
                 continue
             parent, child = own.get(parent, parent), own.get(child, child)

@@ -104,6 +104,7 @@ FAULTS = {
     "dangling parent": ('<parent link="lid"/>', '<parent link="lit"/>', "KV121", "turn", None, 22, False),
     "no child": ('<child link="knob"/>', "", "KV121", "turn", None, 21, False),
     "dangling mimic": ('<mimic joint="hinge"', '<mimic joint="hing"', "KV127", "turn", None, 25, False),
+    "mimic of a fixed joint": ('type="revolute"', 'type="fixed"', "KV127", "turn", None, 25, False),
     "self mimic": ('<mimic joint="hinge"', '<mimic joint="turn"', "KV128", "turn", None, 25, False),
     "duplicate link": ("</robot>", '<link name="lid"/></robot>', "KV111", None, "lid", 27, False),
     "duplicate joint": ('name="turn"', 'name="hinge"', "KV111", "hinge", None, 21, False),

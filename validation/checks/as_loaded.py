@@ -32,7 +32,7 @@ _TOUCHING = 1e-4
 """Contacts that are not as deep are no overlap that anybody sees [m]."""
 STILL = "does not move: "
 """Before the name of a joint: what KV804 measured of it, in the file loaded without flags."""
-_MESH_REFUSED = re.compile(r"no decoder found for mesh|invalid mesh filename extension|MakeConvexHull only applies to")
+_MESH_REFUSED = re.compile(r"no decoder found for mesh|invalid mesh filename extension")
 """What engines say of meshes in a format that they do not read."""
 _READS = {
     "mujoco": "OBJ, STL and MSH",

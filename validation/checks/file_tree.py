@@ -228,25 +228,33 @@ def isolated_links(result: OpenCheck, urdf: Urdf) -> None:
 
 @check(
     "KV127",
-    title="Leaders of mimic joints exist",
-    fails="The leader of a mimic joint does not exist",
+    title="Leaders of mimic joints move",
+    fails="The leader of a mimic joint does not exist, or is fixed",
     severity=Severity.ERROR,
     cause=Cause.KINEMATICS,
 )
 def dangling_mimics(result: OpenCheck, urdf: Urdf) -> None:
-    """Every <mimic> names a joint of the file.
+    """Every <mimic> names a joint of the file that is not fixed.
 
-    Why it matters: All loaders accept a missing leader in silence, and the joint then moves freely or not at all.
+    Why it matters: Most loaders accept such a leader in silence, and the joint then moves freely or not at all; MuJoCo
+    refuses the file.
 
-    Remedy: Correct the name of the leader.
+    Remedy: Correct the name of the leader, or delete the <mimic>.
     """
-    known = {joint.name for joint in urdf.joints if joint.name}
+    known = {joint.name: joint.element.get("type") for joint in urdf.joints if joint.name}
     for joint, mimic in _followers(urdf):
         leader = mimic.get("joint") or ""
         if leader not in known:
             result.find(
                 f"The joint {joint.name} mimics {shown(leader) if leader else 'no joint'}, which is not there.",
                 _suggestion(leader, known, "joint"),
+                joint=joint.name,
+                line=line_of(mimic),
+            )
+        elif known[leader] == "fixed" and joint.element.get("type") != "fixed":
+            result.find(
+                f"The joint {joint.name} mimics {leader}, which is fixed, so that it cannot follow.",
+                "Name a joint that moves, or delete the <mimic>.",
                 joint=joint.name,
                 line=line_of(mimic),
             )

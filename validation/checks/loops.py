@@ -117,7 +117,7 @@ def open_linkage(result: OpenCheck, pin: SharedPin) -> None:
     Why it matters: A URDF is a tree: of the loop of a gripper or a four-bar linkage one pin is missing, and in an
     engine the linkage hangs open there.
 
-    Remedy: Close it where the engine can: a drake:ball_constraint in the URDF for Drake, an <equality><connect> in
+    Remedy: Close it where the engine can: an <equality><connect> in
     MuJoCo, createConstraint in PyBullet; or let the passive joints of the loop follow the driven one with <mimic>.
     """
     first, second = pin.links
