@@ -145,8 +145,14 @@ def rename_part(inference: Inference, grouping: Grouping, name: str, new: str) -
         return type(value)(map(renamed, value)) if isinstance(value, list | tuple) else value
 
     found = grouped_as(grouping, [np.array([k]) for k in range(len(names))], names=names)
+    swap: dict[str | None, Any] = {name: new}
     hints = [
-        replace(hint, **{key: new for key in ("part", "parent", "twin") if getattr(hint, key) == name})
+        replace(
+            hint,
+            part=swap.get(hint.part, hint.part),
+            parent=swap.get(hint.parent, hint.parent),
+            twin=swap.get(hint.twin, hint.twin),
+        )
         for hint in parse_hints(inference.hints, assembly.names)
     ]
     stated = {key: renamed(getattr(inference, key)) for key in ("warnings", "refinement", "vision")}

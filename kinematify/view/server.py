@@ -119,7 +119,7 @@ class ModelViewer:
     def _connect_panel(self) -> None:
         """Make the widgets act; those that change the model propose what `keep` would write."""
         panel, drawn = self._panel, self._drawn
-        for widget, action in (
+        actions: list[tuple[Any, Callable[[Any], object]]] = [
             (panel.poses, lambda event: self.take_pose(event.target.value)),
             (panel.play, self._play),
             (panel.choice, self._try_choice),
@@ -140,18 +140,20 @@ class ModelViewer:
                 (box, lambda event, top=top: drawn.show_part(top, event.target.value))
                 for top, box in panel.boxes.items()
             ),
-        ):
+        ]
+        for widget, action in actions:
             _connect(widget, action)
         panel.undo.visible = self._folder is not None and self._folder.can_undo
         if self._open_folder is None:
             return
         panel.add_groups(self._shown.rejected, opened=self._regrouped)
-        for widget, words, method, arguments in (
+        changes: list[tuple[Any, str, Literal["rename", "merge", "split", "free"], Callable[[], Sequence[Any]]]] = [
             (panel.name, "{} is named {}", "rename", lambda: (panel.clicked[-1], panel.name.value)),
             (panel.merge, "{} and {} are one part", "merge", lambda: panel.clicked),
             (panel.split, "every piece of {} is a part", "split", lambda: panel.clicked[-1:]),
             (panel.free, "{} are a part", "free", lambda: [panel.may_move[panel.set_of_pieces.value]]),
-        ):
+        ]
+        for widget, words, method, arguments in changes:
             _connect(widget, lambda _, words=words, method=method, of=arguments: self.regroup(words, method, *of()))
 
     def set(self, values: Mapping[str, float]) -> None:
