@@ -19,6 +19,8 @@ from kinematify.envs.settings import load_settings
 from kinematify.errors import InputError
 from kinematify.geometry.scene import transformed
 from kinematify.robot.robot import forward_kinematics
+from kinematify.simulation.engines import require_engine
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -79,6 +81,9 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         one_of("render_mode", render_mode, (None, "rgb_array", "human"))
         if render_mode == "human":
             require_screen()
+        elif render_mode is not None:
+            require('render_mode="rgb_array"', "pybullet")
+        require_engine(engine)
         if not 0.0 < open_fraction <= 1.0:
             raise InputError(f"open_fraction is {open_fraction}, but must be above 0 and at most 1, such as 0.9.")
         self.settings = load_settings()

@@ -1,6 +1,6 @@
 """Demonstrations of the hand-written policies as a Minari dataset, the format that offline learning reads.
 
-Needs ``pip install 'kinematify[rl]'``. Minari keeps datasets as HDF5 in the folder that the variable
+Needs the extra `rl`. Minari keeps datasets as HDF5 in the folder that the variable
 MINARI_DATASETS_PATH names, ``~/.minari/datasets`` if it is not set; ``minari.load_dataset(name)`` reads them.
 """
 

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
-import pybullet
 
 from kinematify.errors import EnvironmentFault
 from kinematify.robot.transforms import quaternion_of
-from kinematify.simulation.pybullet_body import Client
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -65,9 +64,18 @@ class Renderer:
     """Draws pieces at poses; `close` frees what it holds."""
 
     def __init__(self, pieces: Sequence[Piece], view: CameraView, settings: PictureSettings) -> None:
-        """Put the pieces into a world of their own, which is never simulated."""
+        """Put the pieces into a world of their own, which is never simulated.
+
+        Raises:
+            EnvironmentFault: PyBullet is not installed.
+        """
+        require("A picture of an environment", "pybullet")
+        import pybullet  # noqa: PLC0415  # not every installation has it
+
+        from kinematify.simulation.pybullet_body import Client  # noqa: PLC0415
+
         self._pieces = tuple(pieces)
-        self._client = Client()
+        self._pybullet, self._client = pybullet, Client()
         self._bodies = [self._body(piece) for piece in self._pieces]
         size = _FLOOR_SIZE * view.radius
         floor = self._client.createVisualShape(pybullet.GEOM_BOX, halfExtents=[size, size, 1e-3], rgbaColor=_FLOOR)
@@ -83,7 +91,7 @@ class Renderer:
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
         shape = self._client.createVisualShape(
-            pybullet.GEOM_MESH,
+            self._pybullet.GEOM_MESH,
             vertices=corners.reshape(-1, 3).tolist(),
             indices=list(range(3 * len(corners))),
             normals=np.repeat(normals, 3, axis=0).tolist(),
@@ -110,9 +118,9 @@ class Renderer:
             width,
             height,
             self._view,
-            pybullet.computeProjectionMatrixFOV(self._field, width / height, self._near, self._far),
+            self._pybullet.computeProjectionMatrixFOV(self._field, width / height, self._near, self._far),
             lightDirection=_LIGHT,
-            renderer=pybullet.ER_TINY_RENDERER,
+            renderer=self._pybullet.ER_TINY_RENDERER,
         )
         return np.ascontiguousarray(np.reshape(np.asarray(found[2], dtype=np.uint8), (height, width, 4))[..., :3])
 

@@ -1,4 +1,6 @@
-"""Train a policy that opens a part of an object, until it succeeds; needs pip install 'kinematify[rl]'.
+"""Train a policy that opens a part of an object, until it succeeds.
+
+Install what it needs first: pip install '.[rl]' in a checkout, pip install 'kinematify[rl]' from an index.
 
 python examples/train_policy.py                          # a chest of drawers that comes with the package
 python examples/train_policy.py --model out/cabinet      # a folder that kinematify infer or generate has written
@@ -10,8 +12,13 @@ import argparse
 
 import gymnasium
 import numpy as np
-from stable_baselines3 import PPO
-from stable_baselines3.common.env_util import make_vec_env
+
+from kinematify.versions import require
+
+require("Training", "stable-baselines3")
+
+from stable_baselines3 import PPO  # noqa: E402
+from stable_baselines3.common.env_util import make_vec_env  # noqa: E402
 
 OPEN_PART = "kinematify.envs:kinematify/OpenPart-v0"
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 _MODULES = {"pin": "pinocchio", "usd-core": "pxr"}
 """Modules of distributions that have another name."""
+NO_WHEELS = "PyBullet has no wheels for Python 3.12 and later: pip builds it, with a C++ compiler and in many minutes."
 _REQUIREMENT = re.compile(r"([\w.-]+)(?:\[.*?\])?([^;]*)")
 
 
@@ -52,10 +53,8 @@ def require(purpose: str, *packages: str) -> None:
 
 def not_installed(purpose: str, *packages: str) -> str:
     """Return the message that something needs packages that are not installed, with the command that installs them."""
-    build = ""
-    if "pybullet" in packages and sys.version_info >= (3, 12):
-        build = " It has no wheels for Python 3.12 and later: pip builds it, which takes a C++ compiler and minutes."
-    return f"{purpose} needs {' and '.join(packages)}, not installed here.{build} Run: {install_command(*packages)}"
+    note = f" {NO_WHEELS}" if "pybullet" in packages and sys.version_info >= (3, 12) else ""
+    return f"{purpose} needs {' and '.join(packages)}, not installed here.{note} Run: {install_command(*packages)}"
 
 
 def install_command(*packages: str, options: Iterable[str] = ()) -> str:
@@ -71,7 +70,7 @@ def install_command(*packages: str, options: Iterable[str] = ()) -> str:
         lines = requires("kinematify") or []
     except PackageNotFoundError:  # the sources alone are on the path
         lines = []
-    ranges = {found[1]: found[2].strip() for found in map(_REQUIREMENT.match, lines) if found}
+    ranges = {found[1]: found[2].strip() for found in map(_REQUIREMENT.match, reversed(lines)) if found}
     tool = [sys.executable, "-m", "pip"]
     if importlib.util.find_spec("pip") is None:  # uv makes environments without pip
         tool = ["uv", "pip"]

@@ -13,7 +13,8 @@ from scipy.spatial import cKDTree
 
 from kinematify.errors import KinematifyError
 from kinematify.robot.appearance import Appearance, Material, Texture, plain, srgb_of
-from kinematify.robot.mesh_file import TO_Z_UP, RawMesh, merged, read_meshes
+from kinematify.robot.mesh_file import TO_Z_UP, read_meshes
+from kinematify.robot.raw_mesh import RawMesh, merged
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 

@@ -124,7 +124,7 @@ def declared(extra: str | None = None) -> set[str]:
 
 
 def test_the_doctor_knows_every_declared_package() -> None:
-    extras = ("bench", "cad", "cloud", "paper", "pinocchio", "ray", "usd")
+    extras = ("bench", "cad", "cloud", "formats", "paper", "pinocchio", "ray", "usd")
     assert set(MODULES) == declared().union(*map(declared, extras))
 
 
@@ -132,7 +132,7 @@ def test_every_import_of_the_package_is_declared() -> None:
     providers = {module: {normalised(name) for name in names} for module, names in packages_distributions().items()}
     providers |= {"pinocchio": {"pin"}, "coal": {"coal"}}  # they live behind a .pth file, which the metadata ignores
     providers |= {"manifold3d": {"manifold3d"}}  # a bare extension module, which the metadata does not list
-    extras = (None, "bench", "fit", "paper", "pinocchio", "ray", "rl", "usd")
+    extras = (None, "bench", "fit", "formats", "paper", "pinocchio", "ray", "rl", "usd")
     allowed = {normalised(name) for extra in extras for name in declared(extra)}
     missing = set()
     for folder, _, files in os.walk(ROOT / "kinematify", followlinks=True):

@@ -45,11 +45,10 @@ def main() -> None:
     print(f"Python {sys.version.split()[0]}, kinematify {version('kinematify')}, MuJoCo {version('mujoco')}")
     with tempfile.TemporaryDirectory(prefix="kinematify-smoke-") as folder:
         os.chdir(folder)
-        command("generate", SENTENCE, "--infer", "-o", "out/cabinet")
+        command("generate", SENTENCE, "--no-validation", "-o", "out/cabinet")
         command("infer", str(EXAMPLE), "-o", "out/example")
-        for model in ("cabinet", "example"):
-            command("validate", f"out/{model}/model.urdf", "--json", "report.json")
-            check_engines(json.loads(Path("report.json").read_text("utf-8")), required)
+        command("validate", "out/cabinet/model.urdf", "--json", "report.json")
+        check_engines(json.loads(Path("report.json").read_text("utf-8")), required)
         command("export", "out/cabinet/model.urdf", "--to", "mjcf", "-o", "cabinet.xml")
         run("an environment", [sys.executable, "-c", ENVIRONMENT])
         run("the viewer", [sys.executable, "-c", VIEWER])

@@ -295,9 +295,9 @@ class AsLoadedContext:
         """Return the visible surfaces in motion, for joints that fall short; None where they are what collides."""
         from kinematify.geometry.scene import read_scene, simplified, visible_shapes  # noqa: PLC0415 - for these only
         from kinematify.geometry.sweep import Sweeper  # noqa: PLC0415
-        from kinematify.validation.left_model import model_of  # noqa: PLC0415
+        from kinematify.validation.left_model import thin_model_of  # noqa: PLC0415
 
-        model = model_of(self.request)
+        model = thin_model_of(self.request)
         if not simplified(model) and len(self.request.free_travel) == len(self.mechanism.travels):
             return None
         return Sweeper.of(read_scene(model, self.request.settings.geometry, visible_shapes))
@@ -332,7 +332,9 @@ class AsLoadedContext:
         """Speed of the hand [rad/s or m/s]."""
         return self.settings.turning_speed if travel.turns else self.settings.sliding_speed
 
-    def _push(self, travel: Travel, way: tuple[float, float], force: float, **more: float) -> Push:
+    def _push(
+        self, travel: Travel, way: tuple[float, float], force: float, most: float = np.inf, **more: float
+    ) -> Push:
         return velocity_probe(
             self.ratios(travel),
             way,
@@ -340,25 +342,33 @@ class AsLoadedContext:
             force=force,
             speed=self.speed(travel),
             time_step=self.running.time_step,
-            max_safe_force=self.max_safe_force[travel.joint],
+            max_safe_force=min(self.max_safe_force[travel.joint], most),
             **more,
         )
 
     @cached_property
     def presses(self) -> tuple[VelocityProbe, ...]:
-        """Every joint with limits pressed against both, from there on, where nothing touches."""
+        """Every joint of a declared effort pressed against both declared limits, where nothing touches."""
         return tuple(
-            self._press(travel, end, outwards)
+            self._press(travel, end, outwards, effort)
             for travel in self.travels
-            if travel.limited
-            for end, outwards in ((travel.lower, -1.0), (travel.upper, 1.0))
+            if travel.limited and (effort := self.robot.joint_by_name[travel.joint].effort or 0.0) > 0.0
+            for end, declared, outwards in zip(
+                (travel.lower, travel.upper), self._declared(travel), (-1.0, 1.0), strict=True
+            )
+            if end == declared
         )
 
-    def _press(self, travel: Travel, end: float, outwards: float) -> VelocityProbe:
-        effort = self.robot.joint_by_name[travel.joint].effort or np.inf
+    def _declared(self, travel: Travel) -> tuple[float, float]:
+        joint = self.robot.joint_by_name[travel.joint]
+        return joint.lower, joint.upper
+
+    def _press(self, travel: Travel, end: float, outwards: float, effort: float) -> VelocityProbe:
         inertia = sum(ratio**2 * self.inertias[name] for name, ratio in self.ratios(travel).items())
         force = min(self.strength(travel), effort, inertia * self.speed(travel) / self.settings.press)
-        push = self._push(travel, (end, end + outwards * _FAR_BEYOND * self.still(travel)), force, patience=_YIELDING)
+        push = self._push(
+            travel, (end, end + outwards * _FAR_BEYOND * self.still(travel)), force, most=force, patience=_YIELDING
+        )
         values = self._values({travel.joint: end})
         pushed = self.running.push(push, values, contacts=False)
         return VelocityProbe(travel=travel, values=values, push=push, pushed=pushed, end=end)

@@ -17,7 +17,7 @@ from kinematify.assembly.part import Part
 from kinematify.assembly.pieces import connected_pieces
 from kinematify.assembly.truth import GroundTruth, TrueJoint
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.mesh_file import RawMesh
+from kinematify.robot.raw_mesh import RawMesh
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:

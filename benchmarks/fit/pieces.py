@@ -31,7 +31,7 @@ from kinematify.grouping.groups import PieceWeights, odds_of, select
 from kinematify.grouping.pair_measurements import MeasuredPieces, measure_pieces
 from kinematify.grouping.piece_sets import Candidate, measure_candidates, propose
 from kinematify.joints.choice.scorer import MOVING_WEIGHTS, PIECES_WEIGHTS, read_scorer
-from kinematify.robot.mesh_file import RawMesh
+from kinematify.robot.raw_mesh import RawMesh
 from kinematify.robot.weld import weld
 
 if TYPE_CHECKING:

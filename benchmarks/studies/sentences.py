@@ -5,7 +5,12 @@ Right: everything that a reader expects of the sentence holds of what was built,
 listed as not built. Refused: nothing is built. Silently wrong: an expectation is not met and nothing says so, or
 something impossible is built. Objects are measured; what was understood does not count. Expectations were written
 before the parser saw the sentences. Each list was tried once before it was looked at; words and objects were added
-after that.
+after that, so only the column "first try" is held-out.
+
+At the first try 11 to 38 of 60 were right in the early lists, whose other nouns were refused; of the last one 27 of 40.
+What is not right moved from refused to listed: the object is built, and what it lacks is said. Silently wrong at the
+first try were up to 10 of 60 once objects were composed, and 2 to 7 of 40 since. Lists written without sight of the
+library are harder than those written beside it.
 """
 
 from __future__ import annotations
@@ -86,34 +91,28 @@ def _unnamed(item: Mapping[str, Any], said: str) -> list[str]:
     return [word for word in item["refuse"] if word.lower() not in said.lower()]
 
 
-def first_tries() -> list[tuple[str, ...]]:
-    """What came of each list when it was tried for the first time, as rows of a table."""
+def first_tries() -> dict[str, str]:
+    """List -> what came of it when it was tried for the first time, before anything was added because of it."""
     said = yaml.safe_load(_FIRST.read_text(encoding="utf-8"))
-    return [(SETS[facts.get("list", name)], facts["code"], *map(str, facts["counts"])) for name, facts in said.items()]
+    return {name: " / ".join(map(str, counts[1:])) for name, counts in said.items()}
 
 
 def report(found: Report[Record]) -> list[str]:
-    """Counts by list, and every sentence of the new ones, and of the others what is not right."""
+    """Counts by list, now and at the first try, and what is silently wrong."""
+    came = Counter(record["came"] for record in found.records)
+    groups, first = grouped(found.records, by=lambda record: str(record["set"])), first_tries()
     rows = []
-    groups = grouped(found.records, by=lambda record: str(record["set"]))
     for name, group in groups.items():
         counts = Counter(record["came"] for record in group)
-        rows.append((SETS[name], str(len(group)), *(str(counts[came]) for came in CAME)))
-    blocks = [
+        now = " / ".join(str(counts[what]) for what in CAME)
+        rows.append((SETS[name], str(len(group)), first.get(name, "not recorded"), now))
+    wrong = [f"- {fault.partition('. ')[0]}" for fault in faults(found)]
+    return [
         explained(__doc__),
-        "## First tries",
-        table(("sentences", "code", "number", *CAME), first_tries()),
-        "## Now, all of them seen",
-        table(("sentences", "number", *CAME), rows),
+        f"Counts are {' / '.join(CAME)}. Now, all of them seen: {' / '.join(str(came[what]) for what in CAME)}.",
+        table(("sentences", "number", "first try", "now"), rows),
+        "\n".join(["Silently wrong now:", "", *wrong]) if wrong else "",
     ]
-    for name, group in groups.items():
-        shown = [record for record in group if record["came"] != RIGHT or name != "written"]
-        lines = [
-            (record["text"], record["came"], record["why"].split(". ", maxsplit=1)[0].replace("|", "\\|"))
-            for record in shown
-        ]
-        blocks += [f"## {SETS[name].capitalize()}", table(("sentence", "came out", "why"), lines) or "All right."]
-    return blocks
 
 
 def faults(found: Report[Record]) -> list[str]:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from kinematify.config import AssemblyConfig
     from kinematify.robot.appearance import Appearance
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.mesh_file import RawMesh
+    from kinematify.robot.raw_mesh import RawMesh
 
 
 _LONGEST = 64

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from numpy.random import Generator
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.mesh_file import RawMesh
+    from kinematify.robot.raw_mesh import RawMesh
     from kinematify.robot.robot import Joint, RigidGroup
 
 

@@ -13,13 +13,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.assemble import assemble, check_finite, natural_key, part_names
+from kinematify.assembly.holders import hint_of_many, parts_of_holders, why_pieces
 from kinematify.assembly.pieces import baked, connected_sheets, labelled_parts
 from kinematify.assembly.scenes import one_object
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
 from kinematify.robot.lengths import length_text
-from kinematify.robot.mesh_file import RawMesh, merged, read_meshes
-from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES, MESH_SUFFIXES
+from kinematify.robot.mesh_file import read_meshes
+from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES
+from kinematify.robot.raw_mesh import RawMesh, merged
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
 from kinematify.robot.vectors import referenced
@@ -63,7 +65,7 @@ _UNITS = {"micron": 1e-6, "millimeter": 1e-3, "centimeter": 1e-2, "meter": 1.0, 
 class _Given:
     """Files found under the path."""
 
-    meshes: tuple[RawMesh, ...]
+    meshes: Sequence[RawMesh]
     """One per part, in the frame and unit of the file but z up."""
     warnings: tuple[str, ...] = ()
     segmented: bool = True
@@ -128,9 +130,11 @@ def load_assembly(
     given = _given(path, reading)
     if labels is None and (not given.segmented or pieces in ("group", "cut")):
         given = _in_pieces(given, reading, path)
-    meshes = sorted(given.meshes, key=lambda mesh: natural_key(mesh.name))
+    meshes, far = _near_origin(sorted(given.meshes, key=lambda mesh: natural_key(mesh.name)))
     lengths = _lengths(meshes, scale)
-    assembly = assemble(meshes, source=str(path), config=config, warnings=given.warnings)
+    notes = dict.fromkeys(note for mesh in meshes for note in mesh.notes)
+    unread = [f"Not read of the file: {'; '.join([*notes][:8])}."] if notes else []
+    assembly = assemble(meshes, source=str(path), config=config, warnings=(*given.warnings, *unread, *far))
     doubts = _size_warnings(assembly, lengths, 1.0 if scale is None else scale, config)
     if given.up_by_standard:
         doubts += _up_warnings(assembly)
@@ -257,10 +261,26 @@ def _description(path: Path, reading: _Reading) -> _Given:
 
 
 def _single_file(path: Path, reading: _Reading) -> _Given:
-    meshes = tuple(replace(mesh, name=mesh.name or path.stem) for mesh in _read(path, reading, empty_ok=False))
+    meshes = [replace(mesh, name=mesh.name or path.stem) for mesh in _read(path, reading, empty_ok=False)]
     if reading.labels is not None:
         return _Given(meshes=labelled_parts(merged(meshes, path.stem), reading.labels))
-    return _Given(meshes=meshes, segmented=len(meshes) > 1, up_by_standard=_up_by_standard([path], reading))
+    standard = _up_by_standard([path], reading)
+    if len(meshes) < 2 or reading.pieces == "keep":
+        return _Given(meshes=meshes, segmented=len(meshes) > 1, up_by_standard=standard)
+    for mesh in meshes:
+        check_finite(mesh, str(path))
+    meshes, joined = parts_of_holders(meshes)
+    warnings = [f"Nodes without names of their own are one part each: {'; '.join(joined[:8])}."] if joined else []
+    why = why_pieces(meshes, reading.config.weld) if len(meshes) > 1 and reading.pieces == "auto" else ""
+    if why and len(connected_sheets(merged(meshes, path.stem), reading.config.weld)) > 1:
+        warnings.append(
+            f"The {len(meshes)} nodes or groups of the file {why}: they are read as one mesh, in pieces to be grouped. "
+            "If each of them is a part, give --pieces keep."
+        )
+        meshes = [merged(meshes, path.stem)]
+    elif reading.pieces == "auto":
+        warnings += hint_of_many(meshes)
+    return _Given(meshes=meshes, segmented=len(meshes) > 1, up_by_standard=standard, warnings=tuple(warnings))
 
 
 def _in_pieces(given: _Given, reading: _Reading, path: Path) -> _Given:
@@ -324,6 +344,28 @@ def _in_metres(mesh: RawMesh, scale: float | None) -> RawMesh:
     return mesh if factor == 1.0 else mesh.moved(factor * np.eye(3))
 
 
+def _near_origin(meshes: Sequence[RawMesh]) -> tuple[Sequence[RawMesh], list[str]]:
+    """Move what lies so far away that engines, which count in float32, cannot tell its points apart; say so."""
+    points = np.concatenate([referenced(mesh.vertices, mesh.faces) for mesh in meshes])
+    if not len(points) or not np.isfinite(points).all():
+        return meshes, []
+    low, high = points.min(axis=0), points.max(axis=0)
+    if np.abs([low, high]).max() <= _FAR * np.linalg.norm(high - low):
+        return meshes, []
+    centre = np.round(0.5 * (low + high), 3)
+    centre[2] = low[2] if high[2] > low[2] else centre[2]
+    away = length_text(float(np.linalg.norm(centre)))
+    said = (
+        f"The object lies {away} from the origin, where engines round its shape off. The model is stored about its "
+        f"own centre: add ({', '.join(f'{value:.10g}' for value in centre)}) m for the coordinates of the file."
+    )
+    return [mesh.moved(np.eye(3), -centre) for mesh in meshes], [said]
+
+
+_FAR = 1000.0
+"""Sizes of the object; float32 has seven digits, and contacts need three of them."""
+
+
 def _lengths(meshes: Sequence[RawMesh], scale: float | None) -> str:
     """Say in which unit the input was read, and why."""
     if scale is not None:
@@ -370,13 +412,8 @@ def _foot(points: FloatArray, axis: int, end: float) -> float:
     return float(np.prod(np.ptp(at_end[:, across], axis=0) / np.maximum(extent[across], 1e-300)))
 
 
-WANTED_SUFFIXES = (*MESH_SUFFIXES, *CAD_SUFFIXES, ".bin", ".urdf")
-"""Files that an assembly can consist of; nothing else is unpacked."""
-_CHUNK = 1 << 20
-
-
 def unpack(archive: Path, folder: Path, max_bytes: int) -> None:
-    """Unpack the meshes of a ZIP into an existing folder, keeping its subfolders.
+    """Unpack a ZIP into an existing folder, keeping its subfolders.
 
     Args:
         archive: The ZIP.
@@ -390,9 +427,11 @@ def unpack(archive: Path, folder: Path, max_bytes: int) -> None:
         with zipfile.ZipFile(archive) as opened:
             entries = [entry for entry in opened.infolist() if not entry.is_dir()]
             for entry in entries:
+                entry.filename = entry.filename.replace("\\", "/")  # as some programs for Windows write it
                 _check_entry(archive, entry)
             _check_size(archive, sum(entry.file_size for entry in entries), max_bytes)
-            _extract(archive, opened, [entry for entry in entries if _is_wanted(entry.filename)], folder, max_bytes)
+            # zipfile reads no more of an entry than it declares.
+            opened.extractall(folder, [entry for entry in entries if _is_wanted(entry.filename)])
     # zipfile raises NotImplementedError where it does not know the compression, RuntimeError where one is encrypted.
     except (zipfile.BadZipFile, zipfile.LargeZipFile, EOFError, NotImplementedError, RuntimeError, OSError) as error:
         raise AssemblyError(
@@ -415,7 +454,7 @@ def check_packed_mesh(path: Path, max_bytes: int) -> None:
 
 
 def _check_entry(archive: Path, entry: zipfile.ZipInfo) -> None:
-    name = entry.filename.replace("\\", "/")
+    name = entry.filename
     outside = name.startswith("/") or ".." in name.split("/") or ":" in name.split("/")[0]
     if outside or stat.S_ISLNK(entry.external_attr >> 16):
         raise AssemblyError(
@@ -435,21 +474,5 @@ def _check_size(archive: Path, found: int, allowed: int) -> None:
 
 
 def _is_wanted(name: str) -> bool:
-    path = PurePosixPath(name.replace("\\", "/"))
     # Dot files and __MACOSX hold attributes of the machine that packed the archive.
-    hidden = any(word.startswith((".", "__MACOSX")) for word in path.parts)
-    return not hidden and path.suffix.lower() in WANTED_SUFFIXES
-
-
-def _extract(
-    archive: Path, opened: zipfile.ZipFile, entries: Sequence[zipfile.ZipInfo], folder: Path, max_bytes: int
-) -> None:
-    total = 0
-    for entry in entries:
-        target = folder.joinpath(*PurePosixPath(entry.filename.replace("\\", "/")).parts)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with opened.open(entry) as source, target.open("wb") as sink:
-            while chunk := source.read(_CHUNK):
-                total += len(chunk)
-                _check_size(archive, total, max_bytes)  # what a file declares need not be true
-                sink.write(chunk)
+    return not any(word.startswith((".", "__MACOSX")) for word in PurePosixPath(name).parts)

@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from kinematify.errors import AssemblyError
 from kinematify.robot.appearance import joined
-from kinematify.robot.mesh_file import RawMesh, compacted
+from kinematify.robot.raw_mesh import RawMesh, compacted
 from kinematify.robot.vectors import crossed, lengths_of
 from kinematify.robot.weld import weld
 

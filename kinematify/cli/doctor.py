@@ -16,7 +16,7 @@ from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.options import examples
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
-from kinematify.versions import install_command
+from kinematify.versions import NO_WHEELS, install_command
 
 if TYPE_CHECKING:
     from packaging.requirements import Requirement
@@ -48,6 +48,9 @@ MODULES = {
     "click": ("click", "command line"),
     "rich": ("rich", "command line"),
     "packaging": ("packaging", "this command"),
+    "lib3mf": ("lib3mf", "3MF files"),
+    "DracoPy": ("DracoPy", "glTF files compressed with Draco"),
+    "meshopt": ("meshopt", "glTF files compressed with meshoptimizer"),
     "cascadio": ("cascadio", "STEP files"),
     "viser": ("viser", "viewer in the browser"),
     "example-robot-data": ("", "robots for `kinematify bench --data pip`"),
@@ -77,7 +80,7 @@ class PackageState:
     optional: bool
     """True if only an extra needs it, or this Python has no wheel of it."""
     problem: str | None = None
-    """Last line that the failing import printed."""
+    """Last line that the failing import printed, or why the package is not simply installed."""
 
     @property
     def remedy(self) -> str | None:
@@ -122,21 +125,25 @@ def _declared_requirements() -> list[Requirement]:
 
     from packaging.requirements import Requirement
 
-    declared = [Requirement(line) for line in requires("kinematify") or ()]
-    return [requirement for requirement in declared if requirement.name in MODULES]
+    declared = {found.name: found for found in map(Requirement, reversed(requires("kinematify") or ()))}
+    return [declared[name] for name in MODULES if name in declared]
 
 
 def _examine(requirement: Requirement) -> PackageState:
     module, purpose = MODULES[requirement.name]
     installed = _installed_version(requirement.name)
     problem = _import_problem(module) if installed and module else None
+    state = _judge(requirement, installed, problem)
+    optional = requirement.marker is not None and not requirement.marker.evaluate({"extra": ""})
+    if requirement.name == "pybullet" and state == "missing" and optional:
+        problem = NO_WHEELS
     return PackageState(
         package=requirement.name,
         purpose=purpose,
         wanted=",".join(sorted(map(str, requirement.specifier), reverse=True)),
         installed=installed,
-        state=_judge(requirement, installed, problem),
-        optional=requirement.marker is not None and not requirement.marker.evaluate({"extra": ""}),
+        state=state,
+        optional=optional,
         problem=problem,
     )
 

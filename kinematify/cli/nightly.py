@@ -29,6 +29,7 @@ _SHOWN = 20
     short_help="Benchmark and validation, compared with the night before.",
     epilog=examples(
         "kinematify nightly",
+        "kinematify nightly models/ -o out/nights",
         "kinematify nightly --config my_nightly.yaml -o results/nightly",
         "kinematify nightly --objects panda --objects 'cabinet_*' -o out/nights",
         "kinematify nightly --accept 2026-01-31-0a1b2c3",
@@ -42,7 +43,8 @@ _SHOWN = 20
     type=click.Path(path_type=Path),
     help="Folder of all nights.  [default: results/nightly; with --smoke out/nightly-smoke]",
 )
-@click.option("--data", metavar="pip|PATH", help="URDFs with known joints, instead of the configuration's.")
+@click.argument("folder_of_models", required=False, metavar="[DATA]")
+@click.option("--data", metavar="pip|PATH", help="Same as DATA.")
 @click.option(
     "--objects",
     "patterns",
@@ -63,6 +65,7 @@ _SHOWN = 20
 def command(
     *,
     config: str,
+    folder_of_models: str | None,
     out: Path | None,
     data: str | None,
     patterns: tuple[str, ...],
@@ -75,16 +78,20 @@ def command(
 ) -> int:
     """Infer every object of the benchmark, validate the models, and report what changed since earlier nights.
 
-    Writes a folder OUT/DATE-COMMIT with JSON, JSON lines, JUnit and a page, and OUT/index.html with the trends of all
-    nights. A run that was killed at any point goes on where it stopped. Ends with 1 if quality became worse than in
-    the night before or than in the accepted baseline; times are only reported.
+    DATA is a folder with URDF files at any depth, or a word that `kinematify bench` takes; without it the configuration
+    says what runs. Writes a folder OUT/DATE-COMMIT with JSON, JSON lines, JUnit and a page, and OUT/index.html with a
+    line for each night. A run that was killed at any point goes on where it stopped. Ends with 1 if quality became
+    worse than in the night before or than in the accepted baseline; times are only reported. An object whose files
+    changed is compared with its last result.
     """
     from kinematify.evaluation.nightly.run_night import NightRequest, run_night
 
     folder = out or Path("out/nightly-smoke" if smoke else "results/nightly")
     if accept is not None:
         return _accept(folder, accept)
-    settings = _settings(config, data=data, smoke=smoke)
+    if data and folder_of_models:
+        raise click.UsageError(f"DATA {folder_of_models} and --data {data} say the same. Give one of them.")
+    settings = _settings(config, data=data or folder_of_models, smoke=smoke)
     request = NightRequest(
         settings=settings,
         out=folder,
@@ -164,7 +171,7 @@ def _change_lines(changes: Sequence[Change]) -> list[str]:
         if kind not in (Class.STILL_FAILING, Class.NEW_SERIES):
             lines += [f"    {_line(change)}" for change in found[:_SHOWN]]
             lines += [f"    and {len(found) - _SHOWN} more, see the page"] if len(found) > _SHOWN else []
-    return lines or ["  nothing has changed"]
+    return lines or ["  nothing changed"]
 
 
 def _line(change: Change) -> str:

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 _QUICK = "KV1*,KV2*,KV30*,KV31*,KV32*,KV801,KV802,KV803,KV804"
 """Checks of `--quick`."""
+_COARSE = {"most_faces": 3000, "points": 450}
+"""Settings of its sweeps: half of the usual triangles and points."""
 
 
 @click.command(
@@ -184,9 +186,10 @@ def command(
         selected=_selected(checks or (_QUICK if quick else None), skip),
         engines=("mujoco",) if quick else _engines(engines),
         fail_on=Severity(fail_on),
+        quick=quick,
         quiet=json_to == "-",
         rules=load_suppressions(suppress) if suppress is not None else (),
-        settings=_settings(config, budget=budget, seed=seed),
+        settings=_settings(config, budget=budget, seed=seed, quick=quick),
         workers=jobs or os.cpu_count() or 1,
         with_pictures=html is not None,
         everything=everything,
@@ -243,12 +246,14 @@ def _engines(words: str | None) -> tuple[str, ...]:
     return tuple(engine for engine in ENGINES if engine in chosen)
 
 
-def _settings(config: str, *, budget: float | None, seed: int | None) -> ValidationSettings:
+def _settings(config: str, *, budget: float | None, seed: int | None, quick: bool) -> ValidationSettings:
     from kinematify.config.validation import load_settings
     from kinematify.errors import ConfigError
 
     settings = load_settings(config)
     changes: dict[str, object] = {} if seed is None else {"seed": seed}
+    if quick:
+        changes["geometry"] = settings.geometry.model_copy(update=_COARSE)
     if budget is not None:
         if not 0.0 < budget < float("inf"):
             raise ConfigError(f"--budget is {budget}. Give a number of seconds above 0.")

@@ -46,6 +46,8 @@ class ValidationRun:
     with_pictures: bool
     fail_on: Severity = Severity.ERROR
     """Least severity that ends the command with 1."""
+    quick: bool = False
+    """Only MuJoCo is asked, and nobody named it."""
     quiet: bool = False
     """Nothing is told on stdout."""
     everything: bool = False
@@ -77,6 +79,7 @@ class ValidationRun:
                 settings=self.settings,
                 selected=self.selected,
                 engines=self.engines,
+                named=not self.quick,
                 suppressions=self.rules,
                 task=self._task_of(model),
                 workers=self.workers,

@@ -115,8 +115,8 @@ class NightlySettings(StageConfig):
     """Factor of time from which a run is reported as slower, or as faster."""
     slower_seconds: float = Field(1.0, ge=0.0)  # shared machines vary by a third
     """Difference that it must have as well [s]."""
-    shown_nights: int = Field(60, gt=0)  # two months in the trend pages, which must stay below 5 MB
-    """Nights in the trend pages, the latest."""
+    shown_nights: int = Field(60, gt=0)  # two months in the list
+    """Nights in the list of all, the latest."""
     smoke: SmokeSettings = section()
 
 

@@ -199,6 +199,8 @@ class GeometrySettings(StageConfig):
 
     hole: float = 0.05  # screw holes and seams of decimated housings have 1 %, a box without a lid 17 %
     """Area of the holes of a shell that still has an inside, fraction of its surface."""
+    most_faces: int = 6000  # a link of 0.3 m keeps its surface to a tenth of a millimetre, drawers keep their edges
+    """Triangles of a mesh; larger ones are simplified before they are swept."""
     points: int = 900  # 300 corners, 300 on edges, 300 on faces: 5 cm apart on a door of 1 m
     """Points on a body's surface that are asked how deep they are."""
     tolerance: float = 0.01  # untouched hinges and slides: 147 of 160 joints stay below

@@ -273,7 +273,7 @@ def shells_of(vertices: FloatArray, faces: IntArray, *, hole: float) -> Shells:
         faces: Shape (F, 3).
         hole: Area of the holes of a shell that still counts as closed, fraction of its surface.
     """
-    points, triangles = _merged(vertices, faces)
+    points, triangles = merged_corners(vertices, faces)
     if not len(triangles):
         return Shells(vertices=points, closed=triangles, sheets=triangles)
     triangles, patch = _turned(points, triangles)
@@ -283,7 +283,7 @@ def shells_of(vertices: FloatArray, faces: IntArray, *, hole: float) -> Shells:
     return Shells(vertices=points, closed=triangles[closed], sheets=triangles[~closed])
 
 
-def _merged(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
+def merged_corners(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
     """Merge corners in one cell of a fine lattice, and drop faces that lose a corner or that are there twice."""
     if not len(faces):
         return points, faces

@@ -13,7 +13,7 @@ from kinematify.assembly.pieces import connected_pieces
 from kinematify.geometry.convex import ConvexPiece, convex_piece, enclosed_volume
 from kinematify.geometry.cut import Concave, CutSurface
 from kinematify.geometry.cut_cache import cached_cuts
-from kinematify.robot.mesh_file import RawMesh
+from kinematify.robot.raw_mesh import RawMesh
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.vectors import lengths_of, referenced
 

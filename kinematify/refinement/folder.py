@@ -20,7 +20,7 @@ from kinematify.model.output import MODEL_FILE, PREVIEW_FILE, RECORD_FILE, write
 from kinematify.model.urdf import MESH_FOLDER
 from kinematify.pipeline.record import SCHEMA, file_hashes, write_inference_files
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.mesh_file import RawMesh
+from kinematify.robot.raw_mesh import RawMesh
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 

@@ -41,6 +41,8 @@ _ROUNDS = 3
 """Looks at the result at most: what a broken file hides is seen in the second, pieces that still meet in the third."""
 _CARVED = ("KV301", "KV302", "KV310", "KV311", "KV312", "KV802", "KV804")
 """Findings about collision geometry, if they blame physics and name two links."""
+_MOST_CUT = 0.05
+"""Share of the volume of collision geometry that a repair may cut away."""
 _BESIDE = "KV241"
 """Collision geometry is beside what is seen."""
 _MASSLESS = "KV201"
@@ -300,6 +302,7 @@ class _Repairs:
         self._weighed |= off
 
     def _carve(self, robot: Robot, found: Sequence[Finding]) -> None:
+        """Give links collision pieces, as long as that cuts no more of them away than `_MOST_CUT`."""
         beside = {finding.link for finding in found if finding.check == _BESIDE and finding.link}
         for link in robot.links:  # as given: pieces are never made of pieces
             seen = link.name in beside and link.visuals
@@ -308,8 +311,15 @@ class _Repairs:
         if names != self._carved:
             self._carved = names
             links = tuple(self._given[link.name] if link.name in names else link for link in robot.links)
-            carved = self._editor.carve(replace(robot, links=links), names, self._config, self._settings)
+            primitive = {link.name for link in links if any(shape.kind != "mesh" for shape in link.collisions)}
+            allowed, most = (names, 1.0) if self._everything else (names - primitive, _MOST_CUT)
+            carved = self._editor.carve(replace(robot, links=links), allowed, self._config, self._settings, most)
+            whole = names - {item.link for item in carved.links if item.link in allowed and item.carved <= most}
             self.remarks = [
+                f"{name}: its collision geometry is left as it is: to leave the motion free, more than {_MOST_CUT:.0%} "
+                "of it would be cut away, or a primitive replaced by pieces"
+                for name in sorted(whole)
+            ] + [
                 f"{item.link}: its surface has so many triangles that its pieces follow a grid, "
                 f"{item.thinned * 1e3:.2g} mm off at most"
                 for item in carved.links

@@ -16,9 +16,10 @@ from kinematify.errors import AssemblyError, DescriptionError, OutputError
 from kinematify.model.collision import fit_collision
 from kinematify.model.dynamics import with_dynamics
 from kinematify.model.masses import prepared_inertials
-from kinematify.robot.mesh_file import merged, read_meshes
+from kinematify.robot.mesh_file import read_meshes
 from kinematify.robot.mesh_paths import GLTF_SUFFIXES, find_mesh, near_mesh
 from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
+from kinematify.robot.raw_mesh import merged
 from kinematify.robot.robot import Inertial, Robot
 from kinematify.robot.transforms import rpy_of
 from kinematify.robot.urdf_geometry import geometry_source
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from kinematify.config import Config, DynamicsConfig
     from kinematify.config.validation import PrepareSettings, ValidationSettings
     from kinematify.model.collision import FittedCollision
-    from kinematify.robot.mesh_file import RawMesh
+    from kinematify.robot.raw_mesh import RawMesh
     from kinematify.robot.robot import Link, LinkMesh
 
 _FILES = ("mesh", "texture")
@@ -122,7 +123,12 @@ class UrdfEditor:
         self.diffs.append(Diff(title=title, lines="\n".join(lines)))
 
     def carve(
-        self, robot: Robot, links: frozenset[str], config: Config, settings: ValidationSettings
+        self,
+        robot: Robot,
+        links: frozenset[str],
+        config: Config,
+        settings: ValidationSettings,
+        most_cut: float = 1.0,
     ) -> FittedCollision:
         """Give links collision pieces that leave the joints free; the others keep what they have.
 
@@ -132,11 +138,21 @@ class UrdfEditor:
             links: Names.
             config: Clearance.
             settings: How surfaces are taken apart, and when they block a motion.
+            most_cut: Share of the volume of its pieces that a link may lose to the motion; one that would lose more
+                keeps what it has.
 
         Returns:
             The pieces, with what could not be made free.
         """
-        fitted = fit_collision(robot, config.collision, settings.prepare, settings.geometry, only=links)
+        given = (robot, config.collision, settings.prepare, settings.geometry)
+        fitted = fit_collision(*given, only=links)
+        harmed = {item.link for item in fitted.links if item.link in links and item.carved > most_cut}
+        if harmed:  # the others leave room for what these keep
+            links -= harmed
+            others = fit_collision(*given, only=links)
+            lost = tuple(item for item in fitted.links if item.link in harmed)
+            kept = tuple(item for item in others.links if item.link not in harmed)
+            fitted = replace(others, links=(*kept, *lost))
         before = robot.link_by_name
         for link in fitted.robot.links:
             if link.name not in links or not link.collisions or _same(link, before[link.name]):

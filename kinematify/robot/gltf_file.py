@@ -1,11 +1,17 @@
-"""glTF 2.0 files: one mesh per node with all its primitives and materials, node transforms kept apart."""
+"""glTF 2.0 files: one mesh per node with all its primitives and materials, one per joint of a skin.
+
+Read by itself because trimesh 5.2 reads less, and does not say so: sparse accessors as zeros, normalised integers
+without their scale, fans, skins, weights of morph targets, instances, and textures that are moved or use a second set
+of coordinates not at all. pygltflib would replace `json.loads` alone. DracoPy and meshopt decode what is compressed.
+"""
 
 from __future__ import annotations
 
 import base64
+import importlib
 import json
 import struct
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote
 
@@ -13,6 +19,8 @@ import numpy as np
 
 from kinematify.robot.appearance import Appearance, Material, joined, linear_of, painted, srgb_of
 from kinematify.robot.exact_faces import ExactFaces, joined_faces
+from kinematify.robot.raw_mesh import RawMesh, compacted, merged
+from kinematify.versions import require
 
 if TYPE_CHECKING:
     import re
@@ -25,36 +33,32 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
 
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
-_HARMLESS = ("KHR_materials_", "KHR_texture_", "KHR_lights_", "EXT_texture_", "MSFT_", "KHR_mesh_quantization")
+_HARMLESS = (
+    "KHR_materials_",
+    "KHR_texture_",
+    "KHR_lights_",
+    "KHR_xmp",
+    "EXT_texture_",
+    "MSFT_",
+    "KHR_mesh_quantization",
+)
 """Extensions that a file may require without changing how positions are stored."""
+_DRACO = "KHR_draco_mesh_compression"
+_MESHOPT = ("EXT_meshopt_compression", "KHR_meshopt_compression")
+_INSTANCES = "EXT_mesh_gpu_instancing"
+_READ = (*_HARMLESS, _DRACO, *_MESHOPT, _INSTANCES, "TM_brep_faces")
 _OLDER = "KHR_materials_pbrSpecularGlossiness"
 _DEFAULT = Material(color=(1.0, 1.0, 1.0, 1.0), metallic=1.0, roughness=1.0)
 """What glTF lets a surface look like of which the file says no more."""
+_MOST = 50_000_000
+"""Rows of an accessor without data of its own, which a few bytes could state."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class GltfNode:
-    """A node that shows triangles."""
-
-    name: str
-    """Of the node, else of its mesh; empty where neither has one."""
-    vertices: FloatArray
-    """Node frame, shape (V, 3)."""
-    faces: IntArray
-    """Shape (F, 3)."""
-    T_world_node: FloatArray
-    """May scale and mirror, shape (4, 4)."""
-    appearance: Appearance | None = None
-    """None where the file states no material, and where it was not asked for."""
-    exact: ExactFaces | None = None
-    """Node frame; None where the file states no faces (the extension TM_brep_faces)."""
-
-
-def read_gltf(path: Path, *, appearance: bool = False, unnamed: re.Pattern[str] | None = None) -> tuple[GltfNode, ...]:
-    """Read the nodes with triangles of the default scene, parents before children.
+def read_gltf(path: Path, *, appearance: bool = False, unnamed: re.Pattern[str] | None = None) -> tuple[RawMesh, ...]:
+    """Read the nodes with triangles of the default scene, parents before children; the rigid parts of skins last.
 
     Args:
         path: A ``.glb``, or a ``.gltf`` whose buffers are inside or beside it.
@@ -62,17 +66,26 @@ def read_gltf(path: Path, *, appearance: bool = False, unnamed: re.Pattern[str] 
         unnamed: Names of nodes that say nothing, whole; the name of the mesh is taken instead.
 
     Raises:
+        EnvironmentFault: It is compressed, and the decoder is not installed.
         OSError: A file cannot be opened.
-        ValueError, KeyError, IndexError, TypeError: The file is truncated, malformed or compressed.
+        ValueError, KeyError, IndexError, TypeError: The file is truncated or malformed, or needs what is not read.
     """
     document, binary = _opened(path)
-    _check_extensions(document)
+    needed = [name for name in document.get("extensionsRequired", ()) if not name.startswith(_READ)]
+    if needed:
+        raise ValueError(f"it needs the extension {needed[0]}, which is not read; export it without")
     source = _GltfBuffers(document=document, binary=binary, folder=path.parent, loaded={})
-    if unnamed is not None:
-        for node in document.get("nodes", []):
-            if unnamed.fullmatch(str(node.get("name", ""))):
-                del node["name"]
-    return tuple(_nodes(document, source, _Materials(document, source) if appearance else None))
+    for node in document.get("nodes", []):
+        if unnamed is not None and unnamed.fullmatch(str(node.get("name", ""))):
+            node.pop("name", None)
+    meshes = tuple(_nodes(document, source, _Materials(document, source) if appearance else None))
+    unread = [f"the extension {name}" for name in document.get("extensionsUsed", ()) if not name.startswith(_READ)]
+    for what in ("animations", "scenes"):
+        count = len(document.get(what, ())) - (what == "scenes")
+        unread += [f"{count} {'other ' * (what == 'scenes')}{what}"] if count > 0 else []
+    modes = {one.get("mode", _TRIANGLES) for mesh in document.get("meshes", ()) for one in mesh["primitives"]}
+    unread += ["points and lines"] if modes - {_TRIANGLES, _STRIP, _FAN} else []
+    return tuple(replace(mesh, notes=(*mesh.notes, *unread)) for mesh in meshes)
 
 
 def _opened(path: Path) -> tuple[dict[str, Any], bytes]:
@@ -96,11 +109,9 @@ def _opened(path: Path) -> tuple[dict[str, Any], bytes]:
     return json.loads(chunks[_JSON_CHUNK]), chunks.get(_BINARY_CHUNK, b"")
 
 
-def _check_extensions(document: dict[str, Any]) -> None:
-    needed = [name for name in document.get("extensionsRequired", ()) if not name.startswith(_HARMLESS)]
-    needed += [name for name in document.get("extensionsUsed", ()) if name == "EXT_mesh_gpu_instancing"]
-    if needed:
-        raise ValueError(f"it needs the extension {needed[0]}; export it without compression and instancing")
+def _decoder(package: str, extension: str) -> Any:
+    require(f"The extension {extension} of a glTF file (or export it without compression)", package)
+    return importlib.import_module(package)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -111,29 +122,76 @@ class _GltfBuffers:
     binary: bytes
     folder: Path
     loaded: dict[int, bytes]
+    """Buffers, and unpacked buffer views by -1 - index."""
+    decoded: dict[int, NDArray[Any]] = field(default_factory=dict)
+    """Accessors whose values Draco held."""
+
+    def decode(self, primitive: dict[str, Any]) -> None:
+        """Unpack the accessors of a primitive that is compressed with Draco."""
+        packed = primitive.get("extensions", {}).get(_DRACO)
+        if packed is None:
+            return
+        mesh = _decoder("DracoPy", _DRACO).decode(bytes(self.content(packed["bufferView"])))
+        values = {item["unique_id"]: item["data"] for item in mesh.attributes}
+        for name, number in packed["attributes"].items():
+            self.decoded[primitive["attributes"][name]] = np.reshape(values[number], (len(values[number]), -1))
+        if "indices" in primitive:
+            self.decoded[primitive["indices"]] = np.reshape(mesh.faces, (-1, 1))
 
     def numbers(self, index: int) -> NDArray[Any]:
         """Contents of an accessor, shape (count, width); integers that represent fractions become fractions."""
         accessor = self.document["accessors"][index]
-        if "sparse" in accessor:
-            raise ValueError("it stores positions as sparse changes, which are not read")
-        dtype, width = np.dtype(_COMPONENTS[accessor["componentType"]]), _WIDTHS[accessor["type"]]
-        view = self.document["bufferViews"][accessor["bufferView"]]
-        start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
-        strides = (view.get("byteStride") or dtype.itemsize * width, dtype.itemsize)
-        # numpy refuses what reaches beyond the buffer, in either direction.
-        array: NDArray[Any] = np.ndarray(
-            (accessor["count"], width), dtype, self._buffer(view["buffer"]), offset=start, strides=strides
+        dtype, width, count = (
+            np.dtype(_COMPONENTS[accessor["componentType"]]),
+            _WIDTHS[accessor["type"]],
+            accessor["count"],
         )
+        if index in self.decoded:
+            array = self.decoded[index]
+        elif "bufferView" in accessor:
+            array = self._rows(accessor, dtype, count, width)
+        elif count <= _MOST:
+            array = np.zeros((count, width), dtype)
+        else:
+            raise ValueError(f"it states {count} values without data")
+        sparse = accessor.get("sparse")
+        if sparse:
+            at = self._rows(
+                sparse["indices"], np.dtype(_COMPONENTS[sparse["indices"]["componentType"]]), sparse["count"], 1
+            )
+            array = array.copy()
+            array[at[:, 0]] = self._rows(sparse["values"], dtype, sparse["count"], width)
         if accessor.get("normalized") and dtype.kind in "iu":
             return np.maximum(array / np.iinfo(dtype).max, -1.0)
         return array
 
-    def content(self, view: int) -> bytes:
-        """The bytes of a buffer view."""
-        stated = self.document["bufferViews"][view]
+    def _rows(self, stated: dict[str, Any], dtype: np.dtype[Any], count: int, width: int) -> NDArray[Any]:
+        """What an accessor, or a part of a sparse one, finds in its buffer view."""
+        view = self.document["bufferViews"][stated["bufferView"]]
+        strides = (view.get("byteStride") or dtype.itemsize * width, dtype.itemsize)
+        # numpy refuses what reaches beyond the bytes, in either direction.
+        content = self.content(stated["bufferView"])
+        return np.ndarray((count, width), dtype, content, offset=stated.get("byteOffset", 0), strides=strides)
+
+    def content(self, index: int) -> memoryview:
+        """The bytes of a buffer view, unpacked."""
+        view = self.document["bufferViews"][index]
+        packed = next((view["extensions"][name] for name in _MESHOPT if name in view.get("extensions", {})), None)
+        if packed is None:
+            return self._slice(view)
+        if -1 - index not in self.loaded:
+            if packed["count"] * packed["byteStride"] > 100 * _MOST:
+                raise ValueError(f"it states {packed['count']} values in {packed['byteLength']} bytes")
+            kind = packed["mode"], packed.get("filter", "NONE")
+            rows = _decoder("meshopt", _MESHOPT[0]).decode_gltf_buffer(
+                bytes(self._slice(packed)), packed["count"], packed["byteStride"], *kind
+            )
+            self.loaded[-1 - index] = rows.tobytes()
+        return memoryview(self.loaded[-1 - index])
+
+    def _slice(self, stated: dict[str, Any]) -> memoryview:
         start = stated.get("byteOffset", 0)
-        return self._buffer(stated["buffer"])[start : start + stated["byteLength"]]
+        return memoryview(self._buffer(stated["buffer"]))[start : start + stated["byteLength"]]
 
     def _buffer(self, index: int) -> bytes:
         if index not in self.loaded:
@@ -233,9 +291,8 @@ class _Materials:
             name = str(image.get("name") or image.get("uri", "")[:40] or f"texture {index}")
             try:
                 view = image.get("bufferView")
-                content = (
-                    self._source.content(view) if view is not None else self._source.named(image["uri"], "texture")
-                )
+                named = self._source.named
+                content = bytes(self._source.content(view)) if view is not None else named(image["uri"], "texture")
                 self._textures[index] = open_texture(name, content)
             except (ValueError, KeyError) as error:
                 self._textures[index] = f"the texture {name} cannot be read: {error}"
@@ -255,30 +312,78 @@ def _base_color(material: dict[str, Any]) -> tuple[list[float], dict[str, Any]]:
     return surface.get("baseColorFactor", [1.0, 1.0, 1.0, 1.0]), surface.get("baseColorTexture", {})
 
 
-def _nodes(document: dict[str, Any], source: _GltfBuffers, materials: _Materials | None) -> Iterator[GltfNode]:
+def _nodes(document: dict[str, Any], source: _GltfBuffers, materials: _Materials | None) -> Iterator[RawMesh]:
     nodes = document.get("nodes", [])
-    waiting = [(index, np.eye(4)) for index in reversed(_roots(document))]
-    seen: set[int] = set()
+    found: dict[int, tuple[FloatArray, tuple[tuple[int, str], ...]]] = {}
+    top: tuple[tuple[int, str], ...] = ()
+    waiting = [(index, np.eye(4), top) for index in reversed(_roots(document))]
     while waiting:
-        index, above = waiting.pop()
-        if index in seen:
+        index, above, path = waiting.pop()
+        if index in found:
             raise ValueError("its nodes form no tree")
-        seen.add(index)
         node = nodes[index]
-        transform = above @ _local_transform(node)
-        waiting.extend((child, transform) for child in reversed(node.get("children", [])))
-        if "mesh" in node:
-            mesh = document["meshes"][node["mesh"]]
-            vertices, faces, appearance = _merged_primitives(mesh, source, materials)
-            if len(faces):
-                yield GltfNode(
-                    name=str(node.get("name") or mesh.get("name") or ""),
-                    vertices=vertices,
-                    faces=faces,
-                    T_world_node=transform,
-                    appearance=appearance,
-                    exact=joined_faces([_exact_faces(primitive) for primitive in mesh["primitives"]]),
-                )
+        mesh = document["meshes"][node["mesh"]] if "mesh" in node else {}
+        found[index] = above @ _local_transform(node), (*path, (index, str(node.get("name") or mesh.get("name") or "")))
+        waiting.extend((child, *found[index]) for child in reversed(node.get("children", [])))
+    bound: dict[int, list[RawMesh]] = {}
+    for index, (transform, path) in found.items():
+        node = nodes[index]
+        if "mesh" not in node:
+            continue
+        mesh = document["meshes"][node["mesh"]]
+        shape = _Shape(source, materials, node.get("weights", mesh.get("weights", ())))
+        skin = document["skins"][node["skin"]] if "skin" in node else None
+        if skin is not None and all("JOINTS_0" in one["attributes"] for one in mesh["primitives"]):
+            for joint, part in _rigid_parts(shape, mesh, skin, {key: item[0] for key, item in found.items()}):
+                bound.setdefault(joint, []).append(part)
+            continue
+        vertices, faces, looks, _ = shape.merged(mesh)
+        if len(faces):
+            exact = joined_faces([_exact_faces(primitive) for primitive in mesh["primitives"]])
+            made = RawMesh(
+                name=path[-1][1], vertices=vertices, faces=faces, appearance=looks, exact=exact, holders=path
+            )
+            yield from (made.placed(transform @ place) for place in _instances(node, source))
+    for joint, parts in bound.items():
+        path = found[joint][1]
+        yield replace(merged(parts, path[-1][1] or f"joint_{joint}"), holders=path)
+
+
+def _instances(node: dict[str, Any], source: _GltfBuffers) -> list[FloatArray]:
+    """Transforms of the copies of a node in its own frame, shape (4, 4) each; one where it says no more."""
+    stated = node.get("extensions", {}).get(_INSTANCES)
+    if stated is None:
+        return [np.eye(4)]
+    rows = {name.lower(): source.numbers(index) for name, index in stated["attributes"].items()}
+    count = min((len(values) for values in rows.values()), default=0)
+    if count > _COPIES:
+        raise ValueError(f"it shows a node {count} times")
+    return [_local_transform({name: values[k] for name, values in rows.items()}) for k in range(count)]
+
+
+_COPIES = 10_000
+
+
+def _rigid_parts(
+    shape: _Shape, mesh: dict[str, Any], skin: dict[str, Any], T_world_node: dict[int, FloatArray]
+) -> Iterator[tuple[int, RawMesh]]:
+    """Parts of a mesh at the rest of its skin, each with the joint that moves it most; its node's frame is ignored."""
+    inverse = np.tile(np.eye(4), (len(skin["joints"]), 1, 1))
+    if "inverseBindMatrices" in skin:
+        stated = shape.source.numbers(skin["inverseBindMatrices"]).astype(np.float64)
+        inverse = stated[: len(inverse)].reshape(-1, 4, 4).transpose(0, 2, 1)
+    T_world_bind = np.stack([T_world_node[joint] for joint in skin["joints"]]) @ inverse
+    vertices, faces, looks, owners = shape.merged(mesh, T_world_bind)
+    owner = np.sort(owners[:, 0].astype(np.int64)[faces], axis=1)[:, 1]  # of three corners, the joint that two have
+    bent = float((owners[:, 1] < _RIGID).mean()) if len(owners) else 0.0
+    notes = (f"the skin bends {bent:.0%} of its vertices: each face goes with one joint",) if bent else ()
+    whole = RawMesh(name="", vertices=vertices, faces=faces, appearance=looks, notes=notes)
+    for number in np.unique(owner):
+        yield skin["joints"][number], compacted(whole.of_faces(np.flatnonzero(owner == number)))
+
+
+_RIGID = 0.99
+"""Weight of a joint from which a vertex belongs to it alone."""
 
 
 def _exact_faces(primitive: dict[str, Any]) -> ExactFaces | None:
@@ -320,27 +425,68 @@ def _local_transform(node: dict[str, Any]) -> FloatArray:
     return transform
 
 
-def _merged_primitives(
-    mesh: dict[str, Any], source: _GltfBuffers, materials: _Materials | None
-) -> tuple[FloatArray, IntArray, Appearance | None]:
-    """All triangles of a mesh; its primitives differ by material only. Points and lines are omitted."""
-    vertices, faces, count = [np.empty((0, 3))], [np.empty((0, 3), dtype=np.int64)], 0
-    looks: list[Appearance | None] = []
-    for primitive in mesh["primitives"]:
-        mode = primitive.get("mode", _TRIANGLES)
-        if mode not in (_TRIANGLES, _STRIP, _FAN):
-            continue
-        points = source.numbers(primitive["attributes"]["POSITION"]).astype(np.float64)
-        indexed = "indices" in primitive
-        corners = source.numbers(primitive["indices"]).reshape(-1) if indexed else np.arange(len(points))
-        triangles = _triangles(corners.astype(np.int64), mode)
-        if len(triangles) and triangles.max() >= len(points):
-            raise ValueError("a face refers to a vertex that the file does not hold")
-        vertices.append(points)
-        faces.append(triangles + count)
-        looks.append(materials.of_primitive(primitive, triangles) if materials is not None else None)
-        count += len(points)
-    return np.concatenate(vertices), np.concatenate(faces), joined(looks, [len(item) for item in faces[1:]])
+@dataclass(frozen=True, eq=False)
+class _Shape:
+    """Where vertices of a node's mesh come from."""
+
+    source: _GltfBuffers
+    materials: _Materials | None
+    weights: list[float]
+    """Of its morph targets."""
+
+    def merged(
+        self, mesh: dict[str, Any], bones: FloatArray | None = None
+    ) -> tuple[FloatArray, IntArray, Appearance | None, FloatArray]:
+        """All triangles of a mesh; its primitives differ by material only. Points and lines are omitted.
+
+        Args:
+            mesh: As in the document.
+            bones: Where each joint of a skin carries a vertex that it moves alone, shape (J, 4, 4).
+
+        Returns:
+            Vertices, faces, appearance, and for every vertex the bone that moves it most and by how much, shape (V, 2).
+        """
+        vertices, faces, count = [np.empty((0, 3))], [np.empty((0, 3), dtype=np.int64)], 0
+        looks: list[Appearance | None] = []
+        owners = [np.empty((0, 2))]
+        for primitive in mesh["primitives"]:
+            mode = primitive.get("mode", _TRIANGLES)
+            if mode not in (_TRIANGLES, _STRIP, _FAN):
+                continue
+            self.source.decode(primitive)
+            points = self.source.numbers(primitive["attributes"]["POSITION"]).astype(np.float64)
+            for target, weight in zip(primitive.get("targets", ()), self.weights, strict=False):
+                if weight and "POSITION" in target:
+                    points = points + weight * self.source.numbers(target["POSITION"])
+            indexed = "indices" in primitive
+            corners = self.source.numbers(primitive["indices"]).reshape(-1) if indexed else np.arange(len(points))
+            triangles = _triangles(corners.astype(np.int64), mode)
+            if len(triangles) and triangles.max() >= len(points):
+                raise ValueError("a face refers to a vertex that the file does not hold")
+            if bones is not None:
+                points, moved_by = self._posed(primitive, points, bones)
+                owners.append(moved_by)
+            vertices.append(points)
+            faces.append(triangles + count)
+            looks.append(self.materials.of_primitive(primitive, triangles) if self.materials is not None else None)
+            count += len(points)
+        looked = joined(looks, [len(item) for item in faces[1:]])
+        return np.concatenate(vertices), np.concatenate(faces), looked, np.concatenate(owners)
+
+    def _posed(self, primitive: dict[str, Any], points: FloatArray, bones: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Vertices where their bones carry them, and the last result of `merged`."""
+        sets = sorted(name[7:] for name in primitive["attributes"] if name.startswith("JOINTS_"))
+        joints, weights = (
+            np.concatenate([self.source.numbers(primitive["attributes"][f"{kind}_{k}"]) for k in sets], axis=1)
+            for kind in ("JOINTS", "WEIGHTS")
+        )
+        shares = weights / np.maximum(weights.sum(axis=1, keepdims=True), 1e-9)
+        placed = np.zeros_like(points)
+        for joint, share in zip(joints.T, shares.T, strict=True):
+            moved = np.einsum("vij,vj->vi", bones[joint][:, :3, :3], points) + bones[joint][:, :3, 3]
+            placed += share[:, None] * moved
+        most, rows = shares.argmax(axis=1), np.arange(len(points))
+        return placed, np.stack([joints[rows, most], shares[rows, most]], axis=1)
 
 
 def _triangles(corners: IntArray, mode: int) -> IntArray:

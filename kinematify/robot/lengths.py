@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-_METRES_FROM = 1.0
+_METRES_FROM, _WHOLE_FROM = 1.0, 0.01
 
 
 def length_text(length: float) -> str:
@@ -14,7 +14,9 @@ def length_text(length: float) -> str:
 
 
 def range_text(lower: float, upper: float) -> str:
-    """Return a range of a slide [m] in one unit, whole millimetres below a metre: `0 to 420 mm`, `-0.5 to 1.2 m`."""
-    if max(abs(lower), abs(upper)) >= _METRES_FROM:
+    """Return a range of a slide [m] in one unit, `0 to 420 mm`, `-0.5 to 1.2 m`; below 10 mm with two digits."""
+    longest = max(abs(lower), abs(upper))
+    if longest >= _METRES_FROM:
         return f"{lower:z.3g} to {upper:z.3g} m"
-    return f"{1000.0 * lower:z.0f} to {1000.0 * upper:z.0f} mm"
+    form = "z.0f" if longest >= _WHOLE_FROM else "z.2g"
+    return f"{1000.0 * lower:{form}} to {1000.0 * upper:{form}} mm"

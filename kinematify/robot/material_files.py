@@ -1,27 +1,21 @@
-"""Materials as files hold them: MTL beside OBJ, pictures, 3MF colours, and what the general mesh reader found."""
+"""Materials as files hold them: MTL beside OBJ, and pictures."""
 
 from __future__ import annotations
 
 import io
-import zipfile
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from lxml import etree
 from PIL import Image, UnidentifiedImageError
 
-from kinematify.robot.appearance import Appearance, Material, Texture, painted
+from kinematify.robot.appearance import Material, Texture
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from kinematify.robot.appearance import Rgba
-    from kinematify.robot.arrays import FloatArray, IntArray
-
 _MAX_SIDE = 2048  # [pixels] of a texture; larger ones are made smaller
 _OPAQUE = 255
-_HEX = {7: 6, 9: 8}  # length of a colour in 3MF, its sign included -> hexadecimal digits
 
 
 def texture_of(name: str, picture: Image.Image) -> Texture:
@@ -77,7 +71,8 @@ def _mtl_material(name: str, values: Mapping[str, str], folder: Path, notes: lis
     roughness = _floats(values.get("pr", ""), 1) or [float(np.sqrt(2.0 / (max(value, 0.0) + 2.0))) for value in shine]
     texture = None
     if "map_kd" in values:
-        texture = _mtl_texture(values["map_kd"], folder, notes)
+        stated = values["map_kd"]
+        texture = named_texture(stated if not stated.startswith("-") else stated.rsplit(maxsplit=1)[-1], folder, notes)
         if texture is not None and not (red or green or blue):  # black by neglect: it would hide the picture
             red = green = blue = 1.0
     return Material(
@@ -89,9 +84,9 @@ def _mtl_material(name: str, values: Mapping[str, str], folder: Path, notes: lis
     )
 
 
-def _mtl_texture(stated: str, folder: Path, notes: list[str]) -> Texture | None:
-    """The picture that a line names, at its end behind options; beside the MTL if it is not where the line says."""
-    name = (stated if not stated.startswith("-") else stated.rsplit(maxsplit=1)[-1]).replace("\\", "/")
+def named_texture(stated: str, folder: Path, notes: list[str]) -> Texture | None:
+    """Return the picture that a file names, or the one of this name in its folder; what cannot be read is noted."""
+    name = stated.replace("\\", "/")
     path = folder / name
     found = open_texture(name, path if path.is_file() else folder / name.rpartition("/")[2])
     if isinstance(found, str):
@@ -125,85 +120,3 @@ def write_mtl(path: Path, materials: Sequence[Material]) -> tuple[str, ...]:
                 write_texture(path.with_name(f"{name}.png"), material.texture)
                 file.write(f"map_Kd {name}.png\n")
     return names
-
-
-def appearance_found(visual: Any, faces: IntArray) -> Appearance | None:
-    """Return what trimesh read of a mesh's materials, texture or colours; None where the file states none."""
-    material = getattr(visual, "material", None)
-    if material is not None:
-        read = _material_found(material)
-        uv = getattr(visual, "uv", None)
-        placed = uv is not None and len(uv) > faces.max(initial=-1) and read.texture is not None
-        return Appearance(
-            materials=(read,),
-            material_of_face=np.zeros(len(faces), dtype=np.int64),
-            uv=np.asarray(uv, dtype=np.float64)[faces][..., :2] if placed else None,
-        )
-    if getattr(visual, "kind", None) == "face":
-        return painted(np.asarray(visual.face_colors, dtype=np.float64) / 255.0)
-    if getattr(visual, "kind", None) == "vertex":
-        return painted((np.asarray(visual.vertex_colors, dtype=np.float64) / 255.0)[faces].mean(axis=1))
-    return None
-
-
-def _material_found(material: Any) -> Material:
-    """A material of trimesh, whose colours are sRGB in bytes."""
-    picture = getattr(material, "image", None) or getattr(material, "baseColorTexture", None)
-    stated = getattr(material, "baseColorFactor", None)
-    stated = getattr(material, "diffuse", None) if stated is None else stated
-    color = np.array([*np.atleast_1d(stated), 255])[:4] / 255.0 if stated is not None else np.ones(4)
-    if picture is not None and not color[:3].any():
-        color[:3] = 1.0
-    red, green, blue, opacity = color.tolist()
-    name = str(getattr(material, "name", None) or "")
-    return Material(
-        name=name,
-        color=(red, green, blue, opacity),
-        texture=None if picture is None else texture_of(name or "texture", picture),
-    )
-
-
-def read_3mf_colors(path: Path) -> list[tuple[FloatArray, bool]]:
-    """Return the colour of every triangle of each object with triangles, in the order of the file.
-
-    Base materials and groups of colours are read, textures are not.
-
-    Returns:
-        sRGB and opacity in [0, 1], shape (F, 4), of every object, and whether the file states any of them.
-
-    Raises:
-        OSError, ValueError, KeyError, etree.XMLSyntaxError: It cannot be read.
-    """
-    with zipfile.ZipFile(path) as archive:
-        name = next(item for item in archive.namelist() if item.lower().endswith(".model"))
-        root = etree.fromstring(archive.read(name), etree.XMLParser(resolve_entities=False, no_network=True))
-    palettes: dict[str, list[Rgba]] = {}
-    for group in root.iter("{*}basematerials", "{*}colorgroup"):
-        stated = [item.get("displaycolor") or item.get("color") or "" for item in group]
-        palettes[group.get("id") or ""] = [_hex_color(text) for text in stated]
-    return [
-        _object_colors(item, palettes) for item in root.iter("{*}object") if item.find(".//{*}triangle") is not None
-    ]
-
-
-def _object_colors(item: Any, palettes: Mapping[str, list[Rgba]]) -> tuple[FloatArray, bool]:
-    usual = item.get("pid"), item.get("pindex")
-    grey = Material().color
-    found = False
-    colors = []
-    for triangle in item.iter("{*}triangle"):
-        palette = palettes.get(triangle.get("pid") or usual[0] or "", [])
-        index = int(triangle.get("p1") or usual[1] or 0)
-        known = index < len(palette)
-        found |= known
-        colors.append(palette[index] if known else grey)
-    return np.array(colors), found
-
-
-def _hex_color(text: str) -> Rgba:
-    digits = _HEX.get(len(text), 0)
-    if not digits:
-        return Material().color
-    values = [int(text[1 + k : 3 + k], 16) / 255.0 for k in range(0, digits, 2)]
-    red, green, blue, opacity = [*values, 1.0][:4]
-    return red, green, blue, opacity

@@ -1,16 +1,22 @@
-"""Wavefront OBJ, read and written without loss: vertices as shared in the file, all digits, groups and materials."""
+"""Wavefront OBJ, read and written without loss: vertices as shared in the file, all digits, groups and materials.
+
+Read by itself because trimesh 5.2 cuts polygons into fans and has neither groups nor continued lines, at 1.5 times the
+time (1.3 million triangles: 8.5 s, 5.8 s here); tinyobjloader rounds to float32, which is 0.5 m in survey coordinates.
+"""
 
 from __future__ import annotations
 
 import re
 import warnings
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kinematify.robot.appearance import Appearance, Material, painted
+from kinematify.robot.polygons import triangle_places
+from kinematify.robot.raw_mesh import RawMesh, compacted
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -24,138 +30,142 @@ if TYPE_CHECKING:
 _RUN = re.compile(r"(?:v[ \t].*\n?)++|(?:f[ \t].*\n?)++")
 """Lines of vertices, or of faces, that follow one another."""
 _TEXTURE_AND_NORMAL = re.compile(r"/\S*")
+_CONTINUED = re.compile(r"\\[ \t]*\n")
+_COMMENT = re.compile(r"#.*")
+_SILENT = (
+    "",
+    "vn",
+    "s",
+    "mg",
+    "lod",
+    "bevel",
+    "vt",
+    "usemtl",
+    "mtllib",
+    "c_interp",
+    "d_interp",
+    "shadow_obj",
+    "trace_obj",
+)
+"""Words that begin lines without a surface."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ObjGroup:
-    """The faces that stand under one combination of object (``o``) and group (``g``)."""
-
-    name: str
-    """Empty where the file names neither."""
-    faces: IntArray
-    """Indices into the file's vertices, polygons split into fans, shape (F, 3)."""
-    appearance: Appearance | None = None
-    """None where the file states no material and no colours, and where it was not asked for."""
-
-
-@dataclass
+@dataclass(kw_only=True)
 class _Content:
     """Content read so far."""
 
-    appearance: bool = False
+    appearance: bool
     """Whether materials, textures and colours are read."""
-
     vertices: list[FloatArray] = field(default_factory=list)
     count: int = 0
     """Vertices read."""
-    faces: dict[str, list[IntArray]] = field(default_factory=dict)
-    used: dict[str, list[str]] = field(default_factory=dict)
-    """Material of every run of faces, with the keys of `faces`."""
-    places: dict[str, list[IntArray]] = field(default_factory=dict)
-    """Places in the texture of the corners of every run of faces, -1 for none, with the keys of `faces`."""
+    runs: dict[tuple[str, str], list[tuple[str, IntArray, IntArray, IntArray]]] = field(default_factory=dict)
+    """Of every object and group: material, corners, their places in the texture or -1, sizes of polygons."""
     uv: list[list[float]] = field(default_factory=list)
     colors: list[FloatArray] = field(default_factory=list)
     """sRGB of every run of vertices, not a number where none is stated."""
     libraries: list[str] = field(default_factory=list)
     material: str = ""
-    object_name: str = ""
-    group_name: str = ""
-
-    @property
-    def label(self) -> str:
-        return "/".join(name for name in (self.object_name, self.group_name) if name)
+    holders: tuple[str, str] = ("", "")
+    unknown: dict[str, None] = field(default_factory=dict)
 
 
-def read_obj(path: Path, *, appearance: bool = False) -> tuple[FloatArray, tuple[ObjGroup, ...]]:
-    """Read the vertices and the groups that hold faces; normals are skipped.
+def read_obj(path: Path, *, appearance: bool = False) -> tuple[RawMesh, ...]:
+    """Read the faces under every combination of object (``o``) and group (``g``), in the order of their first face.
+
+    Normals are skipped, and polygons are triangles inside of them.
 
     Args:
         path: The file.
         appearance: Read materials, textures and colours of vertices too.
-
-    Returns:
-        Vertices of the whole file, shape (V, 3), and the groups in the order of their first face.
 
     Raises:
         OSError: The file cannot be opened.
         ValueError: A line is malformed; the message names it.
     """
     content = _Content(appearance=appearance)
-    text = path.read_text(encoding="utf-8", errors="replace")
+    text = path.read_text(encoding="utf-8-sig", errors="replace")
+    if "\\" in text:
+        text = _CONTINUED.sub(" ", text)
     end = 0
     while end < len(text):
         start = end
         run = _RUN.match(text, start)
         end = run.end() if run else (text.find("\n", start) + 1 or len(text))
-        keyword = text[start] if run else _keyword(text[start:end])
-        if keyword == "v":
-            _read_vertices(text[start:end], content)
-        elif keyword == "f":
-            _read_faces(text[start:end], content)
-        elif keyword in ("o", "g"):
-            _read_name(keyword, text[start:end], content)
-        elif appearance:
-            _read_appearance(keyword, text[start:end], content)
+        lines = text[start:end]
+        keyword, _, rest = lines.strip().partition(" ") if not run else (text[start], "", "")
+        if keyword in ("v", "f"):
+            lines = _COMMENT.sub("", lines) if "#" in lines else lines
+            (_read_vertices if keyword == "v" else _read_faces)(lines, content)
+        else:
+            _read_line(keyword, rest.strip(), content)
     vertices = np.concatenate([np.empty((0, 3)), *content.vertices])
-    looks = _appearances(path, content) if appearance else {}
-    return vertices, tuple(
-        ObjGroup(name=name, faces=np.concatenate(runs), appearance=looks.get(name))
-        for name, runs in content.faces.items()
-    )
+    if not len(vertices):
+        raise ValueError("it has no vertex")
+    known, notes = _materials(path, content)
+    uv, colors = np.array(content.uv).reshape(-1, 2), np.concatenate([np.empty((0, 3)), *content.colors])
+    groups = []
+    for holders, runs in content.runs.items():
+        corners, places, sizes = (np.concatenate([run[k] for run in runs]) for k in (1, 2, 3))
+        if corners.max(initial=-1) >= len(vertices):
+            raise ValueError("a face refers to a vertex that the file does not hold")
+        cut = triangle_places(vertices[corners], sizes) if (sizes > 3).any() else np.arange(len(corners)).reshape(-1, 3)
+        looks = None
+        if known:
+            named = dict.fromkeys(run[0] for run in runs)
+            index = np.repeat([[*named].index(run[0]) for run in runs], [int((run[3] - 2).sum()) for run in runs])
+            at = places[cut]
+            placed = (at >= 0) & (at < len(uv))
+            looks = Appearance(
+                materials=tuple(known.get(name, Material(name=name)) for name in named),
+                material_of_face=index,
+                uv=np.where(placed[..., None], uv[np.where(placed, at, 0)], 0.0) if placed.any() else None,
+                notes=notes,
+            )
+        elif len(colors) and np.isfinite(colors).all():
+            opaque = np.column_stack([np.clip(colors, 0.0, 1.0), np.ones(len(colors))])
+            looks = painted(opaque[corners[cut]].mean(axis=1), notes=notes)
+        mesh = RawMesh(
+            name="/".join(filter(None, holders)),
+            vertices=vertices,
+            faces=corners[cut],
+            appearance=looks,
+            holders=tuple((0, name) for name in holders if name),
+            notes=tuple(f"lines that begin with {word}" for word in content.unknown),
+        )
+        # Every group keeps its own vertices only: with thousands of groups the copies would fill the memory.
+        groups.append(compacted(mesh) if len(content.runs) > 1 else mesh)
+    return tuple(groups)
 
 
-def _read_appearance(keyword: str, line: str, content: _Content) -> None:
-    """A line about materials or places in a texture."""
-    if keyword == "vt":
-        words = [*line.split()[1:3], "0"]
-        content.uv.append([float(words[0]), float(words[1])])
+def _read_line(keyword: str, rest: str, content: _Content) -> None:
+    """A line that is neither a vertex nor a face."""
+    if keyword == "o":
+        content.holders = (rest, "")
+    elif keyword == "g":
+        content.holders = (content.holders[0], rest)
+    elif keyword not in _SILENT and not keyword.startswith("#"):
+        content.unknown[keyword[:20]] = None
+    elif content.appearance and keyword == "vt":
+        u, v = [*rest.split(), "0"][:2]
+        content.uv.append([float(u), float(v)])
     elif keyword == "usemtl":
-        content.material = line.strip().removeprefix("usemtl").strip()
+        content.material = rest
     elif keyword == "mtllib":
-        content.libraries.append(line.strip().removeprefix("mtllib").strip())
+        content.libraries.append(rest)
 
 
-def _appearances(path: Path, content: _Content) -> dict[str, Appearance]:
-    """Appearance of every group by its name: of its materials, else of the colours of its vertices."""
-    if not content.libraries:
-        return _painted_groups(content)
-    from kinematify.robot.material_files import read_mtl  # noqa: PLC0415  # opens pictures, most files name none
-
+def _materials(path: Path, content: _Content) -> tuple[dict[str, Material], tuple[str, ...]]:
+    """Materials of the libraries by name, and what of them cannot be read."""
     known: dict[str, Material] = {}
     notes: list[str] = []
-    for name in content.libraries:
+    for name in content.libraries if content.appearance else ():
+        from kinematify.robot.material_files import read_mtl  # noqa: PLC0415  # opens pictures, most files name none
+
         found, said = read_mtl(path.with_name(name.replace("\\", "/").rpartition("/")[2]))
         known |= found
         notes += said
-    if not known:
-        return {name: replace(item, notes=tuple(notes)) for name, item in _painted_groups(content).items()}
-    uv = np.array(content.uv).reshape(-1, 2)
-    looks = {}
-    for name, runs in content.faces.items():
-        materials = tuple(dict.fromkeys(content.used[name]))
-        index = np.repeat([materials.index(used) for used in content.used[name]], [len(run) for run in runs])
-        places = np.concatenate(content.places[name])
-        placed = (places >= 0) & (places < len(uv))
-        corners = np.where(placed[..., None], uv[np.where(placed, places, 0)], 0.0) if placed.any() else None
-        looks[name] = Appearance(
-            materials=tuple(known.get(used, Material(name=used)) for used in materials),
-            material_of_face=index,
-            uv=corners,
-            notes=tuple(notes),
-        )
-    return looks
-
-
-def _painted_groups(content: _Content) -> dict[str, Appearance]:
-    colors = np.concatenate([np.empty((0, 3)), *content.colors])
-    if not len(colors) or not np.isfinite(colors).all():
-        return {}
-    opaque = np.column_stack([np.clip(colors, 0.0, 1.0), np.ones(len(colors))])
-    return {name: painted(opaque[np.concatenate(runs)].mean(axis=1)) for name, runs in content.faces.items()}
-
-
-def _keyword(line: str) -> str:
-    return line.split(None, 1)[0] if line.strip() else ""
+    return known, tuple(notes)
 
 
 def _read_vertices(text: str, content: _Content) -> None:
@@ -172,26 +182,34 @@ def _read_vertices(text: str, content: _Content) -> None:
 
 
 def _read_faces(text: str, content: _Content) -> None:
-    plain = _TEXTURE_AND_NORMAL.sub("", text) if "/" in text else text
+    textured = "/" in text
+    plain = _TEXTURE_AND_NORMAL.sub("", text) if textured else text
     corners = _numbers(plain.replace("f", " "), int)
-    if len(corners) == 3 * _count(text) and corners.min() > 0:
-        block = corners.reshape(-1, 3) - 1
-    else:  # polygons, indices that count back, or a mistake to be named
-        block = np.array([corner for line in _lines(text) for corner in _fan(line, content.count)], dtype=np.int64)
-    content.faces.setdefault(content.label, []).append(block.reshape(-1, 3))
-    if content.appearance:
-        content.used.setdefault(content.label, []).append(content.material)
-        places = np.full(block.size, -1)
-        if "/" in text:
-            places = np.array([corner for line in _lines(text) for corner in _places_of_fan(line, len(content.uv))])
-        content.places.setdefault(content.label, []).append(places.astype(np.int64).reshape(-1, 3))
+    sizes, places = np.full(_count(text), 3), np.zeros(len(corners), dtype=np.int64)
+    # Polygons, indices that count back, or a mistake to be named; else places in the texture alone.
+    if len(corners) != sizes.sum() or corners.min() <= 0 or (textured and content.appearance):
+        rows = [_polygon(line, content.count) for line in _lines(text)]
+        sizes = np.array([len(row) for row in rows])
+        corners, places = np.array([corner for row in rows for corner in row], dtype=np.int64).T
+    run = (
+        content.material,
+        np.where(corners > 0, corners - 1, content.count + corners),
+        np.where(places >= 0, places - 1, len(content.uv) + places),
+        sizes,
+    )
+    content.runs.setdefault(content.holders, []).append(run)
 
 
-def _places_of_fan(line: str, count: int) -> list[tuple[int, int, int]]:
-    """Places in the texture of the triangles of a polygon line, -1 for none, after `count` have been read."""
-    stated = [word.split("/")[1] if "/" in word else "" for word in line.split()[1:]]
-    places = [-1 if not word else int(word) - 1 if int(word) > 0 else count + int(word) for word in stated]
-    return [(places[0], places[k], places[k + 1]) for k in range(1, len(places) - 1)]
+def _polygon(line: str, count: int) -> list[tuple[int, int]]:
+    """Vertex of every corner, and place in the texture or 0, as they are in a line after `count` vertices."""
+    try:
+        words = [word.split("/") for word in line.split()[1:]]
+        corners = [(int(word[0]), int(word[1]) if word[1:] and word[1] else 0) for word in words]
+    except ValueError as error:
+        raise ValueError(f"malformed face line {line.strip()[:60]!r}") from error
+    if len(corners) < 3 or not all(vertex > 0 or -count <= vertex < 0 for vertex, _ in corners):
+        raise ValueError(f"impossible face line {line.strip()[:60]!r}")
+    return corners
 
 
 def _count(text: str) -> int:
@@ -222,26 +240,6 @@ def _vertex(line: str) -> list[float]:
         return [float(x), float(y), float(z)]
     except ValueError as error:
         raise ValueError(f"malformed vertex line {line.strip()[:60]!r}") from error
-
-
-def _fan(line: str, count: int) -> list[tuple[int, int, int]]:
-    """Triangles of a polygon line, after `count` vertices have been read."""
-    try:
-        corners = [int(word.partition("/")[0]) for word in line.split()[1:]]
-    except ValueError as error:
-        raise ValueError(f"malformed face line {line.strip()[:60]!r}") from error
-    if len(corners) < 3 or 0 in corners or min(corners) < -count:
-        raise ValueError(f"impossible face line {line.strip()[:60]!r}")
-    zero_based = [corner - 1 if corner > 0 else count + corner for corner in corners]
-    return [(zero_based[0], zero_based[k], zero_based[k + 1]) for k in range(1, len(corners) - 1)]
-
-
-def _read_name(keyword: str, line: str, content: _Content) -> None:
-    name = line.strip()[1:].strip()
-    if keyword == "o":
-        content.object_name, content.group_name = name, ""
-    else:
-        content.group_name = name
 
 
 OBJ_DIGITS = 10

@@ -10,8 +10,9 @@ import numpy as np
 
 from kinematify.errors import AssemblyError, DescriptionError
 from kinematify.robot.appearance import plain
-from kinematify.robot.mesh_file import TO_Z_UP, RawMesh, merged, read_meshes
+from kinematify.robot.mesh_file import TO_Z_UP, read_meshes
 from kinematify.robot.mesh_paths import find_mesh
+from kinematify.robot.raw_mesh import RawMesh, merged
 from kinematify.robot.robot import LinkMesh, Shape
 from kinematify.robot.urdf_numbers import line_of, number, origin_transform, vector
 

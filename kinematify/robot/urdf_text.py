@@ -51,6 +51,10 @@ _ROOTS = {
     "html": ("a web page", "Download the raw file instead of the page that shows it."),
 }
 _XACRO = "Expand it first: `xacro {path} > robot.urdf` (pip install xacro, or ROS), and give robot.urdf."
+_DECLARED = re.compile(rb"\bxmlns:([A-Za-z_][\w.-]*)\s*=")
+_PREFIX = re.compile(rb"</?([A-Za-z_][\w.-]*):[A-Za-z_]")
+_DEFINITIONS = ("property", "macro", "arg")
+"""Elements of xacro that do nothing unless something calls them: expanded files often keep some."""
 _WORDS = re.compile(rb"<(robot|link|joint)[\s>/]")
 
 
@@ -115,7 +119,7 @@ def parse_text(text: bytes) -> _Element:
     Raises:
         lxml.etree.XMLSyntaxError: It is not well-formed, or deeper or larger than the limits of the parser.
     """
-    root = etree.fromstring(with_plain_declaration(text), _parser())
+    root = etree.fromstring(_with_prefixes(with_plain_declaration(text)), _parser())
     space = etree.QName(root).namespace
     if space and etree.QName(root).localname == "robot":  # Drake's files state one, which every reader ignores
         for element in root.iter(f"{{{space}}}*"):
@@ -127,7 +131,7 @@ def syntax_errors(text: bytes) -> list[tuple[int, str]]:
     """Return line and message of everything that keeps `parse_text` from reading a text."""
     parser = _parser()
     try:
-        etree.fromstring(with_plain_declaration(text), parser)
+        etree.fromstring(_with_prefixes(with_plain_declaration(text)), parser)
     except etree.XMLSyntaxError as error:
         # The log of the exception holds the errors of earlier documents too; that of the parser does not.
         log = cast("Iterable[Any]", parser.error_log)
@@ -139,6 +143,14 @@ def _parser() -> etree.XMLParser:
     return etree.XMLParser(
         resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_comments=True, remove_pis=True
     )
+
+
+def _with_prefixes(text: bytes) -> bytes:
+    """Return the text with every prefix declared: vendors write drake:NAME without, and readers of robots never ask."""
+    declared = set(_DECLARED.findall(text))
+    absent = sorted({*_PREFIX.findall(text)} - declared - {b"xml", b"xmlns"})
+    names = b"".join(b' xmlns:%s="urn:%s"' % (prefix, prefix) for prefix in absent)
+    return re.sub(rb"<robot\b", lambda found: found.group() + names, text, count=1) if names else text
 
 
 def has_doctype(root: _Element) -> bool:
@@ -217,6 +229,19 @@ def _refuse_foreign_text(path: Path, text: bytes) -> None:
         raise DescriptionError(f"The file {path} is {what}, not a URDF. Give a URDF: XML that begins with <robot>.")
 
 
+def _calls_xacro(root: _Element) -> bool:
+    """True if the document has to be expanded: it calls a macro, or an expression stands outside of definitions."""
+    for element in root.iter(etree.Element):
+        names = [etree.QName(item) for item in (element, *element.iterancestors())]
+        within = any("xacro" in (name.namespace or "") and name.localname in _DEFINITIONS for name in names)
+        if within:
+            continue
+        values = (str(value) for value in element.attrib.values())
+        if "xacro" in (names[0].namespace or "") or any("${" in value or "$(arg" in value for value in values):
+            return True
+    return False
+
+
 def _refuse_foreign_tree(path: Path, root: _Element) -> None:
     name = etree.QName(root).localname
     if name in _ROOTS:
@@ -224,7 +249,7 @@ def _refuse_foreign_tree(path: Path, root: _Element) -> None:
         raise DescriptionError(f"The file {path} is {what}, not a URDF. {remedy}")
     if root.tag != "robot":
         raise DescriptionError(f"The file {path} begins with <{root.tag}>, not <robot>, so it is no URDF. Give a URDF.")
-    if any("xacro" in (etree.QName(element).namespace or "") for element in root.iter(etree.Element)):
+    if _calls_xacro(root):
         raise DescriptionError(f"The file {path} is a xacro file, not a URDF. {_XACRO.format(path=path)}")
     tags = {element.tag for element in root}
     if "link" not in tags and tags & {"group", "disable_collisions", "group_state", "end_effector"}:

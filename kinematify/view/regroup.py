@@ -15,7 +15,7 @@ from kinematify.assembly.pieces import connected_sheets
 from kinematify.errors import InputError
 from kinematify.grouping.groups import Group, Grouping, grouped_as, stated_groups
 from kinematify.refinement.hints import parse_hints
-from kinematify.robot.mesh_file import RawMesh
+from kinematify.robot.raw_mesh import RawMesh
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

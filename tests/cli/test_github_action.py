@@ -39,7 +39,7 @@ def validated(folder: Path, models: str) -> tuple[int, dict[str, str]]:
             "PATH": f"{folder}{os.pathsep}{os.environ['PATH']}",
             "PYTHONPATH": str(ROOT),
             "MODELS": models,
-            "OPTIONS": "--engines none",
+            "OPTIONS": "--engines none --package-dir 'my robots'",
             "GITHUB_OUTPUT": str(output),
         },
         check=False,
@@ -49,13 +49,13 @@ def validated(folder: Path, models: str) -> tuple[int, dict[str, str]]:
 
 
 def test_a_broken_model_is_annotated_at_its_line_and_fails_the_last_step(tmp_path: Path) -> None:
-    (tmp_path / "robots" / "door").mkdir(parents=True)
-    (tmp_path / "robots" / "door" / "door.urdf").write_text(_DOOR)
-    assert validated(tmp_path, "robots/**/*.urdf") == (0, {"status": "1"})
+    (tmp_path / "my robots" / "door").mkdir(parents=True)
+    (tmp_path / "my robots" / "door" / "door.urdf").write_text(_DOOR)
+    assert validated(tmp_path, "nowhere/*.urdf\nmy robots/**/*.urdf\n") == (0, {"status": "1"})
     sarif: dict[str, Any] = json.loads((tmp_path / "kinematify.sarif").read_text())
     (result,) = (item for item in sarif["runs"][0]["results"] if item["ruleId"] == "KV137")
     place = result["locations"][0]["physicalLocation"]
-    assert place["artifactLocation"]["uri"] == "robots/door/door.urdf"
+    assert place["artifactLocation"]["uri"] == "my%20robots/door/door.urdf"
     assert place["region"]["startLine"] in (4, 5)
 
 

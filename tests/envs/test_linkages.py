@@ -6,7 +6,6 @@ import shutil
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pybullet as bullet
 import pytest
 from lxml import etree
 
@@ -19,6 +18,9 @@ from kinematify.generate.sentence import from_text
 from kinematify.pipeline.blueprint_files import write_blueprint
 from kinematify.robot.linkage import loop_gaps, without_followers
 from kinematify.validation.run import validate
+from kinematify.versions import NO_WHEELS
+
+bullet = pytest.importorskip("pybullet", reason=NO_WHEELS)
 
 if TYPE_CHECKING:
     from pathlib import Path

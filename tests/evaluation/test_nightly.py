@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -62,6 +63,16 @@ def changes(now: Run, before: Run, *, same_machine: bool = True) -> list[tuple[s
         ({"seconds": 2.9}, {}, []),
         ({}, {"seconds": 9.0}, [("faster", "seconds", False)]),
         ({"scenario": "s2", "problems": (AXIS,), "seconds": 9.0}, {}, [("new series", "", False)]),
+        (
+            {"scenario": "s2", "series": "x", "problems": (AXIS,)},
+            {"series": "x"},
+            [("new", AXIS.id, True), ("input changed", "", False)],
+        ),
+        (
+            {"scenario": "s2", "series": "x", "values": {"angle_deg": 0.5, "types": 1.0, "joints": 2.0}},
+            {"series": "x", "values": {"angle_deg": 0.5, "types": 1.0, "joints": 3.0}},
+            [("worse", "joints", True), ("input changed", "", False)],
+        ),
         ({"status": "unreadable", "values": {}}, {}, [("newly skipped", "", True)]),
     ],
 )
@@ -78,6 +89,11 @@ def test_class_of_a_change(now: dict[str, Any], before: dict[str, Any], expected
         ({"not_run": {"KV312": "blocked: x"}}, {"problems": (TOUCH,)}, [("newly skipped", "KV312", True)]),
         ({"not_run": {"KV312": "skipped: y"}}, {"not_run": {"KV312": "blocked: x"}}, []),
         ({"status": "crash", "values": {}}, {}, [("newly skipped", "", True)]),
+        (
+            {"scenario": "s2", "series": "x", "status": "warn"},
+            {"series": "x"},
+            [("worse", "verdict", True), ("input changed", "", False)],
+        ),
         ({"status": "crash", "values": {}}, {"status": "timeout", "values": {}}, [("still failing", "", False)]),
     ],
 )
@@ -170,6 +186,26 @@ def test_a_changed_configuration_starts_a_new_series(boxes: Path, tmp_path: Path
     other = night(boxes, tmp_path, "planted_inferences:crashing_on_three_parts", version=2)
     assert kinds(other) == {"new series": 2}
     assert not other.night.failed
+
+
+def test_an_axis_that_was_turned_in_the_data_fails_the_night(boxes: Path, tmp_path: Path) -> None:
+    data = tmp_path / "data"
+    shutil.copytree(boxes / "hinged", data / "hinged")
+    asked = {"conditions": ["rest"], "sources": ["truth"], "checks": ["KV3*"]}
+    assert not night(data, tmp_path / "out", "planted_inferences:sound", **asked).night.failed
+    (file,) = data.rglob("*.urdf")
+    document = etree.parse(file)
+    for axis in document.iter("axis"):
+        x, y, z = (axis.get("xyz") or "").split()
+        axis.set("xyz", f"{y} {z} {x}")
+    document.write(file)
+    changed = night(data, tmp_path / "out", "planted_inferences:sound", **asked)
+    assert changed.night.failed
+    assert kinds(changed)["input changed"] == 2
+    assert "1 input changed" in changed.night.badge["message"]
+    assert "<figure>" in (changed.place / "index.html").read_text()
+    unchanged = night(data, tmp_path / "out", "planted_inferences:sound", **asked)
+    assert "Nothing changed." in (unchanged.place / "index.html").read_text()
 
 
 def test_baseline_is_compared_with_until_a_night_is_accepted(boxes: Path, tmp_path: Path) -> None:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
-import pybullet
 import pytest
 import trimesh
 from lxml import etree
@@ -24,7 +23,10 @@ from kinematify.pipeline.blueprint_files import true_model
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import rotation_about
+from kinematify.versions import NO_WHEELS
 from tests.plain_mujoco import stuck_joints
+
+pybullet = pytest.importorskip("pybullet", reason=NO_WHEELS)
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -29,7 +29,7 @@ from kinematify.grouping.groups import (
 from kinematify.grouping.piece_sets import alike, node_of_pieces
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.pipeline.infer_assembly import infer
-from kinematify.robot.mesh_file import RawMesh
+from kinematify.robot.raw_mesh import RawMesh
 from tests.one_mesh import box, write_bin_with_lid, write_chest
 
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
-import pybullet
 import pytest
 
 from kinematify.config import load_config
@@ -16,8 +15,11 @@ from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.pipeline.blueprint_files import true_model
 from kinematify.robot.joint_type import JointType
+from kinematify.versions import NO_WHEELS
 from tests.places import ROOT
 from tests.plain_mujoco import hand, stuck_joints, wanted
+
+pybullet = pytest.importorskip("pybullet", reason=NO_WHEELS)
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import mujoco
-import pybullet
 import pytest
 import trimesh
 from lxml import etree
@@ -26,6 +25,9 @@ from kinematify.simulation.engines import DEFAULT_ENGINES
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
 from kinematify.validation.run.report import ValidationReport
 from kinematify.validation.summary import JointSummary
+from kinematify.versions import NO_WHEELS
+
+pybullet = pytest.importorskip("pybullet", reason=NO_WHEELS)
 
 WALLS = {  # a case that is open in front: extents and middle of each board
     "bottom": ((0.4, 0.5, 0.02), (0.0, 0.0, 0.01)),

@@ -343,10 +343,10 @@ def test_round_degrees_may_be_written_with_two_decimals_of_a_radian(good: Path) 
     assert counted(edited(good, "//joint[@name='door_joint']/limit", lower="-3.49", upper="3.49")) == []
 
 
-def test_a_small_range_in_degrees_is_no_round_angle(good: Path) -> None:
-    ends = {"lower": repr(math.degrees(-0.0698)), "upper": repr(math.degrees(0.0698))}
-    finding = only(edited(good, "//joint[@name='door_joint']/limit", **ends), "KV220")
-    assert finding.severity is Severity.WARNING
+@pytest.mark.parametrize(("half", "severity"), [(4.0, Severity.NOTE), (5.2, Severity.WARNING)])
+def test_a_small_range_in_degrees_may_be_that_of_a_wrist(good: Path, half: float, severity: Severity) -> None:
+    edited(good, "//joint[@name='door_joint']/limit", lower=repr(-half - 0.007), upper=repr(half + 0.007))
+    assert [item.severity for item in checked(good)["KV220"].findings] == [severity]
 
 
 @pytest.mark.parametrize(("upper", "severity"), [("0.9", None), ("4", Severity.WARNING), ("300", Severity.ERROR)])

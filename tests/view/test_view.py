@@ -16,7 +16,8 @@ import pytest
 from kinematify.cli.app import run
 from kinematify.robot.appearance import surfaces
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.mesh_file import merged, read_meshes
+from kinematify.robot.mesh_file import read_meshes
+from kinematify.robot.raw_mesh import merged
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.view.alternatives import JointAlternative, agreeing, described, distinct

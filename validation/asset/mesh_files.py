@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import AssemblyError
-from kinematify.robot.mesh_file import merged, read_meshes
+from kinematify.robot.mesh_file import read_meshes
+from kinematify.robot.raw_mesh import merged
 from kinematify.robot.urdf_geometry import NoShape
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.config.validation import FileSettings
-    from kinematify.robot.mesh_file import RawMesh
+    from kinematify.robot.raw_mesh import RawMesh
     from kinematify.robot.urdf_geometry import GeometrySource
 
 _MEGABYTE = 1_000_000

@@ -12,7 +12,7 @@ from kinematify.robot.weld import welded
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.mesh_file import RawMesh
+    from kinematify.robot.raw_mesh import RawMesh
 
 
 @dataclass(frozen=True, kw_only=True)

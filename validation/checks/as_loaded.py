@@ -409,11 +409,12 @@ def _shown(value: float) -> str:
     needs=(not_loaded, nothing_moves, late),
 )
 def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
-    """In the untouched file each joint that has limits is pressed against both by as_loaded.force or as_loaded.torque,
-    by its effort if that is less, and by no more than brings it up to the hand's speed in as_loaded.press: nothing
-    moves there that friction and damping would hold back. The others are held, without contacts and gravity. It gives
-    way by no more than as_loaded.still of its range (at least as_loaded.still_angle or as_loaded.still_length). A limit
-    that gives way and holds then is a warning, and so are equal limits: files write 0 and 0 where no range is meant.
+    """In the untouched file each joint that declares limits and an effort is pressed against both by as_loaded.force or
+    as_loaded.torque, by its effort if that is less, and by no more than brings it up to the hand's speed in
+    as_loaded.press: nothing moves there that friction and damping would hold back. The others are held, without
+    contacts and gravity. It gives way by no more than as_loaded.still of its range (at least as_loaded.still_angle or
+    as_loaded.still_length). A limit that gives way and holds then is a warning, and so are equal limits: files write 0
+    and 0 where no range is meant.
 
     Why it matters: A range that an engine does not keep is none: MuJoCo takes limits that are equal for no limits.
 
@@ -425,8 +426,8 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
             through = abs(stop - end) >= abs(run.push.target - end)
             unit = "N m" if travel.turns else "N"
             result.find(
-                f"Pressed with up to {run.push.force:.3g} {unit} against its limit of {end:.4g} {travel.unit} in "
-                f"{context.title}, joint {travel.joint} gets to {stop:.4g} {travel.unit}"
+                f"Pressed with {run.push.force:.3g} {unit}, within its effort, against its limit of {end:.4g} "
+                f"{travel.unit} in {context.title}, joint {travel.joint} gets to {stop:.4g} {travel.unit}"
                 f"{' at least' if through else ''}.",
                 f"Give {travel.joint} limits that {context.title} keeps (the lower one less than the upper one), or a "
                 "part of plausible mass and inertia; a joint that does not move is a fixed one.",

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from kinematify.validation.asset.rigid_bodies import Physics
     from kinematify.validation.check import OpenCheck
 
+_FEW_DEGREES = 10.0
+"""No range of degrees is so narrow [deg], but published ranges in radians are so wide."""
 _ROUND_DEGREES = 5.0
 """People choose limits that are multiples of this [deg]."""
 _ROUND_TOLERANCE = 0.3
@@ -36,8 +38,9 @@ _ROUND_TOLERANCE = 0.3
 def implausible_ranges(result: OpenCheck, physics: Physics) -> None:
     """No hinge turns by more than `widest_turn` (a warning from `full_turn` on; a warning beyond `endless`, and a note
     at plus and minus 10 rad or a multiple of pi, where no limit was meant), unless both limits are round numbers of
-    degrees up to `widest_wrist`. No slide moves by more than `slide_sizes` times the size of the model, by
-    `widest_slide` where no geometry shows its size; beyond `slide_wrong` times it is an error.
+    degrees up to `widest_wrist`; it is a note where the range would be less than ten degrees if it were degrees. No
+    slide moves by more than `slide_sizes` times the size of the model, by `widest_slide` where no geometry shows its
+    size; beyond `slide_wrong` times it is an error.
 
     Why it matters: Degrees for radians and millimetres for metres load in every engine, and the joint then moves
     freely.
@@ -70,7 +73,7 @@ def _turn(result: OpenCheck, physics: Physics, joint: Joint) -> None:
         if endless
         else f"Write lower and upper in radians: {degrees} if they are degrees.",
         severity=Severity.NOTE
-        if joint.endless
+        if joint.endless or width < _FEW_DEGREES  # read as degrees it would hardly move: wrists are published so wide
         else Severity.WARNING
         if endless or width <= settings.widest_turn
         else Severity.ERROR,

@@ -33,7 +33,6 @@ class _Reference:
     link: str
     filename: str
     line: int
-    collides: bool
     path: Path | None
     """None where there is no such file."""
     fault: str

@@ -229,7 +229,8 @@ def _displaced(result: OpenCheck, child: _Element, parent: _Element) -> None:
 
 @check("KV106", title="Elements are known", fails="Elements are unknown", severity=Severity.NOTE, cause=Cause.ASSET)
 def unknown_elements(result: OpenCheck, urdf: Urdf) -> None:
-    """Elements that neither URDF nor the usual extensions define are counted by kind.
+    """Elements that neither URDF nor the usual extensions define are counted by kind, and definitions of xacro that
+    nothing calls.
 
     Why it matters: A tag with a typing mistake is ignored in silence, with all that it says.
 
@@ -241,6 +242,14 @@ def unknown_elements(result: OpenCheck, urdf: Urdf) -> None:
         for child in parent:
             if _is_unknown(child, parent) and not _is_displaced(child, parent):
                 found[str(parent.tag), str(child.tag)].append(child)
+    left = [element for element in urdf.robot.iter("{*}property", "{*}macro") if "xacro" in str(element.tag)]
+    if left:
+        result.find(
+            f"Definitions of xacro are left that nothing calls: {len(left)}. They are passed over.",
+            "Delete them; readers of robots ignore them.",
+            value=len(left),
+            line=line_of(left[0]),
+        )
     for (parent_tag, tag), elements in found.items():
         close = next((known for known in _CHILDREN[parent_tag] if known.lower() == tag.lower()), None)
         result.find(

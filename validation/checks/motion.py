@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 _CRIPPLED = 0.5
 """No remedy leaves a joint less of its range."""
+_GUIDED = 0.5
+"""Share of its length with which a sliding part is beside what guides it."""
 _LIMBS = 2
 """Bodies with more joints between them stand on limbs: two parts of a cabinet have two."""
 
@@ -266,7 +268,8 @@ def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
 )
 def out_of_guide(result: OpenCheck, motion: JointMotion) -> None:
     """A sliding part is still beside its parent at the end of its range: the travel is below geometry.guide of the
-    length along the axis that both share, visible or colliding, whichever is more.
+    length along the axis that both share, visible or colliding, whichever is more. Of what is beside its parent
+    with less than half of its length, as the hook of a hoist does, the guide is not in the file.
 
     Why it matters: A drawer that is pulled out farther than it is long falls, but not in an engine.
 
@@ -279,16 +282,16 @@ def out_of_guide(result: OpenCheck, motion: JointMotion) -> None:
         connection = scene.connection_of[pair]
         for side in motion.sweep.sides:
             way = abs(side.declared - travel.rest)
-            guide = max(motion.guide(connection, side), motion.as_seen.guide(connection, side))
-            # What stands on its parent, as a lid does, has no guide, and may be lifted off.
-            if guide <= scene.settings.hover * scene.size or way <= scene.settings.guide * guide:
+            guide, held = max(motion.guide(connection, side), motion.as_seen.guide(connection, side))
+            # What stands on its parent, as a lid does, or hangs on a rope, as a hook does, has no guide in the file.
+            if guide <= scene.settings.hover * scene.size or held < _GUIDED or way <= scene.settings.guide * guide:
                 continue
             parent, child = motion.look.parent_and_child(connection, {motion.sweep.leader: side.declared})
-            end, held = "upper" if side.sign > 0 else "lower", travel.rest + side.sign * 0.8 * guide
+            end, last = "upper" if side.sign > 0 else "lower", travel.rest + side.sign * 0.8 * guide
             result.find(
                 f"{motion.joint} slides {child} by {length(way)}, but only {length(guide)} of it stand beside "
                 f"{parent} along the axis: at the end of its range it has left it.",
-                f"{_limit(motion, end, held)} (four fifths of its guide), or correct <axis>."
+                f"{_limit(motion, end, last)} (four fifths of its guide), or correct <axis>."
                 if 0.8 * guide > _CRIPPLED * travel.range
                 else "Check <axis> and <origin>, and whether the guide is modelled.",
                 joint=motion.joint,

@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from kinematify.geometry.scene import relative
+from kinematify.geometry.together import random_rows
 from kinematify.validation.check import FeedbackRow, check
 from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.geometry.formatting import BARELY, SLIMMER, UNSEEN, configuration, in_document_order, length
@@ -85,7 +89,7 @@ def _overlap(
         SLIMMER
         if unseen
         else "Correct the mesh or its <origin>, or cut the parts so that they only touch; the overlap is tolerated "
-        "in all later checks.",
+        f"in all later checks.{_start(look, rest.pair)}",
         cause=Cause.PHYSICS if unseen else None,
         severity=Severity.ERROR if wrong else Severity.WARNING,
         joint=joint,
@@ -95,6 +99,26 @@ def _overlap(
         limit=limit,
         unit="m",
     )
+
+
+_STARTS = 32
+"""Configurations in which a place to start from is looked for."""
+
+
+def _start(look: GeometryContext, pair: Pair) -> str:
+    """Return a configuration in which a pair is apart, the nearest to rest of some; empty if it is in none."""
+    scene, between = look.scene, sorted(look.scene.between(pair))
+    if not between:
+        return ""
+    rows = np.tile(scene.mechanism.rest, (_STARTS, 1))
+    rows[:, between] = random_rows(scene, seed=0)[:_STARTS, between]
+    T = relative(scene.poses(rows), pair)
+    apart = rows[~(look.overlap.collide(pair, T) | look.overlap.may_contain(pair, T))]
+    if not len(apart):
+        return ""
+    nearest = apart[np.abs(apart - scene.mechanism.rest).sum(axis=1).argmin()]
+    values = ", ".join(f"{scene.travels[k].joint} {nearest[k]:.3g}" for k in between)
+    return f" Or start elsewhere, if zero is no pose of the model: the two are apart at {values}."
 
 
 @check(

@@ -402,8 +402,8 @@ class JointMotion:
         allowed = allowance.at_rest(meeting.pair) + allowance.tolerance(meeting.pair)
         return not meeting.passed and bool((overlap.depth(meeting.pair, T) <= allowed).any())
 
-    def guide(self, connection: Connection, side: SweepSide) -> float:
-        """Way after which the trailing end of the child has passed the leading end of the parent [m]."""
+    def guide(self, connection: Connection, side: SweepSide) -> tuple[float, float]:
+        """Return the way after which the trailing end of the child has passed the leading end of the parent [m]."""
         scene = self.scene
         rows = np.tile(scene.mechanism.rest, (2, 1))
         rows[1, self.sweep.leader] = side.declared
@@ -411,10 +411,11 @@ class JointMotion:
         motion = poses[1, connection.child, :3, 3] - poses[0, connection.child, :3, 3]
         moved = float(np.linalg.norm(motion))
         if moved == 0.0:
-            return 0.0
+            return 0.0, 0.0
         along = motion / moved
         parent, child = (
             transformed(scene.bodies[body].solid.points, poses[0, body]) @ along
             for body in (connection.parent, connection.child)
         )
-        return float(parent.max() - child.min())
+        guide = float(parent.max() - child.min())
+        return guide, guide / max(float(np.ptp(child)), 1e-12)

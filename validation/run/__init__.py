@@ -66,6 +66,7 @@ def validate(
     settings: ValidationSettings | None = None,
     selected: Collection[str] | None = None,
     engines: Sequence[str] = DEFAULT_ENGINES,
+    named: bool = True,
     suppressions: Sequence[Suppression] = (),
     task: TaskRequest | None = None,
     workers: int | None = None,
@@ -80,6 +81,7 @@ def validate(
         selected: Ids of the checks to run; all if absent. Those of file and meshes always run, and their errors count.
         engines: Of `kinematify.simulation.engines.ENGINES`; all that are installed if absent. Checks of others are
             reported as skipped, with the reason.
+        named: The user named the engines: what one of them shows is an error, even if others were not asked.
         suppressions: Findings that do not count.
         task: What a robot is to do with the object (KV7xx); without one these checks are not in the report.
         workers: Processes at a time; as many as there are cores if absent.
@@ -99,7 +101,9 @@ def validate(
     chosen = tuple(engine for engine in ENGINES if engine in engines)
     checks = _checks(task)
     wanted = frozenset(checks) if selected is None else frozenset(checks) & frozenset(selected)
-    run = _Run(path=Path(path), selected=wanted, progress=progress, task=task, engines=chosen, checks=checks)
+    run = _Run(
+        path=Path(path), selected=wanted, progress=progress, task=task, engines=chosen, named=named, checks=checks
+    )
     settings = settings or load_settings()
     try:
         with tempfile.TemporaryDirectory(prefix="kinematify-", ignore_cleanup_errors=True) as folder:
@@ -147,11 +151,12 @@ class _Run:
         progress: Progress | None,
         task: TaskRequest | None,
         engines: Sequence[str],
+        named: bool,
         checks: Mapping[str, Check],
     ) -> None:
         self.path = path
         self.task = task
-        self.engines = engines
+        self.engines, self.named = engines, named
         self.checks = checks
         self.selected = selected
         self.interrupted = False
@@ -287,7 +292,7 @@ class _Run:
         results = [self._result(key) for key in keys(list(self.checks.values()))]
         robot = _bodies(self.path)
         results = demote_inference_findings(
-            join_facts(across_engines(with_refusals(with_lines(results, robot)), self.engines))
+            join_facts(across_engines(with_refusals(with_lines(results, robot)), self.engines, named=self.named))
         )
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)
         checks = with_causes(checks, robot)

@@ -79,7 +79,7 @@ def with_refusals(checks: Sequence[CheckResult]) -> list[CheckResult]:
     ]
 
 
-def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> list[CheckResult]:
+def across_engines(checks: Sequence[CheckResult], engines: Sequence[str], *, named: bool = True) -> list[CheckResult]:
     """Make errors of the untouched file warnings where another engine has none, and say which.
 
     What is laid to an engine and only one shows is a note then, and a warning where no other engine runs the file.
@@ -87,8 +87,9 @@ def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> lis
     Args:
         checks: All results.
         engines: That were asked for. Where they are not the default ones a user has named them, and errors stay.
+        named: False: the user named no engine, and what the only one shows is a warning.
     """
-    if tuple(engines) != DEFAULT_ENGINES:
+    if tuple(engines) != DEFAULT_ENGINES and named:
         return list(checks)
     ran: dict[str, set[str | None]] = {}
     for check in checks:
@@ -102,14 +103,14 @@ def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> lis
         if finding.severity is Severity.ERROR
     ]
     return [
-        check.with_findings(_across(finding, errors, ran) for finding in check.findings)
+        check.with_findings(_across(finding, errors, ran, named=named) for finding in check.findings)
         if check.check.startswith(_FAMILY)
         else check
         for check in checks
     ]
 
 
-def _across(finding: Finding, errors: Sequence[Finding], ran: Mapping[str, set[str | None]]) -> Finding:
+def _across(finding: Finding, errors: Sequence[Finding], ran: Mapping[str, set[str | None]], *, named: bool) -> Finding:
     failing = {
         other.engine
         for other in errors
@@ -121,6 +122,8 @@ def _across(finding: Finding, errors: Sequence[Finding], ran: Mapping[str, set[s
     alone = finding.cause is Cause.ENGINE and not any(
         other.check == finding.check and other.engine != finding.engine for other in errors
     )
+    if not (works or named):
+        return replace(finding, severity=Severity.WARNING, message=f"{finding.message} No other engine was asked.")
     if not works:
         return replace(finding, severity=Severity.WARNING) if alone else finding
     return replace(

@@ -25,12 +25,12 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     """Look at the model at rest and in motion; see `kinematify.validation.stage`."""
     from kinematify.geometry.scene import colliding_shapes, read_scene
     from kinematify.validation.geometry.look import GeometryContext
-    from kinematify.validation.left_model import model_of
+    from kinematify.validation.left_model import thin_model_of
 
     every = (*AT_REST, *IN_MOTION, *TOGETHER)
     if not recorder.wants(*(entry.id for entry in every)):
         return
-    model = model_of(request)
+    model = thin_model_of(request)
     scene = read_scene(model, request.settings.geometry, colliding_shapes)
     if len(scene.bodies) < 2:
         recorder.skip(every, "fewer than two bodies have geometry")

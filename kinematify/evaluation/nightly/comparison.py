@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import TypeAdapter
 
-from kinematify.evaluation.nightly.runs import AS_LOADED, MORE_IS_BETTER, OPENED, UNITS
+from kinematify.evaluation.nightly.runs import AS_LOADED, JOINTS, MORE_IS_BETTER, OPENED, UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -33,6 +33,8 @@ class Class(StrEnum):
     SLOWER = "slower"
     """Only reported."""
     FASTER = "faster"
+    INPUT_CHANGED = "input changed"
+    """The object has other files than before: it is compared with its last result."""
     NEW_SERIES = "new series"
     """There is no earlier run of this scenario to compare with."""
     GONE = "gone"
@@ -41,6 +43,8 @@ class Class(StrEnum):
 
 QUALITY = (Class.NEW, Class.WORSE, Class.NEWLY_SKIPPED)
 """Classes that may fail a night."""
+SHOWN = (*QUALITY, Class.FIXED, Class.BETTER, Class.INPUT_CHANGED)
+"""Classes whose objects are drawn."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,8 +90,12 @@ def compare(
     for place, run in tonight.items():
         earlier = before.get(place, ())
         same = next((other for other in earlier if other.scenario == run.scenario), None)
-        if same is None:
-            why = "input, pose or thresholds are others than before" if earlier else "there is no earlier night with it"
+        last = next((other for other in earlier if run.series and other.series == run.series), None)
+        if same is None and last is not None:
+            found.append(_change(run, Class.INPUT_CHANGED, "", "its files are others than before; compared with them"))
+            found += [*_losses(run, last), *_quality(run, last, settings)]
+        elif same is None:
+            why = "pose or thresholds are others than before" if earlier else "there is no earlier night with it"
             found.append(_change(run, Class.NEW_SERIES, "", f"scenario {run.scenario}: {why}"))
         else:
             found += _quality(run, same, settings)
@@ -103,6 +111,18 @@ def counts(changes: Iterable[Change]) -> dict[str, int]:
     """Return how many changes there are of each class, classes without any included."""
     found = Counter(change.kind for change in changes)
     return {kind.value: found.get(kind, 0) for kind in Class}
+
+
+_VERDICTS = ("pass", "warn", "fail")
+
+
+def _losses(run: Run, last: Run) -> Iterator[Change]:
+    """What a changed input must not lose: its verdict and its joints."""
+    if {run.status, last.status} <= {*_VERDICTS} and _VERDICTS.index(run.status) > _VERDICTS.index(last.status):
+        yield _change(run, Class.WORSE, "verdict", f"from {last.status} to {run.status}", gate=True)
+    before, now = last.values.get(JOINTS), run.values.get(JOINTS)
+    if before is not None and now is not None and now < before:
+        yield _change(run, Class.WORSE, JOINTS, f"from {before:.0f} to {now:.0f}", gate=True)
 
 
 def _quality(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from base64 import b64encode
 from typing import TYPE_CHECKING
 
 from kinematify.evaluation.nightly.comparison import QUALITY, Class
@@ -13,7 +14,7 @@ from kinematify.validation.check import FAMILIES
 from kinematify.validation.formats.html_frame import badge, page, table, text
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from kinematify.evaluation.nightly.comparison import Change
     from kinematify.evaluation.nightly.runs import Run
@@ -41,15 +42,60 @@ _SEEN = 20
 """Rows that a page shows before they are asked for: a night of many objects stays readable on a few screens."""
 
 
-def night_page(night: Night, pages: Collection[str] = ()) -> str:
+def night_page(night: Night, pages: Collection[str] = (), pictures: Mapping[str, bytes] | None = None) -> str:
     """Return the page of a night.
 
     Args:
         night: The night.
         pages: Files in its folder of models.
+        pictures: Of objects that changed, PNG by name.
     """
     title = f"kinematify nightly {night.name}: {night.header['gate']}"
-    return page(title, [_head(night), *_changes(night), *_matrix(night, pages), *_accuracy(night), *_runs(night)])
+    return page(
+        title,
+        [
+            _head(night),
+            *_changes(night),
+            _pictures(pictures or {}),
+            *_matrix(night, pages),
+            *_accuracy(night),
+            *_runs(night),
+        ],
+    )
+
+
+def nights_page(nights: Sequence[Night]) -> str:
+    """Return the page of all nights, a row each.
+
+    Args:
+        nights: The oldest first.
+    """
+    classes = [kind.value for kind in Class if kind is not Class.GONE]
+    rows: list[tuple[Cell, ...]] = [
+        (
+            f'<a href="{text(night.name)}/index.html">{text(night.name)}</a>',
+            badge(night.header["gate"]),
+            str(night.header["objects"]),
+            str(night.header["runs"]),
+            *(str(night.header["counts"].get(kind, 0)) for kind in classes),
+            f"{night.header['seconds'] / 60.0:.1f}",
+            text(night.header["processor"]),
+        )
+        for night in reversed(nights)
+    ]
+    headings = ("night", "gate", "objects", "runs", *classes, "min", "machine")
+    title = f"kinematify nightly: {len(nights)} nights"
+    kinds = ("", "", *["number"] * (len(classes) + 3), "")
+    return page(title, [f"<h1>{title}</h1>", table(headings, rows, name="nights", classes=kinds)])
+
+
+def _pictures(pictures: Mapping[str, bytes]) -> str:
+    shown = (
+        f'<figure><img alt="{text(name)}" width="320" src="data:image/png;base64,{b64encode(image).decode()}">'
+        f"<figcaption>{text(name)}</figcaption></figure>"
+        for name, image in pictures.items()
+    )
+    return f'<div class="charts">{"".join(shown)}</div>' if pictures else ""
 
 
 def _head(night: Night) -> str:
@@ -90,7 +136,7 @@ def _change_table(changes: Sequence[Change], name: str) -> str:
     failing = sum(change.gate for change in changes)
     words = f"<p>{failing} of them fail the night. {counted}. Timing never fails a night.</p>"
     if not listed_changes:
-        return words
+        return f"<p><strong>Nothing changed.</strong></p>{words}"
     rows: list[tuple[Cell, ...]] = [
         (
             (_class_cell(change), f"{list(Class).index(change.kind):02d}"),

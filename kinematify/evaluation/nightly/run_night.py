@@ -17,9 +17,9 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.benchmark_job import INFER
 from kinematify.evaluation.datasets import CONDITIONS, find_objects, matching
-from kinematify.evaluation.nightly.comparison import compare, counts
+from kinematify.evaluation.nightly.comparison import SHOWN, compare, counts
 from kinematify.evaluation.nightly.night_junit import as_junit
-from kinematify.evaluation.nightly.night_page import night_page
+from kinematify.evaluation.nightly.night_page import night_page, nights_page
 from kinematify.evaluation.nightly.runs import (
     PULLED,
     RUN,
@@ -45,13 +45,13 @@ from kinematify.evaluation.nightly.store import (
     open_state,
     write_night,
 )
-from kinematify.evaluation.nightly.trend_page import trend_page
 from kinematify.evaluation.nightly.validity import NightValidation, run_validation
 from kinematify.evaluation.result_record import code_version, replace_text
 from kinematify.evaluation.run_benchmark import BenchmarkRequest, Variant, run_benchmark
 from kinematify.generate.sentence import from_text
 from kinematify.pipeline.blueprint_files import write_blueprint
 from kinematify.processes.pool import TaskFailure
+from kinematify.validation.formats.report_picture import drawing_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -64,6 +64,8 @@ if TYPE_CHECKING:
     from kinematify.evaluation.nightly.runs import Run
     from kinematify.evaluation.result_record import Report
 
+_PICTURES, _SECONDS = 12, 15.0
+"""Objects that changed and are drawn, and the time for each [s]."""
 _ACCURACY, _VALIDATION = 0.45, 0.97  # shares of the time at which these are done, on the benchmark
 
 
@@ -121,8 +123,8 @@ def run_night(request: NightRequest, progress: Progress) -> NightResult:
         if night is None:
             night = _new_night(work, state, nights, baseline, progress)
             nights = (*nights, night)
-        # The trends, then nothing of what was only needed to resume; all of it can be repeated after a kill.
-        replace_text(request.out / PAGE_FILE, trend_page(nights[-request.settings.shown_nights :]))
+        # The list of nights, then nothing of what was only needed to resume; all of it can be repeated after a kill.
+        replace_text(request.out / PAGE_FILE, nights_page(nights[-request.settings.shown_nights :]))
         replace_text(request.out / BADGE_FILE, json.dumps(nights[-1].badge) + "\n")
         shutil.rmtree(request.out / UNFINISHED, ignore_errors=True)
         none = () if baseline is not None else (_NO_BASELINE,)
@@ -251,7 +253,15 @@ def _new_night(work: _Work, state: State, nights: Sequence[Night], baseline: Nig
     }
     night = Night(name=state.name, header=header, runs=tuple(runs), changes=changes, baseline_changes=drift)
     pages = {path.name for path in (work.folder / MODELS).glob("*.html")}
-    texts = {JUNIT_FILE: as_junit(night), PAGE_FILE: night_page(night, pages)}
+    changed = dict.fromkeys(change.object for change in (*changes, *drift) if change.kind in SHOWN)
+    shown = [item for item in work.objects if item.name in changed][:_PICTURES]
+    pictures = {
+        item.name: drawing_of(item.urdf, item.package_dirs, work.thresholds, seconds=_SECONDS) for item in shown
+    }
+    texts = {
+        JUNIT_FILE: as_junit(night),
+        PAGE_FILE: night_page(night, pages, {name: drawn.picture for name, drawn in pictures.items()}),
+    }
     write_night(work.request.out, night, texts, models=work.folder / MODELS if pages else None)
     return night
 

@@ -55,6 +55,8 @@ class Run:
 
     scenario: str
     """Hash of all that makes two runs comparable: input, pose, thresholds, but not the code under test."""
+    series: str = ""
+    """The same without the input: a run of a changed input is compared with the last one of its series."""
     object: str
     kind: str
     category: str
@@ -97,35 +99,39 @@ _JUDGES = ("problem_angle", "problem_line", "problem_limits")
 """Settings that say from when on a joint is wrong."""
 
 
-def accuracy_scenario(item: BenchObject, condition: Condition, settings: NightlySettings) -> str:
-    """Hash of an object in a condition."""
-    return digest(
+def accuracy_scenario(item: BenchObject, condition: Condition, settings: NightlySettings) -> tuple[str, str]:
+    """Hashes of an object in a condition, with its content and without."""
+    return _scenario(
+        item,
         {
             "version": settings.version,
-            "content": item.content_hash,
             "gripper": item.gripper_joints,
             "condition": asdict(condition),
             "config": Path(settings.infer_config).stem,
             "judges": {name: getattr(settings, name) for name in _JUDGES},
-        }
+        },
     )
 
 
 def validation_scenario(
     item: BenchObject, source: str, settings: NightlySettings, thresholds: ValidationSettings
-) -> str:
-    """Hash of a model of an object under the thresholds of the validation."""
-    return digest(
+) -> tuple[str, str]:
+    """Hashes of a model of an object under the thresholds of the validation, with its content and without."""
+    return _scenario(
+        item,
         {
             "version": settings.version,
-            "content": item.content_hash,
             "source": source,
             "config": Path(settings.infer_config).stem if source == "inferred" else None,
             "engines": list(settings.engines),
             "checks": [f"{PULL} within {settings.pull_budget:g} s"] if source == PULLED else list(settings.checks),
             "thresholds": thresholds.model_dump(mode="json"),
-        }
+        },
     )
+
+
+def _scenario(item: BenchObject, facts: dict[str, Any]) -> tuple[str, str]:
+    return digest({**facts, "content": item.content_hash}), digest(facts)
 
 
 def digest(facts: Any) -> str:
@@ -137,20 +143,24 @@ LESS_IS_BETTER = ("angle_deg", "line_m", "ted")
 MORE_IS_BETTER = ("types", "root", "limit_iou", "opens")
 AS_LOADED, OPENED = "as_loaded", "opened"
 """Metrics of a validation: shares of joints that move as loaded, and of ranges that an arm opens."""
+JOINTS = "joints"
+"""Number of joints of the object: fewer in a changed input are lost ones."""
 UNITS = {"angle_deg": "deg", "line_m": "m"}
 
 
-def accuracy_run(result: JobResult, scenario: str, settings: NightlySettings) -> Run:
+def accuracy_run(result: JobResult, scenario: tuple[str, str], settings: NightlySettings) -> Run:
     """Return a result with its metrics and, as problems, every joint that is wrong in some respect.
 
     Args:
         result: Of one object in one condition.
-        scenario: Hash of what it may be compared with.
+        scenario: Hashes of what it may be compared with, see `accuracy_scenario`.
         settings: From when on a joint is wrong.
     """
     values = summarise([result]).values
+    joints = {} if result.score is None else {JOINTS: float(len(result.score.joints))}
     return Run(
-        scenario=scenario,
+        scenario=scenario[0],
+        series=scenario[1],
         object=result.object,
         kind=result.kind,
         category=result.category,
@@ -163,7 +173,8 @@ def accuracy_run(result: JobResult, scenario: str, settings: NightlySettings) ->
         values={
             metric: None if (value := values.get(metric)) is None else round(value, 6)
             for metric in (*LESS_IS_BETTER, *MORE_IS_BETTER)
-        },
+        }
+        | joints,
         problems=tuple(_problems(result.score, settings)) if result.score is not None else (),
     )
 

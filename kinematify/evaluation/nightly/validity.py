@@ -15,7 +15,7 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.benchmark_job import erased_item, imported, shown_parts
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject
-from kinematify.evaluation.nightly.runs import AS_LOADED, OPENED, PULLED, Problem, Run
+from kinematify.evaluation.nightly.runs import AS_LOADED, JOINTS, OPENED, PULLED, Problem, Run
 from kinematify.manipulation.plan_request import PULL, TaskRequest
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
@@ -44,7 +44,7 @@ class NightValidation:
     """Models to validate in a night."""
 
     item: BenchObject
-    scenario: str
+    scenario: tuple[str, str]
     source: str
     """``truth``: the file as it is; ``inferred``: what `kinematify infer` writes of its parts at rest; `PULLED`."""
     infer: str
@@ -62,7 +62,8 @@ class NightValidation:
     def run(self, status: str, seconds: float, message: str = "") -> Run:
         """Return a run of this validation that has nothing to tell yet."""
         return Run(
-            scenario=self.scenario,
+            scenario=self.scenario[0],
+            series=self.scenario[1],
             object=self.item.name,
             kind=self.item.kind,
             category=self.item.category,
@@ -142,7 +143,11 @@ def kept(validation: NightValidation, report: ValidationReport, seconds: float, 
     }
     return replace(
         validation.run(report.verdict, seconds),
-        values={**{name: float(count) for name, count in counts.items()}, **_shares(checks)},
+        values={
+            **{name: float(count) for name, count in counts.items()},
+            **_shares(checks),
+            JOINTS: float(len(report.joints)),
+        },
         problems=_problems(checks),
         not_run=left,
         families=_families(checks),
