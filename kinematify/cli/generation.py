@@ -12,9 +12,9 @@ from kinematify.cli.options import say, with_collision
 from kinematify.cli.report_files import generated_files, report_on
 from kinematify.config import load_config
 from kinematify.errors import ExitStatus, InputError
+from kinematify.generate.blueprint_files import INFERRED_FOLDER, PARTS_FOLDER, write_blueprint, write_parts
 from kinematify.generate.sentence import Made, Sentence
 from kinematify.model.output import MODEL_FILE, PREVIEW_FILE, check_output, write_model_folder
-from kinematify.pipeline.blueprint_files import INFERRED_FOLDER, PARTS_FOLDER, write_blueprint, write_parts
 
 if TYPE_CHECKING:
     from pathlib import Path

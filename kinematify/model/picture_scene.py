@@ -133,7 +133,9 @@ def posed_meshes(
     T_world_link = forward_kinematics(model.robot, q)
     posed = {}
     for link in model.links:
-        parts = (link.visual, *(part for part in link.fixed_visuals if len(part.faces)))
+        # No picture shows more than the mesh that the inference used, but that one has no materials.
+        seen = link.visual if link.visual.appearance is not None else link.part
+        parts = (seen, *(part for part in link.fixed_visuals if len(part.faces)))
         starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
         vertices = np.concatenate([part.vertices for part in parts])
         faces = np.concatenate([part.faces + start for part, start in zip(parts, starts[:-1], strict=True)])

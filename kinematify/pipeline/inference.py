@@ -47,7 +47,7 @@ class CutChain:
         first, second = self.parts
         return (
             f"{first} and {second} share a pin, and a chain closes there ({', '.join(self.joints)}). A URDF is a tree, "
-            f"so it has no joint between these two. {self._closed}"
+            f"so it has no joint between them. {self._closed}"
         )
 
     @property
@@ -76,8 +76,8 @@ def closed_chains(
     Args:
         assembly: The parts.
         bearings: Of their contacts.
-        tree: The best one.
-        robot: What it became; a link is named as its part.
+        tree: The chosen one.
+        robot: What the tree became; a link is named as its part.
         config: `pin_score` and `pin_opens`.
     """
     names = assembly.names

@@ -14,6 +14,7 @@ import numpy as np
 
 from kinematify.errors import DescriptionError, InputError
 from kinematify.model.output import urdf_of
+from kinematify.robot.mesh_paths import CAD_SUFFIXES, MESH_SUFFIXES
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.versions import require
@@ -41,7 +42,13 @@ def load(path: str | Path, *, package_dirs: Sequence[str | Path] = ()) -> Loaded
     Raises:
         InputError: There is no such file, or it cannot be read.
     """
-    return LoadedModel(urdf_of(Path(path)), tuple(map(Path, package_dirs)))
+    given = Path(path)
+    if given.suffix.lower() in (*MESH_SUFFIXES, *CAD_SUFFIXES):
+        raise InputError(
+            f"{given} is a mesh and has no joints. kinematify.infer({str(given)!r}) finds them, and kinematify infer "
+            f"{given} -o OUT writes a model folder, which can be loaded."
+        )
+    return LoadedModel(urdf_of(given), tuple(map(Path, package_dirs)))
 
 
 class LoadedModel:

@@ -147,7 +147,7 @@ def hovering(result: OpenCheck, look: GeometryContext) -> None:
             parent, child = look.parent_and_child(connection, {})
             result.find(
                 f"{child} is {length(gap)} away from {parent}, on which the joint {connection.joints[-1]} "
-                "hangs it: nothing is seen to carry it.",
+                "hangs it: no contact supports it.",
                 "Check the joint's <parent> and <origin>; if the bearing is not modelled, accept it.",
                 severity=Severity.NOTE if look.on_an_axle(connection) else None,
                 joint=connection.joints[-1],
