@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from kinematify.config import load_config
 from kinematify.errors import InputError
+from kinematify.generate.blueprint_files import true_model
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.request import from_category
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
-from kinematify.pipeline.blueprint_files import true_model
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -60,8 +60,6 @@ BUNDLED: dict[str, BundledObject] = {
 }
 """Keyed by name."""
 DEFAULT = "drawers"
-DRAWERS = ("drawers", "nightstand", "dresser", "pedestal", "desk")
-"""Bundled objects whose joint is a drawer's."""
 
 
 def find_bundled(model: str) -> BundledObject:

@@ -8,6 +8,7 @@ From the meshes of an object to a model, and from a model to a verdict:
     report = kinematify.validate("out/example/model.urdf")   # MuJoCo, PyBullet, Pinocchio, FCL: verdict and findings
     kinematify.refine(inference)                             # simulate, use what failed, choose again
     kinematify.export("out/example/model.urdf", "mjcf", "out/example.xml")
+    kinematify.generate("a cabinet with two doors", "out/cabinet")
 
 A model of a file, with its poses, meshes and a viewer:
 
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from kinematify.contact.tree import KinematicTree
     from kinematify.errors import KinematifyError
     from kinematify.formats.export_model import export
+    from kinematify.generate import generate
     from kinematify.joints.candidate import JointCandidate
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline.infer_assembly import infer
@@ -60,6 +62,7 @@ __all__ = [
     "ValidationReport",
     "__version__",
     "export",
+    "generate",
     "infer",
     "load",
     "load_assembly",
@@ -83,6 +86,7 @@ _HOMES = {
     "Refinement": "kinematify.refinement",
     "ValidationReport": "kinematify.validation.run.report",
     "export": "kinematify.formats.export_model",
+    "generate": "kinematify.generate",
     "infer": "kinematify.pipeline.infer_assembly",
     "load": "kinematify.view.loaded",
     "load_assembly": "kinematify.assembly.load",
@@ -102,4 +106,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted(__all__)

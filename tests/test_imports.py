@@ -74,7 +74,7 @@ def test_public_names_resolve_and_are_all_there_is() -> None:
     resolved = {name for name in kinematify.__all__ if getattr(kinematify, name) is not None}
     assert resolved == set(kinematify.__all__)
     assert set(kinematify._HOMES) | {"__version__"} == set(kinematify.__all__)
-    assert set(kinematify.__all__) <= set(dir(kinematify))
+    assert set(kinematify.__all__) == set(dir(kinematify))
 
 
 def test_each_public_name_is_the_object_of_its_home() -> None:

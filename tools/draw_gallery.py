@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.config import load_config
 from kinematify.errors import OutputError
+from kinematify.generate.blueprint_files import true_model
 from kinematify.generate.described import SteppedDescription, known_families, library
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import COMMON, build
@@ -16,7 +17,6 @@ from kinematify.generate.procedural.parameter import PARAMETER_HEADINGS, paramet
 from kinematify.generate.sentence import from_text
 from kinematify.model.picture_scene import moving_joints
 from kinematify.model.preview import draw_pair, draw_steps
-from kinematify.pipeline.blueprint_files import true_model
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -105,8 +105,8 @@ def write_gallery(
         page.write_text(_page(families, sentences, described, command), encoding="utf-8")
     except OSError as error:
         raise OutputError(
-            f"The gallery cannot be written to {folder} ({error.strerror or error}). Give a folder that you may write "
-            "to, on a disk with space."
+            f"The gallery cannot be written to {folder} ({error.strerror or error}). Give a writable folder "
+            "on a disk with space."
         ) from error
     return page
 

@@ -180,6 +180,12 @@ class AsLoadedContext:
         known = dict(zip(self.mechanism.joints, self.mechanism.all_values(row[None])[0].tolist(), strict=True))
         return {**dict.fromkeys(self.loaded.joints, 0.0), **known}
 
+    @property
+    def ends(self) -> tuple[dict[str, float], ...]:
+        """Every joint at rest, at its lower and at its upper end [rad or m]."""
+        lower = self._values({travel.joint: travel.lower for travel in self.travels})
+        return self.values, lower, self._values({travel.joint: travel.upper for travel in self.travels})
+
     @cached_property
     def size(self) -> float:
         """Distance of the farthest link frames at zero and rest [m]; what stands in each other is measured by it."""

@@ -5,7 +5,8 @@ that they were built with, and inferred: of these `joints right` has those whose
 2 % of the diagonal) are as built; models of others are taken as they are, and after `kinematify fix`. Each file is
 judged by the checks KV8xx of `kinematify validate`: it is loaded with the engine's own defaults, left alone under
 gravity, and each joint is pushed by a hand over what exact geometry leaves free of its range. A model works in an
-engine in which no check complains; `blocked` counts the joints of which less is free than is declared. PyBullet is
+engine in which no check complains; `blocked` counts the joints of which less is free than is declared: the others of
+those that move reach both ends. Inferred models are repaired as `kinematify infer` does. PyBullet is
 asked with `URDF_USE_SELF_COLLISION`; without that flag, its default, links pass through each other. The plain code of
 complaints about models of others is run as it is in the report; `shown` counts those where it shows what is said.
 """
@@ -33,6 +34,7 @@ from kinematify.evaluation.benchmark_job import erased_item, shown_parts
 from kinematify.evaluation.datasets import CONDITIONS, find_objects
 from kinematify.evaluation.metrics import score_blueprint
 from kinematify.evaluation.result_record import grouped, table
+from kinematify.generate.blueprint_files import true_model
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
@@ -40,8 +42,8 @@ from kinematify.generate.procedural.family import build
 from kinematify.generate.sentence import from_text
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
-from kinematify.pipeline.blueprint_files import true_model
 from kinematify.pipeline.infer_assembly import infer
+from kinematify.refinement.loop import repaired
 from kinematify.refinement.repair import fix_urdf
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.checks import checks_of
@@ -65,6 +67,8 @@ _SHOWN = 0.1
 """How far what the code of a finding prints may be from what the finding says, as a fraction of it."""
 _RIGHT_DEG, _RIGHT_LINE = 5.0, 0.02
 """How far the axis of an inferred joint may be from the true one: angle, and distance as a fraction of the diagonal."""
+_DEEP = 5e-3
+"""Overlap at rest that is counted [m]."""
 _FREE_TRAVEL = "KV310"
 """Its stage measures how far every joint is free."""
 
@@ -150,7 +154,7 @@ def tried_as_loaded(case: TriedFile) -> Record:
         return {**facts, **_written(inference.model, config, case.engines)}
     facts = {"set": f"{case.item.urdf.parents[1].name}, {case.made}", "object": case.item.name}
     if case.made == "inferred":
-        model = infer(shown_parts(erased_item(case.item, CONDITIONS[0])), config=config).model
+        model = repaired(infer(shown_parts(erased_item(case.item, CONDITIONS[0])), config=config)).model
         return {**facts, **_written(model, config, case.engines)}
     if case.made == "as given":
         return {**facts, **_judged(case.item.urdf, case.engines, case.item.package_dirs, run_code=True)}
@@ -217,6 +221,8 @@ def _world(checks: Sequence[CheckResult], engine: str, *, run_code: bool) -> Rec
     return {
         "joints": measured.get("joints", 0.0),
         "right": measured.get("right", measured.get("read", 0.0)),
+        "refused": any(item.check == "KV801" and item.joint is None for item in counted),
+        "deepest": measured.get("deepest", 0.0),
         "unfinished": [f"{check.check}: {check.reason}" for check in judged if check.status is Status.BLOCKED],
         "findings": [[item.check, item.joint, item.message] for item in counted],
         **({"shown": [shown(item) for item in counted]} if run_code else {}),
@@ -267,11 +273,16 @@ def works_in(found: Report[Record]) -> str:
         for engine in ENGINES
         if engine in group[0]["worlds"]
     ]
-    return table(("set", "engine", "version", "date", "models that work", "joints that move", "blocked", "shown"), rows)
+    headings = (
+        "set", "engine", "version", "date", "models that work", "joints that move", "blocked", "reach both ends",
+        "refused", f"deeper than {1e3 * _DEEP:g} mm at rest", "shown",
+    )  # fmt: skip
+    return table(headings, rows)
 
 
 def _row(found: Report[Record], name: str, engine: str, records: Sequence[Record]) -> tuple[str, ...]:
     tried = [record["worlds"][engine] for record in records]
+    right, joints = (sum(one[name] for one in tried) for name in ("right", "joints"))
     seen = [item for one in tried for item in one.get("shown", ())]
     return (
         name,
@@ -279,8 +290,11 @@ def _row(found: Report[Record], name: str, engine: str, records: Sequence[Record
         found.summary["versions"][ENGINES[engine].packages[0]],
         found.header.date,
         f"{sum(not one['findings'] and not one['unfinished'] for one in tried)} of {len(tried)}",
-        f"{sum(one['right'] for one in tried):.0f} of {sum(one['joints'] for one in tried):.0f}",
-        str(sum(record.get("blocked", 0) for record in records)),
+        f"{right:.0f} of {joints:.0f}",
+        str(blocked := sum(record.get("blocked", 0) for record in records)),
+        f"{(right - blocked) / max(joints, 1.0):.1%}",
+        str(sum(one.get("refused", False) for one in tried)),
+        str(sum(one.get("deepest", 0.0) > _DEEP for one in tried)),
         f"{sum(seen)} of {len(seen)}" if seen else "",
     )
 

@@ -153,8 +153,7 @@ def write_erased(erased: ErasedModel, folder: Path, *, overwrite: bool = False) 
         _write_aside_and_rename(erased, target, truth_file)
     except OSError as error:
         raise OutputError(
-            f"The output {folder} cannot be written ({error.strerror}). Give a folder that you may write to, on a disk "
-            "with space."
+            f"The output {folder} cannot be written ({error.strerror}). Give a writable folder on a disk with space."
         ) from error
     return truth_file
 

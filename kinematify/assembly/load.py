@@ -16,6 +16,7 @@ from kinematify.assembly.assemble import assemble, check_finite, natural_key, pa
 from kinematify.assembly.holders import hint_of_many, parts_of_holders, why_pieces
 from kinematify.assembly.pieces import baked, connected_sheets, labelled_parts
 from kinematify.assembly.scenes import one_object
+from kinematify.assembly.units import METRE, UNITLESS, in_metres, size_warnings
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
 from kinematify.robot.description import SUFFIXES, form_of
@@ -52,14 +53,10 @@ _SILENT_SUFFIXES = (".mtl", ".bin", ".png", ".jpg", ".jpeg", ".json", ".txt", ".
 """Files beside meshes that nobody takes for a part."""
 _STATED_UP = {"X_UP": "x", "Y_UP": "y"}
 """What a COLLADA file says -> a key of `_TO_Z_UP`."""
-_GUESSES = (("millimetres", 1e-3), ("centimetres", 1e-2), ("metres, and were divided by a thousand", 1e3))
-"""What lengths may be in that cannot be metres, the likeliest first, and metres per unit."""
 _ON_GROUND, _BELOW_GROUND = 0.005, 0.1
 """Of the object's diagonal: what is nearer lies on the ground, what is lower is under it."""
 _STANDS, _LIES = 0.5, 0.1
 """Shares of a footprint with which an object rests for certain, and hardly can."""
-_UNITS = {"micron": 1e-6, "millimeter": 1e-3, "centimeter": 1e-2, "meter": 1.0, "inch": 0.0254, "foot": 0.3048}
-"""Units that a 3MF may state, in metres."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,7 +108,8 @@ def load_assembly(
         config: Limits and tolerances; those of the default configuration if absent.
         up: ``auto`` (y for glTF as its standard says, what a COLLADA file states, z for all else), or the axis that
             points up: ``x``, ``y``, ``z``, ``-x``, ``-y`` or ``-z`` (upside down). The input is turned to z up.
-        scale: Metres per unit of the input; None takes the unit that a file states, else metres.
+        scale: Metres per unit of the input; None takes the unit that a file states, else metres, or
+            millimetres where the object is longer than `config.largest`.
         labels: Labels per triangle of a single mesh.
         pieces: ``auto`` as described; ``group`` splits a file of several nodes or groups into pieces as well, where
             those are not the rigid parts; ``keep`` takes every node, group or connected piece for a rigid part.
@@ -129,14 +127,15 @@ def load_assembly(
         raise InputError(f"The word {pieces!r} for pieces is unknown. Choose one of {', '.join(PIECES_CHOICES)}.")
     reading = _Reading(up=up, scale=scale, labels=labels, pieces=pieces, config=config)
     given = _given(path, reading)
+    scaled, lengths = in_metres(given.meshes, scale, config)
+    given = replace(given, meshes=tuple(scaled))
     if labels is None and (not given.segmented or pieces in ("group", "cut")):
         given = _in_pieces(given, reading, path)
     meshes, far = _near_origin(sorted(given.meshes, key=lambda mesh: natural_key(mesh.name)))
-    lengths = _lengths(meshes, scale)
     notes = dict.fromkeys(note for mesh in meshes for note in mesh.notes)
     unread = [f"Not read of the file: {'; '.join([*notes][:8])}."] if notes else []
     assembly = assemble(meshes, source=str(path), config=config, warnings=(*given.warnings, *unread, *far))
-    doubts = _size_warnings(assembly, lengths, 1.0 if scale is None else scale, config)
+    doubts = size_warnings(assembly, scale, config)
     if given.up_by_standard:
         doubts += _up_warnings(assembly)
     asked = {"--up": up, "--scale": scale, "--labels": labels, "--pieces": pieces, "--object": number}
@@ -256,7 +255,7 @@ def _description(path: Path, reading: _Reading) -> _Given:
     poses = forward_kinematics(robot, rest_configuration(robot))
     groups = [group for group in rigid_groups(robot) if group.has_geometry]
     meshes = tuple(
-        _upright(_in_metres(baked(robot, group, poses), reading.scale), "z" if reading.up == "auto" else reading.up)
+        _upright(replace(baked(robot, group, poses), unit=METRE), "z" if reading.up == "auto" else reading.up)
         for group in groups
     )
     return _Given(meshes=meshes, warnings=robot.notes)
@@ -326,8 +325,9 @@ def _read(path: Path, reading: _Reading, *, empty_ok: bool) -> tuple[RawMesh, ..
         )
     if path.suffix.lower() == ".3mf":
         check_packed_mesh(path, allowed)
+    usual = "" if path.suffix.lower() in UNITLESS else METRE
     found = read_meshes(path, empty_ok=empty_ok, appearance=True)
-    meshes = tuple(_in_metres(mesh, reading.scale) for mesh in found)
+    meshes = tuple(replace(mesh, unit=mesh.unit or usual) for mesh in found)
     if reading.up != "auto":
         return tuple(_upright(mesh, reading.up) for mesh in meshes)
     usual = "y" if path.suffix.lower() in GLTF_SUFFIXES else "z"
@@ -339,11 +339,6 @@ def _upright(mesh: RawMesh, up: str) -> RawMesh:
     if up == "z":
         return mesh
     return mesh.moved(np.array(_TO_Z_UP[up], dtype=np.float64))
-
-
-def _in_metres(mesh: RawMesh, scale: float | None) -> RawMesh:
-    factor = _UNITS.get(mesh.unit.rstrip("s"), 1.0) if scale is None else scale
-    return mesh if factor == 1.0 else mesh.moved(factor * np.eye(3))
 
 
 def _near_origin(meshes: Sequence[RawMesh]) -> tuple[Sequence[RawMesh], list[str]]:
@@ -366,25 +361,6 @@ def _near_origin(meshes: Sequence[RawMesh]) -> tuple[Sequence[RawMesh], list[str
 
 _FAR = 1000.0
 """Sizes of the object; float32 has seven digits, and contacts need three of them."""
-
-
-def _lengths(meshes: Sequence[RawMesh], scale: float | None) -> str:
-    """Say in which unit the input was read, and why."""
-    if scale is not None:
-        return f"{scale:g} m per unit, as --scale states"
-    units = sorted({mesh.unit for mesh in meshes if mesh.unit.rstrip("s") in _UNITS})
-    return f"{' and '.join(units)}, as the file states" if units else "metres"
-
-
-def _size_warnings(assembly: Assembly, lengths: str, scale: float, config: AssemblyConfig) -> tuple[str, ...]:
-    """Ask about the unit of an object that is larger or smaller than what has joints."""
-    size = float(np.ptp(assembly.bounds, axis=0).max())
-    if config.smallest <= size <= config.largest:
-        return ()
-    unit, factor = next((item for item in _GUESSES if config.smallest <= size * item[1] <= config.largest), _GUESSES[0])
-    said = f"The object is {length_text(size)} long (lengths read in {lengths}), which is unusual. "
-    guess = f"If its lengths are in {unit}, it is {length_text(size * factor)} long: give --scale {scale * factor:g}."
-    return (said + guess,)
 
 
 def _up_by_standard(files: Sequence[Path], reading: _Reading) -> bool:

@@ -25,7 +25,7 @@ from kinematify.model.output import MODEL_FILE
 from kinematify.pipeline.infer_assembly import StageClock, infer, peak_mb
 from kinematify.pipeline.record import write_inference_files
 from kinematify.processes.pool import sentence
-from kinematify.refinement.loop import refine
+from kinematify.refinement.loop import refine, repaired
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity
@@ -117,7 +117,7 @@ def _do_steps(
             assembly = load_assembly(model, config=config.assembly, **conversion.reading)
             known["parts"] = len(assembly.parts)
             known["faces"] = sum(len(part.faces) for part in assembly.parts)
-            inference = infer(assembly, config=config)
+            inference = repaired(infer(assembly, config=config), settings=conversion.settings)
             known["parts"] = len(inference.assembly.parts)  # pieces of a mesh are fewer parts
             known["lengths"], known["warnings"] = assembly.lengths, tuple(inference.warnings)
         if "refine" in steps:

@@ -17,11 +17,11 @@ import numpy as np
 from kinematify import __version__
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, OutputError
+from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.composer.body_sentence import sentence_of
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.pipeline.blueprint_files import write_blueprint
 from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 
 if TYPE_CHECKING:
@@ -85,8 +85,7 @@ def write_corpus(
             progress(name, done / count)
     except OSError as error:
         raise OutputError(
-            f"The corpus {out} cannot be written ({error.strerror}). Give a folder that you may write to, on a disk "
-            "with space."
+            f"The corpus {out} cannot be written ({error.strerror}). Give a writable folder on a disk with space."
         ) from error
     return manifest
 

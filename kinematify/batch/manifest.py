@@ -6,7 +6,6 @@ nothing can be appended, the file is kept on the disk of the driver and put ther
 
 from __future__ import annotations
 
-import fcntl
 import json
 import posixpath
 import shutil
@@ -21,7 +20,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from kinematify.batch.batch_inputs import filesystem, is_local
 from kinematify.batch.ledger import Ledger
-from kinematify.errors import OutputError
+from kinematify.processes.lock import locked
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -104,7 +103,7 @@ class Manifest:
         with ExitStack() as stack:
             if is_local(self._fs):
                 file = Path(self.place)
-                self._lock(stack, file)
+                stack.enter_context(locked(file.with_name(f".{file.name}.lock"), str(file)))
             else:
                 file = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="kinematify-"))) / self.name
                 if self._fs.exists(self.place):
@@ -157,23 +156,6 @@ class Manifest:
         if not is_local(self._fs) and self._ledger.path.stat().st_size:
             self._fs.put_file(str(self._ledger.path), self.place)
             self._copied = time.monotonic()
-
-    def _lock(self, stack: ExitStack, file: Path) -> None:
-        """Hold the manifest for this run; the lock goes with the process, however that ends."""
-        try:
-            file.parent.mkdir(parents=True, exist_ok=True)
-            lock = stack.enter_context(file.with_name(f".{file.name}.lock").open("w"))
-        except OSError as error:
-            raise OutputError(
-                f"The output {file.parent} cannot be written: {error.strerror or error}. Give another folder with -o, "
-                "or change its permissions."
-            ) from error
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
-            raise OutputError(
-                f"Another run writes {file}. Wait for its end, or give another folder with -o. Nothing was changed."
-            ) from error
 
 
 def read_manifests(out: str) -> list[ObjectRecord]:

@@ -148,7 +148,7 @@ def run_batch(request: BatchRequest, engine: Executor, progress: Progress | None
         missing = [source for source in sources if not _has_ended(source, manifest, conversion, request)]
         manifest.forget(source.place for source in missing)
         if len(missing) < len(sources):
-            report("taken up from an earlier run", 1.0 - len(missing) / len(sources))
+            report("skipped: done earlier", 1.0 - len(missing) / len(sources))
         by_place = {source.place: source for source in missing}
         tasks = (
             WorkItem(

@@ -66,7 +66,7 @@ class Pool:
             known = {key: result for key, result in _kept(file, adapter) if key in tasks}
             missing = [WorkItem(key=k, call=call, timeout=timeout) for k, call in tasks.items() if k not in known]
             if known:
-                self.progress("taken up from an earlier run", len(known) / len(tasks))
+                self.progress("skipped: done earlier", len(known) / len(tasks))
             running = run_tasks(missing, Processes(self.workers, preload=preload), reuse=reuse)
             with closing(running):  # an interrupt must stop the processes now, not when the generator is collected
                 for key, result in running:

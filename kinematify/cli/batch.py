@@ -153,8 +153,11 @@ def _share(words: str | None) -> tuple[int, int]:
 
 def _described(result: BatchResult) -> str:
     from kinematify.batch.batch_summary import STEP_HEADINGS, outcome_words, step_rows
+    from kinematify.validation.run.outcome import counted_words
 
+    skipped = f"; skipped: {len(result.records) - result.new} done earlier" if len(result.records) > result.new else ""
     rate = f", {3600.0 * result.new / result.seconds:.0f} an hour" if result.new else ""
+    workers = counted_words(result.workers, "worker")
     bad = [record for record in result.records if record.failed]
     lines = [f"{record.object}: {record.error or 'an error, see its validation.json'}" for record in bad[:_SHOWN]]
     if len(bad) > _SHOWN:
@@ -162,7 +165,7 @@ def _described(result: BatchResult) -> str:
     return "\n".join(
         [
             f"{len(result.records)} objects: {outcome_words(result.records)}",
-            f"{result.new} of them now, in {result.seconds:.0f} s with {result.workers} workers{rate}",
+            f"{result.new} converted in {result.seconds:.0f} s with {workers}{rate}{skipped}",
             "",
             format_table(STEP_HEADINGS, step_rows(result.records)),
             "",

@@ -15,6 +15,7 @@ from kinematify.cli.options import (
     package_dirs_option,
     sampling_seed_option,
 )
+from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 
 
@@ -81,26 +82,30 @@ def command(
     """
     from kinematify.config.validation import load_settings
     from kinematify.formats.export_model import export
-    from kinematify.model.output import check_file
+    from kinematify.model.output import check_file, urdf_of
+    from kinematify.processes.lock import writing
 
     if form != "srdf" and (tool or gripper):
         raise click.UsageError("--tool and --gripper belong to --to srdf. Leave them out.")
     if free and form in ("srdf", "glb", "urdf"):
         raise click.UsageError("--free belongs to --to mjcf, usd or sdf. Leave it out.")
     check_file(out, overwrite=force)
+    model = urdf_of(model, package_dirs, arguments)
     joints = listed(gripper)
     settings = load_settings() if seed is None else load_settings(seed=seed)
-    done = export(
-        model,
-        form,
-        out,
-        free=free,
-        tool=tool,
-        gripper=joints,
-        package_dirs=package_dirs,
-        settings=settings,
-        arguments=arguments,
-    )
+    with writing(out), progress_reporter() as progress:
+        progress("reading the model and fitting collision geometry", 0.0)
+        out.parent.mkdir(parents=True, exist_ok=True)
+        done = export(
+            model,
+            form,
+            out,
+            free=free,
+            tool=tool,
+            gripper=joints,
+            package_dirs=package_dirs,
+            settings=settings,
+        )
     if json_to == "-":
         write_answer(done.as_json(), json_to)
         return
@@ -109,6 +114,6 @@ def command(
         click.echo(f"  {sentence}")
     if done.lost:
         rows = [(loss.what, str(loss.count), loss.became) for loss in done.lost]
-        click.echo("\n" + format_table((f"not as it is in {form}", "count", "what became of it"), rows))
+        click.echo("\n" + format_table((f"changed or lost in {form.upper()}", "count", "what became of it"), rows))
     if json_to:
         write_answer(done.as_json(), json_to)

@@ -61,7 +61,8 @@ def command(
     Links that jam or overlap by their collision geometry alone get boxes and convex pieces, carved by the motion; a
     mass or inertia that no engine can use becomes that of the geometry; of repeated elements the first stays. Mesh
     paths are relative to the new file. Nothing else changes: no friction, no damping, no mass where there was none, no
-    link or joint without a finding; comments and order stay. The command lists what it did not fix, with the reason.
+    link or joint without a finding; comments and order stay. The command lists what it did not fix, with the reason,
+    and writes no file where there is nothing to change. Its last line counts both.
 
     Where an engine refuses meshes in glTF, the new file names copies as OBJ.
 
@@ -103,8 +104,8 @@ def command(
 def _say(done: Fix, model: str) -> None:
     from kinematify.simulation.engines import ENGINES
 
-    click.echo(f"Wrote {done.path}")
-    for sentence in done.changes or (() if done.diffs else ("nothing is changed",)):
+    click.echo(f"Wrote {done.path}" if done.written else f"Nothing is changed: {done.path} is not written.")
+    for sentence in done.changes:
         click.echo(f"  {sentence}")
     for diff in done.diffs:
         click.echo(f"  {diff.title}")
@@ -112,7 +113,8 @@ def _say(done: Fix, model: str) -> None:
     for sentence in done.left:
         click.echo(f"  {sentence}")
     click.echo(f"before: {_verdict(done.before)}")
-    click.echo(f"after:  {_verdict(done.after)}")
+    if done.written:
+        click.echo(f"after:  {_verdict(done.after)}")
     for engine, (was, now) in done.fewer.items():
         click.echo(
             f"{ENGINES[engine].title} moves {now} joints of the result and {was} of {model}; no longer: "
@@ -120,6 +122,7 @@ def _say(done: Fix, model: str) -> None:
         )
     for engine in done.lost:
         click.echo(f"{ENGINES[engine].title} no longer opens {done.path.name}: {done.after.refusals[engine]}")
+    click.echo(done.summary)
 
 
 def _verdict(look: Look) -> str:

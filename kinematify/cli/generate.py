@@ -231,7 +231,9 @@ def _requested(text: str | None, category: str | None, settings: tuple[str, ...]
 
 
 def _run(run: Generation | ProvidedGeneration, force: bool, json_to: str | None) -> int:
-    with progress_reporter() as progress:
+    from kinematify.processes.lock import writing
+
+    with writing(run.out), progress_reporter() as progress:
         run.all(progress, overwrite=force)
     if json_to:
         write_answer(run.answer, json_to)

@@ -12,9 +12,9 @@ from kinematify.cli.options import say, with_collision
 from kinematify.cli.report_files import generated_files, report_on
 from kinematify.config import load_config
 from kinematify.errors import ExitStatus, InputError
+from kinematify.generate.blueprint_files import INFERRED_FOLDER, PARTS_FOLDER, write_blueprint, write_parts
 from kinematify.generate.sentence import Made, Sentence
 from kinematify.model.output import MODEL_FILE, PREVIEW_FILE, check_output, write_model_folder
-from kinematify.pipeline.blueprint_files import INFERRED_FOLDER, PARTS_FOLDER, write_blueprint, write_parts
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -82,8 +82,12 @@ class Generation:
             self.inference = infer(
                 self.blueprint.assembly, config=config, progress=lambda stage, done: progress(stage, _INFERRED * done)
             )
-        progress("writing the model and its picture" if self.preview else "writing the model", _INFERRED)
-        write_model_folder(self.out, lambda folder: self._write(folder, config), overwrite=overwrite)
+        share = _WRITTEN - _INFERRED
+        write_model_folder(
+            self.out,
+            lambda folder: self._write(folder, config, lambda stage, done: progress(stage, _INFERRED + share * done)),
+            overwrite=overwrite,
+        )
         if self.validated:
             self._validate(lambda stage, done: progress(f"validation: {stage}", _WRITTEN + (1.0 - _WRITTEN) * done))
 
@@ -104,18 +108,25 @@ class Generation:
         """Return the blueprint that was built."""
         return self.made.blueprint
 
-    def _write(self, folder: Path, config: Config) -> None:
+    def _write(self, folder: Path, config: Config, progress: Reporter) -> None:
+        progress("cutting the collision geometry", 0.0)
         self.model = write_blueprint(self.blueprint, folder, config, facts=self.made.facts)
         write_parts(self.blueprint, folder / PARTS_FOLDER)
         if self.preview:
             from kinematify.model.preview import render_preview
 
+            progress("drawing the picture", 0.4)
             render_preview(self.model, folder / PREVIEW_FILE, config.preview)
         if self.inference is not None:
             from kinematify.pipeline.record import write_inference_files
 
             (folder / INFERRED_FOLDER).mkdir()
-            write_inference_files(self.inference, folder / INFERRED_FOLDER, preview=self.preview)
+            write_inference_files(
+                self.inference,
+                folder / INFERRED_FOLDER,
+                preview=self.preview,
+                progress=lambda stage, done: progress(f"the inferred model: {stage}", 0.6 + 0.4 * done),
+            )
 
     def _validate(self, progress: Reporter) -> None:
         self.report = report_on(self.out, generated_files(self.out), progress=progress)

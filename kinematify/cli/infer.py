@@ -11,25 +11,37 @@ import click
 
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.asking import Asking, asking_options, with_answers
-from kinematify.cli.inferred import as_loaded, describe, estimates, load_as_loaded, renamed
+from kinematify.cli.inferred import (
+    describe,
+    describe_lengths,
+    describe_validation,
+    estimates,
+    load_validation,
+    renamed,
+    validated,
+    validation_answer,
+    validation_status,
+)
 from kinematify.cli.options import collision_option, examples, pieces_option, scale_option, with_collision
 from kinematify.cli.progress import progress_reporter
-from kinematify.cli.refine import TIERS, describe_refinement, exit_status
-from kinematify.errors import EnvironmentFault, InputError, KinematifyError
+from kinematify.errors import EnvironmentFault, InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from kinematify.assembly.part import Assembly
+    from kinematify.cli.progress import Reporter
     from kinematify.config import Config
+    from kinematify.errors import KinematifyError
     from kinematify.grouping.groups import Grouping
     from kinematify.pipeline.inference import Inference
     from kinematify.processes.pool import WorkerProcess
     from kinematify.refinement.hints import Hint
     from kinematify.robot.robot import Joint
+    from kinematify.validation.run.report import ValidationReport
 
-_INFERRED, _REFINED = 0.5, 0.55
-"""Shares of the whole time after the inference and the refinement."""
+_INFERRED, _REFINED, _WRITTEN, _DRAWN = 0.4, 0.5, 0.75, 0.8
+"""Shares of the whole time after the inference, the refinement, the files and the picture."""
 _LONGEST = 86400.0
 """So long is waited for the engines, whose stages have limits of their own [s]."""
 
@@ -45,7 +57,6 @@ _LONGEST = 86400.0
         "kinematify infer whole.glb --pieces group -o out/whole",
         "kinematify infer whole.glb --pieces group --groups out/whole/groups.json -o out/corrected",
         "kinematify infer parts.zip -o out/parts --config paper --seed 7",
-        "kinematify infer parts/ -o out/parts --refine 3 --tier engines",
         "kinematify infer parts/ -o out/parts --vlm http://localhost:11434/v1",
         "kinematify infer examples/cabinet -o out/cabinet --force --json - > answer.json",
     ),
@@ -100,25 +111,11 @@ _LONGEST = 86400.0
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
 )
 @click.option("--seed", type=int, help="Seed of everything random, instead of the configuration's.")
-@click.option(
-    "--refine",
-    "rounds",
-    type=click.IntRange(min=1),
-    metavar="N",
-    help="Simulate the result and choose again what caused its failures, up to N rounds (see kinematify refine).",
-)
-@click.option(
-    "--tier",
-    type=click.Choice(TIERS),
-    default="geometry",
-    show_default=True,
-    help="How far --refine simulates: exact sweeps; engines too; an arm that pulls as well.",
-)
 @asking_options
 @collision_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
-@click.option("--no-validation", is_flag=True, help="Do not load the model into engines to count the joints that move.")
+@click.option("--no-validation", is_flag=True, help="Do not check the model or load it into engines.")
 @json_option
 def command(
     *,
@@ -136,8 +133,6 @@ def command(
     hints: tuple[str, ...],
     config: str,
     seed: int | None,
-    rounds: int | None,
-    tier: str,
     vlm: str,
     vlm_all: bool,
     vlm_first: bool,
@@ -157,11 +152,14 @@ def command(
 
     OUT gets model.urdf, meshes/, inference.json (every alternative with its evidence) and preview.png.
 
-    With --refine the command ends with 1 if the best model still has an error in its motion; with --vlm it ends with 3
-    if the vision model gave no answer. OUT is written in both cases.
+    Where the motion of a joint fails by exact geometry, joints are chosen again once. Then OUT is checked (file,
+    masses, geometry, and the file as engines load it): the last line is the verdict. The command ends with 1 if the
+    model has an error, with 3 if an engine failed, or with --vlm if the vision model gave no answer. OUT is written in
+    all cases.
     """
     from contextlib import ExitStack
 
+    from kinematify.processes.lock import writing
     from kinematify.processes.pool import WorkerProcess
     from kinematify.processes.start import ONE_THREAD, environment_variables, worker_context
 
@@ -170,43 +168,46 @@ def command(
         from kinematify.config import load_config
         from kinematify.model.output import check_output
         from kinematify.pipeline.infer_assembly import infer
+        from kinematify.refinement import repaired
 
     check_output(out, overwrite=force)
     settings = load_config(config) if seed is None else load_config(config, seed=seed)
     settings = with_collision(settings, collision)
     with ExitStack() as stack:
+        stack.enter_context(writing(out))
         beside = None
         if not no_validation:
             beside = WorkerProcess(worker_context())
             stack.callback(beside.stop)
-            beside.take(load_as_loaded, _LONGEST)  # beside the inference
+            beside.take(load_validation, _LONGEST)  # beside the inference
         progress = stack.enter_context(progress_reporter())
         use_one_thread(settings)
         progress("reading the parts", 0.0)
         given = load_assembly(
             assembly, config=settings.assembly, up=up, scale=scale, labels=labels, pieces=pieces, number=number
         )
+        click.echo(describe_lengths(given), err=True)
         parts = grouped_parts(given, groups, settings, progress)
         settings = _weighing(settings, density, masses, parts)
         stated = _parsed(hints, _names(parts), base)
-        inference = infer(parts, config=settings, base=base, progress=_share(progress, 0.0, _INFERRED))
+        inference = infer(
+            parts, config=settings, base=base, progress=lambda stage, done: progress(stage, _INFERRED * min(done, 0.99))
+        )
         asking = Asking(vlm=vlm, everything=vlm_all, types_first=vlm_first)
         inference, heard, status = with_answers(
             inference, asking, {hint.part for hint in stated}, lambda stage: progress(stage, _INFERRED)
         )
-        if rounds is not None:
-            inference, failed = _refined(inference, rounds, tier, base, _share(progress, _INFERRED, _REFINED))
-            status = status or failed
         inference = _with_hints(inference, stated)
-        progress("writing the model", _REFINED)
-        loaded = _written(inference, out, overwrite=force, preview=not no_preview, beside=beside)
+        progress("moving every joint", _INFERRED)
+        inference = repaired(inference, base=base)
+        report = _written(inference, out, overwrite=force, preview=not no_preview, beside=beside, progress=progress)
         progress("done", 1.0)
     if json_to:
-        write_answer({**_as_answer(inference, out), "as_loaded": loaded or None}, json_to)
+        write_answer({**_as_answer(inference, out), **validation_answer(report)}, json_to)
     if json_to != "-":
-        blocks = (heard, describe_refinement(inference), describe(inference, out), loaded)
+        blocks = (heard, describe(inference, out), describe_validation(report, out))
         click.echo("\n\n".join(block for block in blocks if block))
-    return status
+    return status or validation_status(report)
 
 
 def _names(parts: Assembly | Grouping) -> Sequence[str]:
@@ -267,21 +268,6 @@ def _with_hints(inference: Inference, stated: Sequence[Hint]) -> Inference:
     return with_hints(inference, stated)
 
 
-def _share(progress: Callable[[str, float], None], start: float, end: float) -> Callable[[str, float], None]:
-    """Progress of a step that is a share of the whole; that it is done, only the whole says."""
-    return lambda stage, done: progress(stage, start + (end - start) * done) if done < 1.0 else None
-
-
-def _refined(
-    inference: Inference, rounds: int, tier: str, base: str | None, progress: Callable[[str, float], None]
-) -> tuple[Inference, int]:
-    """The best of some rounds of simulation, and the exit status that they ask for."""
-    from kinematify.refinement import refine
-
-    refinement = refine(inference, rounds=rounds, tier=tier, base=base, progress=progress)
-    return refinement.inference, exit_status(refinement)
-
-
 def use_one_thread(config: Config) -> None:
     """Keep torch to one thread: DW-CAVL's tensors are small, so that more threads cost time and change last digits."""
     if config.joints.method == "cavl":
@@ -290,43 +276,38 @@ def use_one_thread(config: Config) -> None:
         torch.set_num_threads(1)
 
 
-def _written(inference: Inference, out: Path, *, overwrite: bool, preview: bool, beside: WorkerProcess | None) -> str:
-    """Write the model folder, its picture while engines load the model, and return what `as_loaded` says."""
+def _written(
+    inference: Inference, out: Path, *, overwrite: bool, preview: bool, beside: WorkerProcess | None, progress: Reporter
+) -> ValidationReport | KinematifyError | None:
+    """Write the model folder, its picture while engines load the model, and return what is wrong with the model."""
     from kinematify.model.output import MODEL_FILE, write_model_folder
     from kinematify.pipeline.record import write_inference_files, write_preview
 
-    loaded: Any = ""
+    found: Any = None
 
     def write(folder: Path) -> None:
-        nonlocal loaded
+        nonlocal found
+        progress("fitting collision geometry and writing the files", _REFINED)
         write_inference_files(inference, folder, preview=False)
         if beside is not None:
-            beside.take(partial(_as_loaded_or_why, folder / MODEL_FILE), _LONGEST)
+            beside.take(partial(validated, folder / MODEL_FILE), _LONGEST)
         if preview:
+            progress("drawing the picture", _WRITTEN)
             write_preview(inference, folder)
         if beside is not None:
-            loaded = _last_answer(beside)
+            progress("checking the geometry and loading the file into engines", _DRAWN)
+            found = _last_answer(beside)
 
     write_model_folder(out, write, overwrite=overwrite)
-    if isinstance(loaded, KinematifyError):
-        raise loaded
-    if not isinstance(loaded, str):
-        raise EnvironmentFault(
-            f"The model was written to {out}, but not loaded into engines: {loaded.message}. `kinematify validate` "
-            "says more of it; --no-validation leaves the engines out."
-        )
-    return loaded
+    from kinematify.processes.pool import TaskFailure
 
-
-def _as_loaded_or_why(urdf: Path) -> str | KinematifyError:
-    try:
-        return as_loaded(urdf)
-    except KinematifyError as error:
-        return error
+    if not isinstance(found, TaskFailure):
+        return found
+    return EnvironmentFault(f"The engines ended before they had answered: {found.message}.")
 
 
 def _last_answer(worker: WorkerProcess) -> Any:
-    """The answer to the second of two tasks; the first one loads what that needs."""
+    """Return the answer to the second of two tasks; the first one loads what that needs."""
     from kinematify.processes.pool import wait_for
 
     alive = True
@@ -350,7 +331,6 @@ def _as_answer(inference: Inference, out: Path) -> dict[str, Any]:
         "warnings": list(inference.warnings),
         "closed_chains": [chain.description for chain in inference.closed_chains],
         "seconds": dict(inference.timings),
-        "refinement": None if inference.refinement is None else dict(inference.refinement),
         "vision": None if inference.vision is None else dict(inference.vision),
     }
 

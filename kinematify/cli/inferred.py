@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from kinematify.cli.table import format_table
+from kinematify.model.output import MODEL_FILE
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.lengths import length_text, range_text
 
@@ -14,9 +16,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.assembly.part import Assembly
+    from kinematify.errors import KinematifyError
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline.inference import Inference
     from kinematify.robot.robot import Joint
+    from kinematify.validation.run.report import ValidationReport
 
 _RENAMED = 10
 """Changed names that are printed."""
@@ -30,11 +34,8 @@ def estimates(inference: Inference) -> dict[str, JointEstimate]:
 
 def describe(inference: Inference, out: Path) -> str:
     """Return what was found, as people read it: the joints, what to look at first, and the files."""
-    bounds = inference.assembly.bounds
-    size = " x ".join(length_text(float(side)) for side in bounds[1] - bounds[0])
     lines = [
         f"Base: {inference.model.root}",
-        f"Lengths: read in {inference.assembly.lengths}; the object is {size} (x, y, z)",
         "",
         describe_joints(inference.model.joints, estimates(inference)),
         "",
@@ -42,6 +43,12 @@ def describe(inference: Inference, out: Path) -> str:
         *describe_files(out),
     ]
     return "\n".join(lines)
+
+
+def describe_lengths(assembly: Assembly) -> str:
+    """Return the size of an object and how its lengths were read."""
+    size = " x ".join(length_text(float(side)) for side in assembly.bounds[1] - assembly.bounds[0])
+    return f"Lengths: {size} (x, y, z), read as {assembly.lengths}"
 
 
 def renamed(assembly: Assembly) -> dict[str, str]:
@@ -61,28 +68,63 @@ def describe_joints(joints: Sequence[Joint], inferred: Mapping[str, JointEstimat
     return format_table((*headings, "confidence", "ended by"), sure)
 
 
-def as_loaded(urdf: Path) -> str:
-    """Return how many joints move in the written file by engine, measured; empty if no engine could be asked."""
+_CHECKS = ("KV1", "KV2", "KV30", "KV31", "KV32", "KV33", "KV8")
+"""Of the file, masses and inertias, exact geometry, and the file as loaded: all that is judged without a second run."""
+
+
+def validated(urdf: Path) -> ValidationReport | KinematifyError:
+    """Return what is wrong with a written model, or why that is not known."""
+    from kinematify.errors import KinematifyError
     from kinematify.validation.run import validate
 
-    return validate(urdf, selected=_as_loaded_checks()).as_loaded
+    try:
+        return validate(urdf, selected=_checks())
+    except KinematifyError as error:
+        return error
 
 
-def load_as_loaded() -> None:
-    """Load what `as_loaded` needs, in a process that is asked for it later."""
+def load_validation() -> None:
+    """Load what `validated` needs, in a process that is asked for it later."""
     from kinematify.simulation.engines import DEFAULT_ENGINES
     from kinematify.validation.isolation import load_imports
     from kinematify.validation.run.plan import as_loaded_stages, asset_stage, later_stages, needed
 
-    later = needed(later_stages(), _as_loaded_checks())
+    later = needed(later_stages(), _checks())
     load_imports([asset_stage(), *later, *as_loaded_stages(DEFAULT_ENGINES)])
 
 
-def _as_loaded_checks() -> set[str]:
+def _checks() -> set[str]:
     from kinematify.validation.checks import checks_of
 
-    free_travel = "KV310"  # its stage measures how far every joint is free
-    return {free_travel, *(check.id for check in checks_of("KV8"))}
+    return {check.id for check in checks_of(*_CHECKS)}
+
+
+def describe_validation(report: ValidationReport | KinematifyError | None, out: Path) -> str:
+    """Return the verdict as its last line, after errors, warnings and the file as loaded."""
+    again = f"kinematify validate {out}"
+    if report is None:
+        return f"Not validated (--no-validation): {again} does that."
+    if isinstance(report, Exception):
+        return f"as loaded: not known. {report}\nNot validated: {again} does that."
+    from kinematify.cli.verdict import describe_briefly
+
+    return describe_briefly(replace(report, model=str(out / MODEL_FILE)))
+
+
+def validation_answer(report: ValidationReport | KinematifyError | None) -> dict[str, Any]:
+    """Return the verdict as JSON values; all null where there is none."""
+    known = report if report is not None and not isinstance(report, Exception) else None
+    errors = () if known is None else (item for item in known.counted if item.severity == "error")
+    return {
+        "verdict": None if known is None else known.verdict,
+        "errors": [f"{item.check}: {item.message}" for item in errors],
+        "as_loaded": None if known is None else known.as_loaded or None,
+    }
+
+
+def validation_status(report: ValidationReport | KinematifyError | None) -> int:
+    """Return 1 for a model with an error, 3 where an engine failed or time ran out, else 0."""
+    return 0 if report is None else int(report.exit_status)
 
 
 def _range(joint: Joint) -> str:

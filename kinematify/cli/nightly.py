@@ -113,9 +113,10 @@ def command(
 
 
 def _accept(folder: Path, name: str) -> int:
-    from kinematify.evaluation.nightly.store import accept, chosen, load_nights, locked
+    from kinematify.evaluation.nightly.store import accept, chosen, load_nights
+    from kinematify.processes.lock import locked
 
-    with locked(folder):
+    with locked(folder / ".lock", f"The folder of nights {folder}"):
         nights, _ = load_nights(folder)
         accept(folder, chosen(nights, name, folder))
     click.echo(f"{name} is the baseline of {folder} from now on.")

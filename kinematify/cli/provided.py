@@ -17,6 +17,7 @@ from kinematify.cli.inferred import describe
 from kinematify.cli.options import say, with_collision
 from kinematify.cli.report_files import generated_files, report_on
 from kinematify.errors import InputError
+from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.procedural.blueprint_file import read_blueprint
 from kinematify.generate.procedural.language.compare import compare
 from kinematify.generate.procedural.language.parse import parse_any
@@ -28,7 +29,6 @@ from kinematify.generate.providers.rodin import RodinSource
 from kinematify.generate.providers.source import RecordingSource, ReplayedSource, check_prompt
 from kinematify.generate.sentence import Made, from_text, kinds_of_object
 from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
-from kinematify.pipeline.blueprint_files import write_blueprint
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference_files
 from kinematify.validation.run import validate
@@ -157,9 +157,12 @@ class ProvidedGeneration:
         share = _INFERRED - _MADE
         found = infer(given, config=config, progress=lambda stage, done: progress(stage, _MADE + share * done))
         self.inference = replace(found, provenance=self.generated.provenance.as_json())
-        progress("writing the model", _INFERRED)
         write_model_folder(
-            self.out, lambda folder: write_inference_files(self.inference, folder, preview=self.preview),
+            self.out,
+            lambda folder: write_inference_files(
+                self.inference, folder, preview=self.preview,
+                progress=lambda stage, done: progress(stage, _INFERRED + (_WRITTEN - _INFERRED) * done),
+            ),
             overwrite=overwrite,
         )  # fmt: skip
         if self.with_verdict:

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.inferred import as_loaded, describe
+from kinematify.cli.inferred import describe, describe_validation, validated, validation_answer, validation_status
 from kinematify.cli.options import collision_option, examples, with_collision
 from kinematify.cli.progress import progress_reporter
-from kinematify.cli.report_files import ReportFiles, report_on
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
 
@@ -33,7 +32,7 @@ _ROUND_HEADINGS = ("round", "simulated by", "chosen again", "failed", "cause", "
         "kinematify refine out -o refined",
         "kinematify refine out --force",
         "kinematify refine out -o refined --tier engines --rounds 5",
-        "kinematify refine out -o refined --budget 20 --html validation.html",
+        "kinematify refine out -o refined --budget 20",
         "kinematify refine out -o refined --json - > rounds.json",
     ),
 )
@@ -56,13 +55,10 @@ _ROUND_HEADINGS = ("round", "simulated by", "chosen again", "failed", "cause", "
     help="Time for all rounds. If not given, twice that of the inference for geometry, and no limit for the others.",
 )
 @click.option("--base", metavar="NAME", help="Part that the tree is rooted at, if the choice made is wrong.")
-@click.option(
-    "--html", type=click.Path(path_type=Path), metavar="FILE", help="Validate the result and write its report."
-)
 @collision_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder; without -o, the model in FOLDER.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
-@click.option("--no-validation", is_flag=True, help="Do not load the model into engines to count the joints that move.")
+@click.option("--no-validation", is_flag=True, help="Do not check the model or load it into engines.")
 @json_option
 def command(
     *,
@@ -72,7 +68,6 @@ def command(
     tier: str,
     budget: float | None,
     base: str | None,
-    html: Path | None,
     collision: str | None,
     force: bool,
     no_preview: bool,
@@ -90,20 +85,18 @@ def command(
     every tie. inference.json keeps all rounds. OUT also gets the other files of FOLDER, but no report about the earlier
     model. Without -o the best round replaces the model in FOLDER, which needs --force.
 
-    Ends with 0 if the model that is kept has no error about its motion, with 1 if it has. Ctrl-C keeps the best round
-    so far and ends with 130.
+    The last line is the verdict on the file. Ends with 1 if the model that is kept has an error, else with 0. Ctrl-C
+    keeps the best round so far and ends with 130.
     """
     from kinematify.model.output import MODEL_FILE
     from kinematify.pipeline.infer_assembly import infer
+    from kinematify.processes.lock import writing
     from kinematify.refinement import refine
     from kinematify.refinement.folder import as_left, open_model_folder, read_record, write_refined
 
     target = _target(folder, out, force=force)
-    files = None if html is None else ReportFiles(json=None, junit=None, sarif=None, html=html)
-    if files is not None:
-        files.check()
     _check_budget(budget)
-    with progress_reporter() as progress:
+    with writing(target), progress_reporter() as progress:
         progress("reading the parts", 0.0)
         assembly, config = open_model_folder(folder)
         config = with_collision(config, collision)
@@ -119,19 +112,20 @@ def command(
         )
         progress("writing the model", 0.9)
         write_refined(refinement.inference, folder, target, overwrite=force, preview=not no_preview)
-        loaded = ""
+        report = None
         if not (no_validation or refinement.interrupted):
-            progress("loading the model into engines", 0.94)
-            loaded = as_loaded(target / MODEL_FILE)
-        if files is not None:
-            progress("validating the result", 0.95)
-            report_on(target, files)
+            progress("checking the geometry and loading the file into engines", 0.94)
+            report = validated(target / MODEL_FILE)
     if json_to:
-        write_answer({**as_answer(refinement, target), "as_loaded": loaded or None}, json_to)
+        write_answer({**as_answer(refinement, target), **validation_answer(report)}, json_to)
     if json_to != "-":
-        blocks = (describe_refinement(refinement.inference), describe(refinement.inference, target), loaded)
+        blocks = (
+            describe_refinement(refinement.inference),
+            describe(refinement.inference, target),
+            describe_validation(report, target),
+        )
         click.echo("\n\n".join(block for block in blocks if block))
-    return exit_status(refinement)
+    return exit_status(refinement) or validation_status(report)
 
 
 def exit_status(refinement: Refinement) -> int:

@@ -122,16 +122,18 @@ def describe_table(outcomes: Sequence[Outcome]) -> str:
 
 
 def describe_briefly(report: ValidationReport) -> str:
-    """The verdict of one model, every error in full, and the warnings by what they are about, a line each."""
+    """Every error of one model in full, the warnings by what they are about, a line each, and the verdict last."""
     groups = [item for item in report.groups if item.finding.suppressed is None]
     errors = blocks((item for item in groups if item.finding.severity is Severity.ERROR), alike=False)
     warnings: dict[tuple[str, str | None], list[FindingGroup]] = {}
     for item in groups:
         if item.finding.severity is Severity.WARNING:
             warnings.setdefault((item.finding.check, item.finding.engine), []).append(item)
-    lines = [_first_lines(report), *(_line(block, report.model) for block in errors)]
+    lines = [*(_line(block, report.model) for block in errors)]
     lines += [f"  {_heading(block_of(group), report.model)}{_times(len(group))}" for group in warnings.values()]
-    return "\n".join(lines)
+    loaded = report.as_loaded or "as loaded: not known, see what did not run"
+    lines += [_reasons(report, Status.BLOCKED), loaded, f"{_verdict(report)}: {summary_words(report)}"]
+    return "\n".join(filter(None, lines))
 
 
 def describe_unused(rules: Iterable[Suppression]) -> str:

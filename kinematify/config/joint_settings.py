@@ -203,8 +203,6 @@ class CompoundConfig(StageConfig):
     """Largest diagonal of the part between the axes of a universal joint, fraction of either neighbour's."""
     beside: float = 0.1  # fingers face each other; drawers that open to both sides do so too, and rarely
     """How far fingers may be beside each other, fraction of their distance along the axis."""
-    coaxial: float = 0.5  # bottles, pens and jars lie about the line of their cap; the bodies of knobs do not
-    """How far the middle of a body may be from the line of its cap, fraction of the neck's radius."""
 
 
 class RailsConfig(StageConfig):

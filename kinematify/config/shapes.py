@@ -26,10 +26,10 @@ class AssemblyConfig(StageConfig):
     """Vertices closer than this fraction of their mesh's diagonal are merged."""
     duplicate: float = 1.0e-6  # a part exported twice agrees to rounding; left and right twins stand apart
     """Two parts whose vertices agree within this fraction of the assembly's diagonal are the same part twice."""
-    smallest: float = 0.005  # the mechanism of a watch; what is smaller was divided by a thousand once too often
+    smallest: float = 0.002  # a gear of a watch; what is smaller was divided by a thousand once too often
     """Objects whose longest side is shorter are asked about: their unit may not be the metre [m]."""
     largest: float = 20.0  # a lorry with its trailer; a spoon in millimetres is larger
-    """Objects whose longest side is longer are asked about as well [m]."""
+    """Objects whose longest side is longer are in millimetres if no unit is stated, else asked about [m]."""
 
 
 class SurfaceConfig(StageConfig):

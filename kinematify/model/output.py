@@ -80,14 +80,15 @@ def urdf_of(model: Path, package_dirs: Sequence[Path] = (), arguments: Mapping[s
 
 
 def check_file(out: Path, *, overwrite: bool) -> None:
-    """Refuse to replace a file that was not asked to be replaced.
+    """Refuse a file that must not be replaced or cannot be made, so that a long run need not end in vain.
 
     Raises:
-        OutputError: `out` exists and must not be replaced.
+        OutputError: `out` exists and must not be replaced, or its folder cannot be written.
     """
     if out.is_dir() or (out.is_file() and not overwrite):
         what, remedy = ("is a folder", "") if out.is_dir() else ("exists already", ", or --force to replace it")
         raise OutputError(f"The output {out} {what}. Give another file with -o{remedy}.")
+    _check_parent(out, "file")
 
 
 def check_output(out: Path, *, overwrite: bool) -> None:
@@ -102,10 +103,14 @@ def check_output(out: Path, *, overwrite: bool) -> None:
     """
     if os.path.lexists(out):
         _check_replaceable(out, overwrite)
+    _check_parent(out, "folder")
+
+
+def _check_parent(out: Path, what: str) -> None:
     parent = next(folder for folder in out.resolve().parents if folder.exists())
     if not parent.is_dir() or not os.access(parent, os.W_OK | os.X_OK):
         raise OutputError(
-            f"The output folder {out} cannot be made because {parent} is not a folder that you may write. "
+            f"The output {what} {out} cannot be made because {parent} is not writable. "
             "Give another place with -o, or change its permissions."
         )
 

@@ -13,7 +13,7 @@ from kinematify.robot.lengths import length_text
 from kinematify.robot.mechanism import joints_between, widest_opening
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config, TopologyConfig
@@ -38,24 +38,16 @@ class CutChain:
     """The others of the chain, from one part to the other."""
     opening: LoopOpening
     """What happens to the pin when a joint moves alone."""
-    reward: float
-    """Of the tree that was taken."""
-    rival: float | None
-    """Of the best tree that keeps the joint instead; None where none was kept."""
     closing: Closing = field(default_factory=Closing)
     """What was written for it."""
 
     @property
     def description(self) -> str:
-        """Which joint was cut, why, and what to do, in words."""
+        """Where the chain closes, how that is written, and what to do, in words."""
         first, second = self.parts
-        kept = "no tree that was kept has it"
-        if self.rival is not None:
-            kept = f"the best one that has it is worth no more ({self.rival:.3f})"
         return (
             f"{first} and {second} share a pin, and a chain closes there ({', '.join(self.joints)}). A URDF is a tree, "
-            f"so the joint between them was cut: of all trees this one is worth most ({self.reward:.3f}), {kept}. "
-            f"{self._closed}"
+            f"so it has no joint between them. {self._closed}"
         )
 
     @property
@@ -75,36 +67,33 @@ class CutChain:
 def closed_chains(
     assembly: Assembly,
     bearings: Mapping[Pair, EdgeBearing],
-    trees: Sequence[KinematicTree],
+    tree: KinematicTree,
     robot: Robot,
     config: TopologyConfig,
 ) -> Iterator[CutChain]:
-    """Find the pins that the best tree leaves out and that its motion pulls apart.
+    """Find the pins that a tree leaves out and that its motion pulls apart.
 
     Args:
         assembly: The parts.
         bearings: Of their contacts.
-        trees: Best first.
-        robot: What the best tree became; a link is named as its part.
+        tree: The chosen one.
+        robot: What the tree became; a link is named as its part.
         config: `pin_score` and `pin_opens`.
     """
-    best, names = trees[0], assembly.names
+    names = assembly.names
     allowed = config.pin_opens * assembly.diagonal
-    used = {pair(parent, child) for parent, child in best.edges()}
+    used = {pair(parent, child) for parent, child in tree.edges()}
     for ends, bearing in bearings.items():
         if ends in used or not bearing.lines or bearing.lines[0].score < config.pin_score:
             continue
         line, parts = bearing.lines[0], (names[ends[0]], names[ends[1]])
         opening = widest_opening(robot, parts, line.pivot)
         if opening is not None and opening.distance > allowed:
-            rivals = [tree.reward for tree in trees if ends in {pair(*edge) for edge in tree.edges()}]
             yield CutChain(
                 parts=parts,
                 line=line,
                 joints=joints_between(robot, parts),
                 opening=opening,
-                reward=best.reward,
-                rival=max(rivals, default=None),
             )
 
 
@@ -162,7 +151,7 @@ class Inference:
     def _closed(self) -> tuple[KinematicModel, tuple[CutChain, ...]]:
         name = _model_name(self.assembly.source)
         tree = build_model(self.assembly, self.trees[0], self.joints, name=name, config=self.config.model)
-        found = closed_chains(self.assembly, self.bearings, self.trees, tree.robot, self.config.topology)
+        found = closed_chains(self.assembly, self.bearings, self.trees[0], tree.robot, self.config.topology)
         chains = sorted(found, key=lambda chain: -chain.line.score)
         if not chains:
             return tree, ()

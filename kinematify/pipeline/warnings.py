@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.contact.graph import pair
-from kinematify.joints.bearings.refine_lines import across_axis
 from kinematify.joints.choice.congruent_joints import TwinJoints
 from kinematify.joints.choice.judge import alike_edges
 from kinematify.robot.joint_type import JointType
@@ -19,7 +18,7 @@ from kinematify.robot.joint_type import JointType
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from kinematify.assembly.part import Assembly, Part
+    from kinematify.assembly.part import Assembly
     from kinematify.config import CompoundConfig, Config
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.contact.tree import KinematicTree
@@ -45,7 +44,45 @@ def warnings_of(
         *_compound_joints(assembly, joints, graph, config.joints.compound),
         *_followed_twins(assembly, joints, bearings),
         *unlike_twins(assembly, graph, trees[0], joints, config),
+        *missed_linkages(assembly, graph, bearings, joints, config),
     )
+
+
+def missed_linkages(
+    assembly: Assembly,
+    graph: ContactGraph,
+    bearings: Mapping[Pair, EdgeBearing],
+    joints: Sequence[JointEstimate],
+    config: Config,
+) -> list[str]:
+    """Warn of parts that only parallel links carry, turning on one body, where no pins close a linkage."""
+    above = {joint.child: joint for joint in joints}
+    said = []
+    for part in above:
+        touched = {edge.a + edge.b - part for edge in graph.edges if part in (edge.a, edge.b) and not edge.bridge}
+        arms = [above[arm] for arm in sorted(touched) if arm in above and above[arm].kind.turns]
+        pins = [
+            arm
+            for arm in arms
+            if (found := bearings.get(pair(part, arm.child)))
+            and found.lines
+            and found.lines[0].score >= config.topology.pin_score
+        ]
+        if len(arms) < 2 or len(arms) < len(touched) or len(pins) > 1:
+            continue
+        if len({arm.parent for arm in arms}) == 1 and all(_parallel(arm, arms[0]) for arm in arms):
+            names = [assembly.names[arm.child] for arm in arms]
+            said.append(
+                f"{assembly.names[part]} touches {' and '.join(names)}, which turn about parallel axes: it may be part "
+                f"of a linkage that was not found. If it turns on them, give --hint {assembly.names[part]}:"
+                f"parent={names[0]} --hint {assembly.names[part]}=revolute; a loop joint to the others needs pins."
+            )
+    return said
+
+
+def _parallel(one: JointEstimate, other: JointEstimate | BearingLine) -> bool:
+    """True if two lines have one direction, to 1 deg."""
+    return bool(abs(float(one.axis @ other.axis)) > math.cos(math.radians(1.0)))
 
 
 def _doubtful_base(assembly: Assembly, trees: Sequence[KinematicTree], doubt: float) -> list[str]:
@@ -69,11 +106,14 @@ def floating_parts(assembly: Assembly, graph: ContactGraph, tree: KinematicTree)
             gap = "" if edge is None else f" ({edge.gap / assembly.diagonal:.2%} of the object's diagonal apart)"
             name, above = assembly.names[child], assembly.names[parent]
             touched = [item for item in graph.edges if child in (item.a, item.b) and not item.bridge]
-            warnings.append(
-                f"{name} hangs on {above}, which it does not touch{gap}, and not on what it touches."
-                if touched
-                else f"{name} touches nothing; it hangs on {above}, the nearest part{gap}."
-            )
+            if touched:
+                other = assembly.names[touched[0].a + touched[0].b - child]
+                warnings.append(
+                    f"The parent of {name} is {above}, which it does not touch{gap}. If its parent is what it touches, "
+                    f"give --hint {name}:parent={other}."
+                )
+            else:
+                warnings.append(f"{name} touches nothing; its parent is {above}, the nearest part{gap}.")
     return warnings
 
 
@@ -92,19 +132,14 @@ def _followed_twins(
     said = []
     for joint in joints:
         bearing = bearings.get(pair(joint.parent, joint.child))
-        if bearing is None or not bearing.follows or not _runs_along(joint, bearing.lines[0]):
+        if bearing is None or not bearing.follows or not _parallel(joint, bearing.lines[0]):
             continue
         models = [f"{assembly.names[one]} and {assembly.names[other]}" for one, other in bearing.follows]
         own = f"{assembly.names[joint.parent]} and {assembly.names[joint.child]}"
         said.append(f"{own} turn as their congruent twins do ({'; '.join(models)})")
     if not said:
         return []
-    return [f"{'. '.join(said)}. By itself, the rough contact shows another line; what all twins show was taken."]
-
-
-def _runs_along(joint: JointEstimate, line: BearingLine) -> bool:
-    """True if a joint has the direction of a line, to 1 deg."""
-    return bool(abs(float(joint.axis @ line.axis)) > math.cos(math.radians(1.0)))
+    return [f"{'. '.join(said)}. Their own contact, which is rough, shows another line than that of all these parts."]
 
 
 _SAME_END, _SAME_PLACE = 0.1, 0.02  # shares of the wider range and of the part's diagonal within which joints are alike
@@ -128,8 +163,8 @@ def unlike_twins(
                 if found and all(found):
                     unlike.setdefault(found[0], []).append(assembly.names[joint.child])
         said += [
-            f"{', '.join(names)} and {assembly.names[model.child]} are congruent and held alike, but their joints "
-            f"differ in {aspect}. If they move alike, give --hint {names[0]}:twin={assembly.names[model.child]}."
+            f"{', '.join(names)} and {assembly.names[model.child]} are congruent and have the same contacts, but their "
+            f"joints differ in {aspect}. If they move alike, give --hint {names[0]}:twin={assembly.names[model.child]}."
             for aspect, names in unlike.items()
         ]
     return said
@@ -169,7 +204,6 @@ class CompoundKind(StrEnum):
     BALL = "ball"
     UNIVERSAL = "universal"
     FINGERS = "fingers"
-    CAP = "cap"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -214,7 +248,7 @@ def compounds(
         and _one_point((first, second), near)
         and _is_cross(assembly, first, second, config)
     ]
-    return (*balls, *universals, *_fingers(assembly, joints, clusters, config), *_caps(assembly, joints, config))
+    return (*balls, *universals, *_fingers(assembly, joints, clusters, config))
 
 
 def described(compound: Compound, names: Sequence[str]) -> str:
@@ -225,11 +259,6 @@ def described(compound: Compound, names: Sequence[str]) -> str:
     if compound.kind is CompoundKind.UNIVERSAL:
         return (
             f"The joints of {parts[0]} and {parts[1]} cross at a right angle in {parts[0]}: together a universal joint."
-        )
-    if compound.kind is CompoundKind.CAP:
-        return (
-            f"{parts[0]} closes the end of what it turns on and may come off along its axis: a screw or cylindrical "
-            "pair, which takes two joints about one line with a link without geometry between them."
         )
     return (
         f"{parts[0]} and {parts[1]} mirror each other as fingers do. Where one drive moves both, let one joint follow "
@@ -288,43 +317,3 @@ def _face(assembly: Assembly, one: JointEstimate, other: JointEstimate, config: 
     gap = max(spans[0][0], spans[1][0]) - min(spans[0][1], spans[1][1])
     reach = (one.upper - one.lower) + (other.upper - other.lower)
     return beside < config.beside * abs(along) and gap < reach
-
-
-def _caps(assembly: Assembly, joints: Sequence[JointEstimate], config: CompoundConfig) -> Iterator[Compound]:
-    """Parts that carry nothing and turn in a bearing on the end of a part about the same line, which they close."""
-    carriers = {joint.parent for joint in joints}
-    for joint in joints:
-        turns = joint.kind.turns and joint.evidence.get("bearing_gate", 0.0) > 0.0
-        if turns and joint.child not in carriers and _closes(assembly, joint, config):
-            yield Compound(kind=CompoundKind.CAP, children=(joint.child,))
-
-
-def _closes(assembly: Assembly, joint: JointEstimate, config: CompoundConfig) -> bool:
-    """True if a part goes around the end of its parent, and over it."""
-    cap, body = assembly.parts[joint.child], assembly.parts[joint.parent]
-    across = across_axis(joint.axis)
-    aside = float(np.linalg.norm(across @ (body.centroid - joint.pivot)))
-    for direction in (joint.axis, -joint.axis):
-        end = float(((body.vertices - joint.pivot) @ direction).max())
-        height = (cap.vertices - joint.pivot) @ direction
-        rim = cap.vertices[height < end]
-        neck = body.vertices[(body.vertices - joint.pivot) @ direction > height.min()]
-        if len(rim) == 0 or len(neck) == 0 or height.max() <= end:
-            continue
-        inner, outer = (np.linalg.norm((points - joint.pivot) @ across.T, axis=1).max() for points in (neck, rim))
-        if outer > inner and aside < config.coaxial * inner and _on_the_line(cap, joint, direction, end):
-            return True
-    return False
-
-
-def _on_the_line(part: Part, joint: JointEstimate, direction: FloatArray, beyond: float) -> bool:
-    """True if the joint's line meets a part farther along `direction` than `beyond` [m]."""
-    corners = part.vertices[part.faces] - joint.pivot
-    flat = corners @ across_axis(joint.axis).T
-    turns = np.stack([_cross(flat[:, k], flat[:, (k + 1) % 3]) for k in range(3)])
-    met = (turns >= 0).all(axis=0) | (turns <= 0).all(axis=0)
-    return bool(met.any() and ((corners[met] @ direction).max(axis=1) > beyond).any())
-
-
-def _cross(one: FloatArray, other: FloatArray) -> FloatArray:
-    return np.asarray(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])

@@ -1,5 +1,5 @@
 """From failed checks to another choice: infer, simulate, feed back, choose again."""
 
-from kinematify.refinement.loop import Refinement, refine
+from kinematify.refinement.loop import Refinement, refine, repaired
 
-__all__ = ["Refinement", "refine"]
+__all__ = ["Refinement", "refine", "repaired"]

@@ -125,7 +125,7 @@ def read_record(folder: Path) -> dict[str, Any]:
         raise InputError(
             f"There is no {RECORD_FILE} in {folder}, so the alternatives of its model are unknown. Give a "
             "folder of `kinematify infer`, or inferred/ of `kinematify generate --infer`; infer a URDF from elsewhere "
-            "with `kinematify infer MODEL.urdf -o FOLDER --refine 3`."
+            "with `kinematify infer MODEL.urdf -o FOLDER`."
         )
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
@@ -181,8 +181,8 @@ def _check_untouched(folder: Path, record: dict[str, Any]) -> None:
         more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
         raise InputError(
             f"The file {folder / changed[0]}{more} was changed or removed since the model was inferred, and refining "
-            f"would lose that. Infer the changed parts again (`kinematify infer {folder / MODEL_FILE} -o NEW --refine "
-            "3`), or put the file back."
+            f"would lose that. Infer the changed parts again (`kinematify infer {folder / MODEL_FILE} -o NEW`), or put "
+            "the file back."
         )
 
 

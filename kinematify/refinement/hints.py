@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kinematify.contact.graph import pair
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointCandidate
 from kinematify.joints.choice.congruent_joints import TwinJoints
@@ -376,7 +377,8 @@ def _objections(joint: JointEstimate, hint: Hint, inference: Inference, before: 
 def _with_parents(inference: Inference, parents: Mapping[int, int]) -> Inference:
     """The inference on the tree that hints ask for: parts hang where a hint says, others where they did if possible.
 
-    Joints stay where neither parent nor what the part carries has changed; the others are chosen as `infer` would.
+    Joints stay where neither parent nor what the part carries has changed; the others are chosen as `infer` would. A
+    part has no bearing on the parent that it had before, so that no loop joint is written between them.
 
     Args:
         inference: As it is.
@@ -396,4 +398,6 @@ def _with_parents(inference: Inference, parents: Mapping[int, int]) -> Inference
     warnings = tuple(warning for warning in inference.warnings if warning not in old - new)
     added = tuple(sorted(new - old - set(warnings)))
     others = tuple(other for other in inference.trees if other.parents != tree.parents)
-    return replace(inference, trees=(tree, *others), joints=joints, warnings=(*warnings, *added))
+    left = {pair(child, before.parents[child]) for child, parent in parents.items() if before.parents[child] != parent}
+    bearings = {ends: bearing for ends, bearing in inference.bearings.items() if ends not in left}
+    return replace(inference, trees=(tree, *others), joints=joints, bearings=bearings, warnings=(*warnings, *added))

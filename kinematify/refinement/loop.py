@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Any
 from kinematify.config.validation import load_settings
 from kinematify.contact.seams import find_seams
 from kinematify.geometry.surface import part_surfaces
-from kinematify.refinement.candidates import CandidateJoints
-from kinematify.refinement.choose import TWINS, Chooser, vote
+from kinematify.refinement.candidates import CandidateJoints, ranged
+from kinematify.refinement.choose import TWINS, Chooser, shortened, vote
+from kinematify.refinement.hints import HINTED
 from kinematify.refinement.joint_plan import History, Plan, PlanChange, Round
 from kinematify.refinement.simulate import TIERS, DearTiers, Simulator
 from kinematify.refinement.topology import (
@@ -33,7 +34,7 @@ from kinematify.validation.check import FeedbackRow
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.failure_rates import GEOMETRY
 from kinematify.validation.finding import Cause, Severity
-from kinematify.validation.run.feedback import feedback_from
+from kinematify.validation.run.feedback import RangeSignal, feedback_from
 
 if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings
@@ -106,6 +107,60 @@ def refine(
         loop.ended = "it was interrupted"
         return replace(loop.result(), interrupted=True)
     return loop.result()
+
+
+def repaired(inference: Inference, *, base: str | None = None, settings: ValidationSettings | None = None) -> Inference:
+    """End ranges before a collision, and choose again once where the motion of what was inferred has an error.
+
+    Args:
+        inference: What `infer` returned, with hints or answers.
+        base: Name of the part that is the base link, where it is known.
+        settings: Of the validation; the shipped ones if absent.
+
+    Returns:
+        The inference with fewer errors about its motion, each change among its warnings; the given one if none goes.
+    """
+    chosen = settings or load_settings()
+    plan = Plan(assembly=inference.assembly, config=inference.config, tree=inference.trees[0], joints=inference.joints)
+    simulator = Simulator(plan.model, chosen.geometry)
+    verdict = simulator.judge(plan.model)
+    plan, changes = _ended(plan, verdict)
+    if changes:
+        verdict = simulator.judge(plan.model)
+        inference = replace(inference, joints=plan.joints)
+    if _severities(verdict)[0]:
+        found = refine(inference, rounds=1, base=base, settings=chosen)
+        rounds, kept = found.history.rounds, found.history.kept
+        if kept and rounds[kept].errors < rounds[0].errors:
+            inference = replace(found.inference, refinement=inference.refinement)
+            changes += found.history.changed
+    said = [f"{item.part}: {item.what} {item.before} was changed to {item.after}: {item.why}." for item in changes]
+    return replace(inference, warnings=(*inference.warnings, *said)) if said else inference
+
+
+def _ended(plan: Plan, verdict: MotionVerdict) -> tuple[Plan, list[PlanChange]]:
+    """Ranges that end in another body end before it, where most of the range stays: no failure is hidden by that."""
+    changes: list[PlanChange] = []
+    free = {joint.joint: joint.free_travel for joint in verdict.joints}
+    least = plan.config.refine.least_travel
+    for finding in verdict.findings:
+        ends = free.get(finding.joint or "")
+        if finding.check not in _INTO_BODIES or finding.severity is Severity.NOTE or ends is None:
+            continue
+        child = plan.model.robot.joint_by_name[finding.joint or ""].child
+        old = plan.joints[plan.index(child)]
+        lower, upper = max(ends[0], old.lower), min(ends[1], old.upper)
+        signal = RangeSignal(
+            child=child, lower=lower, upper=upper, lost=False, weight=0.0, check=finding.check, reason=finding.message
+        )
+        new = shortened(old, signal)
+        if HINTED in old.evidence or new is None or upper - lower < least * (old.upper - old.lower):
+            continue
+        plan = plan.with_joint(new)
+        changes.append(
+            PlanChange(part=child, what="range", before=ranged(old), after=ranged(new), why=finding.message.rstrip("."))
+        )
+    return plan, changes
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -377,6 +432,8 @@ class _Loop:
         )
 
 
+_INTO_BODIES = ("KV311", "KV312")
+"""Checks of bodies that meet within the range of a joint."""
 _MOTION_CAUSES = (Cause.KINEMATICS, Cause.TASK)
 _OF_PARENTS = (FeedbackRow.OTHER_PARENT, FeedbackRow.NOT_CARRIED)
 """Failures that speak of what carries a part, before they speak of its joint."""

@@ -138,6 +138,20 @@ class Fix:
     after: Look
 
     @property
+    def written(self) -> bool:
+        """False where there was nothing to change, so that no file was written."""
+        return self.after is not self.before
+
+    @property
+    def summary(self) -> str:
+        """What was repaired, and what needs which option, in one line."""
+        done = len(self.changes) + len(self.diffs)
+        needs = {option: sum(f"needs {option}" in text for text in self.left) for option in ("--kinematics", "--all")}
+        needs["no safe fix"] = len(self.left) - sum(needs.values())
+        left = ", ".join(f"{count} ({what})" for what, count in needs.items() if count)
+        return f"Repaired: {done or 'nothing'}. Not repaired: {left or 'nothing'}."
+
+    @property
     def lost(self) -> tuple[str, ...]:
         """Engines that open the given file and not the result."""
         return tuple(engine for engine in self.after.refusals if engine not in self.before.refusals)
@@ -163,7 +177,7 @@ class Fix:
     def as_json(self) -> dict[str, Any]:
         """As JSON values."""
         return {
-            "path": str(self.path),
+            "path": str(self.path) if self.written else None,
             "changes": list(self.changes),
             "diffs": [{"title": diff.title, "lines": diff.lines} for diff in self.diffs],
             "left": list(self.left),
@@ -189,6 +203,8 @@ def fix_urdf(
     progress: Callable[[str, float], None] | None = None,
 ) -> Fix:
     """Write a URDF in which what `validate` finds is repaired, as far as the repair is certain.
+
+    Where there is nothing to change, no file is written.
 
     Args:
         model: The URDF; it is not changed.
@@ -224,7 +240,8 @@ def fix_urdf(
     unread = editor.export_gltf() if any(map(_FORMAT.search, before.refusals.values())) else []
     after, place = before, model
     for part in range(1, _ROUNDS + 1):
-        if not repairs.apply(after.report, place, package_dirs) and part > 1:
+        nothing = not repairs.apply(after.report, place, package_dirs)
+        if nothing and (part > 1 or not (editor.changes or before.refusals)):
             break
         after, place = look(editor.write(), part), out
     return Fix(
@@ -386,13 +403,13 @@ def _left(after: Look, repairs: _Repairs, *, kinematics: bool) -> list[str]:
 def _reason(finding: Finding, repairs: _Repairs, *, kinematics: bool) -> str:
     joint = finding.joint or ""
     if repairs.joints is not None and joint in repairs.joints.left:
-        return f"Left: {repairs.joints.left[joint]}."
+        return f"Not repaired: {repairs.joints.left[joint]}."
     if finding.check in _KINEMATICS and finding.cause is Cause.KINEMATICS and not kinematics:
-        return "Left: fix --kinematics changes joints."
+        return "Not repaired: needs --kinematics, which changes joints."
     if finding.check == _MASSLESS:
-        return "Left: no mass is guessed unasked; --all writes that of the geometry."
+        return "Not repaired: needs --all, which writes the mass of the geometry."
     if finding.check in _CARVED and _only_under_a_flag(finding):
-        return "Left: plain loading does not show it; --all carves all links."
+        return "Not repaired: needs --all, which carves all links; plain loading does not show it."
     if finding.check in _CARVED and finding.cause is Cause.PHYSICS:
-        return "Left: the pieces cannot be carved further."
-    return f"Left: no repair is certain. {finding.remedy}"
+        return "Not repaired: the pieces cannot be carved further."
+    return f"Not repaired: no safe fix is known. {finding.remedy}"

@@ -125,6 +125,12 @@ class MujocoFile(RunningFile):
         option.disableflags |= 0 if start.contacts else int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
         option.gravity[:] *= start.gravity
 
+    def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
+        """Implement `RawEngineModel`; links that fixed joints join are one."""
+        self.begin(values, contacts=False)
+        bodies = map(self._data.body, range(1, self._model.nbody))
+        return {body.name: np.column_stack([body.xmat.reshape(3, 3), body.xpos]) for body in bodies}
+
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
         """Implement `RunningFile`."""
         for done in range(every, count + 1, every):

@@ -1,4 +1,4 @@
-"""Pinocchio, which only reads: the joints of a file and their limits."""
+"""Pinocchio, which only reads: the joints of a file, their limits, and where they put every link."""
 
 from __future__ import annotations
 
@@ -10,8 +10,10 @@ import pinocchio as pin
 from kinematify.simulation.raw_model import MovesFreely, RawEngineModel, Reproductions, Unloadable
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
+
+    from kinematify.robot.arrays import FloatArray
 
 _OPEN = """import pinocchio as pin
 model = pin.buildModelFromUrdf({path!r})
@@ -45,7 +47,7 @@ class PinocchioFile(RawEngineModel):
         """
         self._file = {"path": str(urdf)}
         try:
-            model = pin.buildModelFromUrdf(str(urdf))
+            self._model = model = pin.buildModelFromUrdf(str(urdf))
         except ValueError as error:
             raise Unloadable(str(error), _OPEN.format(**self._file)) from error
         if any(joint.nv != 1 for joint in list(model.joints)[1:]):
@@ -55,3 +57,14 @@ class PinocchioFile(RawEngineModel):
         for name, joint in zip(self.joints, list(model.joints)[1:], strict=True):
             ends = (float(model.lowerPositionLimit[joint.idx_q]), float(model.upperPositionLimit[joint.idx_q]))
             self.limits[name] = ends if joint.nq == 1 else (-np.inf, np.inf)
+
+    def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
+        """See `RawEngineModel`; a joint that turns without end is a point on a circle."""
+        model, data = self._model, self._model.createData()
+        q = pin.neutral(model)
+        for name, joint in zip(self.joints, list(model.joints)[1:], strict=True):
+            value = values[name]
+            q[joint.idx_q : joint.idx_q + joint.nq] = (np.cos(value), np.sin(value)) if joint.nq == 2 else value
+        pin.framesForwardKinematics(model, data, q)
+        frames = zip(model.frames, data.oMf, strict=True)
+        return {frame.name: place.homogeneous[:3] for frame, place in frames if frame.type == pin.FrameType.BODY}

@@ -171,6 +171,16 @@ class PybulletFile(MotorFile):
     def _opened(self, *, contacts: bool, seen: bool) -> _LoadedWorld:
         return _LoadedWorld(self._path, contacts=contacts, seen=seen, root=self._root, passing=self._passing)
 
+    def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
+        """See `RawEngineModel`; of all links but the base."""
+        self.begin(values, contacts=True)
+        world, links = self._now, [link for link in self._links if link != -1]
+        states = world.client.getLinkStates(world.body, links, computeForwardKinematics=True) if links else ()
+        return {
+            self._links[link]: np.column_stack([np.reshape(bullet.getMatrixFromQuaternion(state[5]), (3, 3)), state[4]])
+            for link, state in zip(links, states, strict=True)
+        }
+
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
         """See `RunningFile`."""
         for done in range(1, count + 1):

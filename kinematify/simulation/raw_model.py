@@ -167,6 +167,10 @@ class RawEngineModel(ABC):
     _file: Mapping[str, object]
     """What the code says of the file, by the names in the templates."""
 
+    @abstractmethod
+    def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
+        """Return T_root_link of each link that the engine keeps apart, joints at `values`, shape (3, 4) each."""
+
     def rename(self, path: str) -> None:
         """Let the code open another file than the one that was loaded."""
         self._file = {**self._file, "path": path}

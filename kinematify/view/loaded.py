@@ -15,6 +15,7 @@ import numpy as np
 from kinematify.errors import DescriptionError, InputError
 from kinematify.model.output import urdf_of
 from kinematify.robot.description import notes_of
+from kinematify.robot.mesh_paths import CAD_SUFFIXES, MESH_SUFFIXES
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.versions import require
@@ -45,8 +46,14 @@ def load(
     Raises:
         InputError: There is no such file, or it cannot be read.
     """
+    given = Path(path)
+    if given.suffix.lower() in (*MESH_SUFFIXES, *CAD_SUFFIXES):
+        raise InputError(
+            f"{given} is a mesh and has no joints. kinematify.infer({str(given)!r}) finds them, and kinematify infer "
+            f"{given} -o OUT writes a model folder, which can be loaded."
+        )
     places = tuple(map(Path, package_dirs))
-    return LoadedModel(urdf_of(Path(path), places, arguments), places)
+    return LoadedModel(urdf_of(given, places, arguments), places)
 
 
 class LoadedModel:

@@ -159,11 +159,11 @@ def test_gltf_node_with_two_materials_is_one_part(tmp_path: Path) -> None:
 @pytest.mark.parametrize("suffix", ["obj", "stl", "ply", "off"])
 def test_folder_gives_one_part_per_file(tmp_path: Path, suffix: str) -> None:
     for k in (10, 9, 1):
-        both = trimesh.util.concatenate([box(3.0 * k), box(3.0 * k + 1.5)])  # pieces of one file stay together
+        both = trimesh.util.concatenate([box(1.5 * k), box(1.5 * k + 1.5)])  # pieces of one file stay together
         both.export(tmp_path / f"part_{k}.{suffix}")
     loaded = load(tmp_path)
     assert loaded.names == ("part_1", "part_9", "part_10")
-    np.testing.assert_allclose(loaded.parts[0].bounds, [[3, 0, 0], [5.5, 2, 3]], atol=1e-6)
+    np.testing.assert_allclose(loaded.parts[0].bounds, [[1.5, 0, 0], [4, 2, 3]], atol=1e-6)
     assert all(len(part.faces) == 24 for part in loaded.parts)
 
 
@@ -233,13 +233,13 @@ def test_3mf_objects_are_parts_in_the_unit_that_the_file_states_unless_a_scale_i
     scene().export(tmp_path / "a.3mf")
     loaded, raw = load(tmp_path / "a.3mf"), load(tmp_path / "a.3mf", scale=1.0)
     assert loaded.names == ("body", "door")
-    assert loaded.lengths == "millimeter, as the file states"
+    assert loaded.lengths == "millimetres (stated in the file)"
     assert np.allclose(loaded.bounds, 1e-3 * raw.bounds)
-    assert raw.lengths == "1 m per unit, as --scale states"
+    assert raw.lengths == "1 m per unit (--scale)"
     (tmp_path / "parts").mkdir()
     for name, x in (("a", 0.0), ("b", 3000.0)):
         box(x).export(tmp_path / "parts" / f"{name}.3mf")
-    assert load(tmp_path / "parts").lengths == "millimeter, as the file states", "in a folder as well"
+    assert load(tmp_path / "parts").lengths == "millimetres (stated in the file)", "in a folder as well"
 
 
 @pytest.mark.parametrize(
@@ -263,6 +263,22 @@ def test_an_unusual_size_is_reported_with_the_guess_and_the_remedy(
         assert not warnings
     else:
         assert any(reported in warning and remedy in warning for warning in warnings)
+
+
+@pytest.mark.parametrize(("factor", "metres", "read_as"), [(100.0, 0.4, "millimetres"), (1.0, 4.0, "metres")])
+def test_a_long_object_without_a_unit_is_in_millimetres(
+    tmp_path: Path, factor: float, metres: float, read_as: str
+) -> None:
+    given = trimesh.util.concatenate([box(0), box(3)])  # 4 units long
+    given.apply_scale(factor)
+    for suffix in ("stl", "obj", "ply", "off"):
+        given.export(tmp_path / f"a.{suffix}")
+        loaded = load(tmp_path / f"a.{suffix}")
+        assert np.ptp(loaded.bounds, axis=0).max() == pytest.approx(metres)
+        assert loaded.lengths.startswith(read_as)
+        assert "--scale" in loaded.lengths
+    trimesh.Scene([given]).export(tmp_path / "a.glb")
+    assert np.ptp(load(tmp_path / "a.glb").bounds, axis=0).max() == pytest.approx(4.0 * factor), "glTF is in metres"
 
 
 def test_one_mesh_without_labels_falls_into_its_pieces(tmp_path: Path) -> None:

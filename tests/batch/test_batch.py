@@ -269,7 +269,7 @@ def test_two_runs_do_not_write_one_output(tmp_path: Path, capsys: pytest.Capture
     wait_for(tmp_path / "out" / "manifest.jsonl")
     try:
         assert batch(*words, "--resume") == 2
-        assert "Another run writes" in capsys.readouterr().err
+        assert "is being written by process" in capsys.readouterr().err
     finally:
         command.terminate()
         command.communicate(timeout=30.0)

@@ -74,7 +74,7 @@ def test_a_study_runs_goes_on_and_ends_with_1_on_faults(
     assert found["configuration"]["families"] == ["laptop"]
     capsys.readouterr()
     assert run(words) == 0
-    assert "taken up from an earlier run" in capsys.readouterr().err
+    assert "skipped: done earlier" in capsys.readouterr().err
     assert "Nothing." in (tmp_path / "out" / "as_loaded.md").read_text()
     found["records"][0]["worlds"]["mujoco"] |= {"findings": [["KV802", None, "it is stuck"]], "shown": [False]}
     (tmp_path / "out" / "as_loaded.json").write_text(json.dumps(found))

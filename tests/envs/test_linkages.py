@@ -14,8 +14,8 @@ from benchmarks.linkages import linkage
 from kinematify.config import load_config
 from kinematify.envs.expert import HandExpert
 from kinematify.envs.open_part import OpenPartEnv
+from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.sentence import from_text
-from kinematify.pipeline.blueprint_files import write_blueprint
 from kinematify.robot.linkage import loop_gaps, without_followers
 from kinematify.validation.run import validate
 from kinematify.versions import NO_WHEELS

@@ -24,7 +24,7 @@ from kinematify.errors import InputError, OutputError
 from kinematify.evaluation.nightly.comparison import Class, compare
 from kinematify.evaluation.nightly.run_night import NightRequest, run_night, write_smoke_objects
 from kinematify.evaluation.nightly.runs import Problem, Run
-from kinematify.evaluation.nightly.store import accept, load_nights, locked
+from kinematify.evaluation.nightly.store import accept, load_nights
 from tests.manipulation.furniture import write_drawer_cabinet
 from tests.places import ROOT
 from tests.secret_cabinets import write_object
@@ -320,24 +320,6 @@ def test_killed_at_five_points_it_resumes_to_the_same_report(boxes: Path, tmp_pa
 
 
 # Bad folders.
-
-
-_LOCKING = """
-from pathlib import Path
-from kinematify.evaluation.nightly.store import locked
-with locked(Path({!r})):
-    pass
-"""
-
-
-def test_two_nights_at_once(boxes: Path, tmp_path: Path) -> None:
-    with locked(tmp_path):
-        code = _LOCKING.format(str(tmp_path))
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert "Another night is running" in done.stderr
-    assert f"process {os.getpid()}" in done.stderr
-    with locked(tmp_path):
-        pass  # and it goes with its holder
 
 
 def test_a_night_of_a_newer_version_is_not_touched(boxes: Path, tmp_path: Path) -> None:

@@ -15,11 +15,11 @@ from kinematify import export
 from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.errors import InputError, OutputError
+from kinematify.generate.blueprint_files import true_model
 from kinematify.generate.request import from_category
 from kinematify.geometry.convex import signed_volume
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model as write_files
-from kinematify.pipeline.blueprint_files import true_model
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import rotation_about

@@ -17,8 +17,8 @@ from kinematify.config import load_config
 from kinematify.errors import DescriptionError, InputError
 from kinematify.formats.export_model import export
 from kinematify.formats.losses import losses_markdown
+from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.sentence import from_text
-from kinematify.pipeline.blueprint_files import write_blueprint
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.validation.run import validate

@@ -9,10 +9,10 @@ import pytest
 
 from kinematify import export, infer
 from kinematify.config import load_config
+from kinematify.generate.blueprint_files import true_model
 from kinematify.generate.request import from_category
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
-from kinematify.pipeline.blueprint_files import true_model
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.simready import ANSWERED
 

@@ -13,11 +13,11 @@ import yaml
 
 from kinematify.config import load_config
 from kinematify.errors import InputError
+from kinematify.generate.blueprint_files import true_model
 from kinematify.generate.procedural import blueprint_file
 from kinematify.generate.procedural.blueprint import ground_truth
 from kinematify.generate.procedural.blueprint_file import described_blueprint, read_blueprint
 from kinematify.generate.procedural.materials import MATERIALS
-from kinematify.pipeline.blueprint_files import true_model
 from kinematify.robot.joint_type import JointType
 
 EXAMPLE = blueprint_file.__doc__.split("```yaml")[1].split("```")[0]

@@ -10,9 +10,9 @@ import pytest
 
 from kinematify.config import load_config
 from kinematify.formats.export_model import export
+from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.procedural.materials import COLORS, MATERIALS, grain_coordinates, wood_grain
 from kinematify.generate.sentence import from_text
-from kinematify.pipeline.blueprint_files import write_blueprint
 from tests.sentences import said_of
 
 

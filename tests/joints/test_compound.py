@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import trimesh
@@ -11,10 +9,12 @@ import trimesh
 from kinematify import infer
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
+from kinematify.contact.build_graph import build_contact_graph
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
+from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointEstimate
-from kinematify.pipeline.warnings import Compound, CompoundKind, compounds, described
+from kinematify.pipeline.warnings import Compound, CompoundKind, compounds, described, missed_linkages
 from kinematify.robot.joint_type import JointType
 
 CONFIG = load_config().joints.compound
@@ -94,28 +94,22 @@ def test_twins_that_slide_towards_each_other_are_fingers() -> None:
     assert compounds(hand(), same_way, ((1, 2),), CONFIG) == ()
 
 
-@pytest.mark.parametrize(
-    ("body", "inner", "expected"),
-    [((0.03, 0.0), 0.0, True), ((0.03, 0.0), 0.02, False), ((0.07, 0.0), 0.0, False), ((0.03, 0.1), 0.0, False)],
-    ids=["cap", "ring: the neck goes through", "stopper: the neck goes around", "knob: the body lies aside"],
-)
-def test_a_part_that_closes_a_neck_may_come_off(body: tuple[float, float], inner: float, expected: bool) -> None:
-    radius, aside = body
-    neck = trimesh.creation.cylinder(radius, 0.2).apply_translation((0, 0, -0.1))
-    if aside:
-        plate = trimesh.creation.box((1.0, 1.0, 0.05)).apply_translation((aside, 0, -0.3))
-        neck = trimesh.util.concatenate([neck, plate])
-    shell = trimesh.creation.annulus(0.035, 0.05, 0.08) if radius < 0.05 else trimesh.creation.cylinder(0.05, 0.08)
-    lid = trimesh.creation.annulus(inner, 0.05, 0.01) if inner else trimesh.creation.cylinder(0.05, 0.01)
-    cap = trimesh.util.concatenate([shell, lid.apply_translation((0, 0, 0.045))])
-    parts = tuple(
-        Part(name=n, vertices=mesh.vertices, faces=mesh.faces) for n, mesh in (("bottle", neck), ("cap", cap))
-    )
-    turning = replace(joint(0, 1, Z, (0, 0, 0)), evidence={"bearing_gate": 1.0})
-    found = compounds(Assembly(parts=parts, source="code"), [turning], (), CONFIG)
-    assert found == ((Compound(kind=CompoundKind.CAP, children=(1,)),) if expected else ())
-    if expected:
-        assert described(found[0], ("bottle", "cap")).startswith("cap closes the end of what it turns on")
+def test_a_tray_that_only_turning_arms_carry_is_a_linkage_that_was_not_found() -> None:
+    parts = [
+        block("base", (0, 0, 0), (0.4, 0.2, 0.1)),
+        block("arm_1", (-0.15, 0, 0.15), (0.01, 0.02, 0.2)),
+        block("arm_2", (0.15, 0, 0.15), (0.01, 0.02, 0.2)),
+        block("tray", (0, 0, 0.27), (0.4, 0.2, 0.04)),
+    ]
+    assembly = Assembly(parts=tuple(parts), source="code")
+    config, tray = load_config(), joint(1, 3, X, (0, 0, 0.25), JointType.PRISMATIC)
+    graph = build_contact_graph(assembly, part_surfaces(assembly, config=config.surface), config=config.contact, seed=0)
+    arms = [joint(0, k, Y, (0.15 * side, 0, 0.05)) for k, side in ((1, -1.0), (2, 1.0))]
+    (said,) = missed_linkages(assembly, graph, {}, [*arms, tray], config)
+    assert said.startswith("tray touches arm_1 and arm_2, which turn about parallel axes")
+    assert "--hint tray:parent=arm_1 --hint tray=revolute" in said
+    crossed = [arms[0], joint(0, 2, X, (0.15, 0, 0.05))]
+    assert not missed_linkages(assembly, graph, {}, [*crossed, tray], config)
 
 
 def test_the_inference_tells_of_fingers_of_a_gripper_and_of_nothing_in_a_cabinet() -> None:

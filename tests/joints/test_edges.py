@@ -129,7 +129,7 @@ def test_a_lid_over_a_rim_hangs_on_the_pot_though_it_touches_the_handle_alone() 
     known = known_object("pot", {"pot": pot, "handle": handle, "lid": lid})
     inference = infer(known.assembly, config=CONFIG)
     assert inference.trees[0].parents[known.index["lid"]] == known.index["pot"]
-    assert any("lid hangs on pot, which it does not touch" in warning for warning in inference.warnings)
+    assert any("The parent of lid is pot, which it does not touch" in warning for warning in inference.warnings)
 
 
 # ---- the fit ---------------------------------------------------------------------------------------------------------

@@ -170,7 +170,7 @@ def test_both_ends_say_what_stops_them() -> None:
     assert all(stop for stop in found.facts["stops"])
     assert [way.stop for way in found.free] == ["contact with body"] * 2
     door = estimates_of("edge_door")["door"]
-    assert door.stops == ("the given pose", "what is usual for such a part")
+    assert door.stops == ("the given pose", "typical range")
     assert estimates_of("knob")["knob"].stops == ("", "")
 
 
@@ -183,6 +183,6 @@ def test_what_meets_nothing_is_not_limited_by_the_search(monkeypatch: pytest.Mon
     joint = turning("post", "handle", (0, 0, 1), (0, 0, 0.1), (-1.0, 1.0))
     scene = scene_of(known_object("tap", {"post": post, "handle": handle}, joint), "handle")
     found = find_range(scene, JointType.REVOLUTE, np.array([0.0, 0.0, 1.0]), joint.pivot, CONFIG.joints)
-    assert {way.stop for way in found.free} == {"the end of the search"}
+    assert {way.stop for way in found.free} == {"none found"}
     assert found.ahead == found.back
     assert found.ahead.motion == pytest.approx(np.radians(CONFIG.joints.limits.unmet_deg))

@@ -98,7 +98,7 @@ def test_force_spares_what_is_not_ours(tmp_path):
 
 def test_parent_that_cannot_hold_a_folder(tmp_path):
     (tmp_path / "file").write_text("mine")
-    with pytest.raises(OutputError, match="not a folder that you may write"):
+    with pytest.raises(OutputError, match="is not writable"):
         check_output(tmp_path / "file" / "out", overwrite=False)
 
 

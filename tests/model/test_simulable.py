@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from kinematify.config import load_config
+from kinematify.generate.blueprint_files import true_model
 from kinematify.generate.request import from_category
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
-from kinematify.pipeline.blueprint_files import true_model
 from kinematify.robot.joint_type import JointType
 from kinematify.versions import NO_WHEELS
 from tests.places import ROOT

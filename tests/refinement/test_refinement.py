@@ -405,12 +405,6 @@ def test_refine_replaces_no_folder_unasked(tmp_path: Path, capsys: pytest.Captur
     assert read_record(other)["refinement"]["kept"] == 0
 
 
-def test_infer_refines_when_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["infer", str(ROOT / "examples" / "cabinet"), "-o", str(tmp_path / "out"), "--refine", "1", "--no-preview"]
-    assert run(words) == 0
-    assert "Kept: the model as it was inferred, with no errors" in capsys.readouterr().out
-
-
 def test_a_folder_of_an_older_version_is_refused(tmp_path: Path) -> None:
     (tmp_path / "inference.json").write_text('{"schema": 1}')
     with pytest.raises(InputError, match="older version"):

@@ -14,8 +14,9 @@ import pytest
 import trimesh
 
 from kinematify.config.validation import load_settings
-from kinematify.simulation.engines import DEFAULT_ENGINES
+from kinematify.simulation.engines import DEFAULT_ENGINES, load_file
 from kinematify.validation.as_loaded_context import AsLoadedContext
+from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
 from kinematify.validation.run import validate
@@ -86,8 +87,22 @@ def test_a_good_cabinet_passes(tmp_path: Path, engine: str) -> None:
 
 def test_pinocchio_reads_joints_and_limits(tmp_path: Path) -> None:
     good = reported(cabinet(), tmp_path, "pinocchio").results
-    assert {check: r.status for check, r in good.items()} == {"KV801": Status.PASS}
+    assert {check: r.status for check, r in good.items()} == {"KV801": Status.PASS, "KV807": Status.PASS}
     assert good["KV801"].measured == {"joints": 2.0, "read": 2.0}
+
+
+@pytest.mark.parametrize("engine", [*ENGINES, "pinocchio"])
+def test_a_link_that_an_engine_puts_elsewhere_is_named_with_its_joint(tmp_path: Path, engine: str) -> None:
+    context = AsLoadedContext(request=request_of(cabinet(), tmp_path), engine=engine)
+    drawer, shift = cabinet().parts[1], (0.0, 0.0, 0.01)
+    other = cabinet().with_part("drawer", at=tuple(a + b for a, b in zip(drawer.at, shift, strict=True)))
+    (tmp_path / "other").mkdir()
+    vars(context)["loading"] = load_file(engine, other.write(tmp_path / "other"), "body")
+    result = OpenCheck(id="KV807", engine=engine)
+    CHECKS["KV807"].run(result, context)
+    (finding,) = result.findings
+    assert (finding.joint, finding.link) == ("drawer_joint", "drawer")
+    assert finding.value == pytest.approx(0.01, abs=1e-6)
 
 
 @pytest.mark.parametrize("engine", ["mujoco"])  # PyBullet lets no link collide with its parent

@@ -39,6 +39,8 @@ _READS = {
     "pybullet": "OBJ, STL and DAE",
 }
 """Formats of meshes, by engine."""
+_SAME_PLACE = 1e-4
+"""Distance of a link from where the file puts it, in sizes of the model, and angle [rad]; engines agree to 1e-7."""
 _FLOOR_OF_ENERGY = 1e-5
 """Growth that does not count, fraction of the energy of a fall of the whole model by its own size."""
 _SUFFIX = re.compile(r"\.(?:glb|gltf|stl|dae|ply|obj|3mf|off)\b", re.IGNORECASE)
@@ -486,3 +488,49 @@ def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
             unit="J",
             reproduction=reproduction,
         )
+
+
+@check(
+    "KV807",
+    title="As loaded: links are where the file puts them",
+    fails="As loaded: an engine puts a link elsewhere",
+    severity=Severity.ERROR,
+    cause=Cause.ENGINE,
+    engines=_ENGINES,
+    follows={"KV801": CauseScope.JOINT},
+    needs=(not_loaded,),
+)
+def puts_links_where_the_file_does(result: OpenCheck, context: AsLoadedContext) -> None:
+    """With all joints at rest, at the lower and at the upper end, each link of the untouched file is where its own
+    kinematics put it, within a ten thousandth of the model's size and of a radian: engines that agree with the file
+    agree with each other. A finding is about the joint where the difference begins.
+
+    Why it matters: A frame that an engine reads differently moves a part to another place without a message.
+
+    Remedy: Write origins and axes as plain numbers, each axis as a unit vector, and a joint type that engines know.
+    """
+    from kinematify.robot.robot import forward_kinematics  # noqa: PLC0415 - for this only
+
+    above, worst = context.robot.joint_above, dict[str, tuple[float, float, dict[str, float]]]()
+    for values in context.ends:
+        ours = forward_kinematics(context.robot, values)
+        for link, pose in context.loaded.poses(values).items():
+            away = float(np.linalg.norm(pose[:3, 3] - ours[link][:3, 3]))
+            turned = float(np.linalg.norm(pose[:3, :3] - ours[link][:3, :3])) / np.sqrt(2.0)  # 2 sin(angle / 2)
+            share = max(away / (_SAME_PLACE * context.size), turned / _SAME_PLACE)
+            result.measured["farthest"] = max(away, result.measured.get("farthest", 0.0))
+            if share > worst.get(link, (0.0, 1.0))[1]:
+                worst[link] = away, share, values
+    for link, (away, _, values) in worst.items():
+        if link in above and above[link].parent not in worst:
+            result.find(
+                f"{context.title} puts the link {link} {away * 1e3:.3g} mm from where the file's kinematics put it.",
+                f"Write the joint {above[link].name} with a unit axis, plain numbers and a type that engines know.",
+                joint=above[link].name,
+                link=link,
+                q=values,
+                value=away,
+                limit=_SAME_PLACE * context.size,
+                unit="m",
+                line=above[link].line,
+            )

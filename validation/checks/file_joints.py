@@ -173,8 +173,8 @@ def unnormalised_axes(result: OpenCheck, urdf: Urdf) -> None:
 
 @check(
     "KV136",
-    title="Joints with limits state them",
-    fails="A joint lacks its limits",
+    title="Revolute and sliding joints state their limits",
+    fails="A joint states no limits",
     severity=Severity.ERROR,
     cause=Cause.KINEMATICS,
 )

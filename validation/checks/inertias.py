@@ -105,7 +105,7 @@ def _better_tensor(body: Body, link: Link) -> str:
 @check(
     "KV205",
     title="Principal moments satisfy the triangle inequality",
-    fails="Principal moments are those of no body",
+    fails="An inertia is physically impossible",
     severity=Severity.ERROR,
     cause=Cause.PHYSICS,
     needs=(something_weighs,),

@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.scene import relative
-from kinematify.geometry.together import random_rows
 from kinematify.validation.check import FeedbackRow, check
 from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.geometry.formatting import BARELY, SLIMMER, UNSEEN, configuration, in_document_order, length
@@ -107,6 +105,9 @@ _STARTS = 32
 
 def _start(look: GeometryContext, pair: Pair) -> str:
     """Return a configuration in which a pair is apart, the nearest to rest of some; empty if it is in none."""
+    from kinematify.geometry.scene import relative  # noqa: PLC0415 - reading the checks loads no geometry
+    from kinematify.geometry.together import random_rows  # noqa: PLC0415
+
     scene, between = look.scene, sorted(look.scene.between(pair))
     if not between:
         return ""
@@ -147,7 +148,7 @@ def hovering(result: OpenCheck, look: GeometryContext) -> None:
             parent, child = look.parent_and_child(connection, {})
             result.find(
                 f"{child} is {length(gap)} away from {parent}, on which the joint {connection.joints[-1]} "
-                "hangs it: nothing is seen to carry it.",
+                "hangs it: no contact supports it.",
                 "Check the joint's <parent> and <origin>; if the bearing is not modelled, accept it.",
                 severity=Severity.NOTE if look.on_an_axle(connection) else None,
                 joint=connection.joints[-1],

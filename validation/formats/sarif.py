@@ -40,9 +40,10 @@ _UNUSABLE = "unusable-input"
 def as_sarif(outcomes: Sequence[Outcome]) -> str:
     """Return the outcomes as one SARIF run."""
     reports = [outcome for outcome in outcomes if not isinstance(outcome, Unusable)]
-    index = {check: position for position, check in enumerate(CHECKS)}
+    fired = dict.fromkeys(finding.check for report in reports for finding in report.findings)
+    index = {check: position for position, check in enumerate(fired)}
     run = {
-        "tool": {"driver": _driver()},
+        "tool": {"driver": _driver([CHECKS[check] for check in fired])},
         "columnKind": "utf16CodeUnits",
         "invocations": [_invocation(outcomes)],
         "results": [_result(report, group, index) for report in reports for group in report.groups],
@@ -51,12 +52,12 @@ def as_sarif(outcomes: Sequence[Outcome]) -> str:
     return json.dumps(document, indent=2, allow_nan=False) + "\n"
 
 
-def _driver() -> dict[str, Any]:
+def _driver(fired: Sequence[Check]) -> dict[str, Any]:
     return {
         "name": "kinematify validate",
         "version": __version__,
         "semanticVersion": __version__,
-        "rules": [_rule(check) for check in CHECKS.values()],
+        "rules": [_rule(check) for check in fired],
         "notifications": [
             {"id": status.value, "shortDescription": {"text": f"A check was {status.value}."}}
             for status in (Status.SKIPPED, Status.BLOCKED)

@@ -196,7 +196,8 @@ class _Run:
         if not usable and copy is None:
             self._explain_rest(
                 Status.BLOCKED,
-                f"the pre-check found errors that keep the file from being read: {self._ids(self._broken())}",
+                "the pre-check found errors that keep the file from being read: fix "
+                f"{self._ids(self._broken())} first; no engine was started",
             )
             return
         spent, late = self._read_meshes(asset_request, copy, [*later, *plain])

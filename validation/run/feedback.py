@@ -328,7 +328,7 @@ def _into_others(case: _Case, finding: Finding, joint: Joint) -> None:
 
 
 def _not_carried(case: _Case, finding: Finding, joint: Joint) -> None:
-    """KV303 and KV341: nothing is seen to carry the part there."""
+    """KV303 and KV341: no contact supports the part there."""
     other = next((name for name in finding.pair or () if name not in (joint.child, joint.parent)), None)
     case.against_parent(finding, joint, "it does not touch what carries it", other)
 

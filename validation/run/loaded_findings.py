@@ -38,6 +38,9 @@ def as_loaded_words(checks: Sequence[CheckResult]) -> str:
             parts.append(f"{title} {found.measured['right']:.0f} of {found.measured['joints']:.0f}{joints}")
         elif not ENGINES[engine].runs and "read" in opening.measured:
             parts.append(f"{title} reads {opening.measured['read']:.0f} of {opening.measured['joints']:.0f}")
+        elif engine in DEFAULT_ENGINES:
+            why = opening.reason or (found.reason if found is not None else None)
+            parts.append(f"{title}: {why or 'its joints were not moved'}")
     absent = [f"{ENGINES[name].title} is not installed" for name in opened if name not in DEFAULT_ENGINES]
     words = [f"as loaded: {', '.join([*parts, *absent])}"] if parts else []
     for name, found in moved.items():

@@ -134,7 +134,7 @@ def _change_table(changes: Sequence[Change], name: str) -> str:
     listed_changes = [change for change in changes if change.kind not in (Class.STILL_FAILING, Class.NEW_SERIES)]
     counted = ", ".join(f"{sum(change.kind is kind for change in changes)} {kind.value}" for kind in Class)
     failing = sum(change.gate for change in changes)
-    words = f"<p>{failing} of them fail the night. {counted}. Timing never fails a night.</p>"
+    words = f"<p>Changes that fail the night: {failing}. {counted}. Timing never fails a night.</p>"
     if not listed_changes:
         return f"<p><strong>Nothing changed.</strong></p>{words}"
     rows: list[tuple[Cell, ...]] = [

@@ -41,15 +41,15 @@ from kinematify.evaluation.nightly.store import (
     chosen,
     earlier_runs,
     load_nights,
-    locked,
     open_state,
     write_night,
 )
 from kinematify.evaluation.nightly.validity import NightValidation, run_validation
 from kinematify.evaluation.result_record import code_version, replace_text
 from kinematify.evaluation.run_benchmark import BenchmarkRequest, Variant, run_benchmark
+from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.sentence import from_text
-from kinematify.pipeline.blueprint_files import write_blueprint
+from kinematify.processes.lock import locked
 from kinematify.processes.pool import TaskFailure
 from kinematify.validation.formats.report_picture import drawing_of
 
@@ -112,7 +112,7 @@ def run_night(request: NightRequest, progress: Progress) -> NightResult:
         ConfigError: A configuration is unknown or malformed.
         OutputError: The folder cannot be written.
     """
-    with locked(request.out):
+    with locked(request.out / ".lock", f"The folder of nights {request.out}"):
         nights, warnings = load_nights(request.out)
         name = request.baseline or accepted(request.out)
         baseline = None if name is None else chosen(nights, name, request.out)

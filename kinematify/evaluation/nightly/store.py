@@ -12,11 +12,8 @@ results/nightly/
 from __future__ import annotations
 
 import datetime
-import fcntl
 import json
-import os
 import shutil
-from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -28,7 +25,7 @@ from kinematify.evaluation.nightly.runs import RUN, SCHEMA
 from kinematify.evaluation.result_record import git_commit, replace_text
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
     from pathlib import Path
 
     from kinematify.evaluation.nightly.comparison import Change
@@ -43,7 +40,6 @@ BADGE_FILE = "badge.json"
 MODELS = "models"
 """Folder of a night for the pages of its models."""
 UNFINISHED = ".unfinished"
-_LOCK = ".lock"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,40 +76,11 @@ class Night:
         return {"schemaVersion": 1, "label": "nightly", "message": message, "color": color}
 
 
-@contextmanager
-def locked(folder: Path) -> Iterator[None]:
-    """Hold the folder for one night; the lock goes with the process, however that ends.
-
-    Raises:
-        InputError: Another night holds it.
-        OutputError: The folder cannot be written.
-    """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        file = (folder / _LOCK).open("a+", encoding="utf-8")
-    except OSError as error:
-        raise OutputError(unwritable(folder, error)) from error
-    with file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            file.seek(0)
-            holder = file.read().strip() or "another process"
-            raise InputError(
-                f"Another night is running in {folder}, by {holder}. Wait for its end, or give another folder with "
-                "-o. Nothing was changed."
-            ) from None
-        file.truncate(0)
-        file.write(f"process {os.getpid()} on {os.uname().nodename}")
-        file.flush()
-        yield
-
-
 def unwritable(folder: Path, error: OSError) -> str:
     """The message for a folder that cannot be written."""
     return (
-        f"The nights cannot be kept in {folder}: {error.strerror or error}. Give a folder that you may write to with "
-        "-o, on a disk with space."
+        f"The nights cannot be kept in {folder}: {error.strerror or error}. Give a writable "
+        "folder on a disk with space with -o."
     )
 
 

@@ -35,7 +35,7 @@ class End(NamedTuple):
     """What ends it there, in words; empty where nothing does."""
 
 
-AS_GIVEN, USUAL, GUIDE = End(0.0, "the given pose"), "what is usual for such a part", "the end of its guide"
+AS_GIVEN, USUAL, GUIDE = End(0.0, "the given pose"), "typical range", "the end of its guide"
 Ways = tuple[End, End]
 """Along an axis and against it."""
 
@@ -57,7 +57,7 @@ def free_ways(
     for side, motion in enumerate(whole.free(share)[0]):
         met = obstacles[int(np.argmax([one.crossed(motion)[0, side] for one in each]))]
         stop = f"contact with {scene.cache.assembly.parts[met].name}"
-        ways.append(End(float(motion), stop if motion < whole.limit else "the end of the search"))
+        ways.append(End(float(motion), stop if motion < whole.limit else "none found"))
     return ways[0], ways[1]
 
 
