@@ -60,8 +60,6 @@ BUNDLED: dict[str, BundledObject] = {
 }
 """Keyed by name."""
 DEFAULT = "drawers"
-DRAWERS = ("drawers", "nightstand", "dresser", "pedestal", "desk")
-"""Bundled objects whose joint is a drawer's."""
 
 
 def find_bundled(model: str) -> BundledObject:

@@ -90,7 +90,6 @@ def _write_results_page(context: click.Context, _parameter: click.Parameter, ask
         "kinematify bench models/ --config default --config paper",
         "kinematify bench models/ --baseline results/robots.json",
         "kinematify bench models/ --degrade voxels-150,cut-2 --conditions rest --name degraded",
-        "kinematify bench models/ --errors 20",
         "kinematify bench --list",
         "kinematify bench detection --only kinematic",
         "kinematify bench detection --help",
@@ -152,13 +151,6 @@ def _write_results_page(context: click.Context, _parameter: click.Parameter, ask
     help="Also measure faulty meshes; all, or some of voxels-300, voxels-150, vertex-noise, faces-1000, "
     "faces-300, hulls, holes, flipped, gaps, interpenetration, open, cut-2, cut-3.",
 )
-@click.option(
-    "--errors",
-    "shown",
-    type=click.IntRange(min=1),
-    metavar="N",
-    help="Also write a page with pictures of the N worst joints, ground truth beside inference.",
-)
 @json_option
 def command(
     *,
@@ -174,7 +166,6 @@ def command(
     jobs: int | None,
     fresh: bool,
     degrade: str,
-    shown: int | None,
     json_to: str | None,
 ) -> int:
     """Erase the joints of every URDF below DATA, infer them again and measure the errors.
@@ -185,7 +176,7 @@ def command(
 
     The report is written as Markdown and JSON. A run that was interrupted goes on where it stopped; a change of the
     code or of the configuration starts again. Wrong answers do not change the exit status, worse ones than those of
-    --baseline do. Studies, --ablation, --baseline, --degrade, --errors, --results-page and all tables but the first
+    --baseline do. Studies, --ablation, --baseline, --degrade, --results-page and all tables but the first
     need a checkout of the repository.
 
     --degrade measures the same objects once more with every fault that meshes have in practice: remeshed on a grid of
@@ -207,7 +198,6 @@ def command(
     find = None if baseline is None else benchmark_module("regression", "--baseline").find_regressions
     detailed = has_benchmarks()
     faults, by = _faults(degrade)
-    gallery = benchmark_module("errors", "--errors") if shown is not None else None
     request = BenchmarkRequest(
         data=chosen,
         variants=_variants(configs, ablation=ablation),
@@ -225,11 +215,6 @@ def command(
         else:
             blocks = [table(_HEADINGS, _rows(report))]
         written = write_report(report, RESULTS, blocks, out, name=name, title=name)
-        if gallery is not None:
-            page = gallery.write_error_gallery(
-                report, request, out, name=f"{name}_errors", count=shown, progress=progress
-            )
-            written = (*written, page)
     regressions = () if find is None else find(report, earlier)
     if json_to:
         write_answer(as_json(report, RESULTS), json_to)

@@ -82,8 +82,12 @@ class Generation:
             self.inference = infer(
                 self.blueprint.assembly, config=config, progress=lambda stage, done: progress(stage, _INFERRED * done)
             )
-        progress("writing the model and its picture" if self.preview else "writing the model", _INFERRED)
-        write_model_folder(self.out, lambda folder: self._write(folder, config), overwrite=overwrite)
+        share = _WRITTEN - _INFERRED
+        write_model_folder(
+            self.out,
+            lambda folder: self._write(folder, config, lambda stage, done: progress(stage, _INFERRED + share * done)),
+            overwrite=overwrite,
+        )
         if self.validated:
             self._validate(lambda stage, done: progress(f"validation: {stage}", _WRITTEN + (1.0 - _WRITTEN) * done))
 
@@ -104,18 +108,25 @@ class Generation:
         """Return the blueprint that was built."""
         return self.made.blueprint
 
-    def _write(self, folder: Path, config: Config) -> None:
+    def _write(self, folder: Path, config: Config, progress: Reporter) -> None:
+        progress("cutting the collision geometry", 0.0)
         self.model = write_blueprint(self.blueprint, folder, config, facts=self.made.facts)
         write_parts(self.blueprint, folder / PARTS_FOLDER)
         if self.preview:
             from kinematify.model.preview import render_preview
 
+            progress("drawing the picture", 0.4)
             render_preview(self.model, folder / PREVIEW_FILE, config.preview)
         if self.inference is not None:
             from kinematify.pipeline.record import write_inference_files
 
             (folder / INFERRED_FOLDER).mkdir()
-            write_inference_files(self.inference, folder / INFERRED_FOLDER, preview=self.preview)
+            write_inference_files(
+                self.inference,
+                folder / INFERRED_FOLDER,
+                preview=self.preview,
+                progress=lambda stage, done: progress(f"the inferred model: {stage}", 0.6 + 0.4 * done),
+            )
 
     def _validate(self, progress: Reporter) -> None:
         self.report = report_on(self.out, generated_files(self.out), progress=progress)

@@ -157,9 +157,12 @@ class ProvidedGeneration:
         share = _INFERRED - _MADE
         found = infer(given, config=config, progress=lambda stage, done: progress(stage, _MADE + share * done))
         self.inference = replace(found, provenance=self.generated.provenance.as_json())
-        progress("writing the model", _INFERRED)
         write_model_folder(
-            self.out, lambda folder: write_inference_files(self.inference, folder, preview=self.preview),
+            self.out,
+            lambda folder: write_inference_files(
+                self.inference, folder, preview=self.preview,
+                progress=lambda stage, done: progress(stage, _INFERRED + (_WRITTEN - _INFERRED) * done),
+            ),
             overwrite=overwrite,
         )  # fmt: skip
         if self.with_verdict:

@@ -34,7 +34,7 @@ _COARSE = {"most_faces": 3000, "points": 450}
         "kinematify validate models/ --quick --fail-on warning",
         "kinematify validate model.urdf --html report.html --sarif report.sarif",
         "kinematify validate robot.urdf --package-dir ~/ros/src --engines mujoco,pinocchio",
-        "kinematify validate model.urdf --checks 'KV3*,KV401' --skip KV305 --budget 10",
+        "kinematify validate model.urdf --checks 'KV3*,KV801' --skip KV305 --budget 10",
         "kinematify validate model.urdf --suggest-accept accepted.yaml",
         "kinematify validate model.urdf --suppress accepted.yaml --json - > answer.json",
         "kinematify validate cabinet.urdf --task pull",

@@ -18,7 +18,7 @@ from kinematify.geometry.rest_pairs import overlapping_links
 from kinematify.geometry.scene import read_scene
 from kinematify.model.collision import collides_as_it_is, fit_collision
 from kinematify.model.masses import prepared_inertials
-from kinematify.model.simulable import lacks_drive
+from kinematify.model.simulable import lacks_drive, unless_negative
 from kinematify.robot.appearance import Material, plain, surfaces
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.material_files import write_texture
@@ -42,7 +42,6 @@ WORLD = "world"
 """What MuJoCo and Gazebo call the outside."""
 _RESERVED = {"mjcf": {WORLD}, "sdf": {WORLD}, "usd": {"joints", "materials", "physics_scene"}, "glb": {WORLD}}
 """Names that no link may have, by format."""
-_LOSSY = ("damping", "friction")
 _LEAST_VERTICES = 4  # engines refuse meshes with fewer
 _ROUNDING = 1e-9
 """Change of a tensor that nobody needs to read of, fraction of its largest entry."""
@@ -128,7 +127,7 @@ def read_content(urdf: Path, to: str, settings: ValidationSettings, *, package_d
 
 def _engine_joint(robot: Robot, joint: Joint) -> Joint:
     """Without damping and friction below zero, which engines refuse; one that follows a fixed joint is held there."""
-    joint = replace(joint, **{key: None for key in _LOSSY if (getattr(joint, key) or 0.0) < 0.0})
+    joint = replace(joint, damping=unless_negative(joint.damping), friction=unless_negative(joint.friction))
     leader = joint
     while leader.mimic is not None:
         leader = robot.joint_by_name[leader.mimic.joint]
@@ -146,7 +145,7 @@ def _renamed(robot: Robot, to: str) -> Robot:
     links = _allowed([link.name for link in robot.links], to, reserved, "link")
     # SDFormat knows no two siblings of one name; elsewhere joints are no siblings of links.
     taken = {WORLD, *links} if to == "sdf" else set[str]()
-    joints = _allowed([item.name for item in (*robot.joints, *robot.loops)], to, taken, "joint")
+    joints = _allowed([*robot.joint_by_name, *(loop.name for loop in robot.loops)], to, taken, "joint")
     return replace(with_names(robot, links, joints), name=_allowed([robot.name], to, reserved, "model")[0])
 
 
@@ -205,10 +204,13 @@ def _spelled(name: str, to: str) -> str:
 
 def _notes(read: Robot, model: Robot, settings: PrepareSettings, to: str) -> Iterable[str]:
     yield from read.notes
-    for what, items, others in (("link", read.links, model.links), ("joint", read.joints, model.joints)):
-        for old, new in zip(items, others, strict=True):
-            if old.name != new.name:
-                yield f"The {what} {old.name!r} is named {new.name!r}: its name is reserved, taken or not allowed here."
+    for what, names, others in (
+        ("link", list(read.link_by_name), list(model.link_by_name)),
+        ("joint", list(read.joint_by_name), list(model.joint_by_name)),
+    ):
+        for old, new in zip(names, others, strict=True):
+            if old != new:
+                yield f"The {what} {old!r} is named {new!r}: its name is reserved, taken or not allowed here."
     for before, joint in zip(read.joints, model.joints, strict=True):
         if before.kind is not joint.kind:
             value = f"{joint_values(read, {})[before.name]:g} {'rad' if before.kind.turns else 'm'}"
@@ -243,10 +245,10 @@ def _physical_notes(read: Robot, model: Robot, inertials: dict[str, PreparedIner
                 ", ".join(f"{moment:.5g}" for moment in np.linalg.eigvalsh(item.tensor)) for item in (before, after)
             )
             yield f"The inertia of the link {link.name} is changed, as no body has it: moments {stated} to {written}."
-    for before, joint in zip(read.joints, model.joints, strict=True):
-        for key in _LOSSY:
-            if getattr(before, key) != getattr(joint, key):
-                yield f"The {key} of the joint {joint.name} is below zero ({getattr(before, key):g}) and omitted."
+    for declared, joint in zip(read.joints, model.joints, strict=True):
+        for key in ("damping", "friction"):
+            if getattr(declared, key) != getattr(joint, key):
+                yield f"The {key} of the joint {joint.name} is below zero ({getattr(declared, key):g}) and omitted."
 
 
 def _visuals(link: Link) -> tuple[Shape, ...]:

@@ -37,7 +37,9 @@ def write_glb(content: Content, out: Path, *, free: bool) -> None:
         seen = [surface for shape in link.visuals for surface in shown_surfaces(shape)]
         for number, surface in enumerate(seen):
             name = f"{link.name}_{number}"
-            scene.add_geometry(_mesh(surface), geom_name=name, node_name=f"{name}_mesh", parent_node_name=link.name)
+            scene.add_geometry(
+                surface_mesh(surface), geom_name=name, node_name=f"{name}_mesh", parent_node_name=link.name
+            )
     exported: Any = scene.export  # untyped in trimesh
     out.write_bytes(exported(file_type="glb"))
 
@@ -52,7 +54,8 @@ def _described(joint: Joint) -> dict[str, object]:
     return extras
 
 
-def _mesh(surface: Surface) -> trimesh.Trimesh:
+def surface_mesh(surface: Surface) -> trimesh.Trimesh:
+    """Return a surface with its material as glTF describes it."""
     mesh = trimesh.Trimesh(surface.vertices, surface.faces, process=False)
     look: Any = trimesh.visual
     stated = surface.material

@@ -11,9 +11,10 @@ from kinematify.geometry.overlap import OverlapQueries
 from kinematify.geometry.scene import relative
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from kinematify.geometry.scene import Pair, Scene
+    from kinematify.robot.arrays import FloatArray
 
 
 class Reason(StrEnum):
@@ -85,6 +86,18 @@ class DepthAllowance:
         settings = self._scene.settings
         part = min(solid.size for solid in self._overlap.solids(pair))
         return min(settings.tolerance * self._scene.size, settings.part_tolerance * part)
+
+    def meeting(self, placed: FloatArray) -> Iterator[tuple[Pair, float, bool]]:
+        """Pairs that meet in a configuration, how deep [m], and whether that is no deeper than at rest or in a bearing.
+
+        Args:
+            placed: Pose of every body, shape (B, 4, 4).
+        """
+        for pair in self._scene.pairs:
+            T = relative(placed[None], pair)
+            if self._overlap.collide(pair, T)[0] or self._overlap.may_contain(pair, T)[0]:
+                depth = float(self._overlap.depth(pair, T)[0])
+                yield pair, depth, depth <= self.at_rest(pair) + self.tolerance(pair)
 
     def _measure(self, pair: Pair) -> AtRest | None:
         T = relative(self._scene.at_rest[None], pair)

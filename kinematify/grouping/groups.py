@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kinematify.assembly.assemble import part_names
 from kinematify.assembly.part import Assembly, Part
 from kinematify.errors import AssemblyError, InputError
 from kinematify.grouping.pair_measurements import measure_pieces
-from kinematify.grouping.piece_sets import Candidate, measure_candidates, node_of_pieces, propose
+from kinematify.grouping.piece_sets import Candidate, alike, measure_candidates, node_of_pieces, propose
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.joints.choice.scorer import MOVING_WEIGHTS, PIECES_WEIGHTS, shipped_scorer
 from kinematify.robot.appearance import joined
@@ -65,11 +66,13 @@ class Grouping:
         doubtful = [_said(group) for group in self.groups if group.moves is not None and group.moves < _DOUBTFUL]
         said = [f"The mesh is not segmented: {count} pieces were grouped into {len(self.groups)} rigid parts."]
         if doubtful:
-            said.append(f"Likely fixed: {', '.join(doubtful[:_MOST_NAMED])}.")
+            said.append(f"Parts that may not move: {', '.join(doubtful[:_MOST_NAMED])}.")
         if self.rejected:
-            said.append(f"Assumed to be fixed, but may move: {', '.join(map(_said, self.rejected[:_MOST_NAMED]))}.")
+            said.append(
+                f"Pieces that may move but were left fixed: {', '.join(map(_said, self.rejected[:_MOST_NAMED]))}."
+            )
         if doubtful or self.rejected:
-            said.append(f"Correct {GROUPS_FILE} beside the model and give it with --groups.")
+            said.append(f"To change the parts, edit {GROUPS_FILE} beside the model and give it with --groups.")
         return tuple(said)
 
     def record(self) -> dict[str, Any]:
@@ -92,9 +95,8 @@ def stated_groups(record: dict[str, Any], key: str) -> tuple[Group, ...]:
 
 
 def _said(group: Group) -> str:
-    others = len(group.pieces) - 1
-    more = f" and {others} more piece{'s' if others > 1 else ''}" if others else ""
-    return f"{group.name}{more} ({group.moves:.0%} likely to move)"
+    count = len(group.pieces)
+    return f"{group.name} ({count} pieces)" if count > 1 else group.name
 
 
 _DOUBTFUL = 0.7
@@ -138,6 +140,7 @@ def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeigh
         raise one_part(assembly)
     weights = weights or shipped_weights()
     candidates, odds, pairs, of_pairs = judged([parts[k] for k in kept], weights)
+    candidates, odds = alike(candidates, odds, [parts[k] for k in kept])
     node = node_of_pieces([assembly.original_names.get(parts[k].name, "") for k in kept], pairs)
     if node is not None:
         node_of_part = node[np.searchsorted(kept, owner)]
@@ -163,9 +166,8 @@ def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeigh
     if len(indices) < 2:
         raise one_part(assembly)
     doubtful = {} if node is not None else _doubtful(label[kept], pairs, of_pairs)
-    return Grouping(
-        assembly=joined_pieces(assembly, indices),
-        groups=tuple(_group(assembly, index, chance) for index, chance in zip(indices, moves, strict=True)),
+    return replace(
+        grouped_as(pieces_of(assembly), indices, moves=moves),
         doubtful=tuple((k + 1, np.flatnonzero(owner == kept[piece])) for k, piece in doubtful.items()),
         pieces=assembly if doubtful else None,
         rejected=tuple(
@@ -193,6 +195,35 @@ def _doubtful(label: IntArray, pairs: IntArray, odds: FloatArray) -> dict[int, i
     return {} if len(found) == int((label < 0).sum()) else found
 
 
+def pieces_of(assembly: Assembly) -> Grouping:
+    """Return the grouping in which every part is a piece of its own."""
+    return Grouping(assembly=assembly, groups=tuple(Group(name=name, pieces=(name,)) for name in assembly.names))
+
+
+def grouped_as(
+    grouping: Grouping,
+    indices: Sequence[IntArray],
+    *,
+    names: Sequence[str] | None = None,
+    moves: Sequence[float | None] | None = None,
+) -> Grouping:
+    """Return the grouping with parts that are joined or named otherwise.
+
+    Args:
+        grouping: Groups in the order of the parts.
+        indices: The parts that become each part.
+        names: Of the new parts; without them each has that of its largest one.
+        moves: How likely each moves; without them that of a part that stays alone.
+    """
+    found = joined_pieces(grouping.assembly, indices, names)
+    moves = moves or [grouping.groups[index[0]].moves if len(index) == 1 else None for index in indices]
+    groups = [
+        Group(name=name, pieces=tuple(piece for k in index for piece in grouping.groups[k].pieces), moves=likely)
+        for name, index, likely in zip(found.names, indices, moves, strict=True)
+    ]
+    return replace(grouping, assembly=found, groups=tuple(groups))
+
+
 def completed(grouping: Grouping, chosen: Collection[int]) -> Grouping:
     """The grouping in which some groups have their doubtful pieces, which the body loses.
 
@@ -210,14 +241,10 @@ def completed(grouping: Grouping, chosen: Collection[int]) -> Grouping:
         if number in chosen:
             label[more] = number
     indices = [np.flatnonzero(label == number) for number in range(len(grouping.groups))]
-    moves = [group.moves for group in grouping.groups]
     joined = {grouping.pieces.names[k] for number, more in grouping.doubtful if number in chosen for k in more}
-    return replace(
-        grouping,
-        rejected=tuple(group for group in grouping.rejected if joined.isdisjoint(group.pieces)),
-        assembly=joined_pieces(grouping.pieces, indices),
-        groups=tuple(_group(grouping.pieces, own, chance) for own, chance in zip(indices, moves, strict=True)),
-    )
+    found = grouped_as(pieces_of(grouping.pieces), indices, moves=[group.moves for group in grouping.groups])
+    rejected = tuple(group for group in grouping.rejected if joined.isdisjoint(group.pieces))
+    return replace(grouping, assembly=found.assembly, groups=found.groups, rejected=rejected)
 
 
 def sureness(joints: Sequence[JointEstimate], config: GroupingConfig) -> dict[int, float]:
@@ -294,15 +321,12 @@ def fixed_merged(grouping: Grouping, joints: Sequence[JointEstimate], config: Gr
     if not 1 < len(kept) < len(groups):
         return grouping
     indices = [np.flatnonzero(owner == k) for k in kept]
-    assembly = joined_pieces(grouping.assembly, indices)
     gone = [group for group, k in zip(groups, owner, strict=True) if groups[k] is not group]
-    return Grouping(
-        assembly=assembly,
-        groups=tuple(
-            Group(name=name, pieces=tuple(piece for j in index for piece in groups[j].pieces), moves=groups[k].moves)
-            for name, index, k in zip(assembly.names, indices, kept, strict=True)
-        ),
+    return replace(
+        grouped_as(grouping, indices, moves=[groups[k].moves for k in kept]),
         rejected=(*sorted(gone, key=lambda group: -(group.moves or 0.0)), *grouping.rejected),
+        doubtful=(),
+        pieces=None,
     )
 
 
@@ -318,8 +342,8 @@ def unsure(grouping: Grouping, joints: Sequence[JointEstimate], config: Grouping
     if surest >= config.sure or all(group.moves is None for group in grouping.groups):
         return ()
     said = (
-        f"No joint of the grouped mesh is sure (the surest: {surest:.0%}). The object may be rigid, or its parts may "
-        f"be no sets of its connected pieces: correct {GROUPS_FILE}, or give --labels."
+        "No joint of the grouped mesh is sure. The object may be rigid, or its parts may not consist of whole pieces: "
+        f"edit {GROUPS_FILE}, or give --labels."
     )
     return (said,)
 
@@ -361,23 +385,26 @@ def one_part(assembly: Assembly) -> AssemblyError:
     )
 
 
-def joined_pieces(assembly: Assembly, groups: Sequence[IntArray]) -> Assembly:
-    """The assembly with each group of pieces as one part, named after its largest piece."""
+def joined_pieces(assembly: Assembly, groups: Sequence[IntArray], names: Sequence[str] | None = None) -> Assembly:
+    """The assembly with each group of pieces as one part, named after its largest piece or as `names` say."""
+    wanted = names or [assembly.names[_main_piece(assembly, group)] for group in groups]
+    own = part_names(wanted)
     parts = tuple(
-        _joined([assembly.parts[k] for k in group], _main_piece(assembly, group), assembly) for group in groups
+        _joined([assembly.parts[k] for k in group], name, assembly.parts[_main_piece(assembly, group)])
+        for group, name in zip(groups, own, strict=True)
     )
     originals = {}
     for part, group in zip(parts, groups, strict=True):
         if any(assembly.names[k] in assembly.originals for k in group):
             whole = [assembly.originals.get(assembly.names[k], assembly.parts[k]) for k in group]
-            originals[part.name] = _joined(whole, _main_piece(assembly, group), assembly)
+            originals[part.name] = _joined(whole, part.name, part)
     into = {assembly.names[k]: part.name for part, group in zip(parts, groups, strict=True) for k in group}
     return replace(
         assembly,
         parts=parts,
         set_aside=tuple(replace(item, nearest=into[item.nearest]) for item in assembly.set_aside),
         originals=originals,
-        segmented=True,
+        original_names={**dict(zip(own, names or own, strict=True)), **assembly.original_names},
     )
 
 
@@ -388,13 +415,12 @@ def _main_piece(assembly: Assembly, group: IntArray) -> int:
     return next((int(k) for k in group if assembly.names[k] == node), largest)
 
 
-def _joined(pieces: Sequence[Part], largest: int, assembly: Assembly) -> Part:
-    main = assembly.parts[largest]
+def _joined(pieces: Sequence[Part], name: str, main: Part) -> Part:
     if len(pieces) == 1:
-        return pieces[0]
+        return replace(pieces[0], name=name)
     starts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
     return Part(
-        name=main.name,
+        name=name,
         vertices=np.concatenate([piece.vertices for piece in pieces]),
         faces=np.concatenate([piece.faces + start for piece, start in zip(pieces, starts, strict=False)]),
         color=main.color,
@@ -411,7 +437,8 @@ def read_groups(path: Path, assembly: Assembly) -> Grouping:
     """Group pieces as a groups file says; pieces that it does not name are parts of their own.
 
     Args:
-        path: What `Grouping.to_json` wrote, perhaps edited: ``{"parts": [{"name": ..., "pieces": [...]}]}``.
+        path: What `Grouping.to_json` wrote, perhaps edited: ``{"parts": [{"name": ..., "pieces": [...]}]}``; the
+            names become those of the links.
         assembly: The pieces.
 
     Raises:
@@ -419,8 +446,9 @@ def read_groups(path: Path, assembly: Assembly) -> Grouping:
     """
     try:
         stated = json.loads(path.read_text(encoding="utf-8"))
-        groups = [tuple(str(name) for name in part["pieces"]) for part in stated["parts"] if part["pieces"]]
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        groups = [tuple(map(str, part["pieces"])) for part in stated["parts"] if part["pieces"]]
+        given = {group[0]: part.get("name") for part in stated["parts"] if (group := part["pieces"])}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(
             f"The groups {path} cannot be read ({error!r}). Expected is JSON as in the {GROUPS_FILE} of a model: "
             '{"parts": [{"pieces": ["piece_000", "piece_004"]}]}.'
@@ -435,10 +463,13 @@ def read_groups(path: Path, assembly: Assembly) -> Grouping:
             f"The file {path} {wrong} of {assembly.source}. It has {len(index)} pieces, from {assembly.names[0]} to "
             f"{assembly.names[-1]}; each belongs to one part. Give the --pieces with which the file was made."
         )
-    left = [(name,) for name in assembly.names if name not in set(names)]
-    indices = [np.array(sorted(index[name] for name in group)) for group in (*groups, *left)]
-    indices.sort(key=lambda group: int(group[0]))
-    if len(indices) < 2:
+    groups += [(name,) for name in assembly.names if name not in set(names)]
+    groups.sort(key=lambda group: min(index[name] for name in group))
+    if len(groups) < 2:
         raise one_part(assembly)
-    found = tuple(_group(assembly, group, None) for group in indices)
-    return Grouping(assembly=joined_pieces(assembly, indices), groups=found)
+    indices = [np.array(sorted(index[name] for name in group)) for group in groups]
+    named = [
+        str(given.get(group[0]) or assembly.names[_main_piece(assembly, k)])
+        for group, k in zip(groups, indices, strict=True)
+    ]
+    return grouped_as(pieces_of(assembly), indices, names=named)

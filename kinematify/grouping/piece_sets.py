@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from kinematify.grouping.lattice import CELLS, PAD
 from kinematify.grouping.pair_measurements import FREE, freedom_columns, place_columns
@@ -16,6 +17,7 @@ from kinematify.grouping.pair_measurements import FREE, freedom_columns, place_c
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kinematify.assembly.part import Part
     from kinematify.grouping.lattice import Lattice
     from kinematify.grouping.pair_measurements import MeasuredPieces
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
@@ -28,6 +30,11 @@ _POINTS = 160
 """Of a candidate, which are turned."""
 _ANGLES, _NAMES = (12.0, 40.0, 80.0), ("slightly", "half", "wide")
 """Turns about an edge of the box around a candidate [deg]."""
+
+_ALIKE = 2e-3
+"""Of the object's size: congruent pieces have sizes and places that differ by less."""
+_MIRRORS = np.array([[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [-1.0, -1.0, 1.0]])
+"""Of congruent sets of pieces beside each other."""
 
 Candidate = frozenset[int]
 
@@ -111,6 +118,47 @@ def _joined_stepwise(count: int, pairs: IntArray, odds: FloatArray) -> list[Cand
             heapq.heappush(waiting, (-new[0] / new[1], min(kept, other), max(kept, other), new))
         links[kept].pop(gone, None)
     return found
+
+
+def alike(
+    candidates: Sequence[Candidate], odds: FloatArray, parts: Sequence[Part]
+) -> tuple[list[Candidate], FloatArray]:
+    """Sets of pieces with the congruent ones that were not proposed; those that are congruent have one log odds.
+
+    Three equal drawers are grouped alike, whichever of their sets were proposed, and how each was measured.
+
+    Args:
+        candidates: Sets of pieces.
+        odds: Log odds that each is a moving part, shape (c,).
+        parts: The pieces.
+
+    Returns:
+        The sets, and the mean log odds of all proposed ones that are congruent with each.
+    """
+    middles = np.array([part.bounds.mean(axis=0) for part in parts])
+    shapes = np.array([(*np.ptp(part.bounds, axis=0), np.sqrt(part.area)) for part in parts])
+    near = _ALIKE * float(np.linalg.norm(np.ptp(middles, axis=0)) + shapes.max())
+    tree = cKDTree(np.concatenate([shapes, middles], axis=1))
+    known = dict(zip(candidates, odds.tolist(), strict=True))
+    label: dict[Candidate, Candidate] = {}
+    for candidate in candidates:
+        if candidate in label:
+            continue
+        label[candidate] = candidate
+        pieces = np.array(sorted(candidate))
+        offsets = (middles[pieces] - middles[pieces[0]]) * _MIRRORS[: len(_MIRRORS) if len(pieces) > 1 else 1, None]
+        same = np.flatnonzero((np.abs(shapes - shapes[pieces[0]]) < near).all(axis=1))
+        places = (middles[same, None, None] + offsets).reshape(-1, len(pieces), 3)
+        wanted = np.concatenate([np.broadcast_to(shapes[pieces], (len(places), *shapes[pieces].shape)), places], axis=2)
+        gaps, found = tree.query(wanted, p=np.inf, distance_upper_bound=near)
+        for row in found[np.isfinite(gaps).all(axis=1)].tolist():
+            image = frozenset(row)
+            if len(image) == len(candidate) and (image == candidate or not image & candidate):
+                label.setdefault(image, candidate)
+    members: dict[Candidate, list[float]] = defaultdict(list)
+    for candidate, value in known.items():
+        members[label[candidate]].append(value)
+    return list(label), np.array([np.mean(members[of]) for of in label.values()])
 
 
 def measure_candidates(

@@ -7,7 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.model.urdf import link_colors
+from kinematify.config.validation import load_settings
+from kinematify.geometry.overlap import OverlapQueries
+from kinematify.geometry.rest_pairs import DepthAllowance
+from kinematify.geometry.scene import read_scene
+from kinematify.model.urdf import link_colors, model_robot
 from kinematify.render.camera import fit_camera
 from kinematify.render.picture import PosedMesh
 from kinematify.robot.appearance import joined, plain
@@ -46,6 +50,7 @@ _ARROW_LENGTHS = (0.16, 0.75)  # of the model's diagonal: never lost, never larg
 _OVERHANG = 1.15  # length of an axis line over that of its part
 _SLIDE_OVERHANG = 0.14  # of the model's diagonal: the heads of a sliding arrow stand out of its part
 _AXIS_SHARE = 0.3  # of a view's worth: how far axes lie across the line of sight
+_SUNK = 0.01  # of the model's size: what is lower than at rest by more goes through the floor
 _OFF_AXIS = 0.66  # of a step between views: most objects stand parallel to the axes and look flat from there
 
 
@@ -56,6 +61,8 @@ def moving_joints(model: KinematicModel) -> tuple[Joint, ...]:
 
 def opened_configuration(model: KinematicModel, config: PreviewConfig) -> dict[str, float]:
     """A configuration in which every joint is moved as far as it goes; in long chains less far, so that none curls up.
+
+    What would go through the floor or another part is moved half as far.
 
     Returns:
         Joint name -> position [rad or m].
@@ -75,7 +82,27 @@ def opened_configuration(model: KinematicModel, config: PreviewConfig) -> dict[s
         # Positive opens; the other way is taken only where nearly all of the range lies there.
         end = joint.upper if joint.upper > 0.1 * -joint.lower else joint.lower
         q[joint.name] = float(np.clip(config.moved_fraction * end, -cap, cap))
-    return q
+    return q | {name: 0.5 * q[name] for name in _obstructed(model, q)}
+
+
+def _obstructed(model: KinematicModel, q: Mapping[str, float]) -> set[str]:
+    """Joints that move a part through the floor or through another part in a configuration."""
+    scene = read_scene(model_robot(model), load_settings().geometry)
+    leaders = [travel.joint for travel in scene.travels]
+    if not leaders:
+        return set()
+    placed = scene.poses(np.array([[q[name] for name in leaders]]))[0]
+    floor, low = (
+        [
+            min(float((shape @ T[2, :3]).min() + T[2, 3]) for shape in body.shapes)
+            for body, T in zip(scene.bodies, poses, strict=True)
+        ]
+        for poses in (scene.at_rest, placed)
+    )
+    below = [(0, k) for k, height in enumerate(low) if height < min(floor) - _SUNK * scene.size]
+    meeting = DepthAllowance(scene, OverlapQueries(scene)).meeting(placed)
+    pairs = [*below, *(pair for pair, _, tolerated in meeting if not tolerated)]
+    return {leaders[k] for pair in pairs for k in scene.between(pair)}
 
 
 def _longest_chain(model: KinematicModel) -> int:

@@ -96,8 +96,8 @@ def prepared_joint(joint: Joint, settings: PrepareSettings) -> Joint:
         joint,
         effort=_positive(joint.effort) or settings.effort,
         velocity=_positive(joint.velocity) or settings.velocity,
-        damping=_unless_negative(joint.damping),
-        friction=_unless_negative(joint.friction),
+        damping=unless_negative(joint.damping),
+        friction=unless_negative(joint.friction),
     )
 
 
@@ -105,5 +105,6 @@ def _positive(value: float | None) -> float | None:
     return value if value is not None and value > 0.0 else None
 
 
-def _unless_negative(value: float | None) -> float | None:
+def unless_negative(value: float | None) -> float | None:
+    """Return a value that engines accept of damping and friction; None in place of one below zero."""
     return value if value is not None and value >= 0.0 else None

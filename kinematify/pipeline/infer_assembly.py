@@ -25,6 +25,7 @@ from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.piece_report import inference_of_pieces, piece_standing_for
 from kinematify.pipeline.stages import choose_joints, find_trees, with_doubt_of_parents
 from kinematify.pipeline.warnings import warnings_of
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.joints.bearings.scores import EdgeBearing
+    from kinematify.joints.candidate import JointEstimate
 
     Progress = Callable[[str, float], None]
 
@@ -105,13 +107,22 @@ def infer(
             return infer(merged, config=config, base=base, progress=progress)
         seconds = MappingProxyType({**clock.seconds, **found.timings})
         warnings = (*assembly.messages, *unsure(assembly, found.joints, config.grouping), *found.warnings)
-        return replace(found, grouping=assembly, timings=seconds, warnings=warnings)
+        joints = tuple(_with_doubt_of_group(joint, assembly.groups[joint.child].moves) for joint in found.joints)
+        return replace(found, grouping=assembly, joints=joints, timings=seconds, warnings=warnings)
     if base is not None and base not in assembly.names:
         raise InputError(f"There is no part {base} to be the base link. The parts are {', '.join(assembly.names)}.")
     angle = heading_of(assembly) if graph is None and config.joints.method == "geometry" else 0.0
     if angle != 0.0:
         return with_heading(_square(turned(assembly, -angle), config, base, None, clock), assembly, angle)
     return _square(assembly, config, base, graph, clock)
+
+
+def _with_doubt_of_group(joint: JointEstimate, likely: float | None) -> JointEstimate:
+    """The joint with less confidence where its part may be no moving part."""
+    if likely is None or joint.kind is JointType.FIXED:
+        return joint
+    evidence = {**joint.evidence, "group_likely": likely}
+    return replace(joint, confidence=joint.confidence * likely, evidence=evidence)
 
 
 def _square(

@@ -43,7 +43,7 @@ class CutChain:
 
     @property
     def description(self) -> str:
-        """Which joint was cut, why, and what to do, in words."""
+        """Where the chain closes, how that is written, and what to do, in words."""
         first, second = self.parts
         return (
             f"{first} and {second} share a pin, and a chain closes there ({', '.join(self.joints)}). A URDF is a tree, "
@@ -71,7 +71,7 @@ def closed_chains(
     robot: Robot,
     config: TopologyConfig,
 ) -> Iterator[CutChain]:
-    """Find the pins that the best tree leaves out and that its motion pulls apart.
+    """Find the pins that a tree leaves out and that its motion pulls apart.
 
     Args:
         assembly: The parts.

@@ -18,6 +18,8 @@ from kinematify.pipeline.inference import DOUBTFUL
 from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from kinematify.contact.graph import ContactEdge
     from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import BearingLine
@@ -45,12 +47,22 @@ def write_inference(inference: Inference, out: str | Path, *, overwrite: bool = 
     )
 
 
-def write_inference_files(inference: Inference, folder: Path, *, preview: bool = True) -> None:
+def write_inference_files(
+    inference: Inference, folder: Path, *, preview: bool = True, progress: Callable[[str, float], None] | None = None
+) -> None:
     """Write what belongs to a model folder into an existing folder.
+
+    Args:
+        inference: What `infer` returned.
+        folder: An existing one.
+        preview: Draw the picture.
+        progress: Called with each stage and the share of the work done before it, in [0, 1].
 
     Raises:
         OSError: It cannot be written.
     """
+    report = progress or (lambda stage, share: None)
+    report("cutting the collision geometry", 0.0)
     model = simulable_model(inference.model, inference.config)
     write_model(model.robot, folder)
     record = {**inference_record(inference), "collision": model.record(), "files": file_hashes(folder)}
@@ -59,6 +71,7 @@ def write_inference_files(inference: Inference, folder: Path, *, preview: bool =
     if inference.grouping is not None:
         (folder / GROUPS_FILE).write_text(inference.grouping.to_json(), encoding="utf-8")
     if preview:
+        report("drawing the picture", 0.7)
         write_preview(inference, folder)
 
 

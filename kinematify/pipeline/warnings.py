@@ -139,7 +139,7 @@ def _followed_twins(
         said.append(f"{own} turn as their congruent twins do ({'; '.join(models)})")
     if not said:
         return []
-    return [f"{'. '.join(said)}. By itself, the rough contact shows another line; what all twins show was taken."]
+    return [f"{'. '.join(said)}. Their own contact, which is rough, shows another line than that of all these parts."]
 
 
 _SAME_END, _SAME_PLACE = 0.1, 0.02  # shares of the wider range and of the part's diagonal within which joints are alike
@@ -163,8 +163,8 @@ def unlike_twins(
                 if found and all(found):
                     unlike.setdefault(found[0], []).append(assembly.names[joint.child])
         said += [
-            f"{', '.join(names)} and {assembly.names[model.child]} are congruent and held alike, but their joints "
-            f"differ in {aspect}. If they move alike, give --hint {names[0]}:twin={assembly.names[model.child]}."
+            f"{', '.join(names)} and {assembly.names[model.child]} are congruent and have the same contacts, but their "
+            f"joints differ in {aspect}. If they move alike, give --hint {names[0]}:twin={assembly.names[model.child]}."
             for aspect, names in unlike.items()
         ]
     return said

@@ -129,8 +129,8 @@ class _GltfBuffers:
     def decode(self, primitive: dict[str, Any]) -> None:
         """Unpack the accessors of a primitive that is compressed with Draco."""
         packed = primitive.get("extensions", {}).get(_DRACO)
-        if packed is None:
-            return
+        if packed is None or "bufferView" in self.document["accessors"][primitive["attributes"]["POSITION"]]:
+            return  # what is there plainly, too, needs no decoder
         mesh = _decoder("DracoPy", _DRACO).decode(bytes(self.content(packed["bufferView"])))
         values = {item["unique_id"]: item["data"] for item in mesh.attributes}
         for name, number in packed["attributes"].items():

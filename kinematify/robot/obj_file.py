@@ -104,7 +104,7 @@ def read_obj(path: Path, *, appearance: bool = False) -> tuple[RawMesh, ...]:
         raise ValueError("it has no vertex")
     known, notes = _materials(path, content)
     uv, colors = np.array(content.uv).reshape(-1, 2), np.concatenate([np.empty((0, 3)), *content.colors])
-    groups = []
+    groups, objects = [], [*dict.fromkeys(name for name, _ in content.runs)]
     for holders, runs in content.runs.items():
         corners, places, sizes = (np.concatenate([run[k] for run in runs]) for k in (1, 2, 3))
         if corners.max(initial=-1) >= len(vertices):
@@ -130,7 +130,8 @@ def read_obj(path: Path, *, appearance: bool = False) -> tuple[RawMesh, ...]:
             vertices=vertices,
             faces=corners[cut],
             appearance=looks,
-            holders=tuple((0, name) for name in holders if name),
+            # A group of one name in two objects is two groups.
+            holders=tuple((k * (1 + objects.index(holders[0])), name) for k, name in enumerate(holders) if name),
             notes=tuple(f"lines that begin with {word}" for word in content.unknown),
         )
         # Every group keeps its own vertices only: with thousands of groups the copies would fill the memory.

@@ -213,9 +213,16 @@ def _largest_inertia(
     for posture in postures:
         data.qpos[arm] = posture
         mujoco.mj_forward(model, data)
-        mujoco.mj_fullM(model, data, matrix)
+        _fill_mass_matrix(model, data, matrix)
         largest = np.maximum(largest, np.diag(matrix))
     return largest
+
+
+def _fill_mass_matrix(model: mujoco.MjModel, data: mujoco.MjData, matrix: FloatArray) -> None:
+    if hasattr(data, "qM"):  # MuJoCo before 4
+        mujoco.mj_fullM(model, matrix, data.qM)
+    else:
+        mujoco.mj_fullM(model, data, matrix)
 
 
 class MujocoWorld:
@@ -257,7 +264,7 @@ class MujocoWorld:
         data.qpos[self._qpos] = self._spec.object.mechanism.all_values(leaders[None])[0]
         mujoco.mj_forward(model, data)
         matrix = np.zeros((model.nv, model.nv))
-        mujoco.mj_fullM(model, data, matrix)
+        _fill_mass_matrix(model, data, matrix)
         return matrix[np.ix_(self._dof, self._dof)], data.qfrc_bias[self._dof].copy()
 
     def resist(self, damping: FloatArray, friction: FloatArray) -> None:

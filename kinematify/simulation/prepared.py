@@ -70,11 +70,6 @@ class Prepared:
         """Links keyed by name."""
         return {link.link: link for link in self.links}
 
-    @property
-    def total_mass(self) -> float:
-        """[kg]."""
-        return sum(link.mass for link in self.links)
-
 
 _MESH_FOLDER = "prepared_meshes"
 _NAME = "prepared"  # short, because PyBullet crashes on long names

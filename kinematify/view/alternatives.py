@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,7 +39,7 @@ class JointAlternative:
     """A point on the axis [m], shape (3,)."""
     probability: float | None = None
     """How likely it is by what the inference measured; None where that is not known."""
-    score: float = field(default=0.0)
+    score: float = 0.0
     """Its rank among the candidates of one joint: higher is better."""
     by_hand: bool = False
     """It was set on the page, and its type is meant as it is: `continuous` turns without end."""

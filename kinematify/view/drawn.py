@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import io
-import json
 import math
-import struct
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from PIL import Image
+import trimesh
+from trimesh.exchange.gltf import export_glb
 
-from kinematify.robot.appearance import linear_of
+from kinematify.formats.glb import surface_mesh
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import quaternion_of, rotation_from_x
 from kinematify.robot.vectors import crossed, dots, lengths_of
@@ -22,107 +20,28 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     import viser
-    from numpy.typing import NDArray
 
-    from kinematify.robot.appearance import Material, Surface, Texture
+    from kinematify.robot.appearance import Surface
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.robot import Joint
     from kinematify.view.inference_view import DrawnChain
     from kinematify.view.viewer_scene import ViewScene
 
-
-_MAGIC, _VERSION, _JSON, _BINARY = 0x46546C67, 2, 0x4E4F534A, 0x004E4942
-_FLOAT, _UNSIGNED = 5126, 5125
-_KINDS = {1: "SCALAR", 2: "VEC2", 3: "VEC3"}
+_export_glb: Any = export_glb  # untyped in trimesh
 
 
 def glb_of(surfaces: Sequence[Surface], *, double_sided: bool) -> bytes:
-    """Return surfaces as one mesh of a GLB file, without normals, so that its triangles look flat.
+    """Return surfaces as meshes of a GLB file, without normals, so that its triangles look flat.
 
     Args:
         surfaces: Of one part.
         double_sided: Whether the back of a triangle can be seen, as where the part is open. A page lays the shadow of a
             triangle that has two sides on itself.
     """
-    written = _GlbBuffers()
-    textures: dict[Texture, int] = {}
-    materials, primitives = [], []
-    for number, surface in enumerate(surfaces):
-        attributes = {"POSITION": written.add_numbers(surface.vertices.astype(np.float32))}
-        texture = surface.material.texture
-        if texture is not None and surface.uv is not None:
-            attributes["TEXCOORD_0"] = written.add_numbers((surface.uv * [1.0, -1.0] + [0.0, 1.0]).astype(np.float32))
-            textures.setdefault(texture, len(textures))
-        indices = written.add_numbers(surface.faces.reshape(-1, 1).astype(np.uint32))
-        primitives.append({"attributes": attributes, "indices": indices, "material": number})
-        materials.append(_material(surface.material, textures.get(texture) if texture else None, double_sided))
-    images = [{"bufferView": written.add(_png(texture)), "mimeType": "image/png"} for texture in textures]
-    content: dict[str, Any] = {
-        "asset": {"version": "2.0"},
-        "scene": 0,
-        "scenes": [{"nodes": [0]}],
-        "nodes": [{"mesh": 0}],
-        "meshes": [{"primitives": primitives}],
-        "materials": materials,
-        "accessors": written.accessors,
-        "bufferViews": written.views,
-        "buffers": [{"byteLength": written.length}],
-    }
-    if images:
-        content |= {"images": images, "textures": [{"source": number} for number in range(len(images))]}
-    said = json.dumps(content).encode()
-    said += b" " * (-len(said) % 4)
-    binary = b"".join(written.blocks)
-    chunks = struct.pack("<II", len(said), _JSON) + said + struct.pack("<II", len(binary), _BINARY) + binary
-    return struct.pack("<III", _MAGIC, _VERSION, 12 + len(chunks)) + chunks
-
-
-class _GlbBuffers:
-    """The binary part of a file, as it grows."""
-
-    def __init__(self) -> None:
-        self.blocks: list[bytes] = []
-        self.views: list[dict[str, int]] = []
-        self.accessors: list[dict[str, Any]] = []
-        self.length = 0
-
-    def add(self, content: bytes) -> int:
-        """Add bytes; return the number of their view."""
-        self.views.append({"buffer": 0, "byteOffset": self.length, "byteLength": len(content)})
-        self.blocks.append(content + b"\0" * (-len(content) % 4))
-        self.length += len(self.blocks[-1])
-        return len(self.views) - 1
-
-    def add_numbers(self, rows: NDArray[Any]) -> int:
-        """Add rows of numbers, float32 or uint32, shape (n, k); return the number of their accessor."""
-        stated = {
-            "bufferView": self.add(rows.tobytes()),
-            "componentType": _FLOAT if rows.dtype == np.float32 else _UNSIGNED,
-            "count": len(rows),
-            "type": _KINDS[rows.shape[1]],
-            "min": rows.min(axis=0).tolist(),
-            "max": rows.max(axis=0).tolist(),
-        }
-        self.accessors.append(stated)
-        return len(self.accessors) - 1
-
-
-def _material(material: Material, texture: int | None, double_sided: bool) -> dict[str, Any]:
-    looks: dict[str, Any] = {
-        "baseColorFactor": [*linear_of(np.array(material.color[:3])).tolist(), material.color[3]],
-        "metallicFactor": material.metallic,
-        "roughnessFactor": material.roughness,
-    }
-    if texture is not None:
-        looks["baseColorTexture"] = {"index": texture}
-    opaque = material.color[3] >= 1.0
-    return {"pbrMetallicRoughness": looks, "doubleSided": double_sided, "alphaMode": "OPAQUE" if opaque else "BLEND"}
-
-
-def _png(texture: Texture) -> bytes:
-    content = io.BytesIO()
-    Image.fromarray(texture.pixels).save(content, format="PNG", compress_level=1)
-    return content.getvalue()
+    meshes: Any = [surface_mesh(surface) for surface in surfaces]
+    for mesh in meshes:
+        mesh.visual.material.doubleSided = double_sided
+    return bytes(_export_glb(trimesh.Scene(meshes), include_normals=False))
 
 
 Color = tuple[int, int, int]
@@ -167,7 +86,8 @@ class DrawnModel:
         self.complete = False
         """Whether everything is drawn."""
         server.scene.reset()
-        self._set_up_view()
+        server.scene.set_up_direction("+z")
+        server.scene.configure_default_lights(enabled=True, cast_shadow=True)
         self._add_bodies()
 
     def add_marks(self) -> None:
@@ -217,25 +137,18 @@ class DrawnModel:
         self._axes[joint.name] = self._add_lines(f"/axes/{joint.name}", points, color, visible=visible)
 
     def step_back(self, client: viser.ClientHandle) -> None:
-        """Make a window that is higher than wide see the whole model, above the panel that lies over its lower half."""
-        aspect = client.camera.aspect
-        if aspect < 1.0:
+        """Make a window that is higher than wide see the whole model."""
+        if client.camera.aspect < 1.0:
             eye, target = self._scene.camera
-            back = (eye - target) / aspect
-            down = np.array([0.0, 0.0, -_ABOVE_PANEL * np.linalg.norm(back)])
-            with client.atomic():
-                client.camera.position, client.camera.look_at = target + back + down, target + down
+            _aim(client, eye - target, target)
 
     def fit(self, q: Mapping[str, float]) -> None:
         """Make every page see the whole model in a configuration, from the side from which it looks."""
         low, high = self._scene.extent(q)
-        center, size = 0.5 * (low + high), float(np.linalg.norm(high - low))
+        size = 1.1 * max(float(np.linalg.norm(high - low)), self._scene.size)
         for client in self._server.get_clients().values():
             back = client.camera.position - client.camera.look_at
-            back *= max(size, self._scene.size) / max(float(np.linalg.norm(back)), 1e-9)
-            back *= 1.1 / min(client.camera.aspect, 1.0)
-            with client.atomic():
-                client.camera.position, client.camera.look_at = center + back, center
+            _aim(client, back * size / max(float(np.linalg.norm(back)), 1e-9), 0.5 * (low + high))
 
     def add_gizmo(self, axis: FloatArray, pivot: FloatArray) -> Any:
         """Return a gizmo whose red arrow is an axis, frame of the root link [m], shape (3,) each."""
@@ -279,11 +192,8 @@ class DrawnModel:
     def _clicked(self, top: str, _: Any) -> None:
         self._on_click(top)
 
-    def _set_up_view(self) -> None:
-        """Light, and the first look: from the side towards which the parts move."""
-        scene = self._server.scene
-        scene.set_up_direction("+z")
-        scene.configure_default_lights(enabled=True, cast_shadow=True)
+    def look(self) -> None:
+        """Make pages look first from the side towards which the parts move."""
         eye, target = self._scene.camera
         camera = self._server.initial_camera
         camera.position, camera.look_at, camera.up = tuple(eye), tuple(target), (0.0, 0.0, 1.0)
@@ -335,6 +245,21 @@ class DrawnModel:
             if number == len(self._dashes):
                 self._dashes.append(self._add_lines(f"/closed/{number}", points, _CLOSED))
             self._dashes[number].points = points.astype(np.float32)
+
+
+def _aim(client: viser.ClientHandle, back: FloatArray, target: FloatArray) -> None:
+    """Make a page look at a point; in a window that is higher than wide, above the panel, from farther away.
+
+    Args:
+        client: The page.
+        back: From the point to the camera [m], shape (3,).
+        target: The point [m], shape (3,).
+    """
+    back = back / min(client.camera.aspect, 1.0)
+    below = _ABOVE_PANEL * float(np.linalg.norm(back)) if client.camera.aspect < 1.0 else 0.0
+    point = target - [0.0, 0.0, below]
+    with client.atomic():
+        client.camera.position, client.camera.look_at = point + back, point
 
 
 def _is_solid(vertices: FloatArray, faces: IntArray) -> bool:

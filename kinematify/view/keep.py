@@ -15,7 +15,7 @@ from kinematify.pipeline.infer_assembly import infer
 from kinematify.refinement.folder import as_left, open_model_folder, read_record, write_refined
 from kinematify.refinement.hints import AXES, Hint, parse_hints, with_hints
 from kinematify.robot.joint_type import JointType
-from kinematify.view.regroup import merge_parts, split_part, stated_grouping
+from kinematify.view.regroup import merge_parts, rename_part, split_part, stated_grouping
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -71,6 +71,11 @@ class ModelFolder:
         """Make the connected pieces of a part parts, infer again and write the model; errors as those of `keep`."""
         return self._regroup(lambda grouping, weld: split_part(grouping, part, tolerance=weld))
 
+    def rename(self, part: str, name: str) -> Kept:
+        """Give a part and its link another name, and write the model; errors as those of `keep`."""
+        before = self._present()
+        return self._write(before, rename_part(before, self._grouping(before), part, name), ())
+
     def free(self, pieces: Sequence[str]) -> Kept:
         """Make one part of pieces of a larger part, infer again and write the model; errors as those of `keep`."""
 
@@ -85,14 +90,16 @@ class ModelFolder:
     def _regroup(self, change: Callable[[Grouping, float], Grouping]) -> Kept:
         """Infer with other parts; what was said of parts that are still there is kept."""
         before = self._present()
-        found = before.grouping or stated_grouping(before.assembly, read_record(self.folder))
-        grouping = change(found, before.config.assembly.weld)
+        grouping = change(self._grouping(before), before.config.assembly.weld)
         root = before.assembly.names[before.trees[0].root]
         after = infer(grouping, config=before.config, base=root if root in grouping.assembly.names else None)
         known = [text for text in before.hints if text.partition("=")[0].partition(":")[0] in after.assembly.names]
         if known:
             after = with_hints(after, parse_hints(known, after.assembly.names))
         return self._write(before, after, ())
+
+    def _grouping(self, inference: Inference) -> Grouping:
+        return inference.grouping or stated_grouping(inference.assembly, read_record(self.folder))
 
     def _keep(self, hint_for: Callable[[Inference], Hint]) -> Kept:
         before = self._present()

@@ -1,7 +1,9 @@
-"""Parts of a model are merged or split on the page, before its joints are inferred again."""
+"""Parts of a model are named, merged or split, as on the page."""
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -11,13 +13,15 @@ from kinematify.assembly.assemble import part_names
 from kinematify.assembly.part import Part
 from kinematify.assembly.pieces import connected_sheets
 from kinematify.errors import InputError
-from kinematify.grouping.groups import Group, Grouping, joined_pieces, stated_groups
+from kinematify.grouping.groups import Group, Grouping, grouped_as, stated_groups
+from kinematify.refinement.hints import parse_hints
 from kinematify.robot.raw_mesh import RawMesh
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from kinematify.assembly.part import Assembly
+    from kinematify.pipeline.inference import Inference
 
 
 def stated_grouping(assembly: Assembly, record: dict[str, Any]) -> Grouping:
@@ -53,7 +57,7 @@ def merge_parts(grouping: Grouping, names: Sequence[str]) -> Grouping:
         for k in range(len(inside))
         if k == first or not inside[k]
     ]
-    return _with_parts(grouping, joined_pieces(assembly, indices), indices)
+    return grouped_as(grouping, indices)
 
 
 def split_part(grouping: Grouping, name: str, *, tolerance: float, apart: Sequence[str] = ()) -> Grouping:
@@ -112,60 +116,50 @@ def split_part(grouping: Grouping, name: str, *, tolerance: float, apart: Sequen
     return found
 
 
+def rename_part(inference: Inference, grouping: Grouping, name: str, new: str) -> Inference:
+    """Give a part, and so its link, another name; nothing is inferred again.
+
+    Args:
+        inference: Of these parts.
+        grouping: Of the parts.
+        name: The part.
+        new: Letters, digits, ``_``, ``-`` and ``.``.
+
+    Raises:
+        InputError: It is no part, or no other one can have the new name.
+    """
+    assembly = grouping.assembly
+    _check_part(assembly, name)
+    names = [new if other == name else other for other in assembly.names]
+    if part_names(names) != tuple(names):
+        raise InputError(
+            f"{name} cannot be named {new!r}: a name consists of letters, digits, _, - and ., and no other part has it."
+        )
+    word = re.compile(rf"(?<![\w.-]){re.escape(name)}(?![\w-])")
+
+    def renamed(value: Any) -> Any:
+        if isinstance(value, str):
+            return word.sub(new, value)
+        if isinstance(value, Mapping):
+            return {renamed(key): renamed(item) for key, item in value.items()}
+        return type(value)(map(renamed, value)) if isinstance(value, list | tuple) else value
+
+    found = grouped_as(grouping, [np.array([k]) for k in range(len(names))], names=names)
+    swap: dict[str | None, Any] = {name: new}
+    hints = [
+        replace(
+            hint,
+            part=swap.get(hint.part, hint.part),
+            parent=swap.get(hint.parent, hint.parent),
+            twin=swap.get(hint.twin, hint.twin),
+        )
+        for hint in parse_hints(inference.hints, assembly.names)
+    ]
+    stated = {key: renamed(getattr(inference, key)) for key in ("warnings", "refinement", "vision")}
+    texts = tuple(text for hint in hints for text in hint.texts)
+    return replace(inference, assembly=found.assembly, grouping=found, hints=texts, **stated)
+
+
 def _check_part(assembly: Assembly, name: str) -> None:
     if name not in assembly.names:
         raise InputError(f"There is no part {name}. The parts are {', '.join(assembly.names[:20])}.")
-
-
-def _with_parts(grouping: Grouping, assembly: Assembly, indices: Sequence[Any]) -> Grouping:
-    groups = [
-        Group(
-            name=part.name,
-            pieces=tuple(piece for k in index for piece in grouping.groups[k].pieces),
-            moves=grouping.groups[index[0]].moves if len(index) == 1 else None,
-        )
-        for part, index in zip(assembly.parts, indices, strict=True)
-    ]
-    return replace(grouping, assembly=assembly, groups=tuple(groups))
-
-
-class GroupPanel:
-    """Two parts that were clicked last, with buttons that merge or split them, below the other buttons of the page."""
-
-    def __init__(
-        self,
-        gui: Any,
-        *,
-        merge: Callable[[str, str], object],
-        split: Callable[[str], object],
-        free: Callable[[Sequence[str]], object],
-        rejected: Sequence[Group],
-    ) -> None:
-        """Add the folder.
-
-        Args:
-            gui: Of viser.
-            merge: Makes one part of two.
-            split: Makes the pieces of a part parts.
-            free: Makes one part of pieces that were taken for fixed.
-            rejected: Sets of pieces that may move.
-        """
-        self._clicked: list[str] = []
-        sets = {f"{group.name} ({group.moves:.0%}), {len(group.pieces)} pieces": group.pieces for group in rejected}
-        with gui.add_folder("Parts as they were grouped", expand_by_default=False):
-            gui.add_markdown("Click two parts to merge them, or one to split it.")
-            self._merge = gui.add_button("Merge", disabled=True)
-            self._split = gui.add_button("Split", disabled=True)
-            if sets:
-                may = gui.add_dropdown("May move", tuple(sets))
-                gui.add_button("It is a moving part").on_click(lambda _: free(sets[may.value]))
-        self._merge.on_click(lambda _: merge(*self._clicked))
-        self._split.on_click(lambda _: split(self._clicked[-1]))
-
-    def click(self, name: str) -> None:
-        """Choose a part; the one before it remains chosen as well."""
-        self._clicked = [*(other for other in self._clicked if other != name), name][-2:]
-        self._split.disabled, self._split.label = False, f"Split {name} into its pieces"
-        self._merge.disabled = len(self._clicked) < 2
-        if not self._merge.disabled:
-            self._merge.label = f"Merge {' and '.join(self._clicked)}"

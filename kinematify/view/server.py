@@ -8,6 +8,7 @@ import threading
 import time
 from dataclasses import replace
 from functools import partial
+from operator import methodcaller
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -19,8 +20,7 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import quaternion_of, rotation_from_quaternion, rotation_from_x
 from kinematify.view.alternatives import JointAlternative, agreeing, described, distinct
 from kinematify.view.drawn import DrawnModel
-from kinematify.view.panel import Panel, said_of, said_of_failure, said_of_kept, said_of_touches
-from kinematify.view.regroup import GroupPanel
+from kinematify.view.panel import Panel, collision_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -44,8 +44,17 @@ processor busy for a second [s]."""
 _PICTURE = (1600, 1200)
 
 
+def _connect(widget: Any, action: Callable[[Any], object]) -> None:
+    """Call an action with the event when a person uses a widget; what the program sets on it has no client."""
+    subscribe = widget.on_click if hasattr(widget, "on_click") else widget.on_update
+    subscribe(lambda event: None if event.client is None else action(event))
+
+
 class ModelViewer:
-    """Page of a model: what it does; every client sees the same."""
+    """Page of a model: what it shows and does; every client sees the same.
+
+    What a person tries stays in memory, as the one change that waits to be kept; only `keep` and `undo` write.
+    """
 
     def __init__(
         self,
@@ -63,7 +72,7 @@ class ModelViewer:
             server: Running.
             shown: The model.
             sights: Findings.
-            open_folder: Gives the place where a candidate that is kept is written; None: nothing can be kept.
+            open_folder: Gives the place where a change that is kept is written; None: nothing can be kept.
             reopen: Reads the folder again after it was written.
             changed_at: When the file was last written [s]; 0 where it is not there.
         """
@@ -72,54 +81,86 @@ class ModelViewer:
         self._folder: ModelFolder | None = None
         self._lock = threading.RLock()  # sliders, buttons and the sweep come from threads of their own
         self._random = np.random.default_rng(0)
+        self._q: dict[str, float] = {}
+        self._chosen: str | None = None
+        self._regrouped = False
         server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
-        self._open(shown, sights, said_of(shown))
+        self._open(shown, sights)
+        self._drawn.look()
         server.on_client_connect(self._connected)
 
-    def _open(self, shown: Shown, sights: Sequence[Sight], said: str) -> None:
-        """Show a model from the beginning."""
+    def _connected(self, client: viser.ClientHandle) -> None:
+        self._drawn.step_back(client)
+
+    def _open(self, shown: Shown, sights: Sequence[Sight] = ()) -> None:
+        """Show a model in the pose of the one before, as far as it has the same joints."""
         with self._lock:
+            pose, chosen, self._chosen = self._q, self._chosen, None
             scene = shown.scene
             self._scene, self._shown = scene, shown
             self._q = {joint.name: scene.rest[joint.name] for joint in scene.leaders}
             self._marked: frozenset[str] = frozenset()
+            self._colliding: frozenset[str] = frozenset()
             self._sweeping: str | None = None
-            self._chosen: str | None = None
+            self._sweep_start = 0.0
+            self._waiting: Callable[[ModelFolder], Kept | None] | None = None
             self._apart = 0.0
             self._stale = True
-            self._colliding: frozenset[str] = frozenset()
             self._gizmo: Any = None
             self._line = (np.array([1.0, 0.0, 0.0]), np.zeros(3))
-            self._drawn = DrawnModel(self._server, scene, shown.chains, self._clicked)
-            self._panel = Panel(
-                self._server.gui,
-                scene,
-                self,
-                parts=self._drawn.parts,
-                sights=sights,
-                said=said,
-                can_keep=self._open_folder is not None,
-                can_undo=self._folder is not None and self._folder.can_undo,
-            )
-            self._groups: GroupPanel | None = None
-            if self._open_folder is not None:
-                self._groups = GroupPanel(
-                    self._server.gui,
-                    merge=lambda one, other: self.regroup(lambda folder: folder.merge(one, other)),
-                    split=lambda part: self.regroup(lambda folder: folder.split(part)),
-                    free=lambda pieces: self.regroup(lambda folder: folder.free(pieces)),
-                    rejected=shown.rejected,
-                )
-            self._place()
+            self._drawn = DrawnModel(self._server, scene, shown.chains, self.click)
+            can_keep = self._open_folder is not None
+            self._panel = Panel(self._server.gui, shown, sights, self._drawn.parts, can_keep=can_keep)
+            self._connect_panel()
+            self.set(pose)
+            if chosen is not None:
+                self.choose(chosen)
 
-    def _connected(self, client: viser.ClientHandle) -> None:
-        self._drawn.step_back(client)
+    def _connect_panel(self) -> None:
+        """Make the widgets act; those that change the model propose what `keep` would write."""
+        panel, drawn = self._panel, self._drawn
+        actions: list[tuple[Any, Callable[[Any], object]]] = [
+            (panel.poses, lambda event: self.take_pose(event.target.value)),
+            (panel.play, self._play),
+            (panel.choice, self._try_choice),
+            (panel.parent, lambda event: self.state("parent", event.target.value)),
+            (panel.twin, lambda event: self.state("twin", event.target.value)),
+            (panel.edit, lambda _: self.set_by_hand()),
+            (panel.hand_type, self._change_type),
+            (panel.hand_limits, lambda _: self.change_line()),
+            (panel.keep, lambda _: self.keep()),
+            (panel.undo, lambda _: self.undo()),
+            (panel.apart, self._take_apart),
+            (panel.axes, lambda event: drawn.show_axes(event.target.value)),
+            (panel.picture, lambda event: self.send_picture(event.client)),
+            (panel.film, lambda event: self.send_film(event.client)),
+            *((slider, partial(self._slide, name)) for name, slider in panel.sliders.items()),
+            *((button, lambda _, sight=sight: self.show(sight)) for button, sight in panel.places),
+            *(
+                (box, lambda event, top=top: drawn.show_part(top, event.target.value))
+                for top, box in panel.boxes.items()
+            ),
+        ]
+        for widget, action in actions:
+            _connect(widget, action)
+        panel.undo.visible = self._folder is not None and self._folder.can_undo
+        if self._open_folder is None:
+            return
+        panel.add_groups(self._shown.rejected, opened=self._regrouped)
+        changes: list[tuple[Any, str, Literal["rename", "merge", "split", "free"], Callable[[], Sequence[Any]]]] = [
+            (panel.name, "{} is named {}", "rename", lambda: (panel.clicked[-1], panel.name.value)),
+            (panel.merge, "{} and {} are one part", "merge", lambda: panel.clicked),
+            (panel.split, "every piece of {} is a part", "split", lambda: panel.clicked[-1:]),
+            (panel.free, "{} are a part", "free", lambda: [panel.may_move[panel.set_of_pieces.value]]),
+        ]
+        for widget, words, method, arguments in changes:
+            _connect(widget, lambda _, words=words, method=method, of=arguments: self.regroup(words, method, *of()))
 
     def set(self, values: Mapping[str, float]) -> None:
         """Move joints [rad or m], sliders included; names that are no leaders are passed over."""
         with self._lock:
             for name, value in values.items():
-                if self._panel.has(name):
+                if name in self._panel.sliders:
                     self._q[name] = self._panel.move(name, value)
             self._place()
 
@@ -137,28 +178,24 @@ class ModelViewer:
     @property
     def status(self) -> str:
         """Return what the page says of collisions."""
-        return self._panel.status
+        return str(self._panel.status.content)
 
     def run(self, stop: threading.Event) -> None:
         """Sweep what is to be swept and look for collisions until `stop` is set."""
-        start, last = time.monotonic(), ""
         first: float | None = None
         checked = time.monotonic()
         while not stop.wait(_FRAME):
-            if time.monotonic() - checked > _LOOK_AGAIN:
-                checked = time.monotonic()
+            now = time.monotonic()
+            if now - checked > _LOOK_AGAIN:
+                checked = now
                 self._follow_file()
             if first is None and self._server.get_clients():
-                first = time.monotonic()
-            name = self._sweeping
-            if name is not None:
-                if name != last:
-                    start = time.monotonic()
-                share = 0.5 - 0.5 * np.cos(2.0 * np.pi * (time.monotonic() - start) / _SWEEP_SECONDS)
+                first = now
+            if (name := self._sweeping) is not None:
+                share = 0.5 - 0.5 * np.cos(2.0 * np.pi * (now - self._sweep_start) / _SWEEP_SECONDS)
                 lower, upper = self._scene.range_of(self._scene.robot.joint_by_name[name])
                 self.set({name: float(lower + share * (upper - lower))})
-            last = name or ""
-            if first is not None and time.monotonic() - first > _HEAD_START:
+            if first is not None and now - first > _HEAD_START:
                 self._add_marks()
                 if self._stale:
                     self.look_for_collisions()
@@ -172,10 +209,11 @@ class ModelViewer:
         try:
             shown = self._reopen()
         except KinematifyError as error:
-            self._tell("The file was changed and cannot be read; the page shows it as it was", str(error))
+            self._notify("The file was changed and cannot be read; the page shows it as it was", str(error))
             return
         self._folder = None
-        self._open(shown, (), f"The file was changed; the page shows it as it is now.\n\n{said_of(shown)}")
+        self._open(shown)
+        self._panel.tell("The file was changed; the page shows it as it is now.")
 
     def _add_marks(self) -> None:
         with self._lock:
@@ -183,13 +221,27 @@ class ModelViewer:
                 self._drawn.add_marks()
                 self._drawn.place(self._q, self._apart)
 
+    def click(self, top: str) -> None:
+        """Choose a part, and the joint that carries it or the one that leads that."""
+        robot = self._scene.robot
+        self._panel.click(top)
+        joint = robot.joint_above.get(top)
+        while joint is not None and joint.mimic is not None:
+            joint = robot.joint_by_name[joint.mimic.joint]
+        if joint is not None:
+            self.choose(joint.name)
+
     def choose(self, joint: str) -> None:
         """Make the part of a joint glow, and show what is known of the joint."""
         with self._lock:
-            if self._chosen != joint and self._panel.has(joint):
+            if self._chosen != joint and joint in self._panel.sliders:
+                self.show_as_in_file()
                 self._chosen, self._marked = joint, frozenset()
-                self._end_by_hand()
-                self._show_joint(joint)
+                item = self._scene.robot.joint_by_name[joint]
+                said = [words for _, words in self._candidates(item)]
+                parents, twins = (of.get(item.child, ()) for of in (self._shown.parents, self._shown.twins))
+                self._panel.show_joint(item, said, parents, twins)
+                self._panel.describe(item, self._shown.confidences.get(item.child))
                 self._glow()
 
     def show(self, sight: Sight) -> None:
@@ -200,29 +252,67 @@ class ModelViewer:
             self.set({**self._scene.rest, **sight.q})
             self._glow()
 
+    # ---- what waits to be kept ---------------------------------------------------------------------------------------
+
+    def _propose(self, words: str, change: Callable[[ModelFolder], Kept | None]) -> None:
+        """Make a change wait to be kept, in place of the one that did."""
+        self._waiting = change
+        self._panel.offer(words)
+
+    def show_as_in_file(self) -> None:
+        """Show everything as in the file; what waited to be kept is forgotten."""
+        self._waiting = None
+        self._end_by_hand()
+        for name in self._scene.tried_joints:
+            self._try(name, None)
+        if self._chosen is not None:
+            self._panel.show_as_written()
+        self._panel.offer("")
+
     def try_candidate(self, joint: str, number: int) -> None:
         """Move a joint as one of its candidates says, 0 for as in the file, and show that on the page."""
         with self._lock:
-            self._end_by_hand()
-            self._chosen, self._marked = joint, frozenset()
-            candidates = self._candidates(self._scene.robot.joint_by_name[joint])
-            self._try(joint, candidates[number - 1] if number else None)
-            self._glow()
+            self.choose(joint)
+            self.show_as_in_file()
+            if number and joint == self._chosen:
+                item = self._scene.robot.joint_by_name[joint]
+                alternative, words = self._candidates(item)[number - 1]
+                self._panel.choice.value = self._panel.choice.options[number]
+                self._preview(item, alternative, f"{item.child} {words}")
+
+    def _try_choice(self, event: Any) -> None:
+        choice = event.target
+        if self._chosen is not None and choice.value in choice.options:  # else its options are new
+            self.try_candidate(self._chosen, choice.options.index(choice.value))
 
     def state(self, key: Literal["parent", "twin"], name: str) -> None:
-        """Write the model with another parent of the chosen joint's part, or with the joint of its twin."""
+        """Propose another parent of the chosen joint's part, or the joint of its twin."""
         with self._lock:
             if self._chosen is None:
                 return
+            self.show_as_in_file()
             joint = self._scene.robot.joint_by_name[self._chosen]
             offered = self._shown.parents if key == "parent" else self._shown.twins
             if (key == "parent" and name == joint.parent) or name not in offered.get(joint.child, ()):
                 return
-            self._end_by_hand()
-        assert self._open_folder is not None
-        self._folder = self._folder or self._open_folder()
-        hint = Hint(part=joint.child, parent=name) if key == "parent" else Hint(part=joint.child, twin=name)
-        self._written(partial(self._folder.state, hint))
+            getattr(self._panel, key).value = name
+            hint = Hint(part=joint.child, parent=name) if key == "parent" else Hint(part=joint.child, twin=name)
+            said = f"with {name} as its parent" if key == "parent" else f"with the same joint as {name}"
+            self._propose(f"{joint.child} {said}", methodcaller("state", hint))
+
+    def regroup(self, words: str, method: Literal["rename", "merge", "split", "free"], *arguments: Any) -> None:
+        """Propose other parts: what a method of `ModelFolder` makes of its arguments, which `words` take, too."""
+        with self._lock:
+            self.show_as_in_file()
+            self._regrouped = True
+            self._propose(words.format(*arguments), methodcaller(method, *arguments))
+
+    def _preview(self, joint: Joint, alternative: JointAlternative, words: str) -> None:
+        """Move a joint as an alternative says; that waits to be kept."""
+        self._try(joint.name, alternative)
+        tried = self._scene.tried(joint.name) or alternative
+        self._propose(words, methodcaller("keep", joint.child, tried))
+        self._glow()
 
     def _try(self, joint: str, alternative: JointAlternative | None) -> None:
         item = self._scene.robot.joint_by_name[joint]
@@ -233,9 +323,54 @@ class ModelViewer:
         self._drawn.draw_axis(item)
         self._q[joint] = float(np.clip(0.0, *self._scene.range_of(item)))
         self._panel.refit(item)
-        self._panel.describe(item, self._probability(item))
-        self._panel.offer_keeping(alternative is not None)
+        likely = self._shown.confidences.get(item.child) if alternative is None else alternative.probability
+        self._panel.describe(item, likely)
         self._place()
+
+    def keep(self) -> Kept | None:
+        """Write the model with what waits, and show it again; None if nothing waits or it could not be written."""
+        with self._lock:
+            change, self._waiting = self._waiting, None
+        kept = None if change is None else self._write(change)
+        if kept is None:
+            self._waiting = change
+        return kept
+
+    def undo(self) -> None:
+        """Write the model as it was before the last change, and show it."""
+        self._write(methodcaller("undo"))
+
+    def _write(self, change: Callable[[ModelFolder], Kept | None]) -> Kept | None:
+        """Change the folder, say what came of it, and show what it holds: nothing else here writes."""
+        assert self._open_folder is not None
+        assert self._reopen is not None
+        panel, folder = self._panel, self._folder or self._open_folder()
+        self._folder = folder
+        panel.keep.disabled = panel.undo.disabled = True
+        waiting = [
+            client.add_notification("Inferring again ...", "The model is written when it is done.", loading=True)
+            for client in self._server.get_clients().values()
+        ]
+        try:
+            kept = change(folder)
+            shown = self._reopen()
+        except KinematifyError as error:
+            panel.keep.disabled = panel.undo.disabled = False
+            self._notify("Nothing was changed", str(error))
+            return None
+        finally:
+            self._read_at = self._changed_at()
+            for item in waiting:
+                item.remove()
+        self._open(shown)
+        self._panel.tell("" if kept is not None else "Undone.", kept)
+        return kept
+
+    def _notify(self, title: str, body: str) -> None:
+        for client in self._server.get_clients().values():
+            client.add_notification(title, body, color="red")
+
+    # ---- by hand -----------------------------------------------------------------------------------------------------
 
     def set_by_hand(self) -> None:
         """Begin to set the chosen joint by hand: all joints at zero, where its axis stands as it is given."""
@@ -243,32 +378,32 @@ class ModelViewer:
             if self._chosen is None:
                 return
             joint = self._scene.robot.joint_by_name[self._chosen]
+            if self._scene.tried(joint.name) is None:
+                self.show_as_in_file()
             self.set(dict.fromkeys(self._q, 0.0))
             axis, pivot = self._scene.line_of(joint)
-            kind = self._scene.kind_of(joint)
             self._end_by_hand()
-            self._panel.begin_by_hand(kind, self._scene.range_of(joint))
+            self._panel.begin_by_hand(self._scene.kind_of(joint), self._scene.range_of(joint))
             self._line = axis, pivot
             self._gizmo = self._drawn.add_gizmo(axis, pivot)
-            self._gizmo.on_update(lambda _: self.move_line())
+            _connect(self._gizmo, lambda _: self.move_line())
             self.change_line()
 
     def set_limits(self, lower: float, upper: float) -> None:
         """Put the two handles of the limits somewhere [deg or mm]; only while a joint is set by hand."""
-        self._panel.move_hand_limits(lower, upper)
+        self._panel.hand_limits.value = (lower, upper)
         self.change_line()
 
     def _end_by_hand(self) -> None:
         if self._gizmo is not None:
             self._gizmo.remove()
         self._gizmo = None
-        self._panel.end_by_hand()
 
-    def change_kind(self) -> None:
+    def _change_type(self, _: Any) -> None:
         """Begin the range of another type again: a quarter turn, or half of the model's size."""
         with self._lock:
             if self._gizmo is not None:
-                kind = self._panel.hand_kind
+                kind, _ = self._panel.by_hand()
                 self._panel.fit_limits(kind, (0.0, 0.5 * math.pi if kind.turns else 0.5 * self._scene.size))
                 self.change_line()
 
@@ -292,8 +427,7 @@ class ModelViewer:
         with self._lock:
             if self._gizmo is None or self._chosen is None:
                 return
-            kind = self._panel.hand_kind
-            lower, upper = self._panel.hand_limits
+            kind, (lower, upper) = self._panel.by_hand()
             limited = kind in (JointType.REVOLUTE, JointType.PRISMATIC)
             alternative = JointAlternative(
                 kind=kind,
@@ -302,77 +436,20 @@ class ModelViewer:
                 by_hand=True,
                 limits=(min(lower, 0.0), max(upper, 0.0)) if limited else None,
             )
-            self._try(self._chosen, alternative)
+            joint = self._scene.robot.joint_by_name[self._chosen]
+            self._preview(joint, alternative, f"{joint.child} moves as it is set here")
 
-    def keep(self) -> Kept | None:
-        """Write the model with the joint as it is tried, and show it again; None if it could not be written."""
-        assert self._open_folder is not None
-        self._folder = self._folder or self._open_folder()
-        with self._lock:
-            joint = None if self._chosen is None else self._scene.robot.joint_by_name[self._chosen]
-            tried = None if joint is None else self._scene.tried(joint.name)
-        if joint is None or tried is None:
-            return None
-        return self._written(partial(self._folder.keep, joint.child, tried))
-
-    def regroup(self, change: Callable[[ModelFolder], Kept]) -> Kept | None:
-        """Merge or split parts, infer again, and show the model again; None if it could not be written."""
-        assert self._open_folder is not None
-        folder = self._folder = self._folder or self._open_folder()
-        return self._written(lambda: change(folder))
-
-    def undo(self) -> None:
-        """Write the model as it was before the last choice, and show it."""
-        assert self._folder is not None
-        self._written(self._folder.undo)
-
-    def _written(self, write: Callable[[], Kept | None]) -> Kept | None:
-        """Change the folder, tell what came of it, and show what it holds."""
-        assert self._reopen is not None
-        self._panel.forbid_keeping(True)
-        waiting = [
-            client.add_notification("Inferring again ...", "The model is written when it is done.", loading=True)
-            for client in self._server.get_clients().values()
-        ]
-        try:
-            kept = write()
-            shown = self._reopen()
-        except KinematifyError as error:
-            self._panel.forbid_keeping(False)
-            self._tell("Nothing was changed", str(error))
-            return None
-        finally:
-            self._read_at = self._changed_at()
-            for item in waiting:
-                item.remove()
-        self._open(shown, (), said_of(shown) if kept is None else said_of_kept(kept))
-        return kept
-
-    def _tell(self, title: str, body: str) -> None:
-        for client in self._server.get_clients().values():
-            client.add_notification(title, body, color="red")
-
-    def _candidates(self, joint: Joint) -> tuple[JointAlternative, ...]:
-        bounds = self._scene.bounds.get(self._scene.group_of(joint.child))
-        size = self._scene.size if bounds is None else float(np.linalg.norm(bounds[1] - bounds[0]))
+    def _candidates(self, joint: Joint) -> list[tuple[JointAlternative, str]]:
+        """Candidates of a joint, each with what it does in words."""
+        bounds = self._scene.bounds.get(self._scene.group_of(joint.child), np.zeros((2, 3)))
+        size = float(np.linalg.norm(bounds[1] - bounds[0])) or self._scene.size
         axis, pivot = self._scene.line_in_file(joint)
         written = JointAlternative(kind=joint.kind, axis=axis, pivot=pivot)
         known = distinct(self._shown.alternatives.get((joint.parent, joint.child), ()), size)
-        return agreeing(known, written, self._shown.confidences.get(joint.child), size)
+        found = agreeing(known, written, self._shown.confidences.get(joint.child), size)
+        return [(item, described(item, bounds)) for item in found]
 
-    def _show_joint(self, name: str) -> None:
-        joint = self._scene.robot.joint_by_name[name]
-        bounds = self._scene.bounds.get(self._scene.group_of(joint.child), np.zeros((2, 3)))
-        said = [described(item, bounds) for item in self._candidates(joint)]
-        self._panel.show_joint(
-            joint, said, *(of.get(joint.child, ()) for of in (self._shown.parents, self._shown.twins))
-        )
-        self._panel.describe(joint, self._probability(joint))
-
-    def _probability(self, joint: Joint) -> float | None:
-        """Return how likely the joint is as it is shown: as it is tried, or as in the file."""
-        tried = self._scene.tried(joint.name)
-        return self._shown.confidences.get(joint.child) if tried is None else tried.probability
+    # ---- poses and pictures ------------------------------------------------------------------------------------------
 
     def take_pose(self, name: str) -> None:
         """Bring all joints to rest, to the end of their way, or anywhere."""
@@ -390,41 +467,24 @@ class ModelViewer:
             if name == "Opened":
                 self._drawn.fit(self._q)
 
-    def _clicked(self, top: str) -> None:
-        """Choose the joint that carries a part, or the one that leads it."""
-        robot = self._scene.robot
-        if self._groups is not None:
-            self._groups.click(top)
-        joint = robot.joint_above.get(top)
-        while joint is not None and joint.mimic is not None:
-            joint = robot.joint_by_name[joint.mimic.joint]
-        if joint is not None and self._panel.has(joint.name):
-            self.choose(joint.name)
-
-    def slide(self, joint: str, value: float) -> None:
-        """Move a joint [rad or m] that a hand has at its slider, and choose it."""
+    def _slide(self, joint: str, event: Any) -> None:
+        """Move a joint whose slider a person moves, and choose it unless a change of another one waits."""
         with self._lock:
-            self._q[joint] = value
+            self._q[joint] = float(event.target.value) / self._panel.factor(joint)
             self._place()
-            self.choose(joint)
+            if self._waiting is None:
+                self.choose(joint)
 
-    def play(self) -> None:
+    def _play(self, _: Any) -> None:
         """Make the chosen joint go to and fro, or stop."""
         with self._lock:
             self._sweeping = None if self._sweeping == self._chosen else self._chosen
+            self._sweep_start = time.monotonic()
 
-    def show_axes(self, visible: bool) -> None:  # the value of a box
-        """Show or hide the axes of all joints."""
-        self._drawn.show_axes(visible)
-
-    def show_part(self, top: str, visible: bool) -> None:  # the value of a box
-        """Show or hide a part."""
-        self._drawn.show_part(top, visible)
-
-    def take_apart(self, share: float) -> None:
-        """Take the model apart, 0 for not at all."""
+    def _take_apart(self, event: Any) -> None:
+        """Take the model apart, 0 % for not at all."""
         with self._lock:
-            self._apart = share
+            self._apart = event.target.value / 100.0
             self._place()
 
     def send_picture(self, client: Any) -> None:
@@ -467,13 +527,13 @@ class ModelViewer:
             self._scene.prepare_collisions()  # not in the lock, for which sliders would wait
         except KinematifyError as error:
             self._stale = False
-            self._panel.show_status(said_of_failure(error))
+            self._panel.status.content = collision_text(error)
             return
         with self._lock:
             self._stale = False
             touches = self._scene.touches(self._q)
             self._colliding = frozenset(top for touch in touches if not touch.tolerated for top in touch.pair)
-            self._panel.show_status(said_of_touches(touches))
+            self._panel.status.content = collision_text(touches)
             self._glow()
 
     def _glow(self) -> None:

@@ -24,7 +24,6 @@ from kinematify.validation.formats.view_data import camera_turn
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from kinematify.geometry.overlap import OverlapQueries
     from kinematify.geometry.rest_pairs import DepthAllowance
     from kinematify.geometry.scene import Scene
     from kinematify.render.picture import PosedMesh
@@ -86,10 +85,14 @@ class ViewScene:
 
     def extent(self, q: Mapping[str, float]) -> FloatArray:
         """Return the corners of the model in a configuration, frame of the root link [m], shape (2, 3)."""
-        placed = self._placed(self.poses(q))
-        points = [vertices @ T[:3, :3].T + T[:3, 3] for T, (vertices, _) in placed if len(vertices)]
-        corners = np.concatenate(points) if points else np.zeros((1, 3))
-        return np.stack([corners.min(axis=0), corners.max(axis=0)])
+        corners = np.array(list(self._corners(q).values()) or np.zeros((1, 2, 3)))
+        return np.stack([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])
+
+    def _corners(self, q: Mapping[str, float]) -> dict[str, FloatArray]:
+        """Lower and upper corner of every group in a configuration, frame of the root link [m], shape (2, 3) each."""
+        poses = self.poses(q)
+        placed = {top: v @ poses[top][:3, :3].T + poses[top][:3, 3] for top, (v, _) in self.meshes.items() if len(v)}
+        return {top: np.stack([points.min(axis=0), points.max(axis=0)]) for top, points in placed.items()}
 
     @cached_property
     def camera(self) -> tuple[FloatArray, FloatArray]:
@@ -110,43 +113,40 @@ class ViewScene:
 
         Where the model states no colour at all, every group has one of its own.
         """
-        found = {}
-        for index, group in enumerate(self.groups):
-            vertices, faces, appearance = self._mesh(group)
-            if len(faces):
-                invented = Material().color if self._states_colors else _color(index)
-                found[group.top] = surfaces(vertices, faces, appearance or plain(invented, len(faces)))
-        return found
+        return {
+            top: surfaces(vertices, faces, appearance or plain(color, len(faces)))
+            for top, vertices, faces, appearance, color in self._bodies
+        }
 
     def posed(self, q: Mapping[str, float]) -> tuple[PosedMesh, ...]:
         """Return what is seen of every group in a configuration, frame of the root link, for pictures."""
         from kinematify.render.picture import PosedMesh  # noqa: PLC0415  # loads the ray caster
 
         poses = self.poses(q)
-        found = []
-        for index, group in enumerate(self.groups):
-            vertices, faces, appearance = self._mesh(group)
-            if len(faces):
-                T = poses[group.top]
-                color = Material().color if self._states_colors else _color(index)
-                placed = vertices @ T[:3, :3].T + T[:3, 3]
-                found.append(PosedMesh(vertices=placed, faces=faces, color=np.array(color[:3]), appearance=appearance))
-        return tuple(found)
+        return tuple(
+            PosedMesh(
+                vertices=vertices @ poses[top][:3, :3].T + poses[top][:3, 3],
+                faces=faces,
+                color=np.array(color[:3]),
+                appearance=appearance,
+            )
+            for top, vertices, faces, appearance, color in self._bodies
+        )
 
     @cached_property
-    def _states_colors(self) -> bool:
-        return any(mesh.appearance is not None for link in self.robot.links for mesh in link.meshes)
+    def _bodies(self) -> list[tuple[str, FloatArray, IntArray, Appearance | None, Rgba]]:
+        """Groups that are seen: top link, vertices, faces, appearance, and the colour of what states none."""
+        stated = any(mesh.appearance is not None for link in self.robot.links for mesh in link.meshes)
+        return [
+            (group.top, *mesh, Material().color if stated else _color(index))
+            for index, group in enumerate(self.groups)
+            if len((mesh := self._mesh(group))[1])
+        ]
 
     @cached_property
     def bounds(self) -> dict[str, FloatArray]:
         """Lower and upper corner of every group at zero, frame of the root link [m], shape (2, 3) each."""
-        zero = self.poses({})
-        found = {}
-        for top, (vertices, _) in self.meshes.items():
-            if len(vertices):
-                placed = vertices @ zero[top][:3, :3].T + zero[top][:3, 3]
-                found[top] = np.stack([placed.min(axis=0), placed.max(axis=0)])
-        return found
+        return self._corners({})
 
     def group_of(self, link: str) -> str:
         """Top link of the group that holds a link."""
@@ -186,6 +186,11 @@ class ViewScene:
         """Type of a joint as it is tried, or as in the file."""
         tried = self._tried.get(joint.name)
         return joint.kind if tried is None else tried.kind
+
+    @property
+    def tried_joints(self) -> tuple[str, ...]:
+        """Joints that do not move as the file says."""
+        return tuple(self._tried)
 
     def tried(self, joint: str) -> JointAlternative | None:
         """Return what a joint is tried as; None: as the file says."""
@@ -235,20 +240,14 @@ class ViewScene:
         Args:
             q: Leader -> value [rad or m].
         """
-        from kinematify.geometry.scene import relative  # noqa: PLC0415  # as for `_collisions`
-
-        scene, overlap, allowance = self._collisions
+        scene, allowance = self._collisions
         poses = self.poses(q)
         tops = [self.groups[body.group].top for body in scene.bodies]
-        placed = np.stack([poses[top] for top in tops])[None] if tops else np.zeros((1, 0, 4, 4))
-        found = []
-        for pair in scene.pairs:
-            T = relative(placed, pair)
-            if not (overlap.collide(pair, T)[0] or overlap.may_contain(pair, T)[0]):
-                continue
-            depth = float(overlap.depth(pair, T)[0])
-            tolerated = depth <= allowance.at_rest(pair) + allowance.tolerance(pair)
-            found.append(Touch(pair=(tops[pair[0]], tops[pair[1]]), depth=depth, tolerated=tolerated))
+        placed = np.array([poses[top] for top in tops])
+        found = [
+            Touch(pair=(tops[pair[0]], tops[pair[1]]), depth=depth, tolerated=tolerated)
+            for pair, depth, tolerated in allowance.meeting(placed)
+        ]
         return sorted(found, key=lambda touch: (touch.tolerated, -touch.depth))
 
     def free_range(self, joint: Joint) -> tuple[float, float]:
@@ -311,15 +310,14 @@ class ViewScene:
         return forward_kinematics(self.robot, {})
 
     @cached_property
-    def _collisions(self) -> tuple[Scene, OverlapQueries, DepthAllowance]:
+    def _collisions(self) -> tuple[Scene, DepthAllowance]:
         from kinematify.config.validation import load_settings  # noqa: PLC0415  # what is seen first needs none of these
         from kinematify.geometry.overlap import OverlapQueries  # noqa: PLC0415
         from kinematify.geometry.rest_pairs import DepthAllowance  # noqa: PLC0415
         from kinematify.geometry.scene import read_scene  # noqa: PLC0415
 
         scene = read_scene(self._read_solid(), load_settings().geometry)
-        overlap = OverlapQueries(scene)
-        return scene, overlap, DepthAllowance(scene, overlap)
+        return scene, DepthAllowance(scene, OverlapQueries(scene))
 
     def _mesh(self, group: RigidGroup) -> tuple[FloatArray, IntArray, Appearance | None]:
         vertices, faces, start = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)], 0
@@ -333,9 +331,6 @@ class ViewScene:
                 looks.append(mesh.appearance)
                 start += len(mesh.vertices)
         return np.concatenate(vertices), np.concatenate(faces), joined(looks, [len(item) for item in faces[1:]])
-
-    def _placed(self, poses: Mapping[str, FloatArray]) -> list[tuple[FloatArray, tuple[FloatArray, IntArray]]]:
-        return [(poses[top], mesh) for top, mesh in self.meshes.items()]
 
 
 def _color(index: int) -> Rgba:

@@ -374,6 +374,9 @@ def test_names_of_an_obj_group_beside_the_number_of_its_mesh_are_parts(tmp_path:
     ]
     (tmp_path / "b.obj").write_text(obj_text(words))
     assert load_assembly(tmp_path / "b.obj").names == ("a_door", "a_drawer", "b_door", "b_drawer"), "names of two words"
+    twice = [(f"o {side}\ng panel", mesh) for side, mesh in zip(("left", "right"), boxes("door"), strict=True)]
+    (tmp_path / "c.obj").write_text(obj_text(twice))
+    assert load_assembly(tmp_path / "c.obj").names == ("left_panel", "right_panel"), "groups of two objects"
 
 
 @pytest.mark.parametrize("own", ["Object_{n}", "{parent}_{material}_0", ""])

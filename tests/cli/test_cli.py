@@ -141,9 +141,9 @@ def finding(**changes: object) -> doctor.PackageState:
 @pytest.mark.parametrize(
     ("changes", "status", "text"),
     [
-        ({"state": "missing", "installed": None}, 3, "pip install 'mujoco>=3.6'"),
+        ({"state": "missing", "installed": None}, 3, "pip install 'mujoco>=3.7'"),
         ({"state": "missing", "installed": None, "optional": True}, 0, "missing (optional)"),
-        ({"state": "version", "installed": "3.1.0"}, 3, "pip install 'mujoco>=3.6'"),
+        ({"state": "version", "installed": "3.1.0"}, 3, "pip install 'mujoco>=3.7'"),
         ({"state": "broken", "problem": "ImportError: libGL"}, 3, "ImportError: libGL"),
         ({}, 0, "Everything works."),
     ],

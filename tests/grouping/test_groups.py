@@ -26,11 +26,11 @@ from kinematify.grouping.groups import (
     sureness,
     unsure,
 )
-from kinematify.grouping.piece_sets import node_of_pieces
+from kinematify.grouping.piece_sets import alike, node_of_pieces
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.robot.raw_mesh import RawMesh
-from tests.one_mesh import box, write_bin_with_lid
+from tests.one_mesh import box, write_bin_with_lid, write_chest
 
 
 @pytest.fixture
@@ -89,7 +89,7 @@ def test_a_group_whose_joint_says_fixed_is_merged_into_its_parent_unless_a_user_
     alone = Grouping(assembly=joined_pieces(pieces, [np.array([6, 0]), np.arange(1, 6)]), groups=(groups[6], groups[1]))
     assert fixed_merged(alone, everything[:1], config) is alone, "something moves"
     doubtful = [replace(joint, confidence=0.41) for joint in joints]
-    assert "the surest: 41%" in unsure(merged, doubtful, config)[0]
+    assert "No joint of the grouped mesh is sure" in unsure(merged, doubtful, config)[0]
     assert unsure(merged, [*doubtful, joints[0]], config) == ()
     stated = replace(merged, groups=tuple(replace(group, moves=None) for group in merged.groups))
     assert unsure(stated, doubtful, config) == (), "a user stated them"
@@ -126,6 +126,22 @@ def test_a_front_that_was_left_in_the_body_joins_its_drawer_because_the_joint_is
     assert sureness([joint], config) == {1: joint.confidence}
     assert sureness([replace(joint, evidence={"probability_fixed": 0.9})], config) == {}
     assert completed(grouping, []) is grouping
+
+
+def test_equal_drawers_are_grouped_alike_and_equally_likely(tmp_path: Path) -> None:
+    write_chest(tmp_path / "chest.ply")
+    pieces = load_assembly(tmp_path / "chest.ply", up="z")
+    drawers = [frozenset(range(start, start + 6)) for start in (5, 11, 17)]
+    part_of_one = drawers[0] - {6}
+    found = dict(zip(*alike([*drawers[:2], part_of_one], np.array([2.0, 0.0, 3.0]), pieces.parts), strict=True))
+    assert [found[drawer] for drawer in drawers] == [1.0, 1.0, 1.0], (
+        "one was not proposed, and another one was unlikely"
+    )
+    assert [found[drawer - {start + 1}] for drawer, start in zip(drawers, (5, 11, 17), strict=True)] == [3.0, 3.0, 3.0]
+    grouping = group_pieces(pieces, load_config().grouping)
+    moving = [group for group in grouping.groups if group.moves is not None]
+    assert {group.pieces for group in moving} == {tuple(f"piece_{k:03d}" for k in sorted(drawer)) for drawer in drawers}
+    assert len({group.moves for group in moving}) == 1
 
 
 def test_nodes_that_hang_together_are_evidence_and_name_the_parts(bin_with_lid: Path, tmp_path: Path) -> None:

@@ -9,7 +9,9 @@ import pytest
 import trimesh
 from PIL import Image
 
+from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
+from kinematify.contact.tree import KinematicTree
 from kinematify.geometry.rays import RayScene
 from kinematify.model.picture_scene import (
     GLYPH_COLORS,
@@ -28,7 +30,7 @@ from kinematify.render.camera import fit_camera
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from kinematify.robot.appearance import linear_of, srgb_of
 from kinematify.robot.joint_type import JointType
-from tests.mechanisms import box, chain, door, drawer, flat_and_fixed, knob
+from tests.mechanisms import Mechanism, box, chain, door, drawer, flat_and_fixed, joint, knob
 
 CONFIG = load_config().preview.model_copy(update={"panel_width": 240, "panel_height": 220})
 UP = np.array([0.0, 0.0, 1.0])
@@ -225,6 +227,19 @@ def test_joints_open_in_the_picture():
     assert opened_configuration(drawer().model(), CONFIG)["drawer_joint"] == pytest.approx(0.35)
     assert opened_configuration(knob().model(), CONFIG)["knob_joint"] == pytest.approx(np.deg2rad(35))
     assert set(opened_configuration(flat_and_fixed().model(), CONFIG)) == {"flap_joint"}
+
+
+@pytest.mark.parametrize(("axis", "post"), [((0, 1, 0), (0, 3, 1)), ((0, 0, 1), (0, 0.8, 1))], ids=["floor", "part"])
+def test_what_would_go_through_the_floor_or_a_part_is_half_open_in_the_picture(axis, post):
+    free = door()
+    parts = (*free.assembly.parts, box("post", post, (0.2, 0.2, 2)))
+    model = Mechanism(
+        "door",
+        Assembly(parts=parts, source="door"),
+        KinematicTree(parents=(-1, 0, 0)),
+        (joint(1, "revolute", axis, (0.06, 0.01, 0.3), (0.0, 1.7)), joint(2, "fixed", UP, post, (0.0, 0.0))),
+    ).model()
+    assert opened_configuration(model, CONFIG)["leaf_joint"] == pytest.approx(0.85)
 
 
 def test_camera_stands_where_the_moving_part_is_seen():

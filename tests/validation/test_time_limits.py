@@ -52,8 +52,8 @@ def crash(_request: StageRequest, _recorder: Recorder) -> None:
     os.kill(os.getpid(), signal.SIGSEGV)
 
 
-def ends(folder: Path, work: Callable[[StageRequest, Recorder], None], *, seconds: float) -> tuple[StageEnd, StageEnd]:
-    """How a stage ends, and one that comes after it."""
+def end_of(folder: Path, work: Callable[[StageRequest, Recorder], None], *, seconds: float) -> StageEnd:
+    """How a stage ends."""
     request = StageRequest(
         urdf=folder / "model.urdf",
         package_dirs=(),
@@ -62,30 +62,26 @@ def ends(folder: Path, work: Callable[[StageRequest, Recorder], None], *, second
         selected=frozenset(),
         deadline=seconds,
     )
-    stages = [Stage(name="first", run=work, checks=()), Stage(name="second", run=nap, checks=(), after=("first",))]
-    first, second = run_stages(stages, request, workers=2)
-    return first, second
+    (end,) = run_stages([Stage(name="first", run=work, checks=())], request, workers=1)
+    return end
 
 
 @pytest.mark.parametrize("work", [spin, sleep])
-def test_a_stage_out_of_time_is_late_and_so_is_what_comes_after_it(
-    work: Callable[[StageRequest, Recorder], None], tmp_path: Path
-) -> None:
-    first, second = ends(tmp_path, work, seconds=0.1)
-    assert (first.late, second.late) == (True, True)
-    assert "was stopped" in (first.failure or "")
-    assert "did not run, because the stage first was stopped" in (second.failure or "")
+def test_a_stage_out_of_time_is_late(work: Callable[[StageRequest, Recorder], None], tmp_path: Path) -> None:
+    end = end_of(tmp_path, work, seconds=0.1)
+    assert end.late
+    assert "was stopped" in (end.failure or "")
 
 
 def test_time_on_the_clock_alone_stops_nothing(tmp_path: Path) -> None:
-    first, second = ends(tmp_path, nap, seconds=2.0)
-    assert (first.failure, second.failure) == (None, None)
-    assert first.seconds < second.seconds < 2.0
+    end = end_of(tmp_path, nap, seconds=2.0)
+    assert end.failure is None
+    assert end.seconds < 2.0
 
 
 def test_a_crash_is_not_late(tmp_path: Path) -> None:
-    first, second = ends(tmp_path, crash, seconds=1.0)
-    assert (first.failure, first.late, second.late) == ("crashed with SIGSEGV", False, False)
+    end = end_of(tmp_path, crash, seconds=1.0)
+    assert (end.failure, end.late) == ("crashed with SIGSEGV", False)
 
 
 def test_the_command_needs_no_server_beside_it(tmp_path: Path) -> None:
@@ -110,7 +106,7 @@ def test_what_was_not_finished_is_no_finding_and_ends_with_3(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     stage = Stage(name="evidence", run=work, checks=CHECKS_LEFT)
-    monkeypatch.setattr(validation, "later_stages", lambda _engines: [stage])
+    monkeypatch.setattr(validation, "later_stages", lambda: [stage])
     model = cabinet().write(tmp_path)
     words = ["validate", str(model), "--engines", "none", "--checks", "KV34*", "--budget", "4"]
     assert run([*words, "--json", str(tmp_path / "report.json")]) == status

@@ -40,8 +40,15 @@ def test_a_candidate_is_chosen_kept_and_found_in_the_file(folder: Path) -> None:
     with served(folder, 18140) as window, opened(window.url, width=400) as (page, reported):
         page.wait_for_selector("text=At rest", timeout=PATIENCE)
         window.viewer.choose(joint.name)
+        window.viewer.set({joint.name: 0.5})
+        page.context.grant_permissions(["clipboard-read", "clipboard-write"])
         said = keep_candidate(page, joint.name, "fixed")
         assert f"--hint {joint.child}=fixed" in said
+        press(page, "Copy command")
+        page.get_by_text("Copied").wait_for(timeout=PATIENCE)
+        copied = page.evaluate("navigator.clipboard.readText()")
+        assert copied.startswith("kinematify infer ")
+        assert copied.endswith(f"--hint {joint.child}=fixed")
         assert page.evaluate("document.documentElement.scrollWidth") <= 400, "nothing hangs over the side"
         assert not mistakes(reported)
     assert read_robot(folder / "model.urdf").joints[0].kind is JointType.FIXED
@@ -74,6 +81,33 @@ def test_a_joint_is_set_by_hand_kept_and_taken_back_while_a_second_browser_watch
         assert not mistakes(reported)
     (again,) = read_robot(folder / "model.urdf").joints
     assert (again.lower, again.upper) == (joint.lower, joint.upper)
+
+
+def test_the_name_under_the_pointer_is_shown_and_a_merge_keeps_pose_and_folder(tmp_path: Path) -> None:
+    pytest.importorskip("viser", reason="viser is not installed")
+    folder = tmp_path / "model"
+    write_inference(infer(BUILDERS["nested_drawer"]().assembly), folder, preview=False)
+    with served(folder, 18195) as window, opened(window.url, width=400) as (page, reported):
+        page.wait_for_selector("text=Nothing collides", timeout=PATIENCE)
+        first, *_, last = window.viewer.parts
+        name = page.locator("#part-name")
+        for height in range(100, 400, 40):  # the upper half, above the panel
+            page.mouse.move(200, height)
+            page.wait_for_timeout(500)
+            if name.inner_text():
+                break
+        assert name.inner_text() in window.viewer.parts
+        for part in (first, last):
+            window.viewer.click(part)
+        moved = dict.fromkeys(window.viewer.values, 0.05)
+        window.viewer.set(moved)
+        window.viewer.regroup("{} and {} are one part", "merge", first, last)
+        page.get_by_text("Not written yet").wait_for(timeout=PATIENCE)
+        press(page, "Keep this")
+        page.get_by_text("The same from the command line").wait_for(timeout=PATIENCE)
+        page.get_by_text("Click a part to name or split it").wait_for(timeout=PATIENCE)
+        assert window.viewer.values == pytest.approx({joint: moved[joint] for joint in window.viewer.values})
+        assert not mistakes(reported)
 
 
 def test_where_a_chain_closes_is_shown_and_it_stays_closed(tmp_path: Path) -> None:

@@ -71,3 +71,17 @@ def test_pieces_that_were_taken_for_fixed_become_a_part_and_that_can_be_undone(f
     assert len(pieces_of(folder)) == 3
     model.undo()
     assert pieces_of(folder) == before
+
+
+def test_a_name_given_on_the_page_or_in_the_file_is_that_of_the_link(folder: Path, tmp_path: Path) -> None:
+    reported = ModelFolder(folder).rename("piece_005", "lid")
+    assert {child for _, child in candidates_in(folder)} == {"lid"}
+    pieces = {"piece_005", "piece_006"}
+    stated = json.loads((folder / "groups.json").read_text(encoding="utf-8"))["parts"]
+    assert {"lid": pieces} == {part["name"]: set(part["pieces"]) for part in stated if pieces & set(part["pieces"])}
+    with pytest.raises(InputError, match="cannot be named"):
+        ModelFolder(folder).rename("lid", "no name")
+    again = tmp_path / "again"
+    command = [str(again) if word == str(folder) else word for word in shlex.split(reported.command)[1:]]
+    assert run([*command, "--no-preview", "--no-validation"]) == 0
+    assert {child for _, child in candidates_in(again)} == {"lid"}

@@ -17,6 +17,7 @@ from kinematify.cli.app import run
 from kinematify.robot.appearance import surfaces
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_file import read_meshes
+from kinematify.robot.raw_mesh import merged
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.view.alternatives import JointAlternative, agreeing, described, distinct
@@ -259,7 +260,7 @@ def test_a_part_is_sent_to_the_page_as_it_looks(tmp_path: Path) -> None:
         assert mesh.appearance is not None
         sent = glb_of(surfaces(mesh.vertices, mesh.faces, mesh.appearance), double_sided=False)
         (tmp_path / "sent.glb").write_bytes(sent)
-        (found,) = read_meshes(tmp_path / "sent.glb", appearance=True)
+        found = merged(read_meshes(tmp_path / "sent.glb", appearance=True), mesh.name)
         assert unlike(mesh, found) == 0.0
         assert found.appearance is not None
         assert {(item.metallic, item.roughness) for item in found.appearance.materials} == {

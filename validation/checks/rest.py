@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.scene import relative
-from kinematify.geometry.together import random_rows
 from kinematify.validation.check import FeedbackRow, check
 from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.geometry.formatting import BARELY, SLIMMER, UNSEEN, configuration, in_document_order, length
@@ -107,6 +105,9 @@ _STARTS = 32
 
 def _start(look: GeometryContext, pair: Pair) -> str:
     """Return a configuration in which a pair is apart, the nearest to rest of some; empty if it is in none."""
+    from kinematify.geometry.scene import relative  # noqa: PLC0415 - reading the checks loads no geometry
+    from kinematify.geometry.together import random_rows  # noqa: PLC0415
+
     scene, between = look.scene, sorted(look.scene.between(pair))
     if not between:
         return ""

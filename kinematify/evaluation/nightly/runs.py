@@ -43,7 +43,7 @@ class Problem:
     id: str
     """Check or aspect, then the place, e.g. ``KV312 [mujoco] hinge_1`` or ``axis hinge_1``."""
     check: str
-    """Key of the check (``KV312``, ``KV405 [mujoco]``) or aspect of a joint (``axis``) that it belongs to."""
+    """Key of the check (``KV312``, ``KV804 [mujoco]``) or aspect of a joint (``axis``) that it belongs to."""
     severity: Literal["error", "warning"]
     text: str
     """A sentence with the numbers, which may change from night to night."""
