@@ -49,7 +49,7 @@ def in_metres(meshes: Sequence[RawMesh], scale: float | None, config: AssemblyCo
     stated = [_UNITS[unit] for unit in dict.fromkeys(units) if unit in _UNITS]
     if stated:
         scaled = [_scaled(mesh, _UNITS.get(unit, (1.0, ""))[0]) for mesh, unit in zip(meshes, units, strict=True)]
-        return scaled, f"{' and '.join(word for _, word in stated)} (stated in the file)"
+        return scaled, f"{' and '.join(word for _, word in stated)} (stated by the file or its format)"
     corners = np.concatenate([referenced(mesh.vertices, mesh.faces) for mesh in meshes])
     corners = corners[np.isfinite(corners).all(axis=1)]
     size = float(np.ptp(corners, axis=0).max()) if len(corners) else 0.0

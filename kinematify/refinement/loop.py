@@ -151,7 +151,7 @@ def _ended(plan: Plan, verdict: MotionVerdict) -> tuple[Plan, list[PlanChange]]:
         old = plan.joints[plan.index(child)]
         lower, upper = max(ends[0], old.lower), min(ends[1], old.upper)
         signal = RangeSignal(
-            child=child, lower=lower, upper=upper, lost=False, weight=0.0, check=finding.check, reason=finding.message
+            child=child, lower=lower, upper=upper, lost=False, weight=0.0, check="contact", reason=finding.message
         )
         new = shortened(old, signal)
         if HINTED in old.evidence or new is None or upper - lower < least * (old.upper - old.lower):

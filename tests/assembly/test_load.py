@@ -233,13 +233,13 @@ def test_3mf_objects_are_parts_in_the_unit_that_the_file_states_unless_a_scale_i
     scene().export(tmp_path / "a.3mf")
     loaded, raw = load(tmp_path / "a.3mf"), load(tmp_path / "a.3mf", scale=1.0)
     assert loaded.names == ("body", "door")
-    assert loaded.lengths == "millimetres (stated in the file)"
+    assert loaded.lengths == "millimetres (stated by the file or its format)"
     assert np.allclose(loaded.bounds, 1e-3 * raw.bounds)
     assert raw.lengths == "1 m per unit (--scale)"
     (tmp_path / "parts").mkdir()
     for name, x in (("a", 0.0), ("b", 3000.0)):
         box(x).export(tmp_path / "parts" / f"{name}.3mf")
-    assert load(tmp_path / "parts").lengths == "millimetres (stated in the file)", "in a folder as well"
+    assert load(tmp_path / "parts").lengths == "millimetres (stated by the file or its format)", "in a folder as well"
 
 
 @pytest.mark.parametrize(
