@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError, OutputError
-from kinematify.robot.description import urdf_for
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -71,6 +70,8 @@ def urdf_of(model: Path, package_dirs: Sequence[Path] = (), arguments: Mapping[s
     if not model.is_dir():
         if not model.is_file():
             raise InputError(f"There is no file {model}. Give a URDF, or a model folder that `kinematify infer` wrote.")
+        from kinematify.robot.description import urdf_for  # noqa: PLC0415 - loads NumPy, which --help needs not
+
         return urdf_for(model, package_dirs, arguments)
     found = [model / MODEL_FILE] if (model / MODEL_FILE).is_file() else sorted(model.glob("*.urdf"))
     if len(found) != 1:
