@@ -8,14 +8,18 @@ import mujoco
 import numpy as np
 import pybullet
 import pytest
+import trimesh
 from pybullet_utils.bullet_client import BulletClient
 
 from kinematify.errors import DescriptionError
 from kinematify.formats.export_model import export
+from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.description import form_of, open_description
+from kinematify.robot.mesh_paths import near_mesh
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Robot, forward_kinematics, joint_values, rest_configuration
 from kinematify.robot.transforms import rotation_from_rpy
+from kinematify.validation.run import validate
 
 MJCF = """<mujoco model="crane">
   <compiler angle="degree" eulerseq="zyx"/>
@@ -244,3 +248,43 @@ def test_what_cannot_be_read_is_refused_by_name(tmp_path: Path, name: str, text:
     written(tmp_path, "other/b.usda", '#usda 1.0\ndef "b" {}\n')
     with pytest.raises(DescriptionError, match=said):
         read_robot(written(tmp_path, f"here/{name}", text))
+
+
+def test_findings_of_an_mjcf_name_its_lines_and_what_is_not_read(tmp_path: Path) -> None:
+    text = MJCF.replace('range="0 0.3" ref="0.1"', 'range="0.05 0.3" ref="0.1"')
+    report = validate(written(tmp_path, "crane.xml", text), engines=("mujoco",), selected=("KV108", "KV222"), workers=1)
+    (zero,) = [item for item in report.findings if item.check == "KV222"]
+    assert (zero.joint, zero.line) == ("lift", 9)
+    assert any("sensors" in item.message for item in report.findings if item.check == "KV108")
+    assert report.model.endswith("crane.xml")
+
+
+def test_a_file_under_a_near_name_is_named_and_written(tmp_path: Path) -> None:
+    (tmp_path / "Meshes").mkdir()
+    trimesh.creation.box((0.1, 0.1, 0.1)).export(tmp_path / "Meshes" / "Base_Link.STL")
+    mesh = '<geometry><mesh filename="{}"/></geometry>'
+    shapes = [f"<visual>{mesh.format(name)}</visual>" for name in ("meshes/base_link.stl", "gone.stl", "")]
+    collisions = [f"<collision>{mesh.format(name)}</collision>" for name in ("meshes/base_link.stl", "gone.stl")]
+    turned = '<joint name="j" type="fixed"><origin quat_xyzw="0 0 1 1"/><parent link="a"/><child link="b"/></joint>'
+    link = f'<link name="a">{"".join(shapes + collisions)}</link><link name="b"/>{turned}'
+    path = written(tmp_path, "model.urdf", f"<robot name='r'>{link}</robot>")
+    found = near_mesh("meshes/base_link.stl", tmp_path, ())
+    assert found == tmp_path / "Meshes" / "Base_Link.STL"
+    editor = UrdfEditor(path, tmp_path / "out" / "fixed.urdf")
+    editor.settle_shapes()
+    editor.write_rpy()
+    fixed = read_robot(editor.write())
+    assert not fixed.notes
+    assert [len(fixed.links[0].visuals), len(fixed.links[0].collisions)] == [1, 1]
+    assert 'rpy="0.0' in editor.out.read_text()
+    np.testing.assert_allclose(fixed.joints[0].T_parent_child[:2, :2], [[0, -1], [1, 0]], atol=1e-9)
+
+
+def test_a_package_whose_folder_has_another_name_is_found_above_the_file(tmp_path: Path) -> None:
+    (tmp_path / "2R ARM_description" / "meshes").mkdir(parents=True)
+    trimesh.creation.box((0.1, 0.1, 0.1)).export(tmp_path / "2R ARM_description" / "meshes" / "Link 1.STL")
+    mesh = '<mesh filename="package://2R ARM/meshes/Link 1.STL"/>'
+    text = f"<robot name='r'><link name='a'><visual><geometry>{mesh}</geometry></visual></link></robot>"
+    robot = read_robot(written(tmp_path, "2R ARM_description/urdf/2R ARM.urdf", text))
+    assert robot.links[0].has_geometry
+    assert not robot.notes
