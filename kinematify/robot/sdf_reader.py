@@ -113,9 +113,9 @@ def read_sdf(path: Path, source: GeometrySource) -> Robot:
     bodies = [_link(model, name, element) for name, element in model.links.items()]
     known = {body.name for body in bodies}
     bodies += [Link(name=joint.child) for joint, _ in edges if joint.child not in known]
-    if any(joint.parent == WORLD for joint, _ in edges):
+    if WORLD not in model.links and any(joint.parent == WORLD for joint, _ in edges):
         bodies.insert(0, Link(name=WORLD))
-    poses = {name: model.placed(name) for name in model.links} | {WORLD: np.eye(4)}
+    poses = {WORLD: np.eye(4)} | {name: model.placed(name) for name in model.links}
     for tag in ("sensor", "plugin", "light", "gripper"):
         for item in chosen.iter(tag):
             model.lose(f"{tag}s", item.get("name") or "")
@@ -223,7 +223,8 @@ def _edges(model: _Model, name: str, element: _Element) -> Iterator[Edge]:
         model.notes.append(f"The {declared} joint {name} is read as fixed.")
     T_top_joint = model.placed(name)
     T_child = np.linalg.inv(model.placed(child)) @ T_top_joint
-    T_parent = T_top_joint if parent == WORLD else np.linalg.inv(model.placed(parent)) @ T_top_joint
+    outside = parent == WORLD and WORLD not in model.links
+    T_parent = T_top_joint if outside else np.linalg.inv(model.placed(parent)) @ T_top_joint
     joint = Joint(
         name=name, kind=kind, parent=parent, child=child, T_parent_child=T_parent, declared_kind=declared,
         line=line_of(element),
