@@ -283,7 +283,7 @@ def _written(
     from kinematify.model.output import MODEL_FILE, write_model_folder
     from kinematify.pipeline.record import write_inference_files, write_preview
 
-    found: Any = None
+    found: ValidationReport | KinematifyError | TaskFailure | None = None
 
     def write(folder: Path) -> None:
         nonlocal found
