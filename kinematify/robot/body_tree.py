@@ -114,7 +114,7 @@ def sentences(losses: Mapping[str, Sequence[str]]) -> list[str]:
     for what, names in losses.items():
         shown = ", ".join(name for name in names[:_SHOWN] if name)
         more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-        found.append(f"Not read: {len(names)} {what}" + (f" ({shown}{more})." if shown else "."))
+        found.append(f"Not read ({len(names)}): {what}" + (f": {shown}{more}." if shown else "."))
     return found
 
 

@@ -178,7 +178,7 @@ def open_description(
     changed = sum(one is not other for one, other in zip(joints, robot.joints, strict=True))
     if changed:
         made_up = f"{_EFFORT:g}, {_VELOCITY:g} and {_SLIDE:g} m"
-        notes.append(f"{changed} joints state no effort, speed or end; the URDF for engines says {made_up}.")
+        notes.append(f"No effort, speed or end is stated by {changed} of the joints; the URDF says {made_up}.")
     links = tuple(_with_files(link, number, folder) for number, link in enumerate(robot.links))
     write_robot(replace(robot, links=links, joints=joints), urdf)
     lines = {("link", link.name): link.line for link in robot.links}

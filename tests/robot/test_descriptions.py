@@ -87,7 +87,7 @@ def test_an_mjcf_moves_as_in_mujoco_and_its_losses_are_listed(tmp_path: Path) ->
     assert len(robot.link_by_name["boom"].visuals) == 2
     assert len(robot.link_by_name["boom"].collisions) == 1
     said = " ".join(robot.notes)
-    for word in ("ball joint swing is read as fixed", "mast", "1 sensors", "type plane (floor)"):
+    for word in ("ball joint swing is read as fixed", "mast", "(1): sensors", "type plane: floor"):
         assert word in said
 
 
