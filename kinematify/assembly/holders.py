@@ -60,7 +60,8 @@ def parts_of_holders(meshes: Sequence[RawMesh]) -> tuple[list[RawMesh], list[str
         else:
             keeps = [not name or paths[k][-1][1] == name for k in members]
             result += [
-                (k, meshes[k] if kept else replace(meshes[k], name=name)) for k, kept in zip(members, keeps, strict=True)
+                (k, meshes[k] if kept else replace(meshes[k], name=name))
+                for k, kept in zip(members, keeps, strict=True)
             ]
     return [mesh for _, mesh in sorted(result, key=lambda item: item[0])], said
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import click
 
@@ -283,7 +283,7 @@ def _written(
     from kinematify.model.output import MODEL_FILE, write_model_folder
     from kinematify.pipeline.record import write_inference_files, write_preview
 
-    found: ValidationReport | KinematifyError | TaskFailure | None = None
+    found: Any = None
 
     def write(folder: Path) -> None:
         nonlocal found
@@ -302,7 +302,7 @@ def _written(
     from kinematify.processes.pool import TaskFailure
 
     if not isinstance(found, TaskFailure):
-        return found
+        return cast("ValidationReport | KinematifyError | None", found)
     return EnvironmentFault(f"The engines ended before they had answered: {found.message}.")
 
 

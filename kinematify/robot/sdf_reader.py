@@ -266,7 +266,9 @@ def _turning(model: _Model, joint: Joint, axis: _Element, T_top_joint: FloatArra
         model.lose("springs of joints", joint.name)
     mimic = None
     if (follows := axis.find("mimic")) is not None:
-        slope, offset, start = (_values(follows.find(key), 1, (0.0,))[0] for key in ("multiplier", "offset", "reference"))
+        slope, offset, start = (
+            _values(follows.find(key), 1, (0.0,))[0] for key in ("multiplier", "offset", "reference")
+        )
         mimic = Mimic(joint=scope + (follows.get("joint") or ""), multiplier=slope, offset=offset - slope * start)
     effort, velocity, damping, friction = (
         (_values(item, 1, (0.0,))[0] if (item := axis.find(key)) is not None else None)
