@@ -207,9 +207,9 @@ def loadable(urdf: Path, folder: Path) -> Path:
     editor = UrdfEditor(urdf, folder / f"{urdf.stem}_fixed.urdf")
     solid = [link.name for link in robot.links if link.has_geometry]
     editor.carve(robot, frozenset(solid), config, settings)
-    editor.weigh(robot, solid, settings.prepare)
+    editor.set_inertia(robot, solid, settings.prepare)
     weighed_links = tuple(replace(link, inertial=inertials[link.name]) for link in robot.links)
-    editor.rub(replace(robot, links=weighed_links), config.dynamics)
+    editor.set_friction(replace(robot, links=weighed_links), config.dynamics)
     return editor.write()
 
 

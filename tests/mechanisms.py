@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import trimesh
 
-from kinematify.assembly.part import Assembly, Part, SetAside
+from kinematify.assembly.part import Assembly, ExcludedPart, Part
 from kinematify.config import load_config
 from kinematify.contact.tree import KinematicTree
 from kinematify.joints.candidate import JointEstimate
@@ -100,7 +100,7 @@ def flat_and_fixed() -> Mechanism:
     open_shell = Part(name="shell", vertices=shell.vertices, faces=shell.faces[2:])
     triangle = Part(name="badge", vertices=flap.vertices[:3] + 0.01, faces=np.array([[0, 1, 2]]))
     empty = Part(name="nothing", vertices=np.zeros((1, 3)), faces=np.empty((0, 3)))
-    set_aside = tuple(SetAside(part=item, reason="flat", nearest="flap") for item in (triangle, empty))
+    set_aside = tuple(ExcludedPart(part=item, reason="flat", nearest="flap") for item in (triangle, empty))
     parts = (box("body", (0, 0, 0), (0.6, 0.6, 0.4)), flap, open_shell)
     joints = (
         joint(1, "revolute", (1, 0, 0), (0.1, 0.3, 0.2), (0.0, 1.5)),

@@ -13,7 +13,7 @@ from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.engines import ENGINES, load_file
-from kinematify.simulation.raw_model import MovesFreely, Unloadable, velocity_probe
+from kinematify.simulation.raw_model import FloatingLink, Unloadable, velocity_probe
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -113,7 +113,7 @@ class AsLoadedContext:
     def loading(self) -> RawEngineModel | Unloadable:
         """The file in the engine, from a copy with absolute paths of meshes where it is not opened without."""
         resolved = self.request.resolved
-        if not isinstance(self.bare, Unloadable) or isinstance(self.bare, MovesFreely) or resolved is None:
+        if not isinstance(self.bare, Unloadable) or isinstance(self.bare, FloatingLink) or resolved is None:
             return self.bare
         copy = self._opened(resolved)
         if isinstance(copy, Unloadable):
@@ -128,7 +128,7 @@ class AsLoadedContext:
         except Unloadable as error:
             return error
         known = set(loaded.joints) <= set(self.mechanism.joints)
-        return loaded if known or not self.floats else MovesFreely(loaded.lines_of_joints())
+        return loaded if known or not self.floats else FloatingLink(loaded.lines_of_joints())
 
     @property
     def floats(self) -> bool:
@@ -203,7 +203,7 @@ class AsLoadedContext:
         return tuple(item for item in found if body[item.links[0]] != body[item.links[1]])
 
     @cached_property
-    def left_alone(self) -> RestRun:
+    def passive_run(self) -> RestRun:
         """Nothing is done."""
         return self.running.rest(self.values, self.settings.seconds, contacts=True)
 
@@ -250,18 +250,18 @@ class AsLoadedContext:
             if abs(end - travel.rest) > self._nothing(travel)
         )
 
-    def moves_plainly(self, run: VelocityProbe) -> bool:
+    def moves_by_motor(self, run: VelocityProbe) -> bool:
         """True if a joint that a push did not bring to its end gets there as the file is loaded without flags.
 
         By the push without contacts, or by the joint's own motor: engines answer pushes of light parts wrongly.
         """
         if self.flag is None:
             return False
-        if run.without_contacts is not None and self.arrives(run, run.without_contacts):
+        if run.without_contacts is not None and self.reaches_end(run, run.without_contacts):
             return True
         target = run.push.target
         driven = cast("MotorFile", self.loaded).motor(run.travel.joint, run.values, target, self.settings.seconds)
-        return self.arrives(replace(run, end=target), driven)
+        return self.reaches_end(replace(run, end=target), driven)
 
     def stopped_by(self, run: VelocityProbe) -> tuple[Overlap, float] | None:
         """Return what is in each other where a push ended, and at which value of the joint [rad or m].
@@ -302,7 +302,7 @@ class AsLoadedContext:
         """Return the visible surfaces in motion, for joints that fall short; None where they are what collides."""
         from kinematify.geometry.scene import read_scene, simplified, visible_shapes  # noqa: PLC0415 - for these only
         from kinematify.geometry.sweep import Sweeper  # noqa: PLC0415
-        from kinematify.validation.left_model import thin_model_of  # noqa: PLC0415
+        from kinematify.validation.model_cache import thin_model_of  # noqa: PLC0415
 
         model = thin_model_of(self.request)
         if not simplified(model) and len(self.request.free_travel) == len(self.mechanism.travels):
@@ -323,11 +323,11 @@ class AsLoadedContext:
         run = VelocityProbe(
             travel=travel, values=self.values, push=push, pushed=pushed, end=end, free=self.free(travel) is not None
         )
-        if self.arrives(run, pushed.farthest):
+        if self.reaches_end(run, pushed.farthest):
             return run
         seen = self._seen_end(travel, end)
         run = replace(run, end=seen) if abs(seen - travel.rest) > self._nothing(travel) else replace(run, free=False)
-        if self.arrives(run, pushed.farthest):
+        if self.reaches_end(run, pushed.farthest):
             return run
         return replace(run, without_contacts=self.running.push(push, self.values, contacts=False).farthest)
 
@@ -401,7 +401,7 @@ class AsLoadedContext:
         masses = [link.inertial.mass for link in self.robot.links if link.inertial is not None]
         return GRAVITY * float(sum(masses)) * self.size
 
-    def arrives(self, run: VelocityProbe, farthest: float) -> bool:
+    def reaches_end(self, run: VelocityProbe, farthest: float) -> bool:
         """True if a push got so far that the joint counts as moving to its end [rad or m]."""
         travel, way = run.travel, abs(run.end - run.travel.rest)
         gone, stopped = abs(farthest - travel.rest), run.end not in (travel.lower, travel.upper)

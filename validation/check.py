@@ -134,7 +134,7 @@ class OpenCheck:
     measured: dict[str, float] = field(default_factory=dict)
     status: Status | None = None
     reason: str | None = None
-    harmful: bool = False
+    is_fatal: bool = False
     """True after an error that forbids later stages to read the file."""
 
     def find(
@@ -164,7 +164,7 @@ class OpenCheck:
         check = REGISTRY[self.id]
         names = [name for name in (joint, link, *(pair or ())) if name is not None]
         message, remedy = (_with_numbers_quoted(text, names) for text in (message, remedy))
-        self.harmful |= (severity or check.severity) is Severity.ERROR and not harmless
+        self.is_fatal |= (severity or check.severity) is Severity.ERROR and not harmless
         self.findings.append(
             Finding(
                 check=self.id,

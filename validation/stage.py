@@ -68,7 +68,7 @@ class Recorder:
         self._tell = tell
         self._selected = selected
 
-    def wants(self, *checks: str) -> bool:
+    def is_selected(self, *checks: str) -> bool:
         """True if at least one of the checks was asked for; work for none of them can be omitted."""
         return any(check in self._selected for check in checks)
 
@@ -90,7 +90,7 @@ class Recorder:
 
     def run(self, check: Check, context: object, engine: str | None = None) -> None:
         """Run one check on the context of its stage, if it was asked for."""
-        if not self.wants(check.id):
+        if not self.is_selected(check.id):
             return
         with self.check(check.id, engine) as result:
             check.run(result, context)

@@ -274,11 +274,11 @@ def judgement_of(example: Example, probabilities: FloatArray) -> Posterior:
     """What the inference would make of these probabilities, shape (h,)."""
     return Posterior(
         hypotheses=example.hypotheses,
-        likely=probabilities,
+        prior=probabilities,
         by_cues=example.by_cues,
         support=example.measured["rules_score"],
         size=example.size,
-        lead=_confidence().cues_lead,
+        prior_log_odds=_confidence().cues_lead,
     )
 
 

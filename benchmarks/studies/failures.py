@@ -40,7 +40,7 @@ from kinematify.evaluation.benchmark_job import erased_item
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
 from kinematify.evaluation.result_record import table
 from kinematify.refinement.joint_plan import Plan
-from kinematify.refinement.simulate import TIERS, DearTiers, Simulator
+from kinematify.refinement.simulate import TIERS, ExpensiveTiers, Simulator
 from kinematify.validation import failure_rates
 from kinematify.validation.failure_rates import CLASSES, GEOMETRY, RIGHT, FailureRates, tier_of
 from kinematify.validation.finding import Severity
@@ -152,7 +152,7 @@ def _failed(inference: Inference, tier: str) -> dict[str, dict[str, Severity]]:
     settings = load_settings()
     verdict = Simulator(plan.model, settings.geometry).judge(plan.model)
     if tier != GEOMETRY:
-        verdict = DearTiers(settings=settings).deepened(verdict, plan, tier)
+        verdict = ExpensiveTiers(settings=settings).deepened(verdict, plan, tier)
     carrier = {joint.child: joint.name for joint in plan.model.joints}
     failed: dict[str, dict[str, Severity]] = {name: {} for name in carrier.values()}
     for finding in verdict.findings:

@@ -38,7 +38,7 @@ from kinematify.refinement import refine
 from kinematify.refinement.candidates import CandidateJoints, is_same
 from kinematify.refinement.choose import Chooser
 from kinematify.refinement.joint_plan import Plan
-from kinematify.refinement.simulate import TIERS, DearTiers, Simulator
+from kinematify.refinement.simulate import TIERS, ExpensiveTiers, Simulator
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -140,7 +140,7 @@ def mistakes(mechanism: TrueMechanism, tier: str) -> list[Record]:
     chooser = Chooser(
         candidates=CandidateJoints(answer.assembly, answer.graph, answer.bearings, answer.config),
         simulator=Simulator(plan.model, settings.geometry),
-        dear=DearTiers(settings=settings),
+        dear=ExpensiveTiers(settings=settings),
         config=answer.config.refine,
         in_time=lambda: True,
     )

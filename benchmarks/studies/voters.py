@@ -35,7 +35,15 @@ from kinematify.joints.candidate import JointCandidate
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.robot.joint_type import JointType
 from kinematify.vision.motion_options import look_alike, offered
-from kinematify.vision.votes import VoterRecord, groups, place_of_choice, posterior, prior, same_on_twin, to_ask
+from kinematify.vision.votes import (
+    VoterRecord,
+    groups,
+    map_to_congruent_part,
+    place_of_choice,
+    posterior,
+    prior,
+    to_ask,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -174,7 +182,7 @@ def _follows(
     one, other = (inference.assembly.parts[inference.joints[k].child] for k in (origin, place))
     if origin == place:
         return [[a is b for b in options[place]] for a in options[origin]]
-    return [[same_on_twin(one, a, other, b) for b in options[place]] for a in options[origin]]
+    return [[map_to_congruent_part(one, a, other, b) for b in options[place]] for a in options[origin]]
 
 
 def _named(
@@ -198,7 +206,7 @@ def _named(
             continue
         mask, special = choice
         picked = [option for option, chosen in zip(options[k], mask, strict=True) if chosen]
-        twin = [any(same_on_twin(theirs, a, mine, b) for a in picked) for b in options[place]]
+        twin = [any(map_to_congruent_part(theirs, a, mine, b) for a in picked) for b in options[place]]
         return {"named": [*(mask if k == place else twin), *special], "own": k == place}
     return None
 

@@ -12,7 +12,7 @@ import igl
 import numpy as np
 from scipy.spatial import cKDTree
 
-from kinematify.assembly.part import Assembly, Part, SetAside
+from kinematify.assembly.part import Assembly, ExcludedPart, Part
 from kinematify.errors import AssemblyError
 from kinematify.robot.appearance import MAX_MATERIALS
 from kinematify.robot.arrays import used_vertices
@@ -104,16 +104,16 @@ def assemble(
         parts=tuple(thin),
         source=source,
         set_aside=tuple(
-            SetAside(part=part, reason=reason, nearest=_nearest(part, triage.kept)) for part, reason in triage.aside
+            ExcludedPart(part=part, reason=reason, nearest=_nearest(part, triage.kept)) for part, reason in triage.aside
         ),
         original_names=dict(zip(names, (mesh.name for mesh in meshes), strict=True)),
-        warnings=(*warnings, *_told_looks(meshes, names), *triage.warnings, *_thinning_warnings(thin, originals)),
+        warnings=(*warnings, *report_materials(meshes, names), *triage.warnings, *_thinning_warnings(thin, originals)),
         originals=originals,
     )
 
 
 @dataclass(frozen=True)
-class _Triage:
+class PartFilter:
     """Parts that take part, and those that do not with the reason."""
 
     kept: list[Part]
@@ -172,7 +172,7 @@ def _looks(vertices: FloatArray, faces: IntArray, appearance: Appearance | None)
     return {"color": tuple(color), "appearance": None if one_color else appearance}
 
 
-def _told_looks(meshes: Sequence[RawMesh], names: Sequence[str]) -> list[str]:
+def report_materials(meshes: Sequence[RawMesh], names: Sequence[str]) -> list[str]:
     """Return what of the materials is lost."""
     notes = dict.fromkeys(note for mesh in meshes if mesh.appearance for note in mesh.appearance.notes)
     warnings = [f"Not all colours are those of the input: {'; '.join([*notes][:8])}."] if notes else []
@@ -189,13 +189,13 @@ def _told_looks(meshes: Sequence[RawMesh], names: Sequence[str]) -> list[str]:
     return warnings
 
 
-def _without_degenerate(parts: Sequence[Part], source: str, config: AssemblyConfig) -> _Triage:
+def _without_degenerate(parts: Sequence[Part], source: str, config: AssemblyConfig) -> PartFilter:
     solid = [part for part in parts if len(part.faces) and part.area > 0.0]
     if not solid:
         raise AssemblyError(f"No part of {source} has a triangle with area. Give meshes with surfaces.")
     diagonal = Assembly(parts=tuple(solid), source=source).diagonal
     reasons = [(part, _degenerate_reason(part, diagonal, config)) for part in parts]
-    return _Triage([part for part, reason in reasons if not reason], [item for item in reasons if item[1]])
+    return PartFilter([part for part, reason in reasons if not reason], [item for item in reasons if item[1]])
 
 
 def _degenerate_reason(part: Part, diagonal: float, config: AssemblyConfig) -> str:
@@ -213,7 +213,7 @@ def _degenerate_reason(part: Part, diagonal: float, config: AssemblyConfig) -> s
     return ""
 
 
-def _without_duplicates(triage: _Triage, config: AssemblyConfig) -> _Triage:
+def _without_duplicates(triage: PartFilter, config: AssemblyConfig) -> PartFilter:
     """Set aside every part that is in the place of an earlier one of the same shape."""
     if not triage.kept:
         return triage
@@ -232,7 +232,7 @@ def _without_duplicates(triage: _Triage, config: AssemblyConfig) -> _Triage:
         else:
             aside.append((part, f"It is the same mesh at the same place as {twin.name}."))
             warnings.append(f"The part {part.name} is {twin.name} once more; only {twin.name} is used.")
-    return _Triage(kept, aside, tuple(warnings))
+    return PartFilter(kept, aside, tuple(warnings))
 
 
 def _same_vertices(one: Part, other: Part, tolerance: float) -> bool:
@@ -242,7 +242,7 @@ def _same_vertices(one: Part, other: Part, tolerance: float) -> bool:
     return all(cKDTree(a).query(b)[0].max() <= tolerance for a, b in pairs)
 
 
-def _too_few(source: str, triage: _Triage) -> str:
+def _too_few(source: str, triage: PartFilter) -> str:
     aside = "".join(f" {part.name}: {reason}" for part, reason in triage.aside[:8])
     return (
         f"The input {source} has {len(triage.kept)} usable part, but a mechanism needs at least two.{aside} Give one "

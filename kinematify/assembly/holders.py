@@ -58,9 +58,10 @@ def parts_of_holders(meshes: Sequence[RawMesh]) -> tuple[list[RawMesh], list[str
             result.append((members[0], replace(merged(given, name), holders=((0, name),))))
             said.append(f"{name} ({', '.join(mesh.holders[-1][1] for mesh in given[:3])}{', ...' * (len(given) > 3)})")
         else:
-            own = [not name or paths[k][-1][1] == name for k in members]
+            keeps = [not name or paths[k][-1][1] == name for k in members]
             result += [
-                (k, meshes[k] if kept else replace(meshes[k], name=name)) for k, kept in zip(members, own, strict=True)
+                (k, meshes[k] if kept else replace(meshes[k], name=name))
+                for k, kept in zip(members, keeps, strict=True)
             ]
     return [mesh for _, mesh in sorted(result, key=lambda item: item[0])], said
 

@@ -85,7 +85,7 @@ class Part:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SetAside:
+class ExcludedPart:
     """A degenerate mesh that takes no part in the inference but is kept as a fixed visual."""
 
     part: Part
@@ -104,7 +104,7 @@ class Assembly:
     """At least two parts with unique names."""
     source: str
     """Where it came from, for messages and the record."""
-    set_aside: tuple[SetAside, ...] = ()
+    set_aside: tuple[ExcludedPart, ...] = ()
     """Degenerate input, by name and reason; nothing disappears silently."""
     original_names: Mapping[str, str] = field(default_factory=dict)
     """Part name -> name in the input."""

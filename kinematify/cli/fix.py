@@ -12,7 +12,7 @@ from kinematify.cli.options import arguments_argument, examples, force_file_opti
 from kinematify.cli.progress import progress_reporter
 
 if TYPE_CHECKING:
-    from kinematify.refinement.repair import Fix, Look
+    from kinematify.refinement.repair import Fix, ModelSnapshot
 
 
 @click.command(
@@ -115,17 +115,17 @@ def _say(done: Fix, model: str) -> None:
     click.echo(f"before: {_verdict(done.before)}")
     if done.written:
         click.echo(f"after:  {_verdict(done.after)}")
-    for engine, (was, now) in done.fewer.items():
+    for engine, (was, now) in done.regressions.items():
         click.echo(
             f"{ENGINES[engine].title} moves {now} joints of the result and {was} of {model}; no longer: "
-            f"{', '.join(done.held[engine])}. Use {model} there, or undo the changes of their links."
+            f"{', '.join(done.kept[engine])}. Use {model} there, or undo the changes of their links."
         )
-    for engine in done.lost:
+    for engine in done.removed:
         click.echo(f"{ENGINES[engine].title} no longer opens {done.path.name}: {done.after.refusals[engine]}")
     click.echo(done.summary)
 
 
-def _verdict(look: Look) -> str:
+def _verdict(look: ModelSnapshot) -> str:
     from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
 
     opened = [

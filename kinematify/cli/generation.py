@@ -13,7 +13,7 @@ from kinematify.cli.report_files import generated_files, report_on
 from kinematify.config import load_config
 from kinematify.errors import ExitStatus, InputError
 from kinematify.generate.blueprint_files import INFERRED_FOLDER, PARTS_FOLDER, write_blueprint, write_parts
-from kinematify.generate.sentence import Made, Sentence
+from kinematify.generate.sentence import BuildResult, Sentence
 from kinematify.model.output import MODEL_FILE, PREVIEW_FILE, check_output, write_model_folder
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class Generation:
     config: Config = field(default_factory=load_config)
     strict: bool = False
     """Whether nothing is written unless all that is asked for is built."""
-    made: Made = field(init=False)
+    made: BuildResult = field(init=False)
     model: KinematicModel = field(init=False)
     inference: Inference | None = None
     report: ValidationReport | None = None
@@ -91,7 +91,7 @@ class Generation:
         if self.validated:
             self._validate(lambda stage, done: progress(f"validation: {stage}", _WRITTEN + (1.0 - _WRITTEN) * done))
 
-    def build(self, progress: Reporter) -> Made:
+    def build(self, progress: Reporter) -> BuildResult:
         """Build what is asked for.
 
         Raises:
@@ -101,7 +101,7 @@ class Generation:
         assert self.request is not None, "who asks no language model has a request"
         if isinstance(self.request, Sentence):
             return self.request.made(seed=self.seed)
-        return Made(blueprint=self.request.build(seed=self.seed))
+        return BuildResult(blueprint=self.request.build(seed=self.seed))
 
     @property
     def blueprint(self) -> Blueprint:
@@ -212,7 +212,7 @@ def summary_of(report: ValidationReport | None) -> dict[str, Any] | None:
     }
 
 
-def _understood(made: Made) -> str:
+def _understood(made: BuildResult) -> str:
     if made.specification is None:
         return ""
     lines = [f"Understood: {made.specification}."]
@@ -221,7 +221,7 @@ def _understood(made: Made) -> str:
     return "\n".join(lines)
 
 
-def _not_built(made: Made) -> str:
+def _not_built(made: BuildResult) -> str:
     return f"Not built: {'; '.join(made.not_built)}" if made.not_built else ""
 
 

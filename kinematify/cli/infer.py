@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import click
 
@@ -302,7 +302,7 @@ def _written(
     from kinematify.processes.pool import TaskFailure
 
     if not isinstance(found, TaskFailure):
-        return found
+        return cast("ValidationReport | KinematifyError | None", found)
     return EnvironmentFault(f"The engines ended before they had answered: {found.message}.")
 
 

@@ -113,12 +113,12 @@ def command(
 
 
 def _accept(folder: Path, name: str) -> int:
-    from kinematify.evaluation.nightly.store import accept, chosen, load_nights
+    from kinematify.evaluation.nightly.store import accept, find_night, load_nights
     from kinematify.processes.lock import locked
 
     with locked(folder / ".lock", f"The folder of nights {folder}"):
         nights, _ = load_nights(folder)
-        accept(folder, chosen(nights, name, folder))
+        accept(folder, find_night(nights, name, folder))
     click.echo(f"{name} is the baseline of {folder} from now on.")
     return 0
 

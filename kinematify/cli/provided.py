@@ -27,7 +27,7 @@ from kinematify.generate.providers.judge_blueprint import drawn_findings
 from kinematify.generate.providers.language_model import LanguageModel, examples_for, language_model
 from kinematify.generate.providers.rodin import RodinSource
 from kinematify.generate.providers.source import RecordingSource, ReplayedSource, check_prompt
-from kinematify.generate.sentence import Made, from_text, kinds_of_object
+from kinematify.generate.sentence import BuildResult, from_text, kinds_of_object
 from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference_files
@@ -223,7 +223,7 @@ class LanguageGeneration(Generation):
     written: Written | None = None
     """The blueprint, where the library has no such object."""
 
-    def build(self, progress: Reporter) -> Made:
+    def build(self, progress: Reporter) -> BuildResult:
         """Build what a model translates, writes or corrects; compare it with the request.
 
         Raises:
@@ -242,7 +242,7 @@ class LanguageGeneration(Generation):
         facts = {"source": "llm", "model": self.model_asked.model, "text": self.options.text, "rounds": self.rounds}
         return replace(made, blueprint=replace(made.blueprint, parameters={**made.blueprint.parameters, **facts}))
 
-    def _translated(self, asked: Specification, prompt: Prompt, job: PaidJob, progress: Reporter) -> Made | None:
+    def _translated(self, asked: Specification, prompt: Prompt, job: PaidJob, progress: Reporter) -> BuildResult | None:
         """The object of the library that the model names; None if there is none."""
         found = self.model_asked.translate(prompt, job, kinds_of_object(), progress)
         self.tokens = found.tokens
@@ -258,8 +258,8 @@ class LanguageGeneration(Generation):
         return replace(made, not_built=tuple(dict.fromkeys(listed)))
 
     def _designed(
-        self, asked: Specification | None, prompt: Prompt, job: PaidJob, progress: Reporter, other: Made | None
-    ) -> Made:
+        self, asked: Specification | None, prompt: Prompt, job: PaidJob, progress: Reporter, other: BuildResult | None
+    ) -> BuildResult:
         """The blueprint that the model writes; what the library has instead, if that comes nearer to the request.
 
         Raises:
@@ -284,7 +284,7 @@ class LanguageGeneration(Generation):
         self.rounds, self.tokens = self.written.rounds, self.written.tokens
         blueprint = read_blueprint(self.written.path)
         missing = () if asked is None else compare(asked, blueprint, self.written.nouns).missing
-        made = Made(blueprint=blueprint, specification=asked, not_built=tuple(dict.fromkeys(map(str, missing))))
+        made = BuildResult(blueprint=blueprint, specification=asked, not_built=tuple(dict.fromkeys(map(str, missing))))
         return made if other is None or len(made.not_built) <= len(other.not_built) else other
 
     def _findings(self, blueprint: Blueprint) -> Sequence[str]:

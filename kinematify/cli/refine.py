@@ -92,7 +92,7 @@ def command(
     from kinematify.pipeline.infer_assembly import infer
     from kinematify.processes.lock import writing
     from kinematify.refinement import refine
-    from kinematify.refinement.folder import as_left, open_model_folder, read_record, write_refined
+    from kinematify.refinement.folder import open_model_folder, read_record, stored_state, write_refined
 
     target = _target(folder, out, force=force)
     _check_budget(budget)
@@ -103,7 +103,7 @@ def command(
         check_base(base, assembly.names)
         inference = infer(assembly, config=config, base=base, progress=lambda stage, done: progress(stage, 0.4 * done))
         refinement = refine(
-            as_left(inference, read_record(folder)),
+            stored_state(inference, read_record(folder)),
             rounds=rounds,
             tier=tier,
             seconds=budget,

@@ -13,7 +13,7 @@ from kinematify.cli.options import arguments_argument, complete_joints, examples
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.view.inference_view import Sight
+    from kinematify.view.inference_view import FindingMarker
 
 _SHOWN_TITLE = 60
 
@@ -99,7 +99,7 @@ def command(
     return 0
 
 
-def _sights(report: Path) -> list[Sight]:
+def _sights(report: Path) -> list[FindingMarker]:
     """Findings of a report that name a place or a configuration, errors first as in the report."""
     from kinematify.errors import InputError
 
@@ -115,13 +115,13 @@ def _sights(report: Path) -> list[Sight]:
         ) from error
 
 
-def _sight(finding: dict[str, Any], titles: Mapping[str, str]) -> Sight:
-    from kinematify.view.inference_view import Sight
+def _sight(finding: dict[str, Any], titles: Mapping[str, str]) -> FindingMarker:
+    from kinematify.view.inference_view import FindingMarker
 
     place = finding["joint"] or " - ".join(finding["pair"] or ()) or finding["link"] or ""
     links = [*(finding["pair"] or ()), *([finding["link"]] if finding["link"] else [])]
     title = titles.get(finding["check"], finding["check"])
-    return Sight(
+    return FindingMarker(
         title=f"{place}: {title}"[:_SHOWN_TITLE],
         message=f"{finding['message']} {finding['remedy']} ({finding['severity']} {finding['check']})",
         q={name: float(value) for name, value in (finding["q"] or {}).items() if value is not None},

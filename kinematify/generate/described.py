@@ -66,7 +66,7 @@ class CopyDescription(BaseModel):
         return found
 
 
-class Spoken(BaseModel):
+class ObjectNames(BaseModel):
     """Names of an object in a request."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -95,7 +95,7 @@ class Spoken(BaseModel):
         )
 
 
-class _Counted(Spoken):
+class CountParameters(ObjectNames):
     """Counts of a blueprint in a request."""
 
     category: Name
@@ -117,7 +117,7 @@ class _Counted(Spoken):
         )
 
 
-class WrittenObject(_Counted):
+class WrittenObject(CountParameters):
     """An object whose blueprint is only read once it is built, since it is most of a file."""
 
     name: Name
@@ -138,7 +138,7 @@ class WrittenObject(_Counted):
         self.described.build(values, workshop)
 
 
-class ObjectDescription(_Counted, BlueprintDescription):
+class ObjectDescription(CountParameters, BlueprintDescription):
     """A blueprint that sentences may ask for; its first part is the base link."""
 
     category: Name = "described"
@@ -181,7 +181,7 @@ class ObjectDescription(_Counted, BlueprintDescription):
         put_together(solids, looks, list(joints.values()), values, workshop)
 
 
-class SteppedDescription(Spoken):
+class SteppedDescription(ObjectNames):
     """An object that a file writes down in steps, with parameters; see `kinematify.generate.library.steps`."""
 
     name: Name

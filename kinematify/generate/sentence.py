@@ -69,7 +69,7 @@ _SEVERAL = 400  # characters at most that may name several objects
 
 
 @dataclass(frozen=True, kw_only=True)
-class Made:
+class BuildResult:
     """Result of a request."""
 
     blueprint: Blueprint
@@ -160,7 +160,7 @@ class Sentence:
         """Return what is built."""
         return self.plan.request.family
 
-    def made(self, *, seed: int | None = None) -> Made:
+    def made(self, *, seed: int | None = None) -> BuildResult:
         """Build the object, and compare it with what was asked for.
 
         Args:
@@ -174,7 +174,7 @@ class Sentence:
         if seed is not None:
             blueprint, missing = _drawn(plan, seed, len(missing))
         called = blueprint.renamed(plan.names(blueprint))
-        return Made(blueprint=called, specification=plan.specification, not_built=missing)
+        return BuildResult(blueprint=called, specification=plan.specification, not_built=missing)
 
     def build(self, *, seed: int | None = None) -> Blueprint:
         """Build the object as far as it can be built; see `made`."""
@@ -372,7 +372,7 @@ def _family_plan(specification: Specification, family: Family) -> _Plan:
         is_toy=specification.is_toy,
     )
     nouns = {" ".join(words): names for words, names in part_nouns(family, request.build()).items()}
-    return _improved(specification, request, nouns, used=meant.used, dropped=meant.dropped)
+    return refine_request(specification, request, nouns, used=meant.used, dropped=meant.dropped)
 
 
 def _composed_plan(specification: Specification, body: BodyKind, alone: bool) -> _Plan:
@@ -390,10 +390,10 @@ def _composed_plan(specification: Specification, body: BodyKind, alone: bool) ->
         how="" if alone else "in a scene",
     )
     nouns = {word: (item.stem,) for item in composition.wanted for word in item.mechanism.words}
-    return _improved(specification, request, nouns, used=frozenset(asked.used), dropped=tuple(asked.dropped))
+    return refine_request(specification, request, nouns, used=frozenset(asked.used), dropped=tuple(asked.dropped))
 
 
-def _improved(
+def refine_request(
     specification: Specification,
     request: Request,
     nouns: Mapping[str, tuple[str, ...]],

@@ -214,7 +214,7 @@ def carved(
     jams: list[tuple[int, int, int]] = []
     for number, sweep in enumerate(sweeps):
         free = partial(free_end, number)
-        clearing = _Clearing(alive, volumes, extents, sweep, free, clearance=clearance, thinnest=thinnest, kept=kept)
+        clearing = _Carver(alive, volumes, extents, sweep, free, clearance=clearance, thinnest=thinnest, kept=kept)
         jams += [(number, one, other) for one, other in clearing.run()]
     for body, (group, volume, surface) in enumerate(zip(alive, volumes, surfaces, strict=True)):
         while body not in kept and len(group) > most:
@@ -239,7 +239,7 @@ def _marked(body: int, pieces: Sequence[ConvexPiece], surface: FloatArray) -> li
     return found
 
 
-class _Clearing:
+class _Carver:
     """One sweep that is made free."""
 
     def __init__(
@@ -286,7 +286,7 @@ class _Clearing:
 
     def _separated(self, moving: _Polytope, resting: _Polytope, steps: IntArray) -> bool:
         """Cut the piece that loses less of its body; False if either body would have nothing left."""
-        best = self._cheapest(moving, resting, steps) or self._remnant(moving, resting, steps)
+        best = self._cheapest(moving, resting, steps) or self._last_piece(moving, resting, steps)
         if best is None:
             return False
         piece, parts = best
@@ -315,7 +315,7 @@ class _Clearing:
             options.append((lost + _PIECE_COST * (len(parts) - 1), piece, parts))
         return min(options, key=lambda item: item[0])[1:] if options else None
 
-    def _remnant(
+    def _last_piece(
         self, moving: _Polytope, resting: _Polytope, steps: IntArray
     ) -> tuple[_Polytope, list[_Polytope]] | None:
         """The smaller of two last pieces that has something left without clearance, however little, and what is left.

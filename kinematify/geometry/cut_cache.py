@@ -54,12 +54,12 @@ def convex_chunks(bodies: Sequence[Concave], cuts: int) -> list[list[Chunk]]:
     Returns:
         The chunks of each.
     """
-    found = [taken_apart(body, min(_MOST, cuts)) for body in bodies]
+    found = [split_by_boards(body, min(_MOST, cuts)) for body in bodies]
     rest = iter(cut_worst_first([b for b, chunks in zip(bodies, found, strict=True) if chunks is None], cuts))
     return [next(rest) if chunks is None else chunks for chunks in found]
 
 
-def taken_apart(body: Concave, most: int) -> list[Chunk] | None:
+def split_by_boards(body: Concave, most: int) -> list[Chunk] | None:
     """Take the boards of a surface off one after the other, along the planes of its own faces.
 
     A cut that halves a cabinet leaves two cabinets; only when all of its boards are off, nothing hollow is left. So the

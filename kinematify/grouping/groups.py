@@ -134,7 +134,7 @@ def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeigh
         AssemblyError: All pieces are one part.
     """
     parts = assembly.parts
-    owner = crumb_owners(parts, config.crumb * assembly.diagonal)
+    owner = assign_fragments(parts, config.crumb * assembly.diagonal)
     kept = np.flatnonzero(owner == np.arange(len(parts)))
     if len(kept) < 2:
         raise one_part(assembly)
@@ -224,7 +224,7 @@ def grouped_as(
     return replace(grouping, assembly=found, groups=tuple(groups))
 
 
-def completed(grouping: Grouping, chosen: Collection[int]) -> Grouping:
+def with_doubtful(grouping: Grouping, chosen: Collection[int]) -> Grouping:
     """The grouping in which some groups have their doubtful pieces, which the body loses.
 
     Args:
@@ -247,7 +247,7 @@ def completed(grouping: Grouping, chosen: Collection[int]) -> Grouping:
     return replace(grouping, assembly=found.assembly, groups=found.groups, rejected=rejected)
 
 
-def sureness(joints: Sequence[JointEstimate], config: GroupingConfig) -> dict[int, float]:
+def confidence_of(joints: Sequence[JointEstimate], config: GroupingConfig) -> dict[int, float]:
     """Confidence of the joints that move and that are not likelier fixed, by child."""
     return {
         joint.child: joint.confidence
@@ -348,7 +348,7 @@ def unsure(grouping: Grouping, joints: Sequence[JointEstimate], config: Grouping
     return (said,)
 
 
-def crumb_owners(parts: Sequence[Part], size: float) -> IntArray:
+def assign_fragments(parts: Sequence[Part], size: float) -> IntArray:
     """Piece that each piece rides on: itself, or the nearest larger one where its diagonal is below `size` [m].
 
     Args:

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Freedom:
+class FreeRange:
     """Range that the object lets one of its joints go, whoever pulls."""
 
     share: float = 1.0
@@ -51,11 +51,11 @@ class Freedom:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Clearing:
+class OpenedObject:
     """An object as it is when the turn of a joint comes."""
 
     scene: Scene
-    freedom: Freedom
+    freedom: FreeRange
     """Of the joint, in this scene."""
     first: Mapping[str, float] = field(default_factory=dict)
     """Joints that were opened before, and where to [rad or m]."""
@@ -68,7 +68,7 @@ def pull_end(travel: Travel, settings: PlanSettings) -> float:
     return travel.upper if opening_sign(travel) > 0.0 else travel.lower
 
 
-def clear_way(scene: Scene, joint: str, settings: PlanSettings) -> Clearing:
+def clear_way(scene: Scene, joint: str, settings: PlanSettings) -> OpenedObject:
     """Open other joints until one can be opened.
 
     Args:
@@ -80,7 +80,7 @@ def clear_way(scene: Scene, joint: str, settings: PlanSettings) -> Clearing:
         The object with the others opened; as it is where that would not help.
     """
     leader = [travel.joint for travel in scene.travels].index(joint)
-    start = found = Clearing(scene=scene, freedom=_freedom(scene, leader, settings))
+    start = found = OpenedObject(scene=scene, freedom=_freedom(scene, leader, settings))
     for _ in range(settings.openers):
         if found.freedom.share >= settings.opened:
             break
@@ -92,15 +92,15 @@ def clear_way(scene: Scene, joint: str, settings: PlanSettings) -> Clearing:
     return found if found.freedom.share >= settings.opened else start
 
 
-def _with(before: Clearing, scene: Scene, helper: int, leader: int, settings: PlanSettings) -> Clearing:
+def _with(before: OpenedObject, scene: Scene, helper: int, leader: int, settings: PlanSettings) -> OpenedObject:
     """Open one more joint."""
     travel = scene.travels[helper]
     first = {**before.first, travel.joint: pull_end(travel, settings)}
     opened = scene.standing(first)
-    return Clearing(scene=opened, freedom=_freedom(opened, leader, settings), first=first)
+    return OpenedObject(scene=opened, freedom=_freedom(opened, leader, settings), first=first)
 
 
-def _freedom(scene: Scene, leader: int, settings: PlanSettings) -> Freedom:
+def _freedom(scene: Scene, leader: int, settings: PlanSettings) -> FreeRange:
     """Return how far a leader goes while all others rest."""
     overlap = OverlapQueries(scene)
     sweep = Sweeper(scene, overlap, DepthAllowance(scene, overlap)).sweep(leader)
@@ -110,8 +110,8 @@ def _freedom(scene: Scene, leader: int, settings: PlanSettings) -> Freedom:
     deep = scene.settings.wrong * scene.size
     meeting = next((m for m in side.meetings if m.inside and m.depth > deep), None)
     if meeting is None:
-        return Freedom()
-    return Freedom(
+        return FreeRange()
+    return FreeRange(
         share=float(np.clip((meeting.first - travel.rest) / (end - travel.rest), 0.0, 1.0)),
         pair=scene.name(meeting.pair),
         helpers=tuple(sorted(scene.between(meeting.pair) - {leader})),
@@ -204,7 +204,7 @@ def plan_pull(
     started = time.process_time()
     way = _longest_way(scene, joint, settings.plan)
     moves = way >= settings.plan.least_way
-    clearing = clear_way(scene, joint, settings.plan) if moves else Clearing(scene=scene, freedom=Freedom())
+    clearing = clear_way(scene, joint, settings.plan) if moves else OpenedObject(scene=scene, freedom=FreeRange())
     planning = JointPlanning(
         arm, clearing, joint, settings, point=point, base=base, seed=seed, started=started, way=way
     )
@@ -219,10 +219,10 @@ def depend(plans: Sequence[PullPlan]) -> tuple[PullPlan, ...]:
         if not held:
             break
         failed |= held
-    return tuple(_held_up(plan, failed) if plan.failure is None and plan.joint in failed else plan for plan in plans)
+    return tuple(_blocked_by(plan, failed) if plan.failure is None and plan.joint in failed else plan for plan in plans)
 
 
-def _held_up(plan: PullPlan, failed: set[str]) -> PullPlan:
+def _blocked_by(plan: PullPlan, failed: set[str]) -> PullPlan:
     other = next(name for name in plan.first if name in failed)
     return replace(plan, failure=Failure.COVERED, words=f"{other} has to be opened first, and the arm fails to do so")
 
@@ -244,7 +244,7 @@ class JointPlanning:
     """One joint of an object."""
 
     def __init__(
-        self, arm: Arm, clearing: Clearing, joint: str, settings: TaskSettings, *, way: float, started: float,
+        self, arm: Arm, clearing: OpenedObject, joint: str, settings: TaskSettings, *, way: float, started: float,
         point: FloatArray | None = None, base: FloatArray | None = None, motion: ObjectMotion | None = None,
         seed: int = 0,
     ) -> None:  # fmt: skip

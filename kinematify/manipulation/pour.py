@@ -18,7 +18,7 @@ from kinematify.geometry.overlap import OverlapQueries
 from kinematify.geometry.scene import read_scene, relative, visible_shapes
 from kinematify.manipulation.grasp import moved_bodies
 from kinematify.manipulation.plan_request import Failure
-from kinematify.manipulation.planning import Clearing, Freedom, JointPlanning, motion_of
+from kinematify.manipulation.planning import FreeRange, JointPlanning, OpenedObject, motion_of
 from kinematify.manipulation.real_size import sizing, write_scaled
 from kinematify.manipulation.robot_place import ObjectMotion, object_box
 from kinematify.robot.joint_type import JointType
@@ -258,7 +258,7 @@ def _planned(arm: Arm, pour: Pour, settings: ValidationSettings, seed: int) -> P
     if meeting is not None:
         return PourPlan(motion=None, fraction=0.0, failure=Failure.STOPS, words=meeting, seconds=0.0)
     task = settings.task.model_copy(update={"plan": settings.task.plan.model_copy(update={"opened": 1.0})})
-    clearing = Clearing(scene=scene, freedom=Freedom())
+    clearing = OpenedObject(scene=scene, freedom=FreeRange())
     plan = JointPlanning(arm, clearing, TILT, task, way=pour.lift, started=started, motion=motion, seed=seed).run()
     executed = motion_of(plan, arm.robot, pour.urdf)
     if executed is not None:

@@ -19,7 +19,7 @@ from kinematify.model.picture_scene import (
     opened_configuration,
     posed_meshes,
 )
-from kinematify.model.urdf import link_colors, link_shades, tell_apart
+from kinematify.model.urdf import distinct_colors, link_colors, link_shades
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from kinematify.robot.appearance import linear_of, srgb_of
 
@@ -260,7 +260,7 @@ def _legend_entries(model: KinematicModel) -> list[_Entry]:
         moves = joint.kind in GLYPH_COLORS
         ink = _bytes(glyph_color(joint.kind, colors[joint.child])) if moves else _FAINT
         entries.append(_Entry(shown[joint.child], joint.child, joint.kind.value, ink))
-    if tell_apart(np.array([entry.color for entry in entries])):
+    if distinct_colors(np.array([entry.color for entry in entries])):
         return entries
     return [replace(entry, number=index) for index, entry in enumerate(entries, start=1)]
 

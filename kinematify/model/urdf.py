@@ -154,7 +154,7 @@ def link_shades(model: KinematicModel) -> dict[str, float]:
     return shades
 
 
-def tell_apart(colors: FloatArray) -> bool:
+def distinct_colors(colors: FloatArray) -> bool:
     """True if all of some colours differ to the eye.
 
     Args:

@@ -35,7 +35,7 @@ _GRID = 1e-9
 """Of the object's diagonal: vertices are rounded to this after the turn, lest rounding decides between equals."""
 
 
-def heading_of(assembly: Assembly) -> float:
+def principal_heading(assembly: Assembly) -> float:
     """The angle by which most walls are turned from the axes of the world, in (-45, 45] deg [rad]; 0 without walls."""
     normals = np.concatenate([_scaled_normals(part) for part in assembly.parts])
     areas = lengths_of(normals)
@@ -80,7 +80,7 @@ def _area_within(angles: FloatArray, areas: FloatArray, reach: float) -> FloatAr
     return np.asarray(high - low)
 
 
-def turned(assembly: Assembly, angle: float) -> Assembly:
+def rotated(assembly: Assembly, angle: float) -> Assembly:
     """An assembly after a turn about the vertical [rad]."""
     turn, grid = _turn(angle), _GRID * assembly.diagonal
 

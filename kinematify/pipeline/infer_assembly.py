@@ -18,9 +18,9 @@ from kinematify.contact.build_graph import build_contact_graph
 from kinematify.contact.seams import find_cuts, joined, rigid_pieces
 from kinematify.errors import InputError
 from kinematify.geometry.surface import part_surfaces
-from kinematify.grouping.groups import Grouping, completed, fixed_merged, group_pieces, sureness, unsure
+from kinematify.grouping.groups import Grouping, confidence_of, fixed_merged, group_pieces, unsure, with_doubtful
 from kinematify.joints.bearings.bearing_fit import fit_bearings
-from kinematify.pipeline.heading import heading_of, turned, with_heading
+from kinematify.pipeline.heading import principal_heading, rotated, with_heading
 from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.piece_report import inference_of_pieces, piece_standing_for
 from kinematify.pipeline.stages import choose_joints, find_trees, with_doubt_of_parents
@@ -111,10 +111,10 @@ def infer(
         return replace(found, grouping=assembly, joints=joints, timings=seconds, warnings=warnings)
     if base is not None and base not in assembly.names:
         raise InputError(f"There is no part {base} to be the base link. The parts are {', '.join(assembly.names)}.")
-    angle = heading_of(assembly) if graph is None and config.joints.method == "geometry" else 0.0
+    angle = principal_heading(assembly) if graph is None and config.joints.method == "geometry" else 0.0
     if angle != 0.0:
-        return with_heading(_square(turned(assembly, -angle), config, base, None, clock), assembly, angle)
-    return _square(assembly, config, base, graph, clock)
+        return with_heading(infer_rigid_parts(rotated(assembly, -angle), config, base, None, clock), assembly, angle)
+    return infer_rigid_parts(assembly, config, base, graph, clock)
 
 
 def _with_doubt_of_group(joint: JointEstimate, likely: float | None) -> JointEstimate:
@@ -125,7 +125,7 @@ def _with_doubt_of_group(joint: JointEstimate, likely: float | None) -> JointEst
     return replace(joint, confidence=joint.confidence * likely, evidence=evidence)
 
 
-def _square(
+def infer_rigid_parts(
     assembly: Assembly, config: Config, base: str | None, graph: ContactGraph | None, clock: StageClock
 ) -> Inference:
     """Return what `infer` returns of rigid parts whose walls stand along the axes of the world, as far as they can."""
@@ -137,7 +137,7 @@ def _square(
             graph = build_contact_graph(assembly, surfaces, config=config.contact, seed=config.seed)
     if 1 < len(pieces) < len(assembly.parts):
         main = piece_standing_for(base, assembly, pieces)
-        whole = _square(joined(assembly, pieces), config, main, None, StageClock(clock.progress))
+        whole = infer_rigid_parts(joined(assembly, pieces), config, main, None, StageClock(clock.progress))
         return inference_of_pieces(whole, assembly, graph, pieces, clock.seconds)
     bearings: dict[Pair, EdgeBearing] = {}
     if config.joints.method == "geometry":
@@ -170,14 +170,14 @@ def _with_doubtful_pieces(
     everything = [number for number, _ in grouping.doubtful]
     if not everything:
         return grouping, found
-    before = sureness(found.joints, config.grouping)
-    fuller = infer(completed(grouping, everything).assembly, config=config, progress=progress)
-    after = sureness(fuller.joints, config.grouping)
+    before = confidence_of(found.joints, config.grouping)
+    fuller = infer(with_doubtful(grouping, everything).assembly, config=config, progress=progress)
+    after = confidence_of(fuller.joints, config.grouping)
     chosen = [number for number in everything if after.get(number, 0.0) > before.get(number, 0.0)]
     if not chosen:
         return grouping, found
-    tried = completed(grouping, chosen)
+    tried = with_doubtful(grouping, chosen)
     if chosen != everything:
         fuller = infer(tried.assembly, config=config, progress=progress)
-    better = sum(sureness(fuller.joints, config.grouping).values()) > sum(before.values())
+    better = sum(confidence_of(fuller.joints, config.grouping).values()) > sum(before.values())
     return (tried, fuller) if better else (grouping, found)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from kinematify.joints.candidate import JointCandidate, JointEstimate
     from kinematify.refinement.candidates import CandidateJoints
     from kinematify.refinement.joint_plan import Plan
-    from kinematify.refinement.simulate import DearTiers, Simulator
+    from kinematify.refinement.simulate import ExpensiveTiers, Simulator
     from kinematify.validation.run.feedback import Feedback, RangeSignal
 
 _SAME_WAY = np.cos(np.radians(10.0))  # as `kinematify bench` tells wrong axes from right ones
@@ -64,7 +64,7 @@ class Chooser:
 
     candidates: CandidateJoints
     simulator: Simulator
-    dear: DearTiers
+    dear: ExpensiveTiers
     config: RefineConfig
     in_time: Callable[[], bool]
     simulated: int = 0

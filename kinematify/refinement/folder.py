@@ -54,11 +54,11 @@ def open_model_folder(folder: str | Path) -> tuple[Assembly, Config]:
         ) from error
     meshes = _meshes(folder, record)
     assembly = assemble(meshes, source=str(record.get("source", folder)), config=config.assembly)
-    parts, options = tuple(_dressed(part, record) for part in assembly.parts), tuple(record.get("options", ()))
+    parts, options = tuple(with_materials(part, record) for part in assembly.parts), tuple(record.get("options", ()))
     return replace(assembly, parts=parts, options=options), config
 
 
-def as_left(inference: Inference, record: dict[str, Any]) -> Inference:
+def stored_state(inference: Inference, record: dict[str, Any]) -> Inference:
     """An inference made again, with the tree and the joints that a model folder holds in place of the best ones.
 
     They differ where the model in the folder is a refined one.
@@ -208,7 +208,7 @@ def _meshes(folder: Path, record: dict[str, Any]) -> list[RawMesh]:
     return [found.pop(name) for name in order if name in found] + list(found.values())
 
 
-def _dressed(part: Part, record: dict[str, Any]) -> Part:
+def with_materials(part: Part, record: dict[str, Any]) -> Part:
     """Colour and density as the source knew them."""
     facts: dict[str, Any] = next((item for item in record["parts"] if item["name"] == part.name), {})
     color = facts.get("color")

@@ -156,7 +156,7 @@ class JointEdits:
         doubt = _about(doubts, _LINE)
         why = "" if doubt is None else f" ({doubt.check})"
         with self.editor.diffed(
-            f"{name}: the line that the parts show{why}", element, *(self.editor.hung_on(name) if moved else ())
+            f"{name}: the line that the parts show{why}", element, *(self.editor.reparented(name) if moved else ())
         ):
             if turned:
                 _child(element, "axis").set("xyz", numbers(np.round(T_world_child[:3, :3].T @ axis, 9)))

@@ -20,7 +20,7 @@ from kinematify.refinement.candidates import CandidateJoints, ranged
 from kinematify.refinement.choose import TWINS, Chooser, shortened, vote
 from kinematify.refinement.hints import HINTED
 from kinematify.refinement.joint_plan import History, Plan, PlanChange, Round
-from kinematify.refinement.simulate import TIERS, DearTiers, Simulator
+from kinematify.refinement.simulate import TIERS, ExpensiveTiers, Simulator
 from kinematify.refinement.topology import (
     EdgeMemory,
     SearchedContacts,
@@ -204,7 +204,7 @@ class _Loop:
         self.config, self.base, self.rounds = request.given.config.refine, request.base, request.rounds
         self.started = time.perf_counter()
         self.memory = EdgeMemory()
-        self.dear = DearTiers(settings=request.settings)
+        self.dear = ExpensiveTiers(settings=request.settings)
         self.done: list[_Done] = []
         self.candidates: dict[SearchedContacts, CandidateJoints] = {}
         self.ended = "all rounds were used"

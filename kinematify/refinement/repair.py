@@ -69,7 +69,7 @@ _KINEMATICS = ("KV134", "KV137", "KV310", "KV312", "KV320", "KV340", "KV349")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Look:
+class ModelSnapshot:
     """A file as `validate` and the engines see it."""
 
     report: ValidationReport
@@ -134,8 +134,8 @@ class Fix:
     """What was found and not repaired, with the reason."""
     named: frozenset[str]
     """Links and joints that a finding or note names of a look that was repaired."""
-    before: Look
-    after: Look
+    before: ModelSnapshot
+    after: ModelSnapshot
 
     @property
     def written(self) -> bool:
@@ -152,26 +152,26 @@ class Fix:
         return f"Repaired: {done or 'nothing'}. Not repaired: {left or 'nothing'}."
 
     @property
-    def lost(self) -> tuple[str, ...]:
+    def removed(self) -> tuple[str, ...]:
         """Engines that open the given file and not the result."""
         return tuple(engine for engine in self.after.refusals if engine not in self.before.refusals)
 
     @property
-    def fewer(self) -> dict[str, tuple[int, int]]:
+    def regressions(self) -> dict[str, tuple[int, int]]:
         """Engines in which fewer joints move than before, with how many did and do."""
         now = self.after.moving
         return {name: (was, now[name]) for name, was in self.before.moving.items() if now.get(name, was) < was}
 
     @property
-    def held(self) -> dict[str, tuple[str, ...]]:
+    def kept(self) -> dict[str, tuple[str, ...]]:
         """Joints that moved before and do not in the result, by engine of `fewer`."""
         was, now = self.before.still, self.after.still
-        return {name: tuple(sorted(now[name] - was[name])) for name in self.fewer}
+        return {name: tuple(sorted(now[name] - was[name])) for name in self.regressions}
 
     @property
     def exit_status(self) -> int:
         """1 if an error stays, an engine is lost, or fewer joints move in one, else 0."""
-        failed = self.lost or self.fewer or self.after.report.verdict == "fail"
+        failed = self.removed or self.regressions or self.after.report.verdict == "fail"
         return ExitStatus.FAILURES if failed else ExitStatus.FINE
 
     def as_json(self) -> dict[str, Any]:
@@ -184,9 +184,9 @@ class Fix:
             "named": sorted(self.named),
             "before": self.before.as_json(),
             "after": self.after.as_json(),
-            "lost": list(self.lost),
-            "fewer": {name: list(counts) for name, counts in self.fewer.items()},
-            "held": {name: list(joints) for name, joints in self.held.items()},
+            "lost": list(self.removed),
+            "fewer": {name: list(counts) for name, counts in self.regressions.items()},
+            "held": {name: list(joints) for name, joints in self.kept.items()},
         }
 
 
@@ -222,13 +222,13 @@ def fix_urdf(
     """
     editor = UrdfEditor(model, out, package_dirs)
 
-    def look(path: Path, part: int) -> Look:
+    def look(path: Path, part: int) -> ModelSnapshot:
         def tell(stage: str, fraction: float) -> None:
             if progress is not None:
                 progress(f"{path.name}: {stage}", (part + fraction) / (_ROUNDS + 1))
 
         report = validate(path, package_dirs=package_dirs, settings=settings, workers=workers, progress=tell)
-        return Look(report=report, refusals=refusals(path, DEFAULT_ENGINES, package_dirs))
+        return ModelSnapshot(report=report, refusals=refusals(path, DEFAULT_ENGINES, package_dirs))
 
     def look_at_joints(path: Path) -> ValidationReport:
         some = {check.id for check in checks_of("KV31", "KV32", "KV34")}
@@ -312,7 +312,7 @@ class _Repairs:
         solid = {link.name for link in robot.links if link.has_geometry}
         names = solid if self._everything else _to_weigh(found)
         new = [link.name for link in robot.links if link.name in names - self._weighed]
-        self._weighed |= set(self._editor.weigh(robot, new, prepare))
+        self._weighed |= set(self._editor.set_inertia(robot, new, prepare))
         off = {item.link for item in found if item.check == _CENTER and item.severity is Severity.ERROR and item.link}
         for name in sorted(off - self._weighed):
             self._editor.center(robot, name, prepare)
@@ -387,7 +387,7 @@ def _keep_first(editor: UrdfEditor, element: _Element) -> None:
             )
 
 
-def _left(after: Look, repairs: _Repairs, *, kinematics: bool) -> list[str]:
+def _left(after: ModelSnapshot, repairs: _Repairs, *, kinematics: bool) -> list[str]:
     """Findings of the result, those of one check together, each with the reason why it stays."""
     said = []
     for (check, severity, engine), group in groupby(after.open, lambda item: (item.check, item.severity, item.engine)):

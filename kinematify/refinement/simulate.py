@@ -248,7 +248,7 @@ What geometry holds of the shapes at rest (KV34x) is omitted: the scores of the 
 
 
 @dataclass(kw_only=True, eq=False)
-class DearTiers:
+class ExpensiveTiers:
     """Runs plans of one assembly in engines and tasks, each once."""
 
     settings: ValidationSettings

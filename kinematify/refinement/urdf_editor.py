@@ -233,7 +233,7 @@ class UrdfEditor:
                     link.remove(element)
                     self.say(f"{link.get('name')}: no {xml_of(element)}, which has no geometry that can be read")
 
-    def weigh(self, robot: Robot, links: Collection[str], settings: PrepareSettings) -> list[str]:
+    def set_inertia(self, robot: Robot, links: Collection[str], settings: PrepareSettings) -> list[str]:
         """Write mass and inertia of the geometry for links whose own ones no engine can use.
 
         Returns:
@@ -262,7 +262,7 @@ class UrdfEditor:
             f"{name}: centre of mass at {' '.join(f'{value:.4g}' for value in center)}, in its geometry"
         )
 
-    def rub(self, robot: Robot, config: DynamicsConfig) -> None:
+    def set_friction(self, robot: Robot, config: DynamicsConfig) -> None:
         """Write friction and damping for joints that have none."""
         moved = with_dynamics(robot, config, measured=True)
         for before, after in zip(robot.joints, moved.joints, strict=True):
@@ -271,7 +271,7 @@ class UrdfEditor:
                 _replaced(self.joint(after.name), "dynamics", [etree.Element("dynamics", values)])
                 self._changes.append(f"{after.name}: damping {after.damping:g}, friction {after.friction:g}")
 
-    def hung_on(self, joint: str) -> list[_Element]:
+    def reparented(self, joint: str) -> list[_Element]:
         """Elements that hold poses in the frame of a joint's child: the link, and the joints below it."""
         child = self.joint(joint).find("child")
         name = "" if child is None else child.get("link", "")
@@ -287,7 +287,7 @@ class UrdfEditor:
             in_child: The same in the frame of the child.
         """
         back = [-value for value in in_child]
-        link, *below = self.hung_on(joint)
+        link, *below = self.reparented(joint)
         _move(_origin(self.joint(joint)), in_parent)
         for element in (*(part for part in link if part.tag in _PLACED), *below):
             _move(_origin(element), back)

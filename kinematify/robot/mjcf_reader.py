@@ -141,7 +141,8 @@ def _reference(model: Any, joint: int) -> float:
 
 def _joint(model: Any, k: int, parent: str, child: str) -> Joint:
     kind, name, dof = int(model.jnt_type[k]), _called(model.joint(k).name, "joint", k), int(model.jnt_dofadr[k])
-    ends, T = {"name": name, "parent": parent, "child": child}, np.eye(4)
+    ends: dict[str, Any] = {"name": name, "parent": parent, "child": child}
+    T = np.eye(4)
     if kind in _FREE:
         return Joint(**ends, kind=JointType.FIXED, T_parent_child=T, declared_kind=_FREE[kind])
     turns, limited = kind == int(mujoco.mjtJoint.mjJNT_HINGE), bool(model.jnt_limited[k])

@@ -100,7 +100,7 @@ def read_sdf(path: Path, source: GeometrySource) -> Robot:
     document = parse_description(path, roots=("sdf", "gazebo"))
     candidates = list(document.iterfind("model")) + list(document.iterfind("world/model"))
     candidates += [
-        model for item in document.iterfind("world/include") if (model := _included(item, source, 0)) is not None
+        found for item in document.iterfind("world/include") if (found := _included(item, source, 0)) is not None
     ]
     if not candidates:
         raise DescriptionError(f"The SDF {path} holds no model. Give one with a <model>.")
@@ -265,10 +265,12 @@ def _turning(model: _Model, joint: Joint, axis: _Element, T_top_joint: FloatArra
     limited = max(-lower, upper) < _ENDLESS and joint.declared_kind != "continuous"
     if any(_values(axis.find("dynamics/spring_stiffness"), 1, (0.0,))):
         model.lose("springs of joints", joint.name)
-    mimic = axis.find("mimic")
-    if mimic is not None:
-        slope, offset, start = (_values(mimic.find(key), 1, (0.0,))[0] for key in ("multiplier", "offset", "reference"))
-        mimic = Mimic(joint=scope + (mimic.get("joint") or ""), multiplier=slope, offset=offset - slope * start)
+    mimic = None
+    if (follows := axis.find("mimic")) is not None:
+        slope, offset, start = (
+            _values(follows.find(key), 1, (0.0,))[0] for key in ("multiplier", "offset", "reference")
+        )
+        mimic = Mimic(joint=scope + (follows.get("joint") or ""), multiplier=slope, offset=offset - slope * start)
     effort, velocity, damping, friction = (
         (_values(item, 1, (0.0,))[0] if (item := axis.find(key)) is not None else None)
         for key in ("limit/effort", "limit/velocity", "dynamics/damping", "dynamics/friction")
@@ -342,7 +344,7 @@ def _shape(model: _Model, link: str, element: _Element) -> Shape | None:
     etree.SubElement(etree.SubElement(made, "geometry"), kind, known)
     if color is not None:
         etree.SubElement(etree.SubElement(made, "material"), "color", rgba=numbers(color))
-    made.sourceline = line
+    made.sourceline = line  # type: ignore[assignment]
     holder = etree.Element("link", name=link)
     holder.append(made)
     return next(iter(model.source.shapes(holder, str(element.tag))), None)

@@ -18,7 +18,7 @@ from kinematify.robot.transforms import rotation_from_quaternion
 from kinematify.robot.urdf_geometry import mesh_shape, primitive
 
 if TYPE_CHECKING:
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.body_tree import Edge
     from kinematify.robot.robot import Robot, Shape
 
@@ -285,7 +285,7 @@ def _along(axis: str) -> FloatArray:
     return T
 
 
-def _triangles(mesh: Any) -> tuple[FloatArray, FloatArray]:
+def _triangles(mesh: Any) -> tuple[FloatArray, IntArray]:
     """Vertices and triangles of a mesh, faces cut into fans."""
     vertices = np.array(mesh.GetPointsAttr().Get() or [], dtype=np.float64).reshape(-1, 3)
     counts = np.array(mesh.GetFaceVertexCountsAttr().Get() or [], dtype=np.int64)

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from kinematify.simulation.mujoco_world import MujocoWorld
-from kinematify.simulation.raw_model import MovesFreely, Reproductions, RunningFile, Unloadable
+from kinematify.simulation.raw_model import FloatingLink, Reproductions, RunningFile, Unloadable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -105,7 +105,7 @@ class MujocoFile(RunningFile):
         except ValueError as error:
             raise Unloadable(str(error), _OPEN.format(path=str(urdf))) from error
         if self._model.nq != self._model.nv or self._model.nv != self._model.njnt:
-            raise MovesFreely(_OPEN.format(path=str(urdf)) + "print(model.jnt_type)\n")
+            raise FloatingLink(_OPEN.format(path=str(urdf)) + "print(model.jnt_type)\n")
         self._data, option = mujoco.MjData(self._model), self._model.opt
         self._flags, self._gravity = option.disableflags, option.gravity.copy()
         option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio as pin
 
-from kinematify.simulation.raw_model import MovesFreely, RawEngineModel, Reproductions, Unloadable
+from kinematify.simulation.raw_model import FloatingLink, RawEngineModel, Reproductions, Unloadable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -51,7 +51,7 @@ class PinocchioFile(RawEngineModel):
         except ValueError as error:
             raise Unloadable(str(error), _OPEN.format(**self._file)) from error
         if any(joint.nv != 1 for joint in list(model.joints)[1:]):
-            raise MovesFreely(_JOINTS.format(**self._file))
+            raise FloatingLink(_JOINTS.format(**self._file))
         self.joints = tuple(model.names)[1:]  # the first is the world
         self.limits = {}
         for name, joint in zip(self.joints, list(model.joints)[1:], strict=True):

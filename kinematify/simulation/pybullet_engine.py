@@ -274,7 +274,7 @@ class PybulletFile(MotorFile):
         del self._worlds[False]  # its motors are others than those of the file as it is loaded
         return float(sign * min(sign * farthest, sign * target))
 
-    def _in_code(self, values: Mapping[str, float]) -> object:
+    def _script_values(self, values: Mapping[str, float]) -> object:
         return {k: float(values[name]) for name, k in self._index.items()}
 
     def _links_in_code(self, links: tuple[str, str]) -> object:

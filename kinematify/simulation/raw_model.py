@@ -37,7 +37,7 @@ class Unloadable(Exception):
         self.reproduction = reproduction
 
 
-class MovesFreely(Unloadable):
+class FloatingLink(Unloadable):
     """An engine opens a file and lets a link float, which no hand can push to an end."""
 
     def __init__(self, reproduction: str) -> None:
@@ -177,9 +177,9 @@ class RawEngineModel(ABC):
 
     def lines_of_joints(self) -> str:
         """Return plain code of the engine that prints a joint in each line: its name, lower and upper limit."""
-        return self.code.joints.format(**self._file, values=self._in_code(dict.fromkeys(self.joints, 0.0)))
+        return self.code.joints.format(**self._file, values=self._script_values(dict.fromkeys(self.joints, 0.0)))
 
-    def _in_code(self, values: Mapping[str, float]) -> object:
+    def _script_values(self, values: Mapping[str, float]) -> object:
         """Values of all joints as the code has them."""
         return [float(values[name]) for name in self.joints]
 
@@ -266,7 +266,9 @@ class RunningFile(RawEngineModel):
             links: Of an `Overlap`.
             values: Of all joints [rad or m].
         """
-        return self.code.overlap.format(**self._file, values=self._in_code(values), links=self._links_in_code(links))
+        return self.code.overlap.format(
+            **self._file, values=self._script_values(values), links=self._links_in_code(links)
+        )
 
     def _links_in_code(self, links: tuple[str, str]) -> object:
         """Two links as the code has them."""
@@ -326,7 +328,7 @@ class RunningFile(RawEngineModel):
         """Return plain code of the engine that repeats `rest` and prints the least and the largest value of a joint."""
         return self._filled(self.code.rest, values, joint=self._index_of(joint), steps=self._steps(seconds))
 
-    def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
+    def push_script(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
         """Return plain code of the engine that repeats `push` and prints how far the joint gets [rad or m]."""
         facts = vars(push) | {"joint": self._index_of(push.joint), "moved": self._moved_in_code(push)}
         code = self.code.push if contacts else self.code.push_alone
@@ -334,10 +336,10 @@ class RunningFile(RawEngineModel):
 
     def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
         """Return plain code of the engine that repeats `release` and prints by how much the energy grows [J]."""
-        return self._filled(self.code.release, values, speeds=self._in_code(speeds), steps=self._steps(seconds))
+        return self._filled(self.code.release, values, speeds=self._script_values(speeds), steps=self._steps(seconds))
 
     def _filled(self, code: str, values: Mapping[str, float], **facts: object) -> str:
-        return code.format(**self._file, values=self._in_code(values), **facts)
+        return code.format(**self._file, values=self._script_values(values), **facts)
 
     def _steps(self, seconds: float) -> int:
         return round(seconds / self.time_step)

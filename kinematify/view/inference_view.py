@@ -56,7 +56,7 @@ class DrawnChain:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sight:
+class FindingMarker:
     """A finding as the viewer shows it."""
 
     title: str
@@ -66,7 +66,7 @@ class Sight:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Shown:
+class ViewModel:
     """A model to look at."""
 
     scene: ViewScene
@@ -95,7 +95,7 @@ def _dashed(start: FloatArray, end: FloatArray) -> FloatArray:
     return points
 
 
-def shown_with(scene: ViewScene, path: Path) -> Shown:
+def shown_with(scene: ViewScene, path: Path) -> ViewModel:
     """Return a model with what its record tells.
 
     Args:
@@ -107,7 +107,7 @@ def shown_with(scene: ViewScene, path: Path) -> Shown:
     """
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
-        return Shown(
+        return ViewModel(
             scene=scene,
             alternatives=_alternatives_of(record),
             confidences={item["child"]: float(item["confidence"]) for item in record["joints"] if "confidence" in item},

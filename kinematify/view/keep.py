@@ -12,7 +12,7 @@ from kinematify.errors import InputError
 from kinematify.grouping.groups import GROUPS_FILE
 from kinematify.model.output import check_output
 from kinematify.pipeline.infer_assembly import infer
-from kinematify.refinement.folder import as_left, open_model_folder, read_record, write_refined
+from kinematify.refinement.folder import open_model_folder, read_record, stored_state, write_refined
 from kinematify.refinement.hints import AXES, Hint, parse_hints, with_hints
 from kinematify.robot.joint_type import JointType
 from kinematify.view.regroup import merge_parts, rename_part, split_part, stated_grouping
@@ -30,7 +30,7 @@ _ALONG = np.cos(np.radians(1.0))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Kept:
+class SavedEdit:
     """Files that were written."""
 
     hints: tuple[str, ...]
@@ -50,7 +50,7 @@ class ModelFolder:
         self._steps: list[Inference] = []
         """Models of the folder, the present one last."""
 
-    def keep(self, part: str, chosen: JointAlternative) -> Kept:
+    def keep(self, part: str, chosen: JointAlternative) -> SavedEdit:
         """Make a part move as a candidate says, and write the model.
 
         Raises:
@@ -59,24 +59,24 @@ class ModelFolder:
         """
         return self._keep(lambda before: hint_of(part, chosen, _kind_of(before, part)))
 
-    def state(self, hint: Hint) -> Kept:
+    def state(self, hint: Hint) -> SavedEdit:
         """Follow a hint, and write the model; errors as those of `keep`, and that the hint cannot be followed."""
         return self._keep(lambda _: hint)
 
-    def merge(self, one: str, other: str) -> Kept:
+    def merge(self, one: str, other: str) -> SavedEdit:
         """Make one part of two, infer again and write the model; errors as those of `keep`."""
         return self._regroup(lambda grouping, _: merge_parts(grouping, (one, other)))
 
-    def split(self, part: str) -> Kept:
+    def split(self, part: str) -> SavedEdit:
         """Make the connected pieces of a part parts, infer again and write the model; errors as those of `keep`."""
         return self._regroup(lambda grouping, weld: split_part(grouping, part, tolerance=weld))
 
-    def rename(self, part: str, name: str) -> Kept:
+    def rename(self, part: str, name: str) -> SavedEdit:
         """Give a part and its link another name, and write the model; errors as those of `keep`."""
-        before = self._present()
+        before = self._current_state()
         return self._write(before, rename_part(before, self._grouping(before), part, name), ())
 
-    def free(self, pieces: Sequence[str]) -> Kept:
+    def free(self, pieces: Sequence[str]) -> SavedEdit:
         """Make one part of pieces of a larger part, infer again and write the model; errors as those of `keep`."""
 
         def freed(grouping: Grouping, weld: float) -> Grouping:
@@ -87,9 +87,9 @@ class ModelFolder:
 
         return self._regroup(freed)
 
-    def _regroup(self, change: Callable[[Grouping, float], Grouping]) -> Kept:
+    def _regroup(self, change: Callable[[Grouping, float], Grouping]) -> SavedEdit:
         """Infer with other parts; what was said of parts that are still there is kept."""
-        before = self._present()
+        before = self._current_state()
         grouping = change(self._grouping(before), before.config.assembly.weld)
         root = before.assembly.names[before.trees[0].root]
         after = infer(grouping, config=before.config, base=root if root in grouping.assembly.names else None)
@@ -101,27 +101,27 @@ class ModelFolder:
     def _grouping(self, inference: Inference) -> Grouping:
         return inference.grouping or stated_grouping(inference.assembly, read_record(self.folder))
 
-    def _keep(self, hint_for: Callable[[Inference], Hint]) -> Kept:
-        before = self._present()
+    def _keep(self, hint_for: Callable[[Inference], Hint]) -> SavedEdit:
+        before = self._current_state()
         hint = hint_for(before)
         return self._write(before, with_hints(before, [hint]), hint.texts)
 
-    def _present(self) -> Inference:
+    def _current_state(self) -> Inference:
         """The model as it is in the folder."""
         check_output(self.folder, overwrite=True)
         if not self._steps:
             assembly, config = open_model_folder(self.folder)
             record = read_record(self.folder)
             inference = infer(assembly, config=config, base=record["trees"][0]["root"])
-            left = as_left(inference, record)
+            left = stored_state(inference, record)
             self._steps.append(replace(left, grouping=stated_grouping(assembly, record)) if record["groups"] else left)
         return self._steps[-1]
 
-    def _write(self, before: Inference, after: Inference, hints: tuple[str, ...]) -> Kept:
+    def _write(self, before: Inference, after: Inference, hints: tuple[str, ...]) -> SavedEdit:
         write_refined(after, self.folder, preview=True)
         self._steps.append(after)
         new = tuple(warning for warning in after.warnings if warning not in before.warnings)
-        return Kept(hints=hints, command=self._command(after), warnings=new)
+        return SavedEdit(hints=hints, command=self._command(after), warnings=new)
 
     @property
     def can_undo(self) -> bool:

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     from kinematify.grouping.groups import Group
     from kinematify.robot.robot import Joint
-    from kinematify.view.inference_view import Shown, Sight
-    from kinematify.view.keep import Kept
+    from kinematify.view.inference_view import FindingMarker, ViewModel
+    from kinematify.view.keep import SavedEdit
     from kinematify.view.viewer_scene import Touch
 
 _AS_WRITTEN, _OWN = "as in the file", "-"
@@ -83,7 +83,13 @@ class Panel:
     """The widgets of one model; they go when the gui is reset."""
 
     def __init__(
-        self, gui: viser.GuiApi, shown: Shown, sights: Sequence[Sight], parts: Sequence[str], *, can_keep: bool
+        self,
+        gui: viser.GuiApi,
+        shown: ViewModel,
+        sights: Sequence[FindingMarker],
+        parts: Sequence[str],
+        *,
+        can_keep: bool,
     ) -> None:
         """Build them in place of those that were there.
 
@@ -111,7 +117,7 @@ class Panel:
         tabs = gui.add_tab_group()
         with tabs.add_tab("Joints"):
             self._add_joints(shown)
-        self.places: list[tuple[Any, Sight]] = []
+        self.places: list[tuple[Any, FindingMarker]] = []
         """Buttons that show the place of a finding."""
         if sights:
             with tabs.add_tab(f"Findings ({len(sights)})"):
@@ -123,7 +129,7 @@ class Panel:
             with gui.add_folder("Parts", expand_by_default=False):
                 self.boxes = {top: gui.add_checkbox(top, initial_value=True) for top in parts}
 
-    def _add_joints(self, shown: Shown) -> None:
+    def _add_joints(self, shown: ViewModel) -> None:
         gui = self._gui
         for joint in self._scene.leaders:
             lower, upper, step = self._ends(joint)
@@ -142,7 +148,7 @@ class Panel:
         self.hand_type: Any = gui.add_dropdown("Type", tuple(_TYPES), visible=False)
         self.hand_limits: Any = gui.add_multi_slider("Limits", -360.0, 360.0, 0.1, (0.0, 90.0), visible=False)
 
-    def _add_findings(self, sights: Sequence[Sight]) -> None:
+    def _add_findings(self, sights: Sequence[FindingMarker]) -> None:
         for sight in sights[:_LISTED_FINDINGS]:
             with self._gui.add_folder(sight.title, expand_by_default=len(sights) <= 3):
                 self._gui.add_markdown(_plain(sight.message))
@@ -228,7 +234,7 @@ class Panel:
             self.news.content, self.news.visible = f"Not written yet: **{_plain(words)}**", self.keep.visible
             self._copy.visible = False
 
-    def tell(self, text: str, kept: Kept | None = None) -> None:
+    def tell(self, text: str, kept: SavedEdit | None = None) -> None:
         """Say what happened to the file: Markdown, or what was kept, with the command that does the same."""
         if kept is not None:
             text = "\n\n".join(
@@ -274,7 +280,7 @@ class Panel:
         return _factor_of(self._scene.kind_of(self._scene.robot.joint_by_name[joint]))
 
 
-def _introduction(shown: Shown) -> str:
+def _introduction(shown: ViewModel) -> str:
     """Return how to begin, the joints to look at first, and where chains of joints close."""
     said = ["Move a slider (arrow keys move it by 1 % of the range) or click a part."]
     if shown.doubtful:

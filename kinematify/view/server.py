@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint
-    from kinematify.view.inference_view import Shown, Sight
-    from kinematify.view.keep import Kept, ModelFolder
+    from kinematify.view.inference_view import FindingMarker, ViewModel
+    from kinematify.view.keep import ModelFolder, SavedEdit
 
 _CHOSEN, _MARKED, _WRONG = (66, 133, 244), (245, 166, 35), (219, 40, 40)
 """Of the part whose joint is chosen, of what a finding is about, and of what collides."""
@@ -59,11 +59,11 @@ class ModelViewer:
     def __init__(
         self,
         server: viser.ViserServer,
-        shown: Shown,
+        shown: ViewModel,
         *,
-        sights: Sequence[Sight],
+        sights: Sequence[FindingMarker],
         open_folder: Callable[[], ModelFolder] | None = None,
-        reopen: Callable[[], Shown] | None = None,
+        reopen: Callable[[], ViewModel] | None = None,
         changed_at: Callable[[], float] = float,
     ) -> None:
         """Build the page.
@@ -92,7 +92,7 @@ class ModelViewer:
     def _connected(self, client: viser.ClientHandle) -> None:
         self._drawn.step_back(client)
 
-    def _open(self, shown: Shown, sights: Sequence[Sight] = ()) -> None:
+    def _open(self, shown: ViewModel, sights: Sequence[FindingMarker] = ()) -> None:
         """Show a model in the pose of the one before, as far as it has the same joints."""
         with self._lock:
             pose, chosen, self._chosen = self._q, self._chosen, None
@@ -103,7 +103,7 @@ class ModelViewer:
             self._colliding: frozenset[str] = frozenset()
             self._sweeping: str | None = None
             self._sweep_start = 0.0
-            self._waiting: Callable[[ModelFolder], Kept | None] | None = None
+            self._waiting: Callable[[ModelFolder], SavedEdit | None] | None = None
             self._apart = 0.0
             self._stale = True
             self._gizmo: Any = None
@@ -154,7 +154,7 @@ class ModelViewer:
             (panel.free, "{} are a part", "free", lambda: [panel.may_move[panel.set_of_pieces.value]]),
         ]
         for widget, words, method, arguments in changes:
-            _connect(widget, lambda _, words=words, method=method, of=arguments: self.regroup(words, method, *of()))
+            _connect(widget, partial(self._regroup_from, words, method, arguments))
 
     def set(self, values: Mapping[str, float]) -> None:
         """Move joints [rad or m], sliders included; names that are no leaders are passed over."""
@@ -244,7 +244,7 @@ class ModelViewer:
                 self._panel.describe(item, self._shown.confidences.get(item.child))
                 self._glow()
 
-    def show(self, sight: Sight) -> None:
+    def show(self, sight: FindingMarker) -> None:
         """Bring the model where a finding was seen, and mark what it is about."""
         with self._lock:
             self._sweeping, self._chosen = None, None
@@ -254,7 +254,7 @@ class ModelViewer:
 
     # ---- what waits to be kept ---------------------------------------------------------------------------------------
 
-    def _propose(self, words: str, change: Callable[[ModelFolder], Kept | None]) -> None:
+    def _propose(self, words: str, change: Callable[[ModelFolder], SavedEdit | None]) -> None:
         """Make a change wait to be kept, in place of the one that did."""
         self._waiting = change
         self._panel.offer(words)
@@ -300,6 +300,15 @@ class ModelViewer:
             said = f"with {name} as its parent" if key == "parent" else f"with the same joint as {name}"
             self._propose(f"{joint.child} {said}", methodcaller("state", hint))
 
+    def _regroup_from(
+        self,
+        words: str,
+        method: Literal["rename", "merge", "split", "free"],
+        arguments: Callable[[], Sequence[Any]],
+        _event: object,
+    ) -> None:
+        self.regroup(words, method, *arguments())
+
     def regroup(self, words: str, method: Literal["rename", "merge", "split", "free"], *arguments: Any) -> None:
         """Propose other parts: what a method of `ModelFolder` makes of its arguments, which `words` take, too."""
         with self._lock:
@@ -327,7 +336,7 @@ class ModelViewer:
         self._panel.describe(item, likely)
         self._place()
 
-    def keep(self) -> Kept | None:
+    def keep(self) -> SavedEdit | None:
         """Write the model with what waits, and show it again; None if nothing waits or it could not be written."""
         with self._lock:
             change, self._waiting = self._waiting, None
@@ -340,7 +349,7 @@ class ModelViewer:
         """Write the model as it was before the last change, and show it."""
         self._write(methodcaller("undo"))
 
-    def _write(self, change: Callable[[ModelFolder], Kept | None]) -> Kept | None:
+    def _write(self, change: Callable[[ModelFolder], SavedEdit | None]) -> SavedEdit | None:
         """Change the folder, say what came of it, and show what it holds: nothing else here writes."""
         assert self._open_folder is not None
         assert self._reopen is not None

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING
 from kinematify.model.output import MODEL_FILE, RECORD_FILE
 from kinematify.robot.read import read_robot
 from kinematify.versions import require
-from kinematify.view.inference_view import Shown, declared_chains, shown_with
+from kinematify.view.inference_view import ViewModel, declared_chains, shown_with
 from kinematify.view.viewer_scene import ViewScene
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kinematify.view.inference_view import Sight
+    from kinematify.view.inference_view import FindingMarker
     from kinematify.view.keep import ModelFolder
     from kinematify.view.server import ModelViewer
 
@@ -27,7 +27,7 @@ _PAGE_HEIGHT = 620
 """Of the frame in a notebook [pixels]."""
 
 
-def read_model(urdf: Path, package_dirs: Sequence[Path]) -> Shown:
+def read_model(urdf: Path, package_dirs: Sequence[Path]) -> ViewModel:
     """Read what is seen of a URDF, and what `inference.json` tells of its joints where that lies beside it.
 
     Raises:
@@ -37,7 +37,7 @@ def read_model(urdf: Path, package_dirs: Sequence[Path]) -> Shown:
     scene = ViewScene(seen, partial(read_robot, urdf, package_dirs=package_dirs))
     record = urdf.parent / RECORD_FILE
     if not record.is_file():
-        return Shown(scene=scene, chains=declared_chains(scene.robot))
+        return ViewModel(scene=scene, chains=declared_chains(scene.robot))
     return shown_with(scene, record)
 
 
@@ -56,7 +56,7 @@ class Window:
         urdf: Path,
         *,
         package_dirs: Sequence[Path] = (),
-        sights: Sequence[Sight] = (),
+        sights: Sequence[FindingMarker] = (),
         host: str = "127.0.0.1",
         port: int = 8080,
     ) -> None:

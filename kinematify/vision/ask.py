@@ -136,7 +136,7 @@ def voter_record(oracle: ChatOracle, known: Callable[[], Iterable[KnownQuestion]
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Heard:
+class Answers:
     """By the place of the joint."""
 
     shown: Mapping[int, tuple[JointCandidate, ...]]
@@ -145,7 +145,7 @@ class _Heard:
 
 def _heard(
     inference: Inference, oracle: JointOracle, *, everything: bool, known: Collection[str]
-) -> tuple[_Heard, Voting]:
+) -> tuple[Answers, Voting]:
     """Ask a few questions at a time, until the tokens are spent."""
     config, names = inference.config.vision, _children(inference)
     maker = CandidateJoints(inference.assembly, inference.graph, inference.bearings, inference.config)
@@ -162,7 +162,7 @@ def _heard(
         hidden += [place for place in drawn if place not in asked]
         shown |= {place: question.options for place, question in asked.items()}
         answers |= dict(zip(asked, oracle.ask(list(asked.values())), strict=True))
-    return _Heard(shown=shown, answers=answers), Voting(
+    return Answers(shown=shown, answers=answers), Voting(
         voter=oracle.name, answers={names[place]: answer for place, answer in answers.items()},
         not_shown=tuple(names[place] for place in hidden), not_asked=tuple(names[place] for place in beyond),
     )  # fmt: skip

@@ -191,18 +191,18 @@ def _agree(
     if first is None or second is None:
         return answers[one].choice == answers[other].choice
     parts = [inference.assembly.parts[inference.joints[place].child] for place in (one, other)]
-    return same_on_twin(parts[0], shown[one][first], parts[1], shown[other][second])
+    return map_to_congruent_part(parts[0], shown[one][first], parts[1], shown[other][second])
 
 
 def _named(inference: Inference, source: int, place: int, picked: JointCandidate, options: Options) -> BoolArray:
     """Which options of a joint are the motion that was picked for it, or for its twin, shape (options,)."""
     mine, theirs = (inference.assembly.parts[inference.joints[k].child] for k in (place, source))
     if source != place:
-        return np.array([same_on_twin(theirs, picked, mine, item) for item in options], dtype=bool)
+        return np.array([map_to_congruent_part(theirs, picked, mine, item) for item in options], dtype=bool)
     return np.array([look_alike(picked, item, mine.diagonal, inference.config.vision) for item in options], dtype=bool)
 
 
-def same_on_twin(one: Part, motion: JointCandidate, twin: Part, other: JointCandidate) -> bool:
+def map_to_congruent_part(one: Part, motion: JointCandidate, twin: Part, other: JointCandidate) -> bool:
     """True if a motion of a part is, up to its symmetries, that of a congruent part."""
     if motion.kind.turns != other.kind.turns:
         return False

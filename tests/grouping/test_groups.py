@@ -18,13 +18,13 @@ from kinematify.errors import AssemblyError, InputError
 from kinematify.grouping.groups import (
     Group,
     Grouping,
-    completed,
+    confidence_of,
     fixed_merged,
     group_pieces,
     joined_pieces,
     read_groups,
-    sureness,
     unsure,
+    with_doubtful,
 )
 from kinematify.grouping.piece_sets import alike, node_of_pieces
 from kinematify.joints.candidate import JointEstimate, JointType
@@ -123,9 +123,9 @@ def test_a_front_that_was_left_in_the_body_joins_its_drawer_because_the_joint_is
     assert found.grouping.rejected == (), "it is in a part now"
     assert [joint.kind for joint in found.joints] == [JointType.PRISMATIC]
     joint, config = found.joints[0], load_config().grouping
-    assert sureness([joint], config) == {1: joint.confidence}
-    assert sureness([replace(joint, evidence={"probability_fixed": 0.9})], config) == {}
-    assert completed(grouping, []) is grouping
+    assert confidence_of([joint], config) == {1: joint.confidence}
+    assert confidence_of([replace(joint, evidence={"probability_fixed": 0.9})], config) == {}
+    assert with_doubtful(grouping, []) is grouping
 
 
 def test_equal_drawers_are_grouped_alike_and_equally_likely(tmp_path: Path) -> None:

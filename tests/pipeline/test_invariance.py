@@ -11,7 +11,7 @@ import trimesh
 from benchmarks.studies.invariance import Change, differences_of, differing
 from kinematify.assembly.load import load_assembly
 from kinematify.generate.procedural.solids import cylinder
-from kinematify.pipeline.heading import heading_of, turned
+from kinematify.pipeline.heading import principal_heading, rotated
 from kinematify.pipeline.infer_assembly import infer
 from tests.known import known_object, turning
 from tests.objects import BUILDERS
@@ -47,14 +47,14 @@ def test_what_is_read_from_files_is_the_same_in_any_unit(tmp_path: Path) -> None
 @pytest.mark.parametrize("degrees", [0.0, 10.0, -37.0, 44.9])
 def test_the_heading_is_that_of_the_walls(degrees: float) -> None:
     assembly = BUILDERS["edge_door"]().assembly
-    given = turned(assembly, np.radians(degrees))
-    assert heading_of(given) == pytest.approx(np.radians(degrees), abs=1e-7)
-    assert heading_of(turned(given, -heading_of(given))) == 0.0
+    given = rotated(assembly, np.radians(degrees))
+    assert principal_heading(given) == pytest.approx(np.radians(degrees), abs=1e-7)
+    assert principal_heading(rotated(given, -principal_heading(given))) == 0.0
 
 
 def test_seven_walls_of_which_none_is_the_first_after_every_turn_are_inferred() -> None:
     """Square to one of equal walls, an object may have another heading: it is turned once, not for ever."""
     body, lid = (cylinder(0.03, (0, 0, low), (0, 0, low + 0.05), segments=7) for low in (0.0, 0.05))
     mill = known_object("mill", {"body": body, "lid": lid}, turning("body", "lid", (0, 0, 1), (0, 0, 0), (-3, 3)))
-    assert heading_of(turned(mill.assembly, -heading_of(mill.assembly))) != 0.0
+    assert principal_heading(rotated(mill.assembly, -principal_heading(mill.assembly))) != 0.0
     assert [joint.child for joint in infer(mill.assembly).joints] == [1]

@@ -128,7 +128,7 @@ def test_a_file_with_meshdir_opens_from_its_new_folder(jammed: tuple[Path, Fix])
     mujoco.mj_forward(loaded, data)
     assert not (data.contact.dist[: data.ncon] < -1e-3).any()
     assert done.exit_status == 0
-    assert done.lost == ()
+    assert done.removed == ()
     assert done.before.report.as_loaded.startswith("as loaded: MuJoCo 1 of 2")
     assert done.after.report.as_loaded.startswith("as loaded: MuJoCo 2 of 2")
 
@@ -136,12 +136,12 @@ def test_a_file_with_meshdir_opens_from_its_new_folder(jammed: tuple[Path, Fix])
 def test_an_engine_that_opened_the_source_must_open_the_result(jammed: tuple[Path, Fix]) -> None:
     _, done = jammed
     lost = replace(done, after=replace(done.after, refusals={"mujoco": "no such file"}))
-    assert lost.lost == ("mujoco",)
+    assert lost.removed == ("mujoco",)
     assert lost.exit_status == 1
-    assert done.fewer == {}
+    assert done.regressions == {}
     swapped = replace(done, before=done.after, after=done.before)
-    assert swapped.fewer == {"mujoco": (2, 1)}
-    assert swapped.held == {"mujoco": ("slide",)}
+    assert swapped.regressions == {"mujoco": (2, 1)}
+    assert swapped.kept == {"mujoco": ("slide",)}
     assert swapped.exit_status == 1
 
 

@@ -25,7 +25,7 @@ from kinematify.model.picture_scene import (
     turning_arrow,
 )
 from kinematify.model.preview import draw_pair, render_preview, render_story
-from kinematify.model.urdf import link_colors, link_shades, tell_apart
+from kinematify.model.urdf import distinct_colors, link_colors, link_shades
 from kinematify.render.camera import fit_camera
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from kinematify.robot.appearance import linear_of, srgb_of
@@ -208,7 +208,7 @@ def test_parts_of_one_material_get_shades_of_it_and_numbers(tmp_path):
     shown = np.array([srgb_of(shades[link.name] * linear_of(colors[link.name])) for link in model.links])
     neighbours = np.linalg.norm(np.diff(shown, axis=0), axis=1)
     assert neighbours.min() > 0.06
-    assert not tell_apart(shown), "five shades of one brown need numbers"
+    assert not distinct_colors(shown), "five shades of one brown need numbers"
     render_preview(model, tmp_path / "numbered.png", CONFIG)
     image = np.asarray(Image.open(tmp_path / "numbered.png").convert("RGB"))
     render_preview(chain().model(), tmp_path / "colored.png", CONFIG)

@@ -121,7 +121,7 @@ def test_the_code_of_a_run_at_rest_repeats_it(tmp_path: Path, engine: str) -> No
     flap = cabinet().with_part("door", axis=(0.0, 1.0, 0.0), limits=(-1.5, 1.5), mass=2000.0, center=(0.1, 0.0, 0.0))
     context = AsLoadedContext(request=request_of(flap, tmp_path), engine=engine)
     (door,) = (travel for travel in context.travels if travel.joint == "door_joint")
-    way = context.way(context.left_alone, door)
+    way = context.way(context.passive_run, door)
     assert np.ptp(way) > 0.01, "it falls"
     code = context.loaded.lines_of_rest(door.joint, context.values, context.settings.seconds)
     assert printed(code) == pytest.approx([way.min(), way.max()], abs=1e-6)

@@ -21,7 +21,7 @@ from kinematify.config import load_config
 from kinematify.config.validation import ValidationSettings, load_settings
 from kinematify.geometry.convex import ConvexPiece, convex_piece, surface_points
 from kinematify.geometry.cut import Concave, CutSurface, cut_worst_first, split
-from kinematify.geometry.cut_cache import cache_folder, convex_chunks, taken_apart
+from kinematify.geometry.cut_cache import cache_folder, convex_chunks, split_by_boards
 from kinematify.model.collision_pieces import Method
 from kinematify.model.masses import lifted
 from kinematify.robot.read import read_robot
@@ -293,7 +293,7 @@ def test_a_chest_of_many_compartments_is_taken_apart_board_by_board() -> None:
 
 
 def test_what_is_not_made_of_boards_is_cut_worst_first() -> None:
-    assert taken_apart(Concave(surface=bowl(), tolerance=0.03, thickness=1e-3), 40) is None
+    assert split_by_boards(Concave(surface=bowl(), tolerance=0.03, thickness=1e-3), 40) is None
     both = [Concave(surface=make(), tolerance=0.03, thickness=1e-3) for make in (bowl, chest)]
     bowls, chests = convex_chunks(both, 48)
     assert len(bowls) == len(cut_worst_first(both[:1], 48)[0])

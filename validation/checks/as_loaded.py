@@ -9,7 +9,7 @@ import numpy as np
 
 from kinematify.robot.mesh_paths import GLTF_SUFFIXES
 from kinematify.simulation.engines import ENGINES
-from kinematify.simulation.raw_model import MovesFreely, Unloadable
+from kinematify.simulation.raw_model import FloatingLink, Unloadable
 from kinematify.validation.check import CauseScope, FeedbackRow, OpenCheck, check
 from kinematify.validation.checks.follow import AT_REST, NOT_A_BODY
 from kinematify.validation.checks.needs import late
@@ -48,7 +48,7 @@ _SUFFIX = re.compile(r"\.(?:glb|gltf|stl|dae|ply|obj|3mf|off)\b", re.IGNORECASE)
 
 def not_loaded(context: AsLoadedContext) -> str | None:
     """The engine has the file."""
-    if isinstance(context.loading, MovesFreely) and context.floats:
+    if isinstance(context.loading, FloatingLink) and context.floats:
         return f"the file lets a link float in {context.title}, where no joint can be pushed alone"
     return f"{context.title} does not open the file (KV801)" if isinstance(context.loading, Unloadable) else None
 
@@ -78,7 +78,7 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     Remedy: Do what the engine's message asks for. MuJoCo resolves no package:// and reads STL, OBJ and MSH only; it
     looks for meshes beside the file unless `<mujoco><compiler strippath="false"/></mujoco>` is in it.
     """
-    if isinstance(context.loading, MovesFreely) and context.floats:
+    if isinstance(context.loading, FloatingLink) and context.floats:
         return
     if isinstance(context.bare, Unloadable) and not isinstance(context.loading, Unloadable):
         result.find(
@@ -214,7 +214,7 @@ def stays(result: OpenCheck, context: AsLoadedContext) -> None:
 
     Remedy: Write convex pieces as collision geometry that keep clear of each other, and plausible masses and limits.
     """
-    complaint = context.left_alone.complaint
+    complaint = context.passive_run.complaint
     if complaint is not None:
         result.find(
             f"Left alone, the model comes apart in {context.title}: {complaint}.",
@@ -253,19 +253,19 @@ def _thrown_by(context: AsLoadedContext, travel: Travel) -> Overlap | None:
     def stays_in(run: RestRun) -> bool:
         return float(np.abs(context.way(run, travel) - travel.rest).max()) <= context.still(travel)
 
-    thrown = not stays_in(context.left_alone) and stays_in(context.left_without_contacts)
+    thrown = not stays_in(context.passive_run) and stays_in(context.left_without_contacts)
     return context.between(travel, context.overlaps) if thrown else None
 
 
 def _beyond(context: AsLoadedContext, travel: Travel, run: RestRun | None = None) -> float:
     """Return how far beyond its range a joint ends that was left alone [rad or m]; 0 without limits."""
-    last = float(context.way(run or context.left_alone, travel)[-1])
+    last = float(context.way(run or context.passive_run, travel)[-1])
     return max(travel.lower - last, last - travel.upper) if travel.limited else 0.0
 
 
 def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -> None:
     overlap, beyond = _thrown_by(context, travel), _beyond(context, travel)
-    values = context.way(context.left_alone, travel)
+    values = context.way(context.passive_run, travel)
     farthest = float(values[np.abs(values - travel.rest).argmax()])
     way = abs(farthest - travel.rest)
     if overlap is not None:
@@ -317,16 +317,16 @@ def moves(result: OpenCheck, context: AsLoadedContext) -> None:
 
     Remedy: Write convex pieces as collision geometry of the links that are named, clear of each other along the motion.
     """
-    short = [run for run in context.hands if not context.arrives(run, run.pushed.farthest)]
-    stuck = [run for run in short if not context.moves_plainly(run)]
-    left_plainly = context.left_alone if context.flag is None else context.left_without_contacts
+    short = [run for run in context.hands if not context.reaches_end(run, run.pushed.farthest)]
+    stuck = [run for run in short if not context.moves_by_motor(run)]
+    left_plainly = context.passive_run if context.flag is None else context.left_without_contacts
     result.measured["joints"] = float(len(context.mechanism.travels))
     moving = _moving(context, stuck, left_plainly.complaint, _leaves_plainly)
     result.measured["right"] = float(len(moving))
     names = (travel.joint for travel in context.mechanism.travels)
     result.measured |= {f"{STILL}{name}": 1.0 for name in names if name not in moving}
     if context.flag is not None:
-        with_contacts = _moving(context, short, context.left_alone.complaint, _leaves)
+        with_contacts = _moving(context, short, context.passive_run.complaint, _leaves)
         result.measured["with_contacts"] = float(len(with_contacts))
     for run in short:
         _find_short(result, context, run, jammed=_free_without_contacts(context, run))
@@ -345,7 +345,7 @@ def _moving(
 
 def _free_without_contacts(context: AsLoadedContext, run: VelocityProbe) -> bool:
     """True if a push that fell short gets to the end where nothing touches."""
-    return run.without_contacts is not None and context.arrives(run, run.without_contacts)
+    return run.without_contacts is not None and context.reaches_end(run, run.without_contacts)
 
 
 def _find_short(result: OpenCheck, context: AsLoadedContext, run: VelocityProbe, *, jammed: bool) -> None:
@@ -368,7 +368,7 @@ def _find_short(result: OpenCheck, context: AsLoadedContext, run: VelocityProbe,
         value=stop,
         limit=run.end,
         unit=travel.unit,
-        reproduction=context.running.lines_of_push(push, run.values, run.pushed.steps, contacts=True),
+        reproduction=context.running.push_script(push, run.values, run.pushed.steps, contacts=True),
     )
 
 
@@ -439,7 +439,7 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
                 value=stop,
                 limit=end,
                 unit=travel.unit,
-                reproduction=context.running.lines_of_push(run.push, run.values, run.pushed.steps, contacts=False),
+                reproduction=context.running.push_script(run.push, run.values, run.pushed.steps, contacts=False),
             )
 
 

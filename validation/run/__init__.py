@@ -24,8 +24,8 @@ from kinematify.validation.document_copy import LEFT_OUT, readable_copy, resolve
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
-from kinematify.validation.left_model import has_model
 from kinematify.validation.lines import in_source, with_lines
+from kinematify.validation.model_cache import has_model
 from kinematify.validation.run.causes import with_causes
 from kinematify.validation.run.loaded_findings import across_engines, with_refusals
 from kinematify.validation.run.opinions import demote_inference_findings, join_facts

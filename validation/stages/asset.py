@@ -18,14 +18,14 @@ _GUARDS = checks_of("KV150", "KV151", "KV152")
 def run(request: StageRequest, recorder: Recorder) -> None:
     """Tell KV150 to KV159, and KV201 to KV243 where the meshes can be read."""
     from kinematify.validation.asset.rigid_bodies import measure
-    from kinematify.validation.left_model import leave_model
+    from kinematify.validation.model_cache import cache_model
 
     model = check_mesh_files(request, recorder)
     if model is None:
         return
-    leave_model(model, request.work)
+    cache_model(model, request.work)
     declared = checks_of("KV2")
-    if recorder.wants(*(check.id for check in declared)):
+    if recorder.is_selected(*(check.id for check in declared)):
         physics = measure(model, request.settings.physics)
         for check in declared:
             recorder.run(check, physics)
@@ -44,7 +44,7 @@ def check_mesh_files(request: StageRequest, recorder: Recorder) -> Robot | None:
     for check in _GUARDS:
         with recorder.check(check.id) as result:
             check.run(result, look)
-        usable &= not result.harmful and result.status is not Status.BLOCKED
+        usable &= not result.is_fatal and result.status is not Status.BLOCKED
     others = [check for check in checks_of("KV15") if check not in _GUARDS]
     if not usable:
         for check in others:

@@ -21,11 +21,11 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     from kinematify.validation.evidence.case import JointCase, summary_of
     from kinematify.validation.evidence.loop_pins import shared_pins
     from kinematify.validation.evidence.measure import measure_joints
-    from kinematify.validation.left_model import model_of
+    from kinematify.validation.model_cache import model_of
 
     of_joints, of_pins = checks_of("KV34"), checks_of("KV35")
     checks = of_joints + of_pins
-    if not recorder.wants(*(check.id for check in checks)):
+    if not recorder.is_selected(*(check.id for check in checks)):
         return
     robot, seed = model_of(request), request.settings.seed
     bodies = read_bodies(robot, load_config(CONFIG), seed=seed)

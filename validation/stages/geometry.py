@@ -25,10 +25,10 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     """Look at the model at rest and in motion; see `kinematify.validation.stage`."""
     from kinematify.geometry.scene import colliding_shapes, read_scene
     from kinematify.validation.geometry.look import GeometryContext
-    from kinematify.validation.left_model import thin_model_of
+    from kinematify.validation.model_cache import thin_model_of
 
     every = (*AT_REST, *IN_MOTION, *TOGETHER)
-    if not recorder.wants(*(entry.id for entry in every)):
+    if not recorder.is_selected(*(entry.id for entry in every)):
         return
     model = thin_model_of(request)
     scene = read_scene(model, request.settings.geometry, colliding_shapes)
@@ -52,7 +52,7 @@ def run(request: StageRequest, recorder: Recorder) -> None:
 
 def _tell_motion(entry: Check, look: GeometryContext, recorder: Recorder) -> None:
     """Run a check for one joint after the other."""
-    if not recorder.wants(entry.id):
+    if not recorder.is_selected(entry.id):
         return
     with recorder.check(entry.id) as result:
         if look.late is not None:

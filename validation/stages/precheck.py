@@ -53,7 +53,7 @@ def _blocks(check: Check, context: object, recorder: Recorder) -> bool:
     with recorder.check(check.id) as result:
         check.run(result, context)
         _shorten(result)
-        blocks = result.harmful
+        blocks = result.is_fatal
     return blocks or result.status is Status.BLOCKED
 
 

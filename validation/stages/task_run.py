@@ -24,7 +24,7 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     first, *others = checks_of("KV7")
     with recorder.check(first.id) as result:
         first.run(result, task)
-    if result.harmful or result.reason is not None:
+    if result.is_fatal or result.reason is not None:
         recorder.skip(others, f"the task cannot be set up, see {first.id}")
         return
     task.plan()

@@ -37,9 +37,9 @@ from kinematify.evaluation.nightly.store import (
     UNFINISHED,
     Night,
     State,
-    accepted,
-    chosen,
+    baseline_of,
     earlier_runs,
+    find_night,
     load_nights,
     open_state,
     write_night,
@@ -114,8 +114,8 @@ def run_night(request: NightRequest, progress: Progress) -> NightResult:
     """
     with locked(request.out / ".lock", f"The folder of nights {request.out}"):
         nights, warnings = load_nights(request.out)
-        name = request.baseline or accepted(request.out)
-        baseline = None if name is None else chosen(nights, name, request.out)
+        name = request.baseline or baseline_of(request.out)
+        baseline = None if name is None else find_night(nights, name, request.out)
         objects = _objects(request)
         work = _Work(request, objects)
         state = open_state(request.out, work.plan, {path.name for path in request.out.iterdir()})

@@ -174,7 +174,7 @@ def accuracy_run(result: JobResult, scenario: tuple[str, str], settings: Nightly
             metric: None if (value := values.get(metric)) is None else round(value, 6)
             for metric in (*LESS_IS_BETTER, *MORE_IS_BETTER)
         }
-        | joints,
+        | dict[str, float | None](joints),
         problems=tuple(_problems(result.score, settings)) if result.score is not None else (),
     )
 

@@ -147,7 +147,7 @@ def earlier_runs(nights: Sequence[Night]) -> dict[RunKey, list[Run]]:
     return found
 
 
-def accepted(folder: Path) -> str | None:
+def baseline_of(folder: Path) -> str | None:
     """Return the name of the accepted night; None if none was accepted.
 
     Raises:
@@ -165,7 +165,7 @@ def accepted(folder: Path) -> str | None:
         ) from error
 
 
-def chosen(nights: Sequence[Night], name: str, folder: Path) -> Night:
+def find_night(nights: Sequence[Night], name: str, folder: Path) -> Night:
     """Return a night by its name.
 
     Raises:
@@ -258,9 +258,9 @@ def open_state(folder: Path, plan: str, taken: Collection[str]) -> State:
     Raises:
         OutputError: The folder cannot be written.
     """
-    left = _left(folder / UNFINISHED / _FILE)
+    left = _remaining(folder / UNFINISHED / _FILE)
     resumed = left is not None and left.plan == plan
-    state = replace(left, sessions=left.sessions + 1) if left and resumed else _begun(plan, taken)
+    state = replace(left, sessions=left.sessions + 1) if left and resumed else _start(plan, taken)
     try:
         (folder / UNFINISHED).mkdir(parents=True, exist_ok=True)
         replace_text(folder / UNFINISHED / _FILE, json.dumps(asdict(state), indent=1) + "\n")
@@ -269,14 +269,14 @@ def open_state(folder: Path, plan: str, taken: Collection[str]) -> State:
     return state
 
 
-def _left(file: Path) -> State | None:
+def _remaining(file: Path) -> State | None:
     try:
         return State(**json.loads(file.read_text(encoding="utf-8")))
     except (OSError, ValueError, TypeError):
         return None  # there is none, or an older version left it: begin again, finished runs are kept by their keys
 
 
-def _begun(plan: str, taken: Collection[str]) -> State:
+def _start(plan: str, taken: Collection[str]) -> State:
     now = datetime.datetime.now(tz=datetime.UTC)
     commit, dirty = git_commit()
     base = f"{now.date().isoformat()}-{commit}"

@@ -41,7 +41,7 @@ _SHORTEST, _LONGEST = 0.05, 20.0  # [m]
 
 
 @dataclass(kw_only=True)
-class Asked:
+class Requirements:
     """Request of a specification to a body."""
 
     specification: Specification
@@ -65,9 +65,9 @@ class Asked:
     def take_parts(self) -> None:
         """Take up what is asked for besides the body."""
         for part in self.specification.parts:
-            self._take(part)
+            self._parse(part)
 
-    def _take(self, part: PartSpecification) -> None:
+    def _parse(self, part: PartSpecification) -> None:
         at = part.claims[0].at
         words, kind = self._mechanism(max(at))
         if kind is None and not part.of:  # an adjective asks for it: a rolling cabinet
@@ -163,7 +163,7 @@ class Asked:
             return "", 1 if side == "top" else -1
         return side, 0
 
-    def granted(self, *, nothing_wanted: bool = False) -> list[MechanismSpec]:
+    def accepted(self, *, nothing_wanted: bool = False) -> list[MechanismSpec]:
         """Return what the body has without being asked for."""
         body = self.body
         named = [*self.excluded, *(item.mechanism for item in self.wanted)]
@@ -222,7 +222,7 @@ class Asked:
 
 def asked_composition(
     specification: Specification, body: BodyKind, *, may_stand_still: bool = False
-) -> tuple[Composition, Asked]:
+) -> tuple[Composition, Requirements]:
     """Find out which mechanisms go on a body; what has no place there is dropped.
 
     Args:
@@ -233,9 +233,9 @@ def asked_composition(
     Raises:
         InputError: It asks for absurd sizes, or nothing of it would move.
     """
-    asked = Asked(specification=specification, body=body)
+    asked = Requirements(specification=specification, body=body)
     asked.take_parts()
-    wanted = (*asked.wanted, *asked.granted())
+    wanted = (*asked.wanted, *asked.accepted())
     whole = specification.whole
     if any(item.mechanism.has_grip for item in wanted):
         asked.used |= asked.of_handles
@@ -262,7 +262,7 @@ def asked_composition(
     return _fitting(composition, asked, may_stand_still=may_stand_still), asked
 
 
-def _fitting(composition: Composition, asked: Asked, *, may_stand_still: bool) -> Composition:
+def _fitting(composition: Composition, asked: Requirements, *, may_stand_still: bool) -> Composition:
     """The composition without mechanisms that have no place on its body, the last said first.
 
     Raises:
@@ -282,7 +282,7 @@ def _fitting(composition: Composition, asked: Asked, *, may_stand_still: bool) -
             reason = str(error).split(". ", maxsplit=1)[0].rstrip(".")
             asked.drop(last.title, *asked.places.get(id(last), ()), reason=reason)
             rest = tuple(item for item in composition.wanted if item is not last)
-            composition = replace(composition, wanted=rest or tuple(asked.granted(nothing_wanted=True)))
+            composition = replace(composition, wanted=rest or tuple(asked.accepted(nothing_wanted=True)))
         else:
             return composition
 

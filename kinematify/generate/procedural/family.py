@@ -137,7 +137,7 @@ def _built(family: Family, given: tuple[tuple[str, Value], ...], seed: int | Non
         counts = ", ".join(p.name for p in family.parameters if isinstance(p.default, int))
         raise InputError(f"Nothing of this {family.title} would move. Ask for one of {counts} at least.")
     if far:
-        workshop.open_by(far, title=family.title)
+        workshop.set_opening(far, title=family.title)
     return workshop.finish(
         name or family.name,
         {"seed": seed, **values},

@@ -257,7 +257,7 @@ class Workshop:
             opened = rest * joint.upper if math.isfinite(joint.upper) else 0.0
             self._rest[joint.child] = opened or joint.value
 
-    def open_by(self, far: Mapping[JointType, float], *, title: str) -> None:
+    def set_opening(self, far: Mapping[JointType, float], *, title: str) -> None:
         """Make what stands open stand open by an angle or a distance, and all else closed; a door's handle rests.
 
         Args:

@@ -64,10 +64,10 @@ def estimate_joints(
     judged = {edge: judge(features, config.confidence) for edge, features in found.items()}
     for group in alike_edges(graph, tree):
         alike = [judged[edge] for edge in group]
-        likely = agreed([item.hypotheses.kinds for item in alike], [item.likely for item in alike])
+        likely = agreed([item.hypotheses.kinds for item in alike], [item.prior for item in alike])
         fixed = float(np.mean([item.fixed for item in alike]))
         judged |= {
-            edge: replace(judged[edge], likely=given, fixed=fixed) for edge, given in zip(group, likely, strict=True)
+            edge: replace(judged[edge], prior=given, fixed=fixed) for edge, given in zip(group, likely, strict=True)
         }
     estimates = (_estimate(found[edge], judged[edge], config=config) for edge in tree.edges())
     return tuple(with_exact_lines(assembly, estimate) for estimate in estimates)

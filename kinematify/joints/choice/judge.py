@@ -36,7 +36,7 @@ class Posterior:
     """The hypotheses of one edge with their probabilities."""
 
     hypotheses: Hypotheses
-    likely: FloatArray
+    prior: FloatArray
     """Sum 1, shape (h,)."""
     by_cues: int
     """Position of what the weighted cues alone would choose."""
@@ -44,18 +44,18 @@ class Posterior:
     """What the weighted cues say of each hypothesis among those of its type, shape (h,); NaN for fixed."""
     size: float
     """Diagonal of the child [m]."""
-    lead: float
+    prior_log_odds: float
     """Log odds that what cues would choose keeps."""
     fixed: float = 0.0
     """How likely the child is fixed to its parent, whatever moves best."""
 
     @cached_property
-    def believed(self) -> FloatArray:
+    def posterior(self) -> FloatArray:
         """Probabilities after the lead that what cues would choose has, shape (h,).
 
         On what neither has seen, cues are right more often where the fit is not clearly surer (`results/choice.md`).
         """
-        led = self.likely * np.exp(self.lead * self._same[self.by_cues])
+        led = self.prior * np.exp(self.prior_log_odds * self._same[self.by_cues])
         return np.asarray(led / led.sum())
 
     @cached_property
@@ -66,7 +66,7 @@ class Posterior:
         simulations are not weighed against it twice.
         """
         moving = self.hypotheses.kinds != FIXED
-        found = np.where(moving, np.log(np.maximum(self._worth @ self.likely, 1e-12)), -np.inf)
+        found = np.where(moving, np.log(np.maximum(self._expected_score @ self.prior, 1e-12)), -np.inf)
         return np.where(self._same[self.best], found.max(), found)
 
     @cached_property
@@ -77,11 +77,11 @@ class Posterior:
         beside it is not.
         """
         moving = self.hypotheses.kinds != FIXED
-        first = int(np.argmax(np.where(moving, self._worth @ self.believed, -1.0)))
+        first = int(np.argmax(np.where(moving, self._expected_score @ self.posterior, -1.0)))
         return int(np.argmax(np.where(self._same[first], self.support, -np.inf)))
 
     @cached_property
-    def _worth(self) -> FloatArray:
+    def _expected_score(self) -> FloatArray:
         """Return how right each hypothesis would be where another one is the true joint (`rightness`), shape (h, h).
 
         So lines that lie side by side share what is likely of a hinge there, and none loses to a slide alone.
@@ -117,12 +117,12 @@ class Posterior:
     @property
     def confidence(self) -> float:
         """Return how likely type and direction are right: of all hypotheses that agree with the best one in both."""
-        return float(min(self.believed[self._agree[self.best]].sum(), 1.0))
+        return float(min(self.posterior[self._agree[self.best]].sum(), 1.0))
 
     @property
     def odds_prismatic(self) -> float:
         """Log odds of sliding against turning."""
-        slide, turn = (float(self.believed[self.hypotheses.kinds == kind].sum()) for kind in (SLIDE, TURN))
+        slide, turn = (float(self.posterior[self.hypotheses.kinds == kind].sum()) for kind in (SLIDE, TURN))
         return float(np.log(max(slide, 1e-9) / max(turn, 1e-9)))
 
     def alternatives(self, count: int) -> tuple[JointCandidate, ...]:
@@ -140,7 +140,7 @@ class Posterior:
                 pivot=h.pivots[i],
                 score=float(self.scores[i]),
                 source=h.sources[i],
-                evidence={"probability": float(self.believed[i])},
+                evidence={"probability": float(self.posterior[i])},
             )
             for i in kept
         )
@@ -173,12 +173,12 @@ def judge(features: Features, config: ConfidenceConfig) -> Posterior:
         odds += config.name_weight if said == FIXED else -config.name_weight
     return Posterior(
         hypotheses=hypotheses,
-        likely=likely / likely.sum(),
+        prior=likely / likely.sum(),
         fixed=float(1.0 / (1.0 + np.exp(-odds))),
         by_cues=features.by_cues,
         support=columns["rules_score"],
         size=scene.frame.diagonal,
-        lead=config.cues_lead,
+        prior_log_odds=config.cues_lead,
     )
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 
-class End(NamedTuple):
+class LimitEnd(NamedTuple):
     """Distance that a joint goes one way."""
 
     motion: float
@@ -35,8 +35,8 @@ class End(NamedTuple):
     """What ends it there, in words; empty where nothing does."""
 
 
-AS_GIVEN, USUAL, GUIDE = End(0.0, "the given pose"), "typical range", "the end of its guide"
-Ways = tuple[End, End]
+AS_GIVEN, USUAL, GUIDE = LimitEnd(0.0, "the given pose"), "typical range", "the end of its guide"
+Ways = tuple[LimitEnd, LimitEnd]
 """Along an axis and against it."""
 
 
@@ -57,7 +57,7 @@ def free_ways(
     for side, motion in enumerate(whole.free(share)[0]):
         met = obstacles[int(np.argmax([one.crossed(motion)[0, side] for one in each]))]
         stop = f"contact with {scene.cache.assembly.parts[met].name}"
-        ways.append(End(float(motion), stop if motion < whole.limit else "none found"))
+        ways.append(LimitEnd(float(motion), stop if motion < whole.limit else "none found"))
     return ways[0], ways[1]
 
 
@@ -69,9 +69,9 @@ class Range:
     """`continuous` where a wheel or knob meets nothing in a full turn; else as given."""
     sign: float
     """+1 if the given axis opens the joint as it is, -1 if it must be reversed."""
-    back: End
+    back: LimitEnd
     """Lower limit."""
-    ahead: End
+    ahead: LimitEnd
     """Upper limit."""
     free: Ways
     """Free motion in the opening direction and against it."""
@@ -99,7 +99,7 @@ def find_range(scene: JointScene, kind: JointType, axis: FloatArray, pivot: Floa
         config: Bounds.
     """
     if kind is JointType.FIXED:
-        none = End(0.0, "")
+        none = LimitEnd(0.0, "")
         return Range(kind=kind, sign=1.0, back=none, ahead=none, free=(none, none))
     if kind is JointType.PRISMATIC:
         return _slide_range(scene, axis, config)
@@ -110,7 +110,7 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
     ways = _free_turn(scene, axis, pivot, (scene.parent, *scene.others), config)
     free = np.array([way.motion for way in ways])
     if is_continuous(scene, axis, pivot, free):
-        none, half, sign = End(np.inf, ""), End(np.pi, ""), clockwise_sign(scene, axis)
+        none, half, sign = LimitEnd(np.inf, ""), LimitEnd(np.pi, ""), clockwise_sign(scene, axis)
         return Range(kind=JointType.CONTINUOUS, sign=sign, back=none, ahead=none, free=(half, half))
     if scene.fold is not None and abs(float(axis @ scene.fold.axis)) > np.cos(np.radians(config.limits.square_deg)):
         return _rocker_range(scene, axis, ways)
@@ -143,11 +143,11 @@ def _free_turn(
     return free_ways(scene, swept, obstacles, config.sweep.share)
 
 
-def _usual(degrees: float) -> End:
-    return End(float(np.radians(degrees)), USUAL)
+def _usual(degrees: float) -> LimitEnd:
+    return LimitEnd(float(np.radians(degrees)), USUAL)
 
 
-def _from_stop(scene: JointScene, forward: End, backward: End, config: JointsConfig) -> End:
+def _from_stop(scene: JointScene, forward: LimitEnd, backward: LimitEnd, config: JointsConfig) -> LimitEnd:
     """Upper limit of what turns freely: what has a stop opens to a right angle from there at most, as panels do.
 
     Blades of scissors, arms of glasses and ribs of umbrellas meet nothing on the way round, and none goes round.
@@ -160,10 +160,10 @@ def _from_stop(scene: JointScene, forward: End, backward: End, config: JointsCon
         return min(forward, right)
     unstopped = forward.motion >= np.pi and backward.motion < right.motion
     pinned = scene.has_bearing and not scene.parent_moves
-    return End(right.motion - backward.motion, USUAL) if unstopped and pinned else forward
+    return LimitEnd(right.motion - backward.motion, USUAL) if unstopped and pinned else forward
 
 
-def _range(sign: float, back: End, ahead: End, free: Ways) -> Range:
+def _range(sign: float, back: LimitEnd, ahead: LimitEnd, free: Ways) -> Range:
     return Range(kind=JointType.REVOLUTE, sign=sign, back=back, ahead=ahead, free=free if sign > 0 else free[::-1])
 
 
@@ -179,7 +179,7 @@ def _rocker_range(scene: JointScene, axis: FloatArray, free: Ways) -> Range:
     turns = np.zeros(2) if fold is None else fold.turns_level(face) * np.copysign(1.0, float(fold.axis @ axis))
     reach = np.array([max(float(turns.max()), 0.0), max(-float(turns.min()), 0.0)])
     sign = neutral_sign(scene, axis) if np.ptp(reach) < 0.1 * reach.max() else float(np.sign(reach[0] - reach[1]))
-    ends = [End(float(angle), "level with the face around it") for angle in reach]
+    ends = [LimitEnd(float(angle), "level with the face around it") for angle in reach]
     forward, backward = ends if sign > 0 else ends[::-1]
     return _range(sign, backward, forward, free)
 
@@ -206,8 +206,8 @@ def _panel_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: W
     if len(closing) == 2:
         return _range(sign, min(backward, right), min(forward, right), free)
     if len(closing) == 1:
-        shut = End(abs(closing[0]), "shut against its body")
-        return _range(sign, shut, min(forward, End(max(right.motion - shut.motion, 0.0), USUAL)), free)
+        shut = LimitEnd(abs(closing[0]), "shut against its body")
+        return _range(sign, shut, min(forward, LimitEnd(max(right.motion - shut.motion, 0.0), USUAL)), free)
     # Where its mesh overlaps the frame, what stops it says nothing: no door is made to stay shut.
     blocked = max(free).motion < np.radians(limits.blocked_deg)
     return _range(sign, AS_GIVEN, right if blocked else min(forward, right), free)
@@ -232,9 +232,9 @@ def closing_turns(
     limits = config.limits
     if _touches_elsewhere(scene, axis, pivot, config):
         return ()
-    now = _closeness(scene, axis, pivot, 0.0)
+    now = _gap(scene, axis, pivot, 0.0)
     turns, square = _square_turns(scene, axis, config)
-    found = sorted((_closeness(scene, axis, pivot, turn) / now, turn) for turn in turns)
+    found = sorted((_gap(scene, axis, pivot, turn) / now, turn) for turn in turns)
     possible = [pair for pair in found if pair[0] < limits.closer and _can_turn(*pair, free, config)]
     if len(possible) > 1 and possible[1][1] * possible[0][1] < 0.0 and possible[0][0] > limits.closer * possible[1][0]:
         return possible[0][1], possible[1][1]
@@ -284,7 +284,7 @@ def _touches_elsewhere(scene: JointScene, axis: FloatArray, pivot: FloatArray, c
     return bool(near < config.panels.ajar_share)
 
 
-def _closeness(scene: JointScene, axis: FloatArray, pivot: FloatArray, turn: float) -> float:
+def _gap(scene: JointScene, axis: FloatArray, pivot: FloatArray, turn: float) -> float:
     """Mean distance of the turned child from its parent [m]."""
     points = scene.cache.samples(scene.child).points[::10]
     moved = pivot + (points - pivot) @ rotation_about(axis, turn).T
@@ -328,25 +328,25 @@ def _slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> R
         ahead, back = min(floor, _press(scene, way, length, config)), AS_GIVEN
     else:
         ahead, back = _ends(scene, way, ways, length, config)
-    ahead = max(ahead, End(config.limits.least_slide * scene.diagonal, "the least travel that is kept"))
+    ahead = max(ahead, LimitEnd(config.limits.least_slide * scene.diagonal, "the least travel that is kept"))
     return Range(kind=JointType.PRISMATIC, sign=sign, back=back, ahead=ahead, free=ways)
 
 
 def _ends(scene: JointScene, direction: FloatArray, free: Ways, length: float, config: JointsConfig) -> Ways:
     """Ends of a drawer or lid that opens along a direction, ahead and back; `free` likewise."""
     forward, backward = free
-    ajar = min(backward, End(_standing_out(scene, direction), "flush with the body"))
+    ajar = min(backward, LimitEnd(_standing_out(scene, direction), "flush with the body"))
     ajar = ajar if ajar.motion > config.limits.ajar * length else AS_GIVEN
-    return min(forward, End(config.limits.drawer * length - ajar.motion, USUAL)), ajar
+    return min(forward, LimitEnd(config.limits.drawer * length - ajar.motion, USUAL)), ajar
 
 
-def _guided(scene: JointScene, direction: FloatArray, free: End, length: float, config: JointsConfig) -> End:
+def _guided(scene: JointScene, direction: FloatArray, free: LimitEnd, length: float, config: JointsConfig) -> LimitEnd:
     """Travel along `direction` up to the next stop, or until the guide lets the part go.
 
     Where no guide is seen, by as much of its own length as drawers travel.
     """
     guided = guided_travel(scene, direction, config)
-    return min(free, End(config.limits.drawer * length, USUAL) if guided is None else End(guided, GUIDE))
+    return min(free, LimitEnd(config.limits.drawer * length, USUAL) if guided is None else LimitEnd(guided, GUIDE))
 
 
 def _is_runner(scene: JointScene, axis: FloatArray, free: FloatArray, length: float, config: JointsConfig) -> bool:
@@ -369,7 +369,7 @@ def _standing_out(scene: JointScene, direction: FloatArray) -> float:
     return max(float(np.quantile(own, 0.98) - body.max()), 0.0)
 
 
-def _press(scene: JointScene, direction: FloatArray, length: float, config: JointsConfig) -> End:
+def _press(scene: JointScene, direction: FloatArray, length: float, config: JointsConfig) -> LimitEnd:
     """Travel of a button pressed along a direction that nothing stops: what stands out of its surroundings."""
     own = scene.cache.samples(scene.child).points
     body = scene.cache.samples(scene.parent).points
@@ -381,7 +381,7 @@ def _press(scene: JointScene, direction: FloatArray, length: float, config: Join
         visible = min(length, max(float((around @ direction).min() - (own @ direction).min()), 0.0))
     # A stem behind the cap is no travel: what is flush is pressed by a share of its length or width.
     whole = min(length, wide)
-    return End(config.limits.button * (visible if visible > 0.1 * whole else whole), USUAL)
+    return LimitEnd(config.limits.button * (visible if visible > 0.1 * whole else whole), USUAL)
 
 
 def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray, config: JointsConfig) -> float:

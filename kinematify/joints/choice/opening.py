@@ -88,7 +88,7 @@ def _directions(m: MeasuredHypotheses, point: FloatArray) -> FloatArray:
 # ---- conventions ---------------------------------------------------------------------------------------------------
 
 
-def customary_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> float:
+def default_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> float:
     """Return the sign of links in series and of free parts: the freer way opens, else the one that rises.
 
     Args:
@@ -164,7 +164,7 @@ def turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Floa
     """+1 where a turn opens about the axis as it is, -1 where it must be reversed.
 
     What stands at a stop opens the other way. Links in series, what turns on a bearing and is not stopped either way,
-    and what looks alike towards both sides have no side that opens: customs tell theirs (`customary_sign`).
+    and what looks alike towards both sides have no side that opens: customs tell theirs (`default_sign`).
 
     Args:
         scene: The pair.
@@ -178,7 +178,7 @@ def turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Floa
         return 1.0 if free[0] > free[1] else -1.0
     either = scene.serial or (scene.has_bearing and free.min() > unstopped)
     odds = 0.0 if either else opening_odds(shipped_scorer(OPENING_WEIGHTS), measure_sides(scene, axis, pivot))
-    return customary_sign(scene, axis, pivot, free) if abs(odds) < _UNDECIDED else float(np.sign(odds))
+    return default_sign(scene, axis, pivot, free) if abs(odds) < _UNDECIDED else float(np.sign(odds))
 
 
 def opening_odds(scorer: Scorer, sides: Mapping[str, FloatArray]) -> float:

@@ -234,7 +234,7 @@ class _Compared(Comparison):
             word = self.specification.tokens[k].given
             how = MOTIONS.get(word) if word not in BARE else None
             if how and not any(moves_so(self.made, joint, how) for joint in self.made.joints):
-                self._miss(word, (k,), "no part does")
+                self._report_missing(word, (k,), "no part does")
         groups: dict[str, list[PartSpecification]] = defaultdict(list)
         for part in self.specification.parts:
             groups[part.noun.split()[-1]].append(part)
@@ -283,7 +283,7 @@ class _Compared(Comparison):
                 self._check_claims(part, found, chosen, parts)
                 all_meant = len(chosen) == len(found) and part.count in (None, len(found))
                 if known and len(self.missing) == before and all_meant:
-                    self._call(found, "_".join(part.noun.split()[-known:]), part.noun)
+                    self._rename(found, "_".join(part.noun.split()[-known:]), part.noun)
             elif not (part.of and self._all_have_it(part)):
                 self._not_there(part)
 
@@ -325,7 +325,7 @@ class _Compared(Comparison):
         k, placed = parts.index(part), any(claim.value in PLACES for claim in part.claims if claim.about == "place")
         every = {item.name for other in parts for item in self.parts_called(other.noun)[0]}
         if new and found and k >= len(every):
-            self._miss(_said(part), part.claims[0].at, f"{len(every)} built in all")
+            self._report_missing(_said(part), part.claims[0].at, f"{len(every)} built in all")
         if new and not placed and len(every) == len(found) == len(parts):
             return [found[k]]
         how = [claim.value for claim in part.claims if claim.about == "moves"]
@@ -355,7 +355,9 @@ class _Compared(Comparison):
             place = next(claim for claim in part.claims if claim.about == "place")
             there = number_there(closed, own, place.value)
             if there not in (None, part.count):
-                self._miss(f"{part.count} {part.noun} {place.words}", (*part.claims[0].at, *place.at), f"{there} built")
+                self._report_missing(
+                    f"{part.count} {part.noun} {place.words}", (*part.claims[0].at, *place.at), f"{there} built"
+                )
 
     def _check_claims(
         self, part: PartSpecification, found: Sequence[Part], chosen: list[Part], parts: Sequence[PartSpecification]
@@ -370,8 +372,8 @@ class _Compared(Comparison):
                 self._to_be_changed(claim, meant)
             self._judge_part(part, claim, wrong, is_there=bool(chosen))
         still = not self._joints_of(found) and not any(self._carrying(item.name) for item in found)
-        if still and self._would_move(part):
-            self._miss(part.claims[0].words, part.claims[0].at, "it does not move")
+        if still and self._is_usually_moving(part):
+            self._report_missing(part.claims[0].words, part.claims[0].at, "it does not move")
 
     def _to_be_changed(self, claim: Claim, parts: Sequence[Part]) -> None:
         """Take up parts that are to look otherwise, or to be open."""
@@ -407,7 +409,7 @@ class _Compared(Comparison):
         found = [joint for joint in found if math.isfinite(joint.upper)] or found
         return found if len({stem_of(joint.child) for joint in found}) == 1 else []
 
-    def _miss(self, words: str, at: Iterable[int], reason: str) -> None:
+    def _report_missing(self, words: str, at: Iterable[int], reason: str) -> None:
         """Take up what was measured and is not as it was asked for."""
         self.missing.append(Missing(words=words, at=frozenset(at), reason=reason, is_sure=True))
 
@@ -427,18 +429,18 @@ class _Compared(Comparison):
             if part.count and self._joints_of(found) and not closes:
                 self.counts.append((tuple(item.name for item in found), _total(part) or part.count))
         elif _on_sides(part) and len(found) == 1:
-            self._miss(f"{there.words} on each side", there.at, built)
+            self._report_missing(f"{there.words} on each side", there.at, built)
         elif part.count is None and len(found) == 1 and not self._several(part):
-            self._miss(_said(part), there.at, "in one part")
+            self._report_missing(_said(part), there.at, "in one part")
         elif part.count == 1 and alone and not part.of and found and 1 not in numbers and not _on_sides(part):
-            self._miss(_said(part), there.at, built)
+            self._report_missing(_said(part), there.at, built)
 
     def _several(self, part: PartSpecification) -> bool:
         """True if one part is several of something by what it is called, or by a parameter."""
         said = part.claims[0].words.split()[-1]
         return bool(self.counted(part.noun)) or (said in self.nouns and said not in map(stem_of, self.nouns[said]))
 
-    def _call(self, found: Sequence[Part], noun: str, said: str) -> None:
+    def _rename(self, found: Sequence[Part], noun: str, said: str) -> None:
         """Call moving parts of one name as the sentence does."""
         stems = {stem_of(part.name) for part in found}
         taken = {stem_of(part.name) for part in self.made.parts}
@@ -575,7 +577,7 @@ class _Compared(Comparison):
             name = joint.parent
         return chain
 
-    def _would_move(self, part: PartSpecification) -> bool:
+    def _is_usually_moving(self, part: PartSpecification) -> bool:
         """True if a part is one that moves wherever it is, and not the handle of each door."""
         word = part.noun.split()[-1]
         return word in _MOVING and self.counted(part.noun) != -1 and word not in self.made.parameters.values()
@@ -601,7 +603,7 @@ class _Compared(Comparison):
             right = all(any(moves_so(self.made, joint, claim.value) for joint in chain) for chain in chains)
             return None if right else joints[0].kind.value
         if claim.about == "way":
-            return None if self._any_goes(joints, claim.value) else f"{joints[0].kind.value}, another way"
+            return None if self._any_moves(joints, claim.value) else f"{joints[0].kind.value}, another way"
         if claim.about == "hinge":
             return self._hinged(joints[0], claim.value)
         if claim.about == "answers":
@@ -622,8 +624,8 @@ class _Compared(Comparison):
         joints_of_doors = [joint for joint in self.made.joints if joint.kind is JointType.REVOLUTE]
         judges: dict[str, Callable[[], str | None]] = {
             "moves": lambda: None if any(moves_so(self.made, item, claim.value) for item in joints) else "no part does",
-            "way": lambda: None if self._any_goes(joints, claim.value) else "no part goes there",
-            "place": lambda: None if self._any_goes(self.made.joints, claim.value) else "nothing says so",
+            "way": lambda: None if self._any_moves(joints, claim.value) else "no part goes there",
+            "place": lambda: None if self._any_moves(self.made.joints, claim.value) else "nothing says so",
             "open": lambda: self._opened(self.made.joints, claim.value),
             "size": lambda: self._sized(claim.value, ()),
             "color": lambda: _looks(claim, [*self.made.parts[:1], *self._fronts()]),
@@ -651,7 +653,7 @@ class _Compared(Comparison):
     def _is_there(self, noun: str) -> bool:
         return noun.rsplit(maxsplit=1)[-1] in _AROUND or bool(self.parts_called(noun)[0])
 
-    def _any_goes(self, joints: Sequence[BlueprintJoint], way: str) -> bool:
+    def _any_moves(self, joints: Sequence[BlueprintJoint], way: str) -> bool:
         if way == "out" and any(joint.kind is JointType.PRISMATIC for joint in joints):
             return True  # a handle is pulled out upwards
         return any(math.isfinite(joint.upper) and goes(self.closed, joint, way) for joint in joints if way in WAYS)

@@ -22,7 +22,7 @@ _LEFT = "model.pickle"
 """In the folder of the run, which nobody else writes to."""
 
 
-def leave_model(model: Robot, work: Path, name: str = _LEFT) -> None:
+def cache_model(model: Robot, work: Path, name: str = _LEFT) -> None:
     """Leave a model for the later stages of a run, so that they need not parse its meshes again."""
     partly = work / f"{name}.partly"
     with partly.open("wb") as file:
@@ -56,7 +56,7 @@ def thin_model_of(request: StageRequest) -> Robot:
         model, most = model_of(request), request.settings.geometry.most_faces
         thin = replace(model, links=tuple(_thin_link(link, most) for link in model.links))
         if within_a_run:
-            leave_model(thin, request.work, _THIN)
+            cache_model(thin, request.work, _THIN)
     return thin
 
 
