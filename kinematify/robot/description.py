@@ -60,6 +60,8 @@ class Description:
     """Line of `path` that declares a link or joint, by ``link`` or ``joint`` and its name; empty for a URDF."""
     notes: tuple[str, ...] = ()
     """What the file holds and the URDF does not, one sentence each."""
+    endless: frozenset[str] = frozenset()
+    """Slides without limits, which a URDF cannot say."""
     native: bool = False
     """MuJoCo opens `path` itself, and has the same joints there."""
 
@@ -186,7 +188,8 @@ def open_description(
     # MuJoCo's own names and none of ours, and nothing that moves in other ways.
     ours = any(joint.declared_kind in ("floating", "ball") or _OUR_NAME.fullmatch(joint.name) for joint in joints)
     native = form == "mjcf" and not ours
-    return Description(path=path, form=form, urdf=urdf, lines=lines, notes=tuple(notes), native=native)
+    endless = frozenset(joint.name for joint in robot.joints if joint.kind == "prismatic" and not joint.has_limit)
+    return Description(path=path, form=form, urdf=urdf, lines=lines, notes=tuple(notes), endless=endless, native=native)
 
 
 def urdf_for(path: Path, package_dirs: Sequence[Path] = (), arguments: Mapping[str, str] | None = None) -> Path:
