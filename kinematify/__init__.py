@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from kinematify.validation.run.report import ValidationReport
     from kinematify.view.loaded import LoadedModel, load
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "Assembly",
