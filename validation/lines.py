@@ -38,6 +38,7 @@ def with_lines(results: Sequence[CheckResult], robot: Robot | None) -> list[Chec
     return [replace(result, findings=tuple(map(placed, result.findings))) for result in results]
 
 
+_RANGE = "KV220"
 _OF_TEXT = ("KV104", "KV143", "KV144")
 """Checks of the URDF's text, which say nothing about a file of another format."""
 
@@ -58,4 +59,10 @@ def in_source(results: Sequence[CheckResult], description: Description) -> list[
         said = f"{finding.message} ({title} was given the URDF of the {description.title}.)"
         return replace(finding, line=line or None, message=said)
 
-    return [result.with_findings(() if result.check in _OF_TEXT else map(moved, result.findings)) for result in results]
+    def is_ours(finding: Finding) -> bool:
+        return finding.check in _OF_TEXT or (finding.check == _RANGE and finding.joint in description.endless)
+
+    return [
+        result.with_findings(moved(finding) for finding in result.findings if not is_ours(finding))
+        for result in results
+    ]
