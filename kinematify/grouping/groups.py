@@ -404,6 +404,7 @@ def joined_pieces(assembly: Assembly, groups: Sequence[IntArray], names: Sequenc
         parts=parts,
         set_aside=tuple(replace(item, nearest=into[item.nearest]) for item in assembly.set_aside),
         originals=originals,
+        segmented=True,
         original_names={**dict(zip(own, names or own, strict=True)), **assembly.original_names},
     )
 
