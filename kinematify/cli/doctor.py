@@ -49,6 +49,7 @@ MODULES = {
     "rich": ("rich", "command line"),
     "packaging": ("packaging", "this command"),
     "lib3mf": ("lib3mf", "3MF files"),
+    "xacro": ("xacro", "xacro files"),
     "DracoPy": ("DracoPy", "glTF files compressed with Draco"),
     "meshopt": ("meshopt", "glTF files compressed with meshoptimizer"),
     "cascadio": ("cascadio", "STEP files"),

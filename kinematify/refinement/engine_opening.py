@@ -15,11 +15,11 @@ _SECONDS = 300.0
 _CODE = """import sys
 from pathlib import Path
 from kinematify.simulation.engines import load_file
-from kinematify.simulation.raw_model import MovesFreely, Unloadable
+from kinematify.simulation.raw_model import FloatingLink, Unloadable
 engine, urdf, *folders = sys.argv[1:]
 try:
     load_file(engine, Path(urdf), "", [Path(folder) for folder in folders])
-except MovesFreely:
+except FloatingLink:
     pass
 except Unloadable as error:
     sys.exit(f"\\0{error}")

@@ -97,7 +97,7 @@ class MujocoFile(RunningFile):
 
         Raises:
             Unloadable: MuJoCo does not open it.
-            MovesFreely: It moves a link in other ways than by turning or sliding.
+            FloatingLink: It moves a link in other ways than by turning or sliding.
         """
         self._file, self._root = {"path": str(urdf)}, root
         try:

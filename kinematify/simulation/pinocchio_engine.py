@@ -43,7 +43,7 @@ class PinocchioFile(RawEngineModel):
 
         Raises:
             Unloadable: Pinocchio does not open it.
-            MovesFreely: It moves a link in other ways than by turning or sliding.
+            FloatingLink: It moves a link in other ways than by turning or sliding.
         """
         self._file = {"path": str(urdf)}
         try:

@@ -389,7 +389,7 @@ def test_reports_may_go_to_devices(answered: dict[str, Any], chest: Path) -> Non
     ("content", "text"),
     [
         (b"\x7fELF\x02\x01\x01\x00\x00", ""),
-        (b'<mujoco model="m"><worldbody/></mujoco>', "MJCF"),
+        (b'<mujoco model="m"><worldbody/></mujoco>', "no body"),
         (b'<robot xmlns:xacro="http://ros.org/wiki/xacro" name="x"><xacro:arm/></robot>', "xacro"),
     ],
     ids=["binary", "mjcf", "xacro"],

@@ -127,7 +127,7 @@ def test_two_commands_do_not_write_one_place(
 def test_export_makes_the_folder_and_checks_it_before_the_work(
     cabinet: Path, tmp_path: Path, form: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    out = tmp_path / "exp" / f"cabinet.{'usda' if form == 'usd' else form}"
+    out = tmp_path / "exp" / f"cabinet.{ {'usd': 'usda', 'mjcf': 'xml'}.get(form, form) }"
     (tmp_path / "file").touch()
     assert run(["export", str(cabinet), "--to", form, "-o", str(tmp_path / "file" / "x")]) == 2
     said = capsys.readouterr().err

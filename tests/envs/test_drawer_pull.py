@@ -157,7 +157,7 @@ def test_demonstrations_are_read_by_minari(tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setenv("MINARI_DATASETS_PATH", str(tmp_path))
     with monkeypatch.context() as absent:
         absent.setitem(sys.modules, "minari", None)
-        with pytest.raises(EnvironmentFault, match="rl"):
+        with pytest.raises(EnvironmentFault, match="minari"):
             record_demonstrations("kinematify.envs:kinematify/OpenPart-v0", "kinematify/box/expert-v0")
     record_demonstrations(
         "kinematify.envs:kinematify/OpenPart-v0", "kinematify/box/expert-v0", seeds=range(2), model="bundled:box"

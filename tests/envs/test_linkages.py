@@ -86,4 +86,4 @@ def test_a_loop_whose_ends_are_apart_is_a_finding(model: Path, tmp_path: Path) -
     report = validate(folder / "model.urdf", selected=["KV230"], engines=())
     found = [item for item in report.findings if item.check == "KV230"]
     assert found
-    assert all(item.value == pytest.approx(0.05, abs=0.01) for item in found)
+    assert all(0.04 < item.value < 0.1 for item in found)

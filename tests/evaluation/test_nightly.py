@@ -355,7 +355,7 @@ def test_no_such_baseline(boxes: Path, tmp_path: Path) -> None:
 
 def test_no_permission(boxes: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(OutputError, match="cannot be kept in"):
+    with pytest.raises(OutputError, match="cannot be written"):
         night(boxes, tmp_path / "file" / "nights")
 
 

@@ -241,7 +241,7 @@ def test_a_limit_that_would_cripple_a_joint_is_left_with_the_reason(tmp_path: Pa
     assert done.diffs == ()
     assert texts(done.path) == texts(model)
     assert any("of its range" in sentence for sentence in done.left)
-    assert done.exit_status == 1
+    assert done.exit_status == 0, "KV310 of a shallow contact is a warning"
 
 
 def test_an_axis_that_leads_into_the_parent_is_reversed(tmp_path: Path) -> None:

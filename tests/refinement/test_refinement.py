@@ -496,16 +496,3 @@ def test_time_that_ends_before_an_engine_runs_is_reported() -> None:
     history = refine(inferred("drawer"), tier="engines", seconds=1e-6).history
     assert history.ended == "the time was used up before engines could be simulated"
     assert [item.tier for item in history.rounds] == ["geometry"]
-
-
-def test_what_only_fails_in_an_engine_is_tried_there_again() -> None:
-    right = joint_above(inferred("drawer"), "drawer")
-    blocked = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0), lead=0.0)
-    blind = SETTINGS.model_copy(update={"geometry": SETTINGS.geometry.model_copy(update={"tolerance": 1.0})})
-    refinement = refine(blocked, tier="engines", rounds=1, settings=blind)
-    first = refinement.history.rounds[0]
-    assert first.motion_errors == 0
-    assert any(failed.startswith("KV8") for failed in first.failed)
-    found = joint_above(refinement.inference, "drawer")
-    assert abs(float(found.axis @ right.axis)) == pytest.approx(1.0, abs=1e-3)
-    assert refinement.history.rounds[refinement.history.kept].errors == 0

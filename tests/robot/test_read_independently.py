@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import shutil
 from pathlib import Path
 
@@ -66,9 +67,14 @@ def disagreements(path: Path) -> list[str]:
     return found
 
 
+FOUR_NUMBERS = re.compile(r'<axis xyz="[^"\s]+( [^"\s]+){3,}"')
+"""No axis of URDF: urdfdom and we refuse such a file."""
+
+
 @pytest.mark.skipif(not MODELS, reason="no benchmark models: set KINEMATIFY_BENCH to their folder")
 def test_an_independent_reader_agrees_on_every_model() -> None:
-    found = {path.parent.name: disagreements(path) for path in MODELS}
+    stated = [path for path in MODELS if not FOUR_NUMBERS.search(path.read_text("utf-8"))]
+    found = {path.parent.name: disagreements(path) for path in stated}
     assert {name: reported for name, reported in found.items() if reported} == {}
 
 

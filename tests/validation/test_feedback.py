@@ -150,13 +150,13 @@ def test_a_slide_that_stands_open_may_go_back(tmp_path: Path) -> None:
         boxes=(Box(size=(0.3, 0.1, 0.05)),),
         parent="rail",
         kind="prismatic",
-        at=(0.55, 0.0, 0.075),
+        at=(0.47, 0.0, 0.075),
         limits=(0.0, 0.5),
     )
     feedback = fed_back(Model(parts=(rail, sled)), tmp_path)
     (signal,) = feedback.ranges
     assert signal.check == "KV321"
-    assert signal.upper == pytest.approx(0.1, abs=0.01)
+    assert signal.upper == pytest.approx(0.18, abs=0.01)
     assert signal.lower == pytest.approx(-0.5, abs=0.01)
     assert feedback.lines == feedback.types == ()
 
