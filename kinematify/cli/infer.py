@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -302,7 +302,8 @@ def _written(
     from kinematify.processes.pool import TaskFailure
 
     if not isinstance(found, TaskFailure):
-        return cast("ValidationReport | KinematifyError | None", found)
+        answer: ValidationReport | KinematifyError | None = found
+        return answer
     return EnvironmentFault(f"The engines ended before they had answered: {found.message}.")
 
 

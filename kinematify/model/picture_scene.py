@@ -90,7 +90,7 @@ def _obstructed(model: KinematicModel, q: Mapping[str, float]) -> set[str]:
     """Joints that move a part through the floor or through another part in a configuration."""
     robot = model_robot(model)
     seen = {link.name for link in model.links if len(link.part.faces) > 1}  # links without geometry have one triangle
-    links = [link if link.name in seen else replace(link, visuals=(), collisions=()) for link in robot.links]
+    links = (link if link.name in seen else replace(link, visuals=(), collisions=()) for link in robot.links)
     scene = read_scene(replace(robot, links=tuple(links)), load_settings().geometry)
     leaders = [travel.joint for travel in scene.travels]
     if not leaders:

@@ -75,11 +75,6 @@ def loop_gaps(robot: Robot, q: dict[str, float]) -> dict[str, float]:
     }
 
 
-def without_followers(robot: Robot) -> Robot:
-    """Return the robot with every joint free: `loop_gaps` then takes the values of all joints that an engine has."""
-    return replace(robot, joints=tuple(replace(joint, mimic=None, closure=None) for joint in robot.joints))
-
-
 def with_closures(robot: Robot) -> Robot:
     """Return the robot whose passive joints of closed chains follow the driver of their chain."""
     following = {

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.model.collision_pieces import Method, Pieces, decomposed
 from kinematify.model.masses import prepared_inertials
-from kinematify.model.simulable import lacks_drive, prepared_joint
+from kinematify.model.simulable import prepared_joint
 from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
 from kinematify.robot.robot import Link, LinkMesh, Robot, Shape
 from kinematify.robot.write import write_robot
@@ -33,8 +33,6 @@ class PreparedLink:
     link: str
     method: Method
     """The most work that one of its shapes needed."""
-    from_visual: bool
-    """True if the file declares no collision geometry and the visual one stands in for it."""
     pieces: int
     """Convex pieces and primitives."""
     gap: float
@@ -48,11 +46,6 @@ class PreparedLink:
     inertia_added: bool
     """True if the file has no inertia that engines can use, or one that had to be changed by more than rounding."""
 
-    @property
-    def filled(self) -> bool:
-        """True if one of its pieces is the hull of a concave mesh, in whose hollows others may rightly be."""
-        return self.method is Method.HULL
-
 
 @dataclass(frozen=True, kw_only=True)
 class Prepared:
@@ -62,8 +55,6 @@ class Prepared:
     """Absolute; mesh paths in it are absolute too."""
     links: tuple[PreparedLink, ...]
     """In the order of the document."""
-    drives_added: tuple[str, ...]
-    """Joints whose effort or velocity the file does not state or has at zero or below; both are made up then."""
 
     @cached_property
     def link_by_name(self) -> dict[str, PreparedLink]:
@@ -94,7 +85,6 @@ def prepare(model: Robot, work: Path, settings: PrepareSettings) -> Prepared:
     return Prepared(
         urdf=work / URDF_FILE,
         links=tuple(_record(link, pieces[link.name], inertials[link.name]) for link in model.links),
-        drives_added=tuple(joint.name for joint in model.joints if lacks_drive(joint)),
     )
 
 
@@ -116,7 +106,6 @@ def _record(link: Link, pieces: Pieces, inertial: PreparedInertial) -> PreparedL
     return PreparedLink(
         link=link.name,
         method=pieces.method,
-        from_visual=bool(link.visuals) and not link.collisions,
         pieces=len(pieces.primitives) + len(pieces.convex),
         gap=pieces.gap,
         volume_error=pieces.volume_error,

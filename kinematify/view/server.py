@@ -300,13 +300,7 @@ class ModelViewer:
             said = f"with {name} as its parent" if key == "parent" else f"with the same joint as {name}"
             self._propose(f"{joint.child} {said}", methodcaller("state", hint))
 
-    def _regroup_from(
-        self,
-        words: str,
-        method: Literal["rename", "merge", "split", "free"],
-        arguments: Callable[[], Sequence[Any]],
-        _event: object,
-    ) -> None:
+    def _regroup_from(self, words: str, method: Any, arguments: Callable[[], Any], _: Any) -> None:
         self.regroup(words, method, *arguments())
 
     def regroup(self, words: str, method: Literal["rename", "merge", "split", "free"], *arguments: Any) -> None:

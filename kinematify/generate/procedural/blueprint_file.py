@@ -568,9 +568,8 @@ class WrittenBlueprint:
     """An object that a file describes, as a request."""
 
     path: Path
-    understood: tuple[str, ...] = ()
-    """Nothing of it is a sentence."""
     ignored: tuple[str, ...] = ()
+    """Nothing of it is a sentence."""
     unused: tuple[str, ...] = ()
 
     @cached_property
