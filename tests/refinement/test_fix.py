@@ -239,7 +239,7 @@ def test_a_limit_that_would_cripple_a_joint_is_left_with_the_reason(tmp_path: Pa
     model = hinged(tmp_path, '<limit lower="-1.5" upper="1.5" effort="5" velocity="1"/>', 0.09, -0.09)
     done = fixed(model, tmp_path / "out.urdf", kinematics=True)
     assert done.diffs == ()
-    assert texts(done.path) == texts(model)
+    assert not done.path.exists(), "nothing is written where nothing is changed"
     assert any("of its range" in sentence for sentence in done.left)
     assert done.exit_status == 0, "KV310 of a shallow contact is a warning"
 
