@@ -19,7 +19,7 @@ from kinematify.geometry.cut_cache import cache_folder
 if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject
 
-_CHECKS = "KV1*,KV2*,KV30*,KV31*,KV32*,KV801,KV803,KV804"
+_CHECKS = "KV1*,KV2*,KV30*,KV31*,KV801,KV803,KV804"
 """File, declared physics, overlap at rest and along the motion, loading and moving in an engine."""
 _SHOWN = 3
 _KEPT = 500

@@ -263,10 +263,10 @@ def test_a_model_without_movable_joints_is_refused(tmp_path: Path) -> None:
 def test_a_model_that_fails_validation_is_refused_unless_asked_for(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    wall = """<link name="wall"><visual><geometry><box size="0.4 0.02 0.2"/></geometry></visual>
-    <collision><geometry><box size="0.4 0.02 0.2"/></geometry></collision></link>
-  <joint name="wall_joint" type="fixed"><parent link="body"/><child link="wall"/><origin xyz="0 -0.3 0"/></joint>"""
-    model = write_slider(tmp_path / "walled.urdf", extra=wall)
+    wall = """<link name="wall"><visual><geometry><box size="0.4 0.2 0.2"/></geometry></visual>
+    <collision><geometry><box size="0.4 0.2 0.2"/></geometry></collision></link>
+  <joint name="wall_joint" type="fixed"><parent link="body"/><child link="wall"/><origin xyz="0 -0.45 0"/></joint>"""
+    model = write_slider(tmp_path / "walled.urdf", thick=0.1, extra=wall)
     with pytest.raises(InputError, match=r"does not pass kinematify validate: KV\d+.*allow_invalid=True"):
         OpenPartEnv(model)
     assert capsys.readouterr().err.count("validating") == 1, "seconds of silence look like a hang"
