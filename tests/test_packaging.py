@@ -19,7 +19,7 @@ import kinematify
 from kinematify.cli.doctor import MODULES
 from tests.places import ROOT
 
-SOURCES = ("pyproject.toml", "README.md", "LICENSE", "benchmarks", "kinematify", "validation", "envs", "configs")
+SOURCES = ("pyproject.toml", "README.md", "LICENSE", "benchmarks", "kinematify", "validation", "envs", "configs", "skills")
 INSTALLED = """
 from importlib import resources, util
 for name in ("", ".validation", ".envs", ".configs", ".assembly", ".model"):
@@ -27,6 +27,7 @@ for name in ("", ".validation", ".envs", ".configs", ".assembly", ".model"):
 data = resources.files("kinematify.configs")
 print(*sorted(entry.name for entry in data.iterdir() if entry.name.endswith(".yaml")))
 print(resources.files("kinematify").joinpath("py.typed").is_file())
+print(resources.files("kinematify").joinpath("skills", "kinematify", "SKILL.md").is_file())
 print(resources.files("kinematify.validation.formats").joinpath("assets", "viewer.js").is_file())
 """
 
@@ -65,7 +66,7 @@ def assert_complete(python: Path, cwd: Path) -> None:
     lines = call(python, "-c", INSTALLED, cwd=cwd).splitlines()
     names = ["kinematify" + name for name in ("", ".validation", ".envs", ".configs", ".assembly", ".model")]
     shipped = sorted(path.name for path in (ROOT / "configs").glob("*.yaml"))
-    assert lines == [*names, " ".join(shipped), "True", "True"]
+    assert lines == [*names, " ".join(shipped), "True", "True", "True"]
 
 
 def assert_bench_explains(python: Path, cwd: Path) -> None:
@@ -124,7 +125,7 @@ def declared(extra: str | None = None) -> set[str]:
 
 
 def test_the_doctor_knows_every_declared_package() -> None:
-    extras = ("bench", "cad", "cloud", "formats", "paper", "pinocchio", "ray", "usd")
+    extras = ("bench", "cad", "cloud", "formats", "mcp", "paper", "pinocchio", "ray", "usd")
     assert set(MODULES) == declared().union(*map(declared, extras))
 
 
@@ -132,7 +133,7 @@ def test_every_import_of_the_package_is_declared() -> None:
     providers = {module: {normalised(name) for name in names} for module, names in packages_distributions().items()}
     providers |= {"pinocchio": {"pin"}, "coal": {"coal"}}  # they live behind a .pth file, which the metadata ignores
     providers |= {"manifold3d": {"manifold3d"}}  # a bare extension module, which the metadata does not list
-    extras = (None, "bench", "fit", "formats", "paper", "pinocchio", "ray", "rl", "usd")
+    extras = (None, "bench", "fit", "formats", "mcp", "paper", "pinocchio", "ray", "rl", "usd")
     allowed = {normalised(name) for extra in extras for name in declared(extra)}
     missing = set()
     for folder, _, files in os.walk(ROOT / "kinematify", followlinks=True):
