@@ -19,7 +19,17 @@ import kinematify
 from kinematify.cli.doctor import MODULES
 from tests.places import ROOT
 
-SOURCES = ("pyproject.toml", "README.md", "LICENSE", "benchmarks", "kinematify", "validation", "envs", "configs", "skills")
+SOURCES = (
+    "pyproject.toml",
+    "README.md",
+    "LICENSE",
+    "benchmarks",
+    "kinematify",
+    "validation",
+    "envs",
+    "configs",
+    "skills",
+)
 INSTALLED = """
 from importlib import resources, util
 for name in ("", ".validation", ".envs", ".configs", ".assembly", ".model"):

@@ -116,11 +116,11 @@ def test_paths_outside_of_the_root_and_huge_files_are_refused_and_calls_run_side
         assert "not below" in await refusal(client, "export", model="door.urdf", to="mjcf", out="../door.xml")
         assert "1074 MB" in await refusal(client, "validate", model="huge.urdf")
         assert "nothing.urdf" in await refusal(client, "look", model="nothing.urdf")
-        exported, explained = await asyncio.gather(
+        _, explained = await asyncio.gather(
             call(client, "export", model="door.urdf", to="mjcf", out="door.xml"), call(client, "explain", check="KV301")
         )
         assert explained["id"] == "KV301"
-        assert (root / "door.xml").is_file() and exported
+        assert (root / "door.xml").is_file()
 
     with_client(root, try_all)
     assert not (tmp_path / "door.xml").exists()

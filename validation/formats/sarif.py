@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-import linecache
 import json
+import linecache
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
