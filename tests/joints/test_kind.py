@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from kinematify import infer
+from kinematify.generate.delivery import build_kind
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box, cylinder
-from kinematify.generate.sentence import from_text
 from kinematify.joints.features.edge_scene import joint_scene, part_frames
 from kinematify.joints.features.type_cues import WEIGHTS, type_cues, type_odds
 from kinematify.joints.features.workspace import PartCache
@@ -59,7 +59,7 @@ def test_types_of_known_objects(name: str) -> None:
 @pytest.mark.parametrize("seed", range(6))
 def test_a_drawer_behind_the_whole_front_of_a_cabinet_slides(seed: int) -> None:
     """Half as deep as its front is high: no door, for it is inside its body."""
-    inference = infer(from_text("a cabinet with one drawer").build(seed=seed).assembly)
+    inference = infer(build_kind("cabinet", {"doors": 0, "drawers": 1}, seed=seed).assembly)
     assert [joint.kind for joint in inference.joints] == [JointType.PRISMATIC]
 
 
