@@ -11,7 +11,7 @@ from kinematify.config import load_config
 from kinematify.errors import OutputError
 from kinematify.generate.blueprint_files import true_model
 from kinematify.generate.described import known_families, library
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import COMMON, build
 from kinematify.generate.procedural.parameter import PARAMETER_HEADINGS, parameter_rows
 from kinematify.generate.sentence import from_text

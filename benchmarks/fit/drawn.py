@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.described import library
-from kinematify.generate.kind import drawn_object as drawn_by
 from kinematify.generate.library.builder import ModelingStyle
+from kinematify.generate.library.kind import drawn_object as drawn_by
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:

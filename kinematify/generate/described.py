@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from kinematify.generate.kind import all_kinds, put_together
+from kinematify.generate.families import FAMILIES, all_kinds
+from kinematify.generate.library.kind import put_together
 from kinematify.generate.procedural.blueprint_file import (
     MIRRORS,
     BlueprintDescription,
@@ -20,7 +21,6 @@ from kinematify.generate.procedural.blueprint_file import (
     Repetition,
     Vector,
 )
-from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import Family, Values
 from kinematify.generate.procedural.parameter import Parameter, number, parse_table
 from kinematify.generate.procedural.workshop import Workshop

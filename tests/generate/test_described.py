@@ -13,8 +13,8 @@ from manifold3d import Manifold, Mesh64
 import kinematify
 from kinematify.errors import InputError
 from kinematify.generate.described import ObjectDescription, known_families, library
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.blueprint_file import described_blueprint
-from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.materials import COLORS
 from kinematify.generate.procedural.parameter import read_table

@@ -6,8 +6,8 @@ from itertools import pairwise
 from math import cos, pi, radians, sin
 from typing import TYPE_CHECKING
 
-from kinematify.generate.kind import choice, kind, length, whole
 from kinematify.generate.library.builder import drawn_on
+from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.library.mechanisms import button, lever
 from kinematify.generate.procedural.pieces.bearing_pieces import fork, fork_room, stub
 from kinematify.generate.procedural.solids import X, Y, Z, bore, box, cylinder, hull, off, rod, union

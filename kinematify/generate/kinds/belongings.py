@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.kind import angle, choice, kind, length, whole
+from kinematify.generate.library.kind import angle, choice, kind, length, whole
 from kinematify.generate.procedural.layout import grid
 from kinematify.generate.procedural.pieces.bearing_pieces import BackEdge, add_barrels, at, barrel, fork, stub
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, ring, rod, union, vector

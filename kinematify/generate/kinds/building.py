@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import degrees, hypot, pi, tan
 from typing import TYPE_CHECKING
 
-from kinematify.generate.kind import choice, kind, length, whole
 from kinematify.generate.library.builder import drawn_on
+from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.library.mechanisms import button, knob, lever
 from kinematify.generate.library.panels import grip, leaf
 from kinematify.generate.procedural.layout import grid

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import asin, cos, degrees, hypot, pi, sin
 from typing import TYPE_CHECKING
 
-from kinematify.generate.kind import choice, kind, length, share, whole
 from kinematify.generate.library.builder import drawn_on
+from kinematify.generate.library.kind import choice, kind, length, share, whole
 from kinematify.generate.library.mechanisms import caster, in_fork
 from kinematify.generate.library.panels import grip
 from kinematify.generate.procedural.pieces.bearing_pieces import BackEdge, add_barrels, barrel

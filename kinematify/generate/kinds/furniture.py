@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.kind import choice, kind, length, whole
 from kinematify.generate.library.builder import spread
+from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.library.mechanisms import case, caster, legs, lever, wheel
 from kinematify.generate.library.panels import drawer, grip, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import cos, sin
 from typing import TYPE_CHECKING
 
-from kinematify.generate.kind import kind, length, whole
+from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.library.mechanisms import knob
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, scaled
 

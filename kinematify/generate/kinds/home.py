@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import cos, sin
 from typing import TYPE_CHECKING
 
-from kinematify.generate.kind import kind, length, whole
 from kinematify.generate.library.builder import spread
+from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.library.mechanisms import knob, legs, lever
 from kinematify.generate.library.panels import drawer, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled

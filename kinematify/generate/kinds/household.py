@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.kind import angle, kind, length, whole, yes
 from kinematify.generate.library.builder import spread
+from kinematify.generate.library.kind import angle, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import bail, button, cap, case, crank, knob, legs, lever, rotor
 from kinematify.generate.library.panels import drawer, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, vector

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import cos, pi, sin
 from typing import TYPE_CHECKING
 
-from kinematify.generate.kind import kind, length, whole
 from kinematify.generate.library.builder import spread
+from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.library.mechanisms import button, case, knob
 from kinematify.generate.library.panels import carcass, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, scaled

@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import hypot, pi
 from typing import TYPE_CHECKING
 
-from kinematify.generate.kind import choice, kind, length, share, whole
 from kinematify.generate.library import mechanisms
 from kinematify.generate.library.builder import drawn_on
+from kinematify.generate.library.kind import choice, kind, length, share, whole
 from kinematify.generate.library.mechanisms import button, hand_wheel, knob, lever
 from kinematify.generate.library.panels import add_door, add_drawer
 from kinematify.generate.procedural.layout import grid

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.kind import kind, length, whole, yes
 from kinematify.generate.library.builder import spread
+from kinematify.generate.library.kind import kind, length, whole, yes
 from kinematify.generate.library.mechanisms import arm, bail, button, case, caster, knob, lever, plunger, rotor
 from kinematify.generate.library.panels import drawer, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, scaled, vector

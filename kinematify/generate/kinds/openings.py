@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.kind import angle, choice, kind, length, whole, yes
 from kinematify.generate.library.builder import spread
+from kinematify.generate.library.kind import angle, choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import knob, lever
 from kinematify.generate.library.panels import grip, leaf, pane, seam, surround
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, vector

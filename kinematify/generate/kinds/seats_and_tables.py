@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.kind import choice, kind, length, whole
 from kinematify.generate.library.builder import drawn_on
+from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.library.mechanisms import caster
 from kinematify.generate.library.panels import add_door, add_drawer
 from kinematify.generate.procedural.layout import drawer_stacks, parse_layout, stacked

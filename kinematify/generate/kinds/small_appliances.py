@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.kind import choice, kind, length, whole
 from kinematify.generate.library import mechanisms
 from kinematify.generate.library.builder import drawn_on
+from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.library.mechanisms import button, knob
 from kinematify.generate.library.panels import add_door, add_drawer
 from kinematify.generate.procedural.pieces.bearing_pieces import FRONT, BackEdge, add_barrels, at, bent_fork, stub

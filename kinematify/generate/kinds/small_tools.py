@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.kind import choice, kind, length, share, whole
+from kinematify.generate.library.kind import choice, kind, length, share, whole
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, hull, prism, strip, vector
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.kind import angle, choice, kind, length, whole, yes
+from kinematify.generate.library.kind import angle, choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import button, knob, pinned
 from kinematify.generate.library.panels import leaf, seam
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, vector

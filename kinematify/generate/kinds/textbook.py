@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import cos, pi, sin, tan
 from typing import TYPE_CHECKING
 
-from kinematify.generate.kind import kind, length, whole
+from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, vector
 
 if TYPE_CHECKING:

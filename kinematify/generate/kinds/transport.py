@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.kind import kind, length
 from kinematify.generate.library.builder import spread
+from kinematify.generate.library.kind import kind, length
 from kinematify.generate.library.mechanisms import wheel
 from kinematify.generate.library.panels import leaf
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, prism, scaled, vector

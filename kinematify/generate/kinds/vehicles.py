@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.kind import kind, length, whole, yes
 from kinematify.generate.library.builder import spread
+from kinematify.generate.library.kind import kind, length, whole, yes
 from kinematify.generate.library.mechanisms import arm, axles, case, caster, rotor, wheel
 from kinematify.generate.library.panels import grip, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, scaled, vector

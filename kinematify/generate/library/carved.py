@@ -110,7 +110,7 @@ _NAMES: Mapping[str, Any] = {
 @cache
 def _pieces() -> Sequence[Step]:
     """Return what steps that carve may call besides functions."""
-    found: Sequence[Step] = read_table(Path(__file__).with_name("pieces.yaml"))
+    found: Sequence[Step] = read_table(Path(__file__).parents[1] / "composer" / "pieces.yaml")
     return found
 
 

@@ -16,9 +16,6 @@ its parameters decides if it is given them.
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
-from importlib import import_module
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import InputError
@@ -237,11 +234,3 @@ def put_together(
         workshop.body(name, solid, material=None if asked[0] else material, color=asked[1] or color)
     for joint in parents_first(joints):
         workshop.hang(joint, values.number("open"))
-
-
-@cache
-def all_kinds() -> Mapping[str, Family]:
-    """Every kind in Python, keyed by name: all modules of `kinematify.generate.kinds` are imported."""
-    for file in sorted(Path(__file__).with_name("kinds").glob("[a-z]*.py")):
-        import_module(f"kinematify.generate.kinds.{file.stem}")
-    return KINDS

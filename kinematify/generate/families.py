@@ -1,10 +1,13 @@
-"""Families of objects with parameters that corpora draw."""
+"""All kinds in Python, and the families of them that corpora draw."""
 
 from __future__ import annotations
 
+from functools import cache
+from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kinematify.generate.kind import all_kinds
+from kinematify.generate.library.kind import KINDS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,5 +22,15 @@ _ORDER = (
     "pen", "clock", "excavator", "crane", "tracked_tree", "globe", "umbrella", "suitcase", "eyeglasses",
 )  # fmt: skip
 """In which corpora draw them."""
+
+
+@cache
+def all_kinds() -> Mapping[str, Family]:
+    """Every kind in Python, keyed by name: all modules of `kinematify.generate.kinds` are imported."""
+    for file in sorted(Path(__file__).with_name("kinds").glob("[a-z]*.py")):
+        import_module(f"kinematify.generate.kinds.{file.stem}")
+    return KINDS
+
+
 FAMILIES: Mapping[str, Family] = {name: all_kinds()[name] for name in _ORDER}
 """Keyed by name."""
