@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.generate.kinds.limbs import track_ring, track_top, tracked, turntable
 from kinematify.generate.library.kind import choice, kind, length, whole
-from kinematify.generate.library.limbs import track_ring, track_top, tracked, turntable
 from kinematify.generate.procedural.pieces.bearing_pieces import bent_fork, fork_room, stub
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, off, rod, union, vector
 

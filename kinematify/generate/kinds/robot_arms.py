@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.generate.kinds.limbs import finger_palm, fingered, jaw_rail, jaws
 from kinematify.generate.library.kind import choice, kind, length, whole
-from kinematify.generate.library.limbs import finger_palm, fingered, jaw_rail, jaws
 from kinematify.generate.procedural.pieces.bearing_pieces import at, fork, fork_room, stub
 from kinematify.generate.procedural.solids import box, cylinder, hull, off, union, vector
 

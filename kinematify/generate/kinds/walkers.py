@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.generate.kinds.limbs import leg_solids, limb_solids
 from kinematify.generate.library.kind import choice, kind, length, whole
-from kinematify.generate.library.limbs import leg_solids, limb_solids
 from kinematify.generate.procedural.pieces.bearing_pieces import at, fork, fork_room, stub
 from kinematify.generate.procedural.solids import ball, box, cylinder, hull, off, rod, vector
 
