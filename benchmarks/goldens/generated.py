@@ -8,7 +8,7 @@ from benchmarks.expectations import SETS, load_sentences
 from benchmarks.goldens.values import array_hash, blueprint_values, made, plain
 from kinematify.errors import InputError
 from kinematify.generate.described import known_families
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.reader import read_sentence
 

@@ -36,7 +36,7 @@ from kinematify.evaluation.metrics import score_blueprint
 from kinematify.evaluation.result_record import grouped, table
 from kinematify.generate.blueprint_files import true_model
 from kinematify.generate.described import known_families
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.reader import read_sentence
 from kinematify.model.simulable import simulable_model

@@ -17,7 +17,7 @@ from kinematify import __version__
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, OutputError
 from kinematify.generate.blueprint_files import write_blueprint
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 

@@ -180,13 +180,8 @@ def command(
     if words and text is not None:
         raise click.UsageError(f'The sentence is given twice: "{" ".join(words)}" and --text "{text}". Remove one.')
     text = " ".join(words) or text
-    if schema is not None:
-        from kinematify.generate.request import schema_of
-
-        click.echo(json.dumps(schema_of(schema or category), indent=1))
-        return 0
-    if listing:
-        _list(category, json_to)
+    if schema is not None or listing:
+        _list(category if schema is None else schema or category, json_to, is_schema=schema is not None)
         return 0
     if corpus is not None:
         _write_corpus(corpus, seed or 0, _needed(out), text or category)
@@ -319,7 +314,12 @@ def _categories() -> str:
     return f"{table}\n\nParameters with units and ranges: kinematify generate --list --category NAME"
 
 
-def _list(category: str | None, json_to: str | None) -> None:
+def _list(category: str | None, json_to: str | None, *, is_schema: bool) -> None:
+    if is_schema:
+        from kinematify.generate.request import schema_of
+
+        click.echo(json.dumps(schema_of(category), indent=1))
+        return
     if json_to:
         write_answer(_listing(category), json_to)
     if json_to != "-":

@@ -115,8 +115,8 @@ _UNIT = "|".join(sorted((re.escape(word) for word in (*UNITS, *ANGLES) if word !
 _TIMES = rf" ?(?:x|×|by) ?{_NUMBER}(?: ?(?:{_UNIT})(?![a-z]))?"
 _TOKENS = re.compile(
     rf"(?P<dims>{_NUMBER}(?: ?(?:{_UNIT}))?{_TIMES}(?:{_TIMES})?)(?![a-z0-9])"
-    rf"|(?P<range>(?:from )?[-−]?{_NUMBER} ?(?:{_UNIT})? ?(?:up |down )?(?:to|and|\.\.) ?\+?[-−]?{_NUMBER} ?(?:{_UNIT}))"
-    r"(?![a-z])"
+    rf"|(?P<range>(?:from )?[-−]?{_NUMBER} ?(?:{_UNIT})? ?(?:up |down )?(?:to|and|\.\.) ?"
+    rf"\+?[-−]?{_NUMBER} ?(?:{_UNIT}))(?![a-z])"
     rf"|(?P<both>(?:±|\+/-|plus or minus) ?{_NUMBER} ?(?:{_UNIT}))(?![a-z])"
     rf"|(?P<quantity>[-−]?{_NUMBER} ?(?:{_UNIT}))(?![a-z])|(?P<number>{_NUMBER})|(?P<word>[a-z]+)|(?P<sign>[^\sa-z0-9])"
 )

@@ -9,7 +9,7 @@ import pytest
 
 from kinematify import infer
 from kinematify.generate.delivery import build_kind
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.joints.features.edge_scene import joint_scene, part_frames

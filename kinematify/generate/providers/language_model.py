@@ -187,8 +187,8 @@ class LanguageModel:
             raise InputError(
                 f"The language model {self.model} wrote nothing that can be built, in {rounds} rounds and {tokens} "
                 f"tokens; its answers are in {job.folder}. The last problem: "
-                f"{' '.join(problems) or 'the budget allows no round.'} Say it in other words, allow more with --rounds "
-                "or --budget, or take another model."
+                f"{' '.join(problems) or 'the budget allows no round.'} Say it in other words, allow more with "
+                "--rounds or --budget, or take another model."
             )
         path = job.folder / ANSWER_FILE
         _keep(path, best[0])
