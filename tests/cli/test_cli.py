@@ -20,7 +20,6 @@ from kinematify.cli import app, doctor
 from kinematify.cli.answer import write_answer
 from kinematify.cli.app import COMMANDS, run
 from kinematify.cli.progress import progress_reporter
-from kinematify.cli.table import format_table
 from kinematify.errors import EnvironmentFault, InputError, OutputError
 
 
@@ -72,14 +71,6 @@ def test_traceback_is_shown_when_asked_for(failing, capsys: pytest.CaptureFixtur
     message = capsys.readouterr().err
     assert "Traceback (most recent call last)" in message
     assert "in examine" in message
-
-
-def test_interruption_ends_with_130_and_no_traceback(failing, capsys: pytest.CaptureFixture[str]) -> None:
-    failing(KeyboardInterrupt())
-    assert run(["doctor"]) == 130
-    message = capsys.readouterr().err
-    assert "Interrupted" in message
-    assert "Traceback" not in message
 
 
 @pytest.mark.parametrize(
@@ -175,15 +166,6 @@ def test_answer_goes_to_a_file_or_says_why_not(tmp_path: Path) -> None:
         OutputError, match=r"cannot be written to .*none/answer\.json: No such file or directory\. Give"
     ):
         write_answer({"schema": 1}, str(tmp_path / "none" / "answer.json"))
-
-
-def test_table_aligns_and_leaves_no_trailing_space() -> None:
-    assert format_table(("a", "bb"), [("long", "x"), ("s", "")]).splitlines() == [
-        "a     bb",
-        "----  --",
-        "long  x",
-        "s",
-    ]
 
 
 def test_progress_off_a_terminal_is_one_line_per_stage(capsys: pytest.CaptureFixture[str]) -> None:

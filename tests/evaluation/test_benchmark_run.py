@@ -193,13 +193,6 @@ def test_report_survives_the_disk_and_compares_with_a_baseline(data: Path, tmp_p
     assert "2 runs in both" in compared
 
 
-def test_same_configuration_under_two_labels_runs_once(data: Path, tmp_path: Path) -> None:
-    both = (Variant(label="one", config="default"), Variant(label="two", config="default"))
-    report = run_benchmark(request(data, tmp_path / "work", "star", conditions=("rest",), variants=both))
-    assert [result.variant for result in report.records] == ["one", "one", "two", "two"]
-    assert (tmp_path / "work" / "jobs.jsonl").read_bytes().count(b"\n") == 2
-
-
 def test_ablations_differ_from_the_paper_in_one_thing() -> None:
     full, without_search, without_anchor = (variant.load() for variant in PAPER_VARIANTS)
     assert without_search.topology.mode == "bfs" != full.topology.mode

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -28,18 +27,12 @@ from kinematify.generate.procedural.blueprint import ground_truth
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import bore, box, cylinder
-from kinematify.geometry.part_stats import assembly_stats
 from kinematify.joints.choice import edges
 from kinematify.joints.choice.edges import (
-    MEASUREMENTS,
-    edge_measurements,
     edge_probabilities,
-    scores_of,
     shipped_edge_weights,
 )
-from kinematify.joints.features.pins import EdgePins
 from kinematify.pipeline.infer_assembly import infer
-from tests.joints.joint_scenes import evidence
 from tests.known import known_object, turning
 
 if TYPE_CHECKING:
@@ -64,16 +57,6 @@ def test_probabilities_are_those_over_all_spanning_trees(seed: int) -> None:
     assert log_z == pytest.approx(np.log(weights.sum()))
 
 
-def test_pieces_have_trees_of_their_own() -> None:
-    likely, _ = edge_probabilities([(0, 1), (0, 2), (1, 2), (3, 4)], np.zeros(4), 5)
-    np.testing.assert_allclose(likely, [2 / 3, 2 / 3, 2 / 3, 1.0], atol=1e-6)
-
-
-def test_scores_come_back_from_qualities() -> None:
-    scores = np.array([-9.0, -1.0, 0.0, 4.0])
-    np.testing.assert_allclose(scores_of(1.0 / (1.0 + np.exp(-scores / 2.0))), scores, atol=1e-9)
-
-
 def clock() -> KnownObject:
     """A case and two hands on shafts one in the other."""
     case = box((-0.1, 0.0, -0.1), (0.1, 0.04, 0.1)) - bore(0.006, 3e-4, (0, -1, 0), (0, 0.0303, 0))
@@ -87,19 +70,6 @@ def clock() -> KnownObject:
     solids["hand_0"] -= bore(0.003, 3e-4, (0, -1, 0), (0, 1, 0))
     joints = [turning("case", f"hand_{k}", (0, 1, 0), (0, 0, 0), (-np.inf, np.inf)) for k in range(2)]
     return known_object("clock", solids, *joints)
-
-
-def test_measurements_are_finite_and_do_not_depend_on_the_unit() -> None:
-    known = clock()
-    _, graph, bearings = evidence(known)
-    measured = edge_measurements(graph, assembly_stats(known.assembly), bearings, EdgePins())
-    assert measured.shape == (len(graph.edges), len(MEASUREMENTS))
-    assert np.isfinite(measured).all()
-    larger = replace(known, parts=tuple(replace(part, vertices=100.0 * part.vertices) for part in known.parts))
-    _, graph, bearings = evidence(larger)
-    np.testing.assert_allclose(
-        edge_measurements(graph, assembly_stats(larger.assembly), bearings, EdgePins()), measured, atol=1e-3
-    )
 
 
 @pytest.mark.parametrize(("family", "parameters"), [("door", {"kind": "folding", "leaves": 2}), ("stapler", {})])

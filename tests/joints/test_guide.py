@@ -75,13 +75,6 @@ def test_a_carriage_goes_to_the_ends_of_its_rail() -> None:
         assert guided_travel(scene, direction, CONFIG.joints) == pytest.approx(0.27, abs=0.03)
 
 
-def test_parts_that_do_not_touch_have_no_guide() -> None:
-    solids = {"floor": box((-1, -1, -0.1), (1, 1, 0)), "lamp": box((-0.1, -0.1, 0.5), (0.1, 0.1, 0.6))}
-    scene = scene_of(known_object("apart", solids, sliding("floor", "lamp", Z, (0, 0, 0), (0, 1))), "lamp")
-    assert guided_share(scene, Z, np.array([0.0]), CONFIG.joints) is None
-    assert guided_travel(scene, Z, CONFIG.joints) is None
-
-
 def test_a_collar_runs_along_its_rod_although_it_is_small() -> None:
     found = find_range(collar(), JointType.PRISMATIC, Z, np.array([0.0, 0.0, 0.05]), CONFIG.joints)
     assert collar().smallness >= 1.0

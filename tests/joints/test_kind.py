@@ -13,12 +13,11 @@ from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.generate.sentence import from_text
 from kinematify.joints.features.edge_scene import joint_scene, part_frames
-from kinematify.joints.features.type_cues import WEIGHTS, type_cues, type_odds
+from kinematify.joints.features.type_cues import type_cues
 from kinematify.joints.features.workspace import PartCache
 from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import (
     CONFIG,
-    estimates_of,
     evidence,
     infer_joints,
     ranked_slides,
@@ -28,32 +27,6 @@ from tests.joints.joint_scenes import (
 from tests.known import known_object, sliding, turning
 from tests.objects import BUILDERS
 from tests.robots import parallel_gripper
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        "edge_door",
-        "drawer",
-        "nested_drawer",
-        "knob",
-        "sliding_lid",
-        "laptop",
-        "button",
-        "square_lift",
-        "round_lift",
-        "parallel_gripper",
-        "serial_arm",
-        "wheel",
-    ],
-)
-def test_types_of_known_objects(name: str) -> None:
-    known = BUILDERS[name]()
-    estimates = estimates_of(name)
-    for joint in known.joints:
-        found = estimates[joint.child].kind
-        assert found.turns == joint.kind.turns, joint.child
-        assert (found is JointType.PRISMATIC) == (joint.kind is JointType.PRISMATIC), joint.child
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -141,16 +114,6 @@ def test_a_round_plug_with_room_behind_it_is_pressed_and_one_that_bottoms_out_tu
     estimate = infer_joints(known_object("panel", {"body": body, "plug": plug}, joint))["plug"]
     assert (estimate.kind is JointType.PRISMATIC) is pressed
     assert abs(float(estimate.axis[1])) > 0.999
-
-
-def test_evidence_moves_the_odds_the_stated_way() -> None:
-    known = BUILDERS["edge_door"]()
-    scene = scene_of(known, known.joints[0].child)
-    cues = type_cues(scene, ranked_turns(scene), ranked_slides(scene), CONFIG.joints)
-    assert set(cues) == set(WEIGHTS)
-    assert cues["keyed"] == 0.0
-    assert type_odds(cues) < 0.0
-    assert type_odds({**cues, "keyed": 1.0}) == pytest.approx(type_odds(cues) + WEIGHTS["keyed"])
 
 
 @pytest.mark.parametrize(("depth", "slides"), [(0.2, True), (0.03, False)])

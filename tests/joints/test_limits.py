@@ -12,7 +12,6 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.pieces.bearing_pieces import barrel
 from kinematify.generate.procedural.solids import box, cylinder
-from kinematify.joints.choice import limits
 from kinematify.joints.choice.limits import find_range
 from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
@@ -34,17 +33,6 @@ def test_positive_motion_opens(name: str) -> None:
         assert estimate.lower <= 0.0
 
 
-@pytest.mark.parametrize("name", ["edge_door", "drawer", "knob", "wheel"])
-def test_reversing_the_given_axis_gives_the_same_joint(name: str) -> None:
-    known = BUILDERS[name]()
-    joint = known.joints[0]
-    scene = scene_of(known, joint.child)
-    there = find_range(scene, joint.kind, joint.axis, joint.pivot, CONFIG.joints)
-    back = find_range(scene, joint.kind, -joint.axis, joint.pivot, CONFIG.joints)
-    assert there.sign == -back.sign
-    assert there.facts == back.facts
-
-
 def test_limits_bound_the_designed_range_from_above() -> None:
     known = BUILDERS["drawer"]()
     estimate = estimates_of("drawer")["drawer"]
@@ -59,12 +47,6 @@ def test_a_door_opens_to_a_right_angle_at_most() -> None:
     assert estimate.upper == pytest.approx(np.radians(CONFIG.joints.limits.panel_deg), abs=0.2)
 
 
-def test_a_knob_turns_without_end() -> None:
-    estimate = estimates_of("knob")["knob"]
-    assert estimate.kind is JointType.CONTINUOUS
-    assert (estimate.lower, estimate.upper) == (-np.inf, np.inf)
-
-
 def test_wheels_turn_without_end_though_they_hang_on_castors() -> None:
     """Castors, wheels, gas spring, seat and back are a chain as that of an arm, but wheels stand on the floor."""
     blueprint = build(FAMILIES["office_chair"], {"castors": 4}, seed=0)
@@ -74,11 +56,6 @@ def test_wheels_turn_without_end_though_they_hang_on_castors() -> None:
     assert len(wheels) == 4
     assert all(joint.kind is JointType.CONTINUOUS for joint in wheels)
     assert found["back"].kind is JointType.REVOLUTE
-
-
-def test_arms_have_limits_to_both_sides() -> None:
-    for estimate in estimates_of("serial_arm").values():
-        assert -np.pi <= estimate.lower < 0.0 < estimate.upper <= np.pi
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
@@ -158,31 +135,3 @@ def test_what_stands_ajar_opens_to_a_right_angle_from_its_stop(share: float) -> 
     for estimate in infer_joints(glasses).values():
         assert estimate.upper - estimate.lower == pytest.approx(np.pi / 2, abs=0.15)
         assert estimate.lower == pytest.approx(-share * np.pi / 2, abs=0.15)
-
-
-def test_both_ends_say_what_stops_them() -> None:
-    """A flap that its body stops, a door and a knob."""
-    body = box((0, 0, 0), (0.2, 0.3, 0.02)) + box((0, 0, 0.02), (0.2, 0.02, 0.2))
-    flap = box((0.02, 0.14, 0.021), (0.18, 0.15, 0.12))
-    joint = turning("body", "flap", (1, 0, 0), (0.1, 0.145, 0.0205), (0.0, 1.0))
-    scene = scene_of(known_object("stand", {"body": body, "flap": flap}, joint), "flap")
-    found = find_range(scene, JointType.REVOLUTE, np.array([1.0, 0.0, 0.0]), joint.pivot, CONFIG.joints)
-    assert all(stop for stop in found.facts["stops"])
-    assert [way.stop for way in found.free] == ["contact with body"] * 2
-    door = estimates_of("edge_door")["door"]
-    assert door.stops == ("the given pose", "typical range")
-    assert estimates_of("knob")["knob"].stops == ("", "")
-
-
-def test_what_meets_nothing_is_not_limited_by_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A bar on a post with room all round, if it is no wheel: its range is what is usual, not half turns."""
-    monkeypatch.setattr(limits, "is_continuous", lambda *_: False)
-    post = cylinder(0.01, (0, 0, 0), (0, 0, 0.1))
-    handle = box((-0.1, -0.008, 0.1), (0.1, 0.008, 0.115)) - cylinder(0.0102, (0, 0, 0.09), (0, 0, 0.11))
-    post += cylinder(0.01, (0, 0, 0.1), (0, 0, 0.11))
-    joint = turning("post", "handle", (0, 0, 1), (0, 0, 0.1), (-1.0, 1.0))
-    scene = scene_of(known_object("tap", {"post": post, "handle": handle}, joint), "handle")
-    found = find_range(scene, JointType.REVOLUTE, np.array([0.0, 0.0, 1.0]), joint.pivot, CONFIG.joints)
-    assert {way.stop for way in found.free} == {"none found"}
-    assert found.ahead == found.back
-    assert found.ahead.motion == pytest.approx(np.radians(CONFIG.joints.limits.unmet_deg))

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.spatial.transform import Rotation
 
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Joint
@@ -33,12 +32,6 @@ def test_a_revolute_motion_is_rigid_keeps_its_axis_and_has_an_inverse(
     assert np.allclose(joint_motion(JointType.REVOLUTE, axis, pivot, -angle) @ transform, np.eye(4), atol=1e-9)
     assert np.allclose(joint_motion(JointType.REVOLUTE, axis, pivot, angle + 2.0 * np.pi), transform, atol=1e-9)
     assert np.allclose(joint_motion(JointType.REVOLUTE, -axis, pivot, -angle), transform, atol=1e-9)
-
-
-@given(directions, angles)
-def test_the_rotation_is_the_one_of_an_independent_library(axis: np.ndarray, angle: float) -> None:
-    expected = Rotation.from_rotvec(angle * axis).as_matrix()
-    assert np.allclose(joint_motion(JointType.REVOLUTE, axis, np.zeros(3), angle)[:3, :3], expected, atol=1e-9)
 
 
 @given(directions, st.floats(-10.0, 10.0))

@@ -83,16 +83,6 @@ def test_an_alternative_replaces_axis_place_and_type(scene: ViewScene) -> None:
     assert np.allclose(scene.poses({"hinge": 0.9})["door"], forward_kinematics(scene.robot, {"hinge": 0.9})["door"])
 
 
-def test_glyph_shows_the_range(scene: ViewScene) -> None:
-    hinge = scene.robot.joint_by_name["hinge"]
-    segments = scene.glyph(hinge)
-    assert segments.shape[1:] == (2, 3)
-    assert np.allclose(np.cross(segments[0, 1] - segments[0, 0], hinge.axis), 0.0)
-    spokes = segments[-2:, 1] - segments[-2:, 0]
-    angle = np.arccos(spokes[0] @ spokes[1] / np.linalg.norm(spokes, axis=1).prod())
-    assert angle == pytest.approx(2.0, abs=1e-6)
-
-
 @pytest.mark.usefixtures("urdf")
 def test_alternatives_of_a_record(tmp_path: Path) -> None:
     candidate = {"type": "revolute", "axis": [0, 0, 1], "pivot": [1, 2, 3], "score": 0.5, "source": "panel"}
