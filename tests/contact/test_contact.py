@@ -142,7 +142,7 @@ def test_strength_is_relative_to_the_largest_contact() -> None:
 
 # ---- laws ------------------------------------------------------------------------------------------------------------
 
-OBJECT = BUILDERS["scissors"]().assembly
+OBJECT = BUILDERS["parallel_gripper"]().assembly
 
 
 def summary(
@@ -162,7 +162,7 @@ def assert_alike(one: Assembly, other: Assembly) -> None:
         assert second[pair][1] == pytest.approx(strength, abs=0.02)
 
 
-@settings(max_examples=5)
+@settings(max_examples=2)
 @given(seed=st.integers(0, 1000))
 def test_permuting_the_parts_permutes_the_graph(seed: int) -> None:
     order = np.random.default_rng(seed).permutation(len(OBJECT.parts))
@@ -173,7 +173,7 @@ def test_permuting_the_parts_permutes_the_graph(seed: int) -> None:
     assert clusters == {frozenset(permuted.names[k] for k in group) for group in graph_of(permuted).clusters}
 
 
-@settings(max_examples=5)
+@settings(max_examples=2)
 @given(scale=st.floats(1e-3, 1e3), shift=st.floats(-5.0, 5.0))
 def test_size_and_place_do_not_matter(scale: float, shift: float) -> None:
     parts = tuple(

@@ -12,7 +12,7 @@ from tests.objects import BUILDERS
 SOME = ("edge_door", "drawer", "knob", "parallel_gripper", "universal_joint")
 
 
-@pytest.mark.parametrize("name", ["hinge_pin", "laptop", "lever", "universal_joint", "torso", "scissors"])
+@pytest.mark.parametrize("name", ["lever", "universal_joint", "torso"])
 def test_bearing_lines_are_used_as_they_are(name: str) -> None:
     known = BUILDERS[name]()
     estimates = estimates_of(name)

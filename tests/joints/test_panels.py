@@ -20,7 +20,7 @@ def off_line(axis: np.ndarray, pivot: np.ndarray, line_axis: np.ndarray, line_pi
     return angle, float(np.linalg.norm(np.cross(pivot - line_pivot, line_axis)))
 
 
-@pytest.mark.parametrize("name", ["edge_door", "laptop", "piano_box", "hinge_pin", "knob", "barrel_hinge_door"])
+@pytest.mark.parametrize("name", ["edge_door", "hinge_pin", "barrel_hinge_door"])
 def test_the_true_line_is_among_the_candidates_and_wins(name: str) -> None:
     known = BUILDERS[name]()
     joint = known.joints[0]
