@@ -35,7 +35,6 @@ BUILDERS: Mapping[str, Callable[..., KnownObject]] = {
         robots.parallel_gripper,
         robots.four_legged,
         robots.serial_arm,
-        robots.aligned_arm,
         robots.torso,
     )
 }

@@ -6,17 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.pieces.bearing_pieces import at, fork, fork_room, stub
+from kinematify.generate.procedural.pieces.bearing_pieces import fork, fork_room, stub
 from kinematify.generate.procedural.solids import bore, box, cylinder, off, rod, union
-from kinematify.robot.transforms import rotation_about
 from tests.known import KnownJoint, KnownObject, known_object, moved, sliding, turning, varied
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
 UP = np.array([0.0, 0.0, 1.0])
-QUARTER = rotation_about(UP, 0.5 * np.pi)
-"""Turns a fork about x into a fork about y."""
 
 
 def leg_solids(
@@ -197,35 +194,6 @@ def serial_arm(
         tip, parent = end, name
     solids[parent] = union(*pieces, box(tip - 0.8 * size, off(tip, 1.2 * size, 0.8 * size, 0.2 * size)))
     return known_object(f"serial_arm_{joints}", solids, *truth)
-
-
-def aligned_arm(
-    *, pairs: int = 3, radius: float = 0.04, clearance: float = 5e-4, seed: int | None = None
-) -> KnownObject:
-    """An upright arm of roll and pitch joints in turn; at zero all roll axes are one line."""
-    vary = varied(seed)
-    size = vary(radius)
-    high = size
-    pieces = [box((-3 * size, -2 * size, -0.02), (2 * size, 2 * size, 0)), cylinder(size, (0, 0, -0.01), (0, 0, size))]
-    solids, truth, parent = {}, [], "foot"
-    for pair in range(pairs):
-        roll, pitch = f"roll{pair}", f"pitch{pair}"
-        boss, hole, rotor = stub((0, 0, high + size), (0, 0, 1), size, clearance)
-        solids[parent] = union(*pieces, boss) - hole
-        truth.append(turning(parent, roll, (0, 0, 1), (0, 0, high + size), (-2.9, 2.9)))
-        hinge = high + 2 * size + clearance + vary(2.5 * size)
-        shoulder = cylinder(size, (0, 0, high + 1.5 * size), (0, 0, hinge - 1.2 * size))
-        forked, tongue = (
-            solid.transform(at((0, 0, hinge), QUARTER)) for solid in fork(1.6 * size, 0.7 * size, clearance, 1.6 * size)
-        )
-        shoulder ^= box((-9, -9, high + size + clearance), (9, 9, 9))
-        solids[roll] = union(rotor, shoulder, forked)
-        truth.append(turning(roll, pitch, (0, 1, 0), (0, 0, hinge), (-1.4, 1.4)))
-        start, high = hinge + fork_room(0.7 * size, clearance), hinge + vary(3.0 * size)
-        pieces = [tongue, cylinder(0.65 * size, (0, 0, start), (0, 0, high + 0.5 * size))]
-        parent = pitch
-    solids[parent] = union(*pieces, box((-0.5 * size, -size, high), (size, size, high + size)))
-    return known_object("aligned_arm", solids, *truth)
 
 
 def torso(*, height: float = 0.4, clearance: float = 5e-4, seed: int | None = None) -> KnownObject:

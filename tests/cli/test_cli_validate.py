@@ -14,7 +14,6 @@ from typing import Any
 import pytest
 from lxml import etree
 
-import kinematify
 from kinematify.cli import validation_run
 from kinematify.cli.app import run
 from kinematify.errors import InputError
@@ -105,19 +104,6 @@ def test_every_check_is_in_every_report(real: tuple[Path, subprocess.CompletedPr
     assert json.loads((folder / "report.sarif").read_text())["runs"][0]["invocations"][0]["executionSuccessful"]
 
 
-def test_html_shows_the_model(real: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
-    folder, _ = real
-    text = (folder / "report.html").read_text()
-    assert "data:image/png;base64," in text
-    assert all(check.id in text for check in USUAL)
-
-
-def test_progress_is_on_stderr(real: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
-    _, done = real
-    assert "] pre-check" in done.stderr
-    assert "]" not in done.stdout.split("\n")[0]
-
-
 @pytest.mark.parametrize(
     ("severity", "expected"),
     [(Severity.ERROR, (1, "FAIL")), (Severity.WARNING, (0, "WARN")), (Severity.NOTE, (0, "PASS"))],
@@ -189,17 +175,6 @@ def test_no_report_is_longer_than_it_may_be(
     run(["validate", str(chest), "--all"])
     text = capsys.readouterr().out
     assert all(f"The {name} jams." in text for name in names)
-
-
-def test_warnings_beyond_a_screen_are_reported_without_their_remedies(
-    answered: dict[str, Any], chest: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    doors = [finding(message=f"The door {chr(97 + k)} jams.", joint=None, severity=Severity.WARNING) for k in range(12)]
-    answered["chest.urdf"] = report(result(*doors))
-    run(["validate", str(chest)])
-    text = capsys.readouterr().out
-    assert text.count("Remedy:") == 0
-    assert text.count("warning KV396 Doors & drawers of KV396 jam") == 12
 
 
 def test_what_follows_from_a_finding_is_reported_under_it(
@@ -379,12 +354,6 @@ def test_read_only_reports_are_noticed_before_the_run(
     assert report_file.read_text() == "old"
 
 
-def test_reports_may_go_to_devices(answered: dict[str, Any], chest: Path) -> None:
-    answered["chest.urdf"] = report(result())
-    assert run(["validate", str(chest), "--junit", "/dev/null"]) == 0
-    assert not Path("/dev/null").is_file()
-
-
 @pytest.mark.parametrize(
     ("content", "text"),
     [
@@ -466,11 +435,6 @@ def test_python_works_in_a_plain_script(chest: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert done.stdout.split()[0] == "started"
     assert done.stdout.split()[1:] in (["pass"], ["warn"])
-
-
-def test_python_raises_for_what_is_no_urdf(tmp_path: Path) -> None:
-    with pytest.raises(InputError):
-        kinematify.validate(tmp_path / "none.urdf")
 
 
 @pytest.mark.parametrize(("variable", "colored"), [("", True), ("1", False)])

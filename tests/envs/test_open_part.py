@@ -102,13 +102,6 @@ def test_both_engines_tell_the_same_story() -> None:
     assert np.abs(stories[0] - stories[1]).max() < 0.02
 
 
-def test_sparse_pays_for_success_alone() -> None:
-    env = gymnasium.make("kinematify.envs:kinematify/OpenPart-Sparse-v0", terminate_on_success=True)
-    total, info = run(env, steady, seed=1)
-    assert total == 1.0
-    assert info["is_success"]
-
-
 def test_a_pickled_environment_is_the_same_environment() -> None:
     env = OpenPartEnv("bundled:box", control="position", randomize=["mass"])
     copy = pickle.loads(pickle.dumps(env))
@@ -159,16 +152,6 @@ def test_the_objects_own_damping_and_friction_are_kept(tmp_path: Path) -> None:
     assert env.world.model.dof_damping.tolist() == [4.0]
     assert env.world.model.dof_frictionloss.tolist() == [1.0]
     assert env.validation in {"pass", "warn"}
-
-
-def test_close_frees_the_engine() -> None:
-    worlds = [OpenPartEnv("bundled:box", engine="pybullet") for _ in range(3)]
-    clients = [env.world.client for env in worlds]
-    assert all(client.isConnected() for client in clients)
-    for env in worlds:
-        env.close()
-        env.close()
-    assert not any(client.isConnected() for client in clients)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,6 @@ from PIL import Image
 
 from kinematify.manipulation.execute import Execution, Loaded, execute, load, timed
 from kinematify.manipulation.film import write_film
-from kinematify.manipulation.grip import grip_piece
 from kinematify.manipulation.plan_request import Hold
 from tests.manipulation import furniture
 
@@ -111,17 +110,6 @@ def test_an_arm_that_goes_through_the_object_is_noticed(drawer: tuple[Loaded, Pa
     assert not result.success
     assert result.depth > 0.0
     assert result.deepest is not None
-
-
-def test_pads_press_on_what_lies_between_them(drawer: tuple[Loaded, Path]) -> None:
-    """A bar that is 12 mm thick; the piece is cut to the size of the pads."""
-    loaded = drawer[0]
-    grasp = loaded.motion.grasp
-    vertices, faces = grip_piece(loaded.object, loaded.held, {"slide": 0.0}, grasp, EXECUTION)
-    local = (vertices - grasp.T_link_grasp[:3, 3]) @ grasp.T_link_grasp[:3, :3]
-    assert np.ptp(local[:, 1]) == pytest.approx(grasp.width, abs=1e-4)
-    assert np.ptp(local[:, 0]) == pytest.approx(EXECUTION.pad_width, abs=1e-4)
-    assert faces.max() < len(vertices)
 
 
 def test_the_film_moves_and_the_still_has_three_panels(drawer: tuple[Loaded, Path], pulled: Execution) -> None:

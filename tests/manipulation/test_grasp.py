@@ -68,13 +68,6 @@ def test_fingers_and_what_they_hold_are_where_they_should_be(tmp_path: Path) -> 
         assert meets(grasp.T_link_grasp, [0.02, grasp.spread, 0.02], [0.0, 0.0, 0.0])
 
 
-def test_a_bar_that_is_wider_than_the_gripper_is_not_held(tmp_path: Path) -> None:
-    urdf = furniture.write_drawer_cabinet(tmp_path / "c.urdf", handle=0.03)
-    scene = read_scene(read_robot(urdf), furniture.SETTINGS.geometry)
-    report = search_grasps(scene, "slide", 0.01, settings=furniture.SETTINGS.task.grasp)
-    assert not [g for g in report.grasps if g.width > 0.01]
-
-
 def test_a_flush_front_offers_nothing_and_says_why(tmp_path: Path) -> None:
     urdf = write(tmp_path / "c.urdf", furniture.box((0.02, 0.39, 0.59), (0.0, 0.0, 0.3)))
     scene = read_scene(read_robot(urdf), furniture.SETTINGS.geometry)

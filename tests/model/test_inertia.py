@@ -5,13 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import trimesh
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from scipy.spatial.transform import Rotation
 
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
-from kinematify.geometry.convex import convex_hull
 from kinematify.model.masses import inertial_of
 from kinematify.robot.appearance import Appearance, Material
 from kinematify.robot.densities import density_of
@@ -99,28 +95,6 @@ def test_parts_without_volume_get_a_thickness(vertices):
     assert found.source == "hull"
     assert_physical(found)
     np.testing.assert_allclose(found.center_of_mass, np.mean(np.array(vertices), axis=0), atol=0.4)
-
-
-def random_hull(seed: int, count: int) -> tuple[np.ndarray, np.ndarray]:
-    return convex_hull(np.random.default_rng(seed).normal(size=(count, 3)) * [1.0, 0.6, 0.3])
-
-
-hulls = st.builds(random_hull, st.integers(0, 1000), st.integers(5, 40))
-rotations = st.integers(0, 1000).map(lambda seed: Rotation.random(random_state=seed).as_matrix())
-
-
-@settings(max_examples=40)
-@given(hull=hulls, rotation=rotations, shift=st.floats(-5, 5))
-def test_rotating_and_moving_the_part_rotates_the_tensor(hull, rotation, shift):
-    vertices, faces = hull
-    still = inertial(vertices, faces)
-    moved = inertial(vertices @ rotation.T + shift, faces, origin=np.full(3, shift))
-    assert_physical(still)
-    assert still.source == moved.source == "volume"
-    assert moved.mass == pytest.approx(still.mass, rel=1e-9)
-    np.testing.assert_allclose(moved.center_of_mass, rotation @ still.center_of_mass, atol=1e-9)
-    expected = rotation @ still.tensor @ rotation.T
-    np.testing.assert_allclose(moved.tensor, expected, atol=1e-9 * np.abs(expected).max())
 
 
 def test_a_body_that_is_too_heavy_to_be_solid_is_a_shell() -> None:

@@ -12,7 +12,6 @@ from PIL import Image
 from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
 from kinematify.contact.tree import KinematicTree
-from kinematify.geometry.rays import RayScene
 from kinematify.model.picture_scene import (
     GLYPH_COLORS,
     best_azimuth,
@@ -20,11 +19,9 @@ from kinematify.model.picture_scene import (
     joint_glyphs,
     opened_configuration,
     posed_meshes,
-    turning_arrow,
 )
 from kinematify.model.preview import draw_pair, render_preview, render_story
 from kinematify.model.urdf import distinct_colors, link_colors, link_shades
-from kinematify.render.camera import fit_camera
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from kinematify.robot.appearance import linear_of, srgb_of
 from kinematify.robot.joint_type import JointType
@@ -45,32 +42,6 @@ def hue_distance(image: np.ndarray, color: np.ndarray) -> np.ndarray:
     size = np.linalg.norm(chroma, axis=-1)
     cosine = chroma @ wanted / np.maximum(size * np.linalg.norm(wanted), 1e-9)
     return np.where(size > 0.05, np.arccos(np.clip(cosine, -1, 1)), np.pi)
-
-
-def test_rays_tell_meshes_apart_and_edges_stay_sharp():
-    boxes = [box("a", (0, 0, 0), (1, 1, 1)), box("b", (3, 0, 0), (1, 1, 1))]
-    scene = RayScene([(part.vertices, part.faces) for part in boxes])
-    origins = np.array([[0.4, 0.4, 5.0], [3.0, 0.1, 5.0], [1.5, 0.0, 5.0]])
-    hits = scene.first_hits(origins, np.tile(-UP, (3, 1)))
-    assert hits.mesh.tolist() == [0, 1, -1]
-    np.testing.assert_allclose(hits.distance, [4.5, 4.5, np.inf], rtol=1e-6)
-    normals = scene.smooth_normals(hits.face[:2], hits.barycentric[:2], np.deg2rad(35))
-    np.testing.assert_allclose(normals, [UP, UP], atol=1e-6)
-
-
-def test_camera_projects_its_own_rays_and_fits():
-    points = np.random.default_rng(1).normal(size=(100, 3)) * [3, 1, 0.5] + [10, 20, 30]
-    camera = fit_camera(points, azimuth=0.7, elevation=0.4, field_of_view=0.4, size=(300, 200), margin=10)
-    seen, depth = camera.project(points)
-    low, high = seen.min(axis=0), seen.max(axis=0)
-    assert depth.min() > 0
-    np.testing.assert_allclose(0.5 * (low + high), (150, 100), atol=1e-6)
-    assert np.min(low) == pytest.approx(10, abs=1e-6)
-    pixels = np.array([[5.0, 7.0], [150.0, 100.0], [299.0, 1.0]])
-    origins, directions = camera.rays(pixels)
-    np.testing.assert_allclose(camera.project(origins + 5 * directions)[0], pixels, atol=1e-9)
-    higher, _ = camera.project(np.stack([points.mean(0), points.mean(0) + UP]))
-    assert higher[1, 1] < higher[0, 1]
 
 
 def test_picture_shows_mesh_floor_and_background():
@@ -116,19 +87,6 @@ def test_axis_is_drawn_where_it_projects(build, kind):
     # But for single rays that graze an edge: the arrow changes in which order triangles are asked.
     assert (after[outside] != before[outside]).mean() < 1e-4
     np.testing.assert_allclose(after[outside], before[outside], atol=0.05)
-
-
-def test_an_arrow_stands_out_of_its_own_colour():
-    red = GLYPH_COLORS[JointType.REVOLUTE]
-    block = mesh_of(trimesh.creation.box((1, 1, 1)), red)
-    vertices, faces = turning_arrow(np.array([0.0, -0.6, 0.0]), UP, 0.6, 0.03, 4.0)
-    arrow = PosedMesh(vertices=vertices, faces=faces, color=red)
-    camera = camera_for([PictureScene(meshes=(block,))], -1.5, CONFIG, size=(100, 100), margin=10)
-    bare, drawn = (
-        np.asarray(render_scene(PictureScene(meshes=(block,), glyphs=glyphs), camera, CONFIG)) / 255.0
-        for glyphs in ((), (arrow,))
-    )
-    assert ((drawn.min(axis=2) > 0.6) & (bare.min(axis=2) < 0.3)).sum() > 30, "a light rim on what was red"
 
 
 def brown_chain():

@@ -20,19 +20,6 @@ CHAIN = terms.layout_tree([-1, 0, 1, 2])
 STAR = terms.layout_tree([-1, 0, 0, 0])
 
 
-def test_layout_orders_and_measures_depth() -> None:
-    tree = terms.layout_tree([1, -1, 1, 0])
-    assert tree.order == (1, 0, 2, 3)
-    assert tree.depth.tolist() == [1, 0, 1, 2]
-
-
-def test_structure_of_chain_and_star() -> None:
-    # Chain: mean d^2 = (0+1+4+9)/4, out-degrees 1,1,1,0 against k = 2: (1+1+1+4)/4.
-    assert terms.structure(CHAIN, 2) == pytest.approx(1 / (14 / 4 + 7 / 4))
-    # Star: mean d^2 = 3/4, out-degrees 3,0,0,0: (1+4+4+4)/4.
-    assert terms.structure(STAR, 2) == pytest.approx(1 / (3 / 4 + 13 / 4))
-
-
 def test_static_support_of_a_side_arm() -> None:
     # Root at 0; child of mass 2 at x = 1; grandchild of mass 1 at x = 4 and height 7.
     tree = terms.layout_tree([-1, 0, 1])
@@ -40,12 +27,6 @@ def test_static_support_of_a_side_arm() -> None:
     volumes = np.array([5.0, 2.0, 1.0])
     # c_sub(1) = (2*1 + 1*4)/3 = 2, torque |2-1| * 3 = 3; the leaf has none.
     assert terms.static_support(tree, centroids, volumes, scale=6.0) == pytest.approx(1 / (1 + 3 / 6))
-
-
-def test_contact_is_the_mean_over_tree_edges() -> None:
-    weights = np.zeros((4, 4))
-    weights[0, 1], weights[1, 2], weights[2, 3], weights[0, 3] = 0.2, 0.4, 0.9, 1.0
-    assert terms.mean_over_edges(CHAIN, weights) == pytest.approx(0.5)
 
 
 def test_symmetry_of_the_paper() -> None:

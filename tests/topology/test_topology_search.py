@@ -18,11 +18,8 @@ from kinematify.pipeline.stages import rank_trees
 from kinematify.topology.edge_evidence import EdgeEvidence
 from kinematify.topology.reward import TreeReward
 from kinematify.topology.search import (
-    breadth_first_tree,
-    open_edges,
     parents_from,
     plausible_bases,
-    spanning_edges,
 )
 from tests.topology.topology_objects import edge, graph_of, random_assembly, stat
 
@@ -130,12 +127,6 @@ def test_paper_mode_never_joins_parts_of_one_cluster(n: int, extra: int, seed: i
     assert not banned & {pair(parent, child) for parent, child in tree.edges()}
 
 
-def test_two_equal_parts_are_joined_even_when_forbidden() -> None:
-    graph = graph_of(2, {(0, 1): 0.5}, [(0, 1)])
-    tree = rank_trees(graph, [stat((0, 0, 0)), stat((1, 0, 0))], {}, PAPER, seed=0)[0]
-    assert sorted(tree.parents) == [-1, 0]
-
-
 def test_the_default_keeps_congruent_neighbours_of_an_arm() -> None:
     # A chain whose second and third link are congruent; the paper's ban cuts it, the default does not.
     graph = graph_of(4, {(0, 1): 0.5, (1, 2): 0.5, (2, 3): 0.5}, [(1, 2)])
@@ -163,25 +154,6 @@ def test_a_bridge_is_used_and_reported_as_virtual() -> None:
     assert tree.parents == (-1, 0, 0)
     assert tree.virtual == {(0, 2)}
     assert tree.broken == frozenset()
-
-
-def test_only_contested_edges_are_searched() -> None:
-    tree = [(0, 1), (1, 2), (2, 3)]
-    weights = {(0, 1): 0.9, (1, 2): 0.2, (2, 3): 0.8, (0, 2): 0.15, (1, 3): 0.01}
-    found = open_edges(weights, tree, 4, DEFAULT)
-    assert found.usable == {*tree, (0, 2)}
-    assert found.certain == {(0, 1), (2, 3)}
-
-
-def test_breadth_first_tree_of_a_ring() -> None:
-    graph = graph_of(4, {(0, 1): 0.5, (1, 2): 0.5, (2, 3): 0.5, (0, 3): 0.5})
-    centroids = np.array([[0, 0, 0], [1, 0, 0], [1, 2, 0], [0, 2, 0]], dtype=float)
-    assert breadth_first_tree(graph, 0, centroids) == (-1, 0, 1, 0)
-
-
-def test_spanning_tree_takes_the_heaviest_edges() -> None:
-    weights = {(0, 1): 0.1, (1, 2): 0.9, (0, 2): 0.8}
-    assert parents_from(spanning_edges(weights, np.eye(3)), 3, 0) == [-1, 2, 0]
 
 
 def test_given_base_is_the_root() -> None:

@@ -14,16 +14,11 @@ import numpy as np
 import pytest
 
 from kinematify.cli.app import run
-from kinematify.robot.appearance import surfaces
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.mesh_file import read_meshes
-from kinematify.robot.raw_mesh import merged
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.view.alternatives import JointAlternative, agreeing, described, distinct
-from kinematify.view.drawn import glb_of
 from kinematify.view.viewer_scene import ViewScene
-from tests.colored_objects import make_object, unlike
 from tests.view.pages import candidates_in
 
 _URDF = """<robot name="door">
@@ -239,17 +234,3 @@ def test_a_model_whose_collision_mesh_is_missing_is_seen_all_the_same(urdf: Path
         assert any("gone.obj" in note for note in read_robot(urdf, geometry="present").notes)
     finally:
         window.close()
-
-
-def test_a_part_is_sent_to_the_page_as_it_looks(tmp_path: Path) -> None:
-    given = make_object(2, tmp_path)
-    for mesh in read_meshes(given, appearance=True):
-        assert mesh.appearance is not None
-        sent = glb_of(surfaces(mesh.vertices, mesh.faces, mesh.appearance), double_sided=False)
-        (tmp_path / "sent.glb").write_bytes(sent)
-        found = merged(read_meshes(tmp_path / "sent.glb", appearance=True), mesh.name)
-        assert unlike(mesh, found) == 0.0
-        assert found.appearance is not None
-        assert {(item.metallic, item.roughness) for item in found.appearance.materials} == {
-            (item.metallic, item.roughness) for item in mesh.appearance.materials
-        }
