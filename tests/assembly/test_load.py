@@ -124,7 +124,7 @@ def test_a_gltf_file_that_looks_z_up_is_reported_with_the_remedy(
     assert load(tmp_path / "b.glb").warnings == (), "with y up, as the standard says"
 
 
-@pytest.mark.parametrize("up", ["x", "y", "z", "-x", "-y", "-z"])
+@pytest.mark.parametrize("up", ["x", "y", "-z"])
 def test_whatever_points_up_points_to_z(tmp_path: Path, up: str) -> None:
     """A long arrow of boxes along the given axis stands on z, and no part is mirrored."""
     sign, axis = (-1.0, up[1]) if up.startswith("-") else (1.0, up)
@@ -535,7 +535,7 @@ def test_nonsense_is_no_mesh(tmp_path: Path, suffix: str) -> None:
 
 
 @pytest.mark.parametrize("suffix", ["glb", "stl", "ply", "3mf"])
-@pytest.mark.parametrize("share", [0.001, 0.1, 0.5, 0.99])
+@pytest.mark.parametrize("share", [0.1, 0.99])
 def test_truncated_files(tmp_path: Path, suffix: str, share: float, capfd: pytest.CaptureFixture[str]) -> None:
     content = scene().export(file_type="glb") if suffix in ("glb", "3mf") else box().export(file_type=suffix)
     if suffix == "3mf":

@@ -126,7 +126,7 @@ def test_unreadable_description_is_reported_and_in_no_mean(data: Path, tmp_path:
     assert "| broken | rest | default | unreadable |" in written(report, tmp_path / "out", "bench")
 
 
-@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGINT])
+@pytest.mark.parametrize("end", [signal.SIGKILL])
 def test_killed_run_resumes_to_the_same_report(data: Path, tmp_path: Path, end: signal.Signals) -> None:
     work = tmp_path / "work"
     ledger = work / "jobs.jsonl"

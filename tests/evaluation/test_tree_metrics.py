@@ -76,7 +76,7 @@ def one_per_shape(n: int) -> list[dict[int, int]]:
     return shapes
 
 
-@pytest.mark.parametrize("n", [1, 2, 3, 4])
+@pytest.mark.parametrize("n", [1, 3, 4])
 @pytest.mark.parametrize("labelled", [True, False])
 def test_distance_is_that_of_brute_force_on_all_small_trees(n: int, labelled: bool) -> None:
     for first in one_per_shape(n):

@@ -8,37 +8,17 @@ import numpy as np
 import pytest
 
 from kinematify.config import load_config
-from kinematify.generate.procedural.solids import bore, box, cylinder
+from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.joints.bearings.scores import BearingLine
 from kinematify.joints.features.pins import has_journal, leaf_pairs, middle_leaf, passes
 from kinematify.joints.features.workspace import PartCache
-from tests.joints.joint_scenes import evidence
+from tests.joints.joint_scenes import clock, evidence
 from tests.known import known_object, turning
 
 if TYPE_CHECKING:
-    from manifold3d import Manifold
-
     from tests.known import KnownObject
 
 CONFIG = load_config()
-
-
-def clock(*, clearance: float = 3e-4, extra: Manifold | None = None) -> KnownObject:
-    """A case and two hands on shafts one in the other."""
-    case = box((-0.1, 0.0, -0.1), (0.1, 0.04, 0.1))
-    case -= bore(0.006, clearance, (0, -1, 0), (0, 0.03 + clearance, 0))
-    solids = {"case": case}
-    for k, (radius, length) in enumerate(((0.006, 0.05), (0.003, 0.08))):
-        level = -0.003 - 0.004 * k
-        hand = box((-0.004, level - 0.002, 0.0), (0.004, level, length)) + cylinder(
-            0.01, (0, level - 0.002, 0), (0, level, 0)
-        )
-        solids[f"hand_{k}"] = hand + cylinder(radius, (0, level - 0.001, 0), (0, 0.03, 0))
-    if extra is not None:
-        solids["hand_1"] += extra
-    solids["hand_0"] -= bore(0.003, clearance, (0, -1, 0), (0, 1, 0))
-    joints = [turning("case", f"hand_{k}", (0, 1, 0), (0, 0, 0), (-np.inf, np.inf)) for k in range(2)]
-    return known_object("clock", solids, *joints)
 
 
 @pytest.mark.parametrize("pegged", [False, True])

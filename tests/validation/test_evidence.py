@@ -64,11 +64,9 @@ def test_good_joints_have_no_finding(build: Build, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("build", "child", "about"),
     [
-        (barrel_hinge_door, "door", (1.0, 0.3, 0.0)),
         (edge_door, "door", (1.0, 1.0, 0.0)),
         (drawer, "drawer", (0.2, 0.0, 1.0)),
         (knob, "knob", (1.0, 0.0, 0.4)),
-        (hinge_pin, "bored_leaf", (0.5, 1.0, 0.0)),
     ],
 )
 def test_an_axis_turned_by_20_deg_is_off_every_direction(
@@ -84,13 +82,8 @@ def test_an_axis_turned_by_20_deg_is_off_every_direction(
 @pytest.mark.parametrize(
     ("build", "child", "about"),
     [
-        (barrel_hinge_door, "door", (1, 0, 0)),
-        (barrel_hinge_door, "door", (0, 1, 0)),
-        (edge_door, "door", (1, 0, 0)),
         (edge_door, "door", (0, 1, 0)),
-        (drawer, "drawer", (0, 0, 1)),
         (drawer, "drawer", (1, 0, 0)),
-        (knob, "knob", (1, 0, 0)),
         (lever, "lever", (0, 0, 1)),
     ],
 )
@@ -110,12 +103,8 @@ def test_an_axis_turned_by_90_deg_has_a_better_alternative(
     ("build", "child", "way"),
     [
         (barrel_hinge_door, "door", (1, 0, 0)),
-        (barrel_hinge_door, "door", (0, 1, 0)),
-        (edge_door, "door", (1, 0, 0)),
         (edge_door, "door", (0, -1, 0)),
         (knob, "knob", (1, 0, 1)),
-        (hinge_pin, "bored_leaf", (1, 1, 0)),
-        (lever, "lever", (0, 0, 1)),
     ],
 )
 def test_a_pivot_moved_by_a_fifth_of_the_part_is_reported(
@@ -129,10 +118,7 @@ def test_a_pivot_moved_by_a_fifth_of_the_part_is_reported(
     ("bad", "opens"),
     [
         (lambda: turned(edge_door(), "door", 20.0, (1.0, 1.0, 0.0)), 0.025),
-        (lambda: turned(knob(), "knob", 20.0, (1.0, 0.0, 0.4)), 0.01),
-        (lambda: turned(hinge_pin(), "bored_leaf", 20.0, (0.5, 1.0, 0.0)), 0.01),
         (lambda: shifted(hinge_pin(), "bored_leaf", (1, 1, 0)), 0.01),
-        (lambda: turned(edge_door(), "door", 90.0, (1, 0, 0)), 0.1),
     ],
 )
 def test_a_contact_that_opens_about_a_wrong_line_is_a_fact(bad: Build, opens: float, tmp_path: Path) -> None:
@@ -150,10 +136,8 @@ def test_a_contact_that_opens_about_a_wrong_line_is_a_fact(bad: Build, opens: fl
     ("build", "child", "limits"),
     [
         (drawer, "drawer", (0.0, 1.0)),
-        (edge_door, "door", (0.0, 0.3)),
         (barrel_hinge_door, "door", (0.0, 0.4)),
         (button, "button", (0.0, 0.5)),
-        (sliding_lid, "lid", (0.0, 1.5)),
     ],
 )
 def test_a_swapped_type_is_reported(build: Build, child: str, limits: tuple[float, float], tmp_path: Path) -> None:

@@ -7,8 +7,6 @@ from pathlib import Path
 import igl
 import mujoco
 import numpy as np
-import pinocchio
-import pybullet
 import pytest
 import trimesh
 from manifold3d import Manifold
@@ -23,7 +21,7 @@ from kinematify.model.collision_pieces import Method
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.simulation.prepared import Prepared, prepare
-from tests.engines import quiet
+from tests.engines import READERS
 
 SETTINGS = load_settings()
 
@@ -94,48 +92,14 @@ def machine(tmp_path: Path) -> Path:
 
 def test_every_engine_reads_the_joints_and_poses_of_the_original(machine: Path) -> None:
     urdf = prepared(machine).urdf
-    poses = forward_kinematics(read_robot(machine), {"hinge": 0.7})  # the slide follows to 0.45
-    for read in (mujoco_positions, pybullet_positions, pinocchio_positions):
-        positions = read(urdf, {"hinge": 0.7, "slide": 0.45})
+    poses = forward_kinematics(read_robot(machine), {"hinge": 0.7})
+    q = {"hinge": 0.7, "slide": 0.45}  # which follows the hinge
+    for read in READERS.values():
+        reading = read(urdf, q)
+        assert set(reading.joints) == set(q)
+        np.testing.assert_allclose(reading.joints["hinge"].limits, (-1.0, 2.0))
         for name in ("arm", "tip"):
-            np.testing.assert_allclose(positions[name], poses[name][:3, 3], atol=1e-5)
-
-
-def mujoco_positions(urdf: Path, q: dict[str, float]) -> dict[str, np.ndarray]:
-    spec = mujoco.MjSpec.from_file(str(urdf))
-    spec.compiler.fusestatic = False
-    model = spec.compile()
-    data = mujoco.MjData(model)
-    assert {model.joint(index).name for index in range(model.njnt)} == set(q)
-    np.testing.assert_allclose(model.joint("hinge").range, (-1.0, 2.0))
-    for name, value in q.items():
-        data.joint(name).qpos = value
-    mujoco.mj_kinematics(model, data)
-    return {model.body(index).name: data.xpos[index] for index in range(model.nbody)}
-
-
-def pybullet_positions(urdf: Path, q: dict[str, float]) -> dict[str, np.ndarray]:
-    client = pybullet.connect(pybullet.DIRECT)
-    with quiet():
-        body = pybullet.loadURDF(str(urdf), useFixedBase=1, physicsClientId=client)
-    infos = [pybullet.getJointInfo(body, index, client) for index in range(pybullet.getNumJoints(body, client))]
-    moving = {info[1].decode(): info for info in infos if info[2] != pybullet.JOINT_FIXED}
-    assert set(moving) == set(q)
-    assert moving["hinge"][8:10] == pytest.approx((-1.0, 2.0))
-    for name, value in q.items():
-        pybullet.resetJointState(body, moving[name][0], value, physicsClientId=client)
-    # The base's frame is given by that of its centre of mass, which is its origin here.
-    found = {info[12].decode(): np.array(pybullet.getLinkState(body, info[0], 0, 1, client)[4]) for info in infos}
-    pybullet.disconnect(client)
-    return found
-
-
-def pinocchio_positions(urdf: Path, q: dict[str, float]) -> dict[str, np.ndarray]:
-    model = pinocchio.buildModelFromUrdf(str(urdf))
-    assert set(model.names) - {"universe"} == set(q)
-    data = model.createData()
-    pinocchio.framesForwardKinematics(model, data, np.array([q[name] for name in list(model.names)[1:]]))
-    return {frame.name: placement.translation.copy() for frame, placement in zip(model.frames, data.oMf, strict=True)}
+            np.testing.assert_allclose(reading.poses[name][:3, 3], poses[name][:3, 3], atol=1e-5)
 
 
 def test_what_was_made_up_is_recorded(machine: Path) -> None:
