@@ -147,30 +147,6 @@ def test_joints_above_the_first_geometry_and_of_bare_frames_are_dropped() -> Non
     assert truth.dropped == ("lift", "camera")
 
 
-def test_parts_that_meet_only_in_empty_links_hang_on_the_first() -> None:
-    described = robot(
-        [empty("world"), wedge("a", 1), wedge("b", 1), wedge("c", 1)],
-        joint("ja", "world", "a"), joint("jb", "world", "b"), joint("jc", "world", "c"),
-    )  # fmt: skip
-    rest, moved = erase(described, shuffle=False), erase(described, pose="random", seed=3, shuffle=False)
-    assert [(j.name, j.source, j.parent, j.child) for j in rest.truth.joints] == [
-        ("ja", "ja", 0, 1), ("jb", "jb", 0, 1), ("ja#2", "ja", 0, 2), ("jc", "jc", 0, 2),
-    ]  # fmt: skip
-    # Moving both joints of the chain back leaves the part as it stands at rest, seen from the root part.
-    climb, descent = moved.truth.joints[:2]
-    shape = screwed(descent, -descent.value, moved.parts[1].vertices)
-    shape = screwed(climb, -climb.value, shape)
-    turn, shift = rigid_between(moved.parts[0].vertices, rest.parts[0].vertices)
-    np.testing.assert_allclose(shape @ turn.T + shift, rest.parts[1].vertices, atol=1e-9)
-    assert climb.lower + climb.value == pytest.approx(-1.0)
-    assert abs(climb.value) > 0.01
-
-
-def rigid_between(source: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:
-    turn = np.linalg.solve(source[1:] - source[0], target[1:] - target[0]).T
-    return turn, target[0] - turn @ source[0]
-
-
 @given(seed=st.integers(0, 1000))
 def test_truth_as_json(seed: int) -> None:
     described = robot(

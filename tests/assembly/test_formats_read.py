@@ -15,7 +15,6 @@ import meshopt
 import numpy as np
 import pytest
 import trimesh
-from PIL import Image
 
 from kinematify.assembly.load import load_assembly
 from kinematify.assembly.part import Part
@@ -415,23 +414,3 @@ def test_an_object_in_coordinates_of_a_survey_is_stored_about_its_own_centre(tmp
     (said,) = far.warnings
     centre = np.array([float(word) for word in said.partition("(")[2].partition(")")[0].split(",")])
     np.testing.assert_allclose(far.bounds + centre, near.bounds + survey, atol=1e-6)
-
-
-def test_a_zip_has_the_colours_of_its_folder(tmp_path: Path) -> None:
-    folder = tmp_path / "cabinet" / "meshes"
-    (folder / "textures").mkdir(parents=True)
-    Image.new("RGB", (4, 4), (10, 200, 30)).save(folder / "textures" / "wood.png")
-    for name, line in (("body", "map_Kd textures\\wood.png"), ("door", "Kd 0 0 1"), ("drawer", "Kd 1 0 0")):
-        (folder / f"{name}.mtl").write_text(f"newmtl m\n{line}\n")
-        mesh = whole(name)
-        faces = "".join(f"f {a}/1 {b}/1 {c}/1\n" for a, b, c in mesh.faces + 1)
-        points = "".join(f"v {x} {y} {z}\n" for x, y, z in mesh.vertices)
-        (folder / f"{name}.obj").write_text(f"mtllib {name}.mtl\n{points}vt 0.5 0.5\nusemtl m\n{faces}")
-    with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
-        for file in sorted(folder.rglob("*.*")):
-            archive.write(file, str(file.relative_to(tmp_path)).replace("/", "\\"))
-    packed, plain = load_assembly(tmp_path / "a.zip"), load_assembly(folder)
-    assert [part.color for part in packed.parts] == [part.color for part in plain.parts]
-    assert packed.parts[1].color == pytest.approx((0, 0, 1))
-    assert packed.parts[0].appearance is not None
-    assert packed.parts[0].appearance.materials[0].texture is not None

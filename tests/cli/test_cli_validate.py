@@ -198,25 +198,6 @@ def test_what_follows_from_a_finding_is_reported_under_it(
     assert "import mujoco" in text
 
 
-def test_many_findings_of_a_kind_are_reported_once(
-    answered: dict[str, Any], chest: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    many = [
-        finding(pair=(f"part_{k}", "body"), message=f"part_{k} and body overlap by {k} mm.", value=k + 0.5, joint=None)
-        for k in range(40)
-    ]
-    answered["chest.urdf"] = report(result(*many))
-    run(["validate", str(chest)])
-    text = capsys.readouterr().out
-    assert "40 times" in text
-    assert text.count("Remedy:") == 1
-    assert "Also: part_1 - body; part_2 - body;" in text
-    assert "and 33 more." in text
-    run(["validate", str(chest), "--all"])
-    text = capsys.readouterr().out
-    assert all(f"part_{k} - body" in text and f"{k}.5 mm, limit 1 mm" in text for k in range(40))
-
-
 def test_several_models_end_with_a_table_and_the_worst_status(
     answered: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -10,7 +10,7 @@ import pytest
 from kinematify.config import load_config
 from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.joints.bearings.scores import BearingLine
-from kinematify.joints.features.pins import has_journal, leaf_pairs, middle_leaf, passes
+from kinematify.joints.features.pins import has_journal, leaf_pairs, passes
 from kinematify.joints.features.workspace import PartCache
 from tests.joints.joint_scenes import clock, evidence
 from tests.known import known_object, turning
@@ -72,14 +72,3 @@ def test_the_leaf_between_the_others_carries_the_outer_one(angles: tuple[float, 
     assert skipping == set(lines) - beside
     nothing = (frozenset(), frozenset())
     assert leaf_pairs(cache, [(0, 1, 2)], lines, beside, CONFIG.joints) == nothing
-
-
-def test_hands_of_a_clock_are_no_leaves() -> None:
-    """Their shafts lie about the line; and leaves spread all around have no middle one."""
-    spread = {0: np.array([0, 1.0, 0]), 1: np.array([0, -0.5, 0.9]), 2: np.array([0, -0.5, -0.9])}
-    line = BearingLine(
-        axis=np.array([1.0, 0, 0]), pivot=np.zeros(3), score=1.0, surface_a=1, surface_b=1, circles_a=1, circles_b=1
-    )
-    assert middle_leaf(spread, line, dict.fromkeys(spread, 1.0), CONFIG.joints) is None
-    shaft = {0: np.array([0, 1.0, 0]), 1: np.array([0, 0.9, 0.1]), 2: np.array([0, 0.01, 0])}
-    assert middle_leaf(shaft, line, dict.fromkeys(shaft, 1.0), CONFIG.joints) is None

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-import numpy as np
 import pytest
 
 from kinematify import infer
@@ -12,21 +9,11 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.generate.sentence import from_text
-from kinematify.joints.features.edge_scene import joint_scene, part_frames
-from kinematify.joints.features.type_cues import type_cues
-from kinematify.joints.features.workspace import PartCache
 from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import (
-    CONFIG,
-    evidence,
     infer_joints,
-    ranked_slides,
-    ranked_turns,
-    scene_of,
 )
 from tests.known import known_object, sliding, turning
-from tests.objects import BUILDERS
-from tests.robots import parallel_gripper
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -61,49 +48,6 @@ def test_a_block_on_two_ropes_slides() -> None:
     joint = sliding("frame", "block", (0, 0, -1), (0, 0, 0.4), (0.0, 0.3))
     found = infer_joints(known_object("hoist", {"frame": frame, "block": block + hook}, joint))["block"]
     assert found.kind is JointType.PRISMATIC
-
-
-@pytest.mark.parametrize(("score", "is_round"), [(0.005, False), (0.05, True)])
-def test_a_finger_whose_rail_has_faded_is_hinged_only_if_its_contact_is_round(score: float, is_round: bool) -> None:
-    known = parallel_gripper()
-    tree, graph, bearings = evidence(known)
-    cache = PartCache(known.assembly, graph, samples=CONFIG.joints.samples, seed=0)
-    frames = part_frames(cache, tree, CONFIG.joints)
-    edge = (known.index["palm"], known.index["right_finger"])
-    found = bearings[edge]
-    assert found.rail is not None
-    faded = replace(found, lines=(replace(found.lines[0], score=score),), rail=replace(found.rail, score=1e-4))
-    scene = joint_scene(cache, tree, frames, edge, faded, config=CONFIG.joints)
-    assert scene.is_round is is_round
-
-
-@pytest.mark.parametrize(("lead", "slides"), [(2.0, False), (4.6, True)])
-def test_a_rail_that_leads_the_best_line_fourfold_guides(lead: float, slides: bool) -> None:
-    known = BUILDERS["square_lift"]()
-    tree, graph, bearings = evidence(known)
-    cache = PartCache(known.assembly, graph, samples=CONFIG.joints.samples, seed=0)
-    edge = next(iter(tree.edges()))
-    found = bearings[edge]
-    assert found.rail is not None
-    rough = replace(found, lines=(replace(found.lines[0], score=found.rail.score / lead),))
-    scene = joint_scene(cache, tree, part_frames(cache, tree, CONFIG.joints), edge, rough, config=CONFIG.joints)
-    assert (scene.prismatic_score == 1.0) == slides
-
-
-@pytest.mark.parametrize(("turn", "travel", "guides"), [(3.0, 0.25, False), (3.0, 1.0, True), (0.1, 0.25, True)])
-def test_a_rail_along_which_little_moves_guides_only_what_cannot_turn(turn: float, travel: float, guides: bool) -> None:
-    known = BUILDERS["square_lift"]()
-    scene = replace(scene_of(known, known.joints[0].child), mechanism=1.0)
-    assert scene.prismatic_score == 1.0
-    turns, slides = ranked_turns(scene), ranked_slides(scene)
-    turns = replace(turns, free_parent=np.full_like(turns.free_parent, turn))
-    slides = replace(slides, cues={**slides.cues, "travel_parent": np.full(len(slides.axes), travel)})
-    assert scene.bearing is not None
-    assert scene.bearing.rail is not None
-    across = np.roll(scene.bearing.rail.axis, 1)  # a pin along the rail is another matter
-    across = replace(scene.bearing.lines[0], axis=across)
-    scene = replace(scene, bearing=replace(scene.bearing, lines=(across,)))
-    assert type_cues(scene, turns, slides, CONFIG.joints)["rail"] == float(guides)
 
 
 @pytest.mark.parametrize(("room", "pressed"), [(0.004, True), (0.0008, False)])

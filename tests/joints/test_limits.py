@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
 
@@ -17,9 +15,6 @@ from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
 from tests.known import KnownObject, known_object, sliding, turning
 from tests.objects import BUILDERS
-
-if TYPE_CHECKING:
-    from manifold3d import Manifold
 
 
 @pytest.mark.parametrize("name", ["edge_door", "drawer"])
@@ -74,19 +69,6 @@ def test_a_leaf_opens_to_the_side_of_its_barrels(side: float) -> None:
     assert float(found.axis @ joint.axis) > 0.99
 
 
-def test_a_level_disc_on_top_that_is_larger_than_a_button_is_lifted() -> None:
-    """It is small beside its pot, as buttons are, but covers a mouth."""
-    pot = cylinder(0.12, (0, 0, 0), (0, 0, 0.2)) - cylinder(0.02, (0, 0, 0.1), (0, 0, 0.3))
-    pot -= cylinder(0.0253, (0, 0, 0.19), (0, 0, 0.3))
-    joint = sliding("pot", "disc", (0, 0, 1), (0, 0, 0.2), (0.0, 0.05))
-    known = known_object("pot", {"pot": pot, "disc": cylinder(0.025, (0, 0, 0.1902), (0, 0, 0.206))}, joint)
-    scene = scene_of(known, "disc")
-    assert 0.5 < scene.smallness < 1.0
-    found = find_range(scene, JointType.PRISMATIC, np.array([0.0, 0.0, 1.0]), joint.pivot, CONFIG.joints)
-    assert found.sign > 0.0
-    assert found.ahead.motion >= 0.006
-
-
 def test_a_button_on_the_foot_of_a_lamp_is_pressed_down() -> None:
     """The middle of the lamp lies above the button, and what hangs on the post makes a machine of joints in series."""
     foot = box((-0.1, -0.1, 0), (0.1, 0.1, 0.03)) - box((-0.0105, -0.0905, 0.018), (0.0105, -0.0695, 0.1))
@@ -103,26 +85,6 @@ def test_a_button_on_the_foot_of_a_lamp_is_pressed_down() -> None:
     found = find_range(scene, JointType.PRISMATIC, np.array([0.0, 0.0, 1.0]), joints[0].pivot, CONFIG.joints)
     assert found.sign < 0.0
     assert found.ahead.motion < 0.011
-
-
-def test_what_stands_at_its_stop_opens_to_a_right_angle_at_most() -> None:
-    """Two crossed levers on a rivet whose jaws meet; the other way round nothing stops them."""
-
-    def lever(side: float) -> Manifold:
-        jaw = box((0.004, -0.15, 0), (0.024, -0.02, 0.012)) + box((-0.012, -0.03, 0), (0.024, 0.03, 0.012))
-        grip = box((0.002, 0.02, 0), (0.022, 0.16, 0.012))
-        return (jaw + grip).mirror((1, 0, 0)) if side < 0 else jaw + grip
-
-    rivet = cylinder(0.006, (0, 0, -0.001), (0, 0, 0.0262))
-    solids = {"lever": lever(1.0) + rivet}
-    solids["other"] = lever(-1.0).translate((0, 0, 0.0124)) - cylinder(0.0063, (0, 0, -1), (0, 0, 1))
-    solids["lever"] += box((0.0, -0.15, 0), (0.004, -0.13, 0.02))
-    joint = turning("lever", "other", (0, 0, 1), (0, 0, 0.012), (0.0, 1.0))
-    scene = scene_of(known_object("pliers", solids, joint), "other")
-    found = find_range(scene, JointType.REVOLUTE, np.array([0.0, 0.0, 1.0]), joint.pivot, CONFIG.joints)
-    assert found.free[0].motion > np.radians(100.0)
-    assert found.free[1].motion < np.radians(CONFIG.joints.limits.stopped_deg)
-    assert found.ahead.motion == pytest.approx(np.radians(CONFIG.joints.limits.panel_deg))
 
 
 @pytest.mark.parametrize("share", [0.0, 0.6])

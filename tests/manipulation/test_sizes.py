@@ -37,12 +37,6 @@ def test_categories_are_whole_words(path: str, name: str, category: str | None) 
     assert category_of(Path("/nowhere/at/all") / path, name) == category
 
 
-def test_millimetres_are_noticed() -> None:
-    assert 400.0 * sizing(Path("/a/b/c.urdf"), "microwave", box_of(400.0)).factor == pytest.approx(0.52)
-    with pytest.raises(InputError, match=r"--scale 0\.001"):
-        sizing(Path("/a/b/c.urdf"), "thing", box_of(400.0))
-
-
 def test_unit_shapes_are_brought_to_their_real_size() -> None:
     box = box_of(1.2, stands=False)
     assert is_normalised(box)

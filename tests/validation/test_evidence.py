@@ -24,7 +24,6 @@ from tests.household import (
     four_bars,
     hinge_pin,
     knob,
-    laptop,
     lever,
     nested_drawer,
     sliding_lid,
@@ -44,7 +43,7 @@ from tests.validation.planted import (
 )
 
 Build = Callable[[], KnownObject]
-GOOD: tuple[Build, ...] = (barrel_hinge_door, button, drawer, edge_door, hinge_pin, knob, laptop, nested_drawer)
+GOOD: tuple[Build, ...] = (barrel_hinge_door, button, drawer, edge_door, hinge_pin, knob, nested_drawer)
 
 
 def found(known: KnownObject, folder: Path) -> set[str]:

@@ -17,7 +17,7 @@ from kinematify.cli.app import run
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
-from kinematify.view.alternatives import JointAlternative, agreeing, described, distinct
+from kinematify.view.alternatives import JointAlternative, agreeing, described
 from kinematify.view.viewer_scene import ViewScene
 from tests.view.pages import candidates_in
 
@@ -108,21 +108,6 @@ def test_candidates_are_said_in_words(
 ) -> None:
     item = JointAlternative(kind=kind, axis=np.array(axis), pivot=np.array(pivot), probability=0.224)
     assert described(item, _BOUNDS) == f"{words}, 22 %"
-
-
-def test_candidates_that_look_the_same_are_one() -> None:
-    def turn(x: float, probability: float) -> JointAlternative:
-        place = np.array([x, 0.0, 0.0])
-        axis = np.array([0.0, 0.0, 1.0])
-        return JointAlternative(
-            kind=JointType.REVOLUTE, axis=axis, pivot=place, probability=probability, score=probability
-        )
-
-    fixed = JointAlternative(kind=JointType.FIXED, axis=np.array([0.0, 0.0, 1.0]), pivot=np.zeros(3), probability=0.05)
-    left, again, right = turn(0.0, 0.3), turn(0.02, 0.25), turn(0.6, 0.4)
-    found = distinct([right, left, again, fixed], size=1.2)
-    assert [item.probability for item in found] == pytest.approx([0.55, 0.4, 0.05])
-    assert found[-1].kind is JointType.FIXED
 
 
 def test_candidates_agree_with_the_confidence_of_the_joint_in_the_file() -> None:
