@@ -78,7 +78,7 @@ def _read_body(pybullet, client: int, body: int, q: Mapping[str, float]) -> Read
 
     def mesh(link: int, T_world_inertial: np.ndarray) -> np.ndarray:
         _, points = pybullet.getMeshData(body, link, physicsClientId=client)
-        return np.array(points) @ T_world_inertial[:3, :3].T + T_world_inertial[:3, 3]
+        return np.reshape(points, (-1, 3)) @ T_world_inertial[:3, :3].T + T_world_inertial[:3, 3]
 
     kinds = {pybullet.JOINT_REVOLUTE: "turns", pybullet.JOINT_PRISMATIC: "slides"}
     infos = [pybullet.getJointInfo(body, j, physicsClientId=client) for j in range(pybullet.getNumJoints(body))]

@@ -185,7 +185,7 @@ def test_progress_on_a_terminal_is_a_bar_on_stderr() -> None:
         "    report('joints', 0.5); time.sleep(0.3)\n"
     )
     ours, theirs = pty.openpty()
-    done = subprocess.run([sys.executable, "-c", code], stderr=theirs, stdout=subprocess.PIPE, check=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", code], stderr=theirs, stdout=subprocess.PIPE, check=True, timeout=300)
     os.close(theirs)
     shown = os.read(ours, 100_000).decode()
     os.close(ours)
@@ -207,6 +207,6 @@ def test_interrupted_process_ends_with_130() -> None:
     assert process.stdout.readline() == "waiting\n"
     time.sleep(0.05)
     process.send_signal(signal.SIGINT)
-    _, message = process.communicate(timeout=30)
+    _, message = process.communicate(timeout=300)
     assert process.returncode == 130
     assert "Traceback" not in message

@@ -193,7 +193,7 @@ def test_interruption_leaves_nothing(tmp_path: Path) -> None:
     assert "reading the parts" in process.stderr.readline()
     process.stderr.readline()  # the first stage of the inference has begun
     process.send_signal(signal.SIGINT)
-    out, message = process.communicate(timeout=60)
+    out, message = process.communicate(timeout=300)
     assert process.returncode == 130
     assert out == ""
     assert "Interrupted" in message
