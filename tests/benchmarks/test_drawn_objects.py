@@ -83,3 +83,15 @@ def test_any_hand_draws_it_and_a_seed_draws_the_same_again(name):
         left.vertices.shape != right.vertices.shape or not np.allclose(left.vertices, right.vertices)
         for left, right in zip(one.parts, other.parts, strict=False)
     )
+
+
+def test_a_mirror_keeps_what_opens():
+    """Seen in a mirror a leaf still swings outward: its motion is the mirror image of the motion."""
+    blueprints = [drawn_object("wardrobe", seed, CAREFUL) for seed in range(8)]
+    for blueprint in blueprints:
+        body = blueprint.parts[0].bounds
+        for joint in blueprint.joints:
+            opened = blueprint.moved({joint.child: 0.5 * joint.upper})
+            child = next(part for part in opened.parts if part.name == joint.child)
+            outside = np.maximum(body[0] - child.bounds[0], child.bounds[1] - body[1]).max()
+            assert outside > 0.05, (blueprint.name, joint.child)

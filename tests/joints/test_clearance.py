@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.blueprint import Blueprint
-from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.joints.candidate import JointEstimate
 from kinematify.robot.joint_type import JointType
