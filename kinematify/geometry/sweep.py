@@ -143,7 +143,7 @@ class Sweeper:
             declared=float(values[-1]),
             reached=float(beyond[-1]),
             meetings=tuple(meetings),
-            gaps=tuple(gap for pair in sorted(own) for gap in self._widest(pair, values, relative(poses, pair))),
+            gaps=tuple(gap for pair in sorted(own) for gap in self.widest(leader, pair, sign)),
         )
 
     def _way_to_end(self, leader: int, sign: float) -> tuple[FloatArray, FloatArray]:
@@ -244,9 +244,11 @@ class Sweeper:
         fine = np.radians(settings.fine_angle) if turns else min(settings.fine_length, 1e-4 * self._scene.size)
         return bisected(free, low, high, float(fine))
 
-    def _widest(self, pair: Pair, values: FloatArray, T: FloatArray) -> Iterator[tuple[Pair, float, float]]:
-        """Largest gap of a pair over some of the poses; nothing where it is certainly lost in none of them."""
+    def widest(self, leader: int, pair: Pair, sign: float) -> Iterator[tuple[Pair, float, float]]:
+        """Yield the largest gap [m] of a pair on the way to one side, and where; nothing where it is certainly small."""
         settings, overlap = self._scene.settings, self._overlap
+        values, poses = self._way(leader, sign)
+        T = relative(poses, pair)
         chosen: IntArray = np.unique(np.linspace(0, len(values) - 1, settings.gap_samples + 1).astype(np.int64))
         apart = [row for row in chosen if not overlap.near(pair, T[row], settings.lost * self._scene.size)]
         if apart:

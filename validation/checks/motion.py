@@ -237,7 +237,9 @@ def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
     scene = motion.scene
     limit = scene.settings.lost * scene.size
     for pair in sorted({pair for side in motion.sweep.sides for pair, _, _ in side.gaps}):
-        grown, value = min(motion.parted(pair), motion.as_seen.parted(pair))
+        grown, value = motion.parted(pair)
+        if grown > limit:
+            grown, value = min((grown, value), motion.seen_parted(pair))
         if grown <= limit:
             continue
         connection = scene.connection_of[pair]
@@ -282,7 +284,7 @@ def out_of_guide(result: OpenCheck, motion: JointMotion) -> None:
         connection = scene.connection_of[pair]
         for side in motion.sweep.sides:
             way = abs(side.declared - travel.rest)
-            guide, held = max(motion.guide(connection, side), motion.as_seen.guide(connection, side))
+            guide, held = max(motion.guide(connection, side), motion.guide(connection, side, visible=True))
             # What stands on its parent, as a lid does, or hangs on a rope, as a hook does, has no guide in the file.
             if guide <= scene.settings.hover * scene.size or held < _GUIDED or way <= scene.settings.guide * guide:
                 continue

@@ -34,7 +34,6 @@ def asset_stage() -> Stage:
         run=asset.run,
         checks=keys(checks_of("KV15", "KV2")),
         imports=imports,
-        library="trimesh.creation",  # for boxes, cylinders and spheres
     )
 
 
