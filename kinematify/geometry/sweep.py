@@ -245,7 +245,7 @@ class Sweeper:
         return bisected(free, low, high, float(fine))
 
     def widest(self, leader: int, pair: Pair, sign: float) -> Iterator[tuple[Pair, float, float]]:
-        """Yield the largest gap [m] of a pair on the way to one side, and where; nothing where it is certainly small."""
+        """Yield the largest gap of a pair on the way to one side [m], and where; nothing where it is small for sure."""
         settings, overlap = self._scene.settings, self._overlap
         values, poses = self._way(leader, sign)
         T = relative(poses, pair)
