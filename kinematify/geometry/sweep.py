@@ -32,6 +32,8 @@ class Meeting:
     pair: Pair
     first: float
     """Value of the joint where it begins [rad or m]."""
+    deep: float
+    """Value of the joint at the first sample where it is deeper than it may be [rad or m]."""
     depth: float
     """Deepest within the declared range, or where it was noticed beyond it [m]."""
     at: float
@@ -192,8 +194,8 @@ class Sweeper:
         if not len(events):  # what is on its way in at the last row may get too deep after it
             deeper = rows < len(values) and growth[-1] > self._scene.settings.noise * self._scene.size
             return self._within(leader, pair, values, T) if deeper else None
-        first = self._onset(leader, pair, values[: events[0] + 1], growth, hit)
-        return _meeting(pair, first, values[:rows], growth, passed, inside=True)
+        begin = self._onset(leader, pair, values[: events[0] + 1], growth, hit), float(values[events[0]])
+        return _meeting(pair, begin, values[:rows], growth, passed, inside=True)
 
     def _outside(self, leader: int, pair: Pair, values: FloatArray, beyond: FloatArray) -> Meeting | None:
         """The same beyond the declared range, piece by piece, for the first place is enough."""
@@ -209,8 +211,8 @@ class Sweeper:
             events = np.flatnonzero(growth > self._allowance.tolerance(pair))
             if len(events):
                 stop = int(events[0]) + 1
-                first = self._onset(leader, pair, way[:stop], growth, hit)
-                return _meeting(pair, first, way[:stop], growth[:stop], passed, inside=False)
+                begin = self._onset(leader, pair, way[:stop], growth, hit), float(way[stop - 1])
+                return _meeting(pair, begin, way[:stop], growth[:stop], passed, inside=False)
         return None
 
     def _growth(self, pair: Pair, T: FloatArray, hit: BoolArray, *, since: int = 0) -> tuple[FloatArray, BoolArray]:
@@ -258,12 +260,13 @@ class Sweeper:
 
 
 def _meeting(
-    pair: Pair, first: float, values: FloatArray, growth: FloatArray, passed: BoolArray, *, inside: bool
+    pair: Pair, begin: tuple[float, float], values: FloatArray, growth: FloatArray, passed: BoolArray, *, inside: bool
 ) -> Meeting:
     deepest = int(np.argmax(growth))
     return Meeting(
         pair=pair,
-        first=first,
+        first=begin[0],
+        deep=begin[1],
         depth=float(growth[deepest]),
         at=float(values[deepest]),
         passed=bool(passed[deepest]),

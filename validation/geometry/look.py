@@ -356,11 +356,18 @@ class JointMotion:
     @property
     def left(self) -> float:
         """Share of the declared range that is free around rest."""
-        low, high = self.sweep.travel.lower, self.sweep.travel.upper
-        firsts = [meeting.first for meeting in self.blocked.values()]
-        low = max([low, *(value for value in firsts if value <= self.sweep.travel.rest)])
-        high = min([high, *(value for value in firsts if value >= self.sweep.travel.rest)])
-        return max(high - low, 0.0) / self.sweep.travel.range if self.sweep.travel.range else 0.0
+        return self._share(meeting.first for meeting in self.blocked.values())
+
+    @property
+    def stuck(self) -> bool:
+        """True if it gets deeper into its parent than it may within `geometry.early` of its range."""
+        return self._share(meeting.deep for meeting in self.blocked.values()) < self.scene.settings.early
+
+    def _share(self, stops: Iterable[float]) -> float:
+        travel, stops = self.sweep.travel, list(stops)
+        low = max([travel.lower, *(value for value in stops if value <= travel.rest)])
+        high = min([travel.upper, *(value for value in stops if value >= travel.rest)])
+        return max(high - low, 0.0) / travel.range if travel.range else 0.0
 
     def free_way(self, side: SweepSide) -> float:
         """Return how far the child goes to a side before it meets its parent [rad or m]."""
