@@ -176,6 +176,7 @@ class _Run:
         self._joints: dict[str, JointSummary] = {}
         self._pairs: PairTable | None = None
         self._why: dict[CheckKey, tuple[Status, str]] = {}
+        self._lacking: DocumentCopy | None = None
         self._started = time.perf_counter()
 
     def all(self, request: StageRequest, workers: int) -> None:
@@ -209,10 +210,12 @@ class _Run:
         if late:
             self._explain_rest(Status.SKIPPED, not_finished("time ran out before the meshes were checked"))
             return
+        self._lacking = copy
+        self.robot = self.robot or (None if copy is None else _bodies(copy.path))
         request = replace(request, deadline=max(0.0, request.deadline - spent))
         fault = self._fault_of_meshes(request.work) if copy is None else None
-        if copy is not None and not copy.only_visuals:
-            fault = f"the pre-check found errors in what collides or moves: {self._ids(self._broken())}"
+        if copy is not None and copy.joints:
+            fault = f"the pre-check found errors in what moves: {self._ids(self._broken())}"
         if fault is not None:
             self._explain_rest(Status.BLOCKED, fault)
             return
@@ -333,6 +336,9 @@ class _Run:
         elif isinstance(result, PairTable):
             self._pairs = result
         else:
+            if self._lacking is not None and result.check.startswith("KV3"):
+                sure = [finding for finding in result.findings if not self._lacking.doubts(finding)]
+                result = result.with_findings(sure)
             self._results[result.check, result.engine] = result
 
     def _take_end(self, end: StageEnd) -> None:
