@@ -96,7 +96,7 @@ class AsLoadedContext:
     @cached_property
     def robot(self) -> Robot:
         """The file without its geometry."""
-        return read_robot(self.request.resolved or self.request.urdf, geometry="none")  # what cannot be read is left out
+        return read_robot(self.request.resolved or self.request.urdf, geometry="none")  # less what is broken
 
     @cached_property
     def mechanism(self) -> LeaderMechanism:
