@@ -27,7 +27,7 @@ from kinematify.assembly.erasure import erase
 from kinematify.errors import InputError
 from kinematify.evaluation.datasets import find_objects
 from kinematify.evaluation.result_record import table
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.robot.obj_file import write_obj
 from kinematify.robot.read import read_robot

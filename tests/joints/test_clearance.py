@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from kinematify.assembly.part import Part
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.blueprint import Blueprint
-from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box, tray
 from kinematify.joints.candidate import JointEstimate

@@ -24,8 +24,8 @@ from benchmarks.fit.edges import (
 )
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.blueprint import ground_truth
-from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import bore, box, cylinder
 from kinematify.geometry.part_stats import assembly_stats

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kinematify import infer
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.generate.sentence import from_text
