@@ -80,8 +80,6 @@ class ObjectNames(BaseModel):
     """Name of a part without its number -> words for how it moves that hold already: ``drop-down``, ``folds``."""
     holds_already: tuple[str, ...] = ()
     """Other words that are true of it as it is: ``adjustable height``, ``two-door``."""
-    like: str = ""
-    """The kind that it is another way to build; empty where it is a kind of its own."""
 
     @property
     def own(self) -> tuple[Parameter, ...]:
@@ -110,7 +108,6 @@ class CountParameters(ObjectNames):
             part_words=self.part_words,
             motions=self.motions,
             holds_already=self.holds_already,
-            like=self.like,
             build=build,
         )
 

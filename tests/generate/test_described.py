@@ -36,9 +36,7 @@ def overlaps(blueprint):
 
 
 IN_STEPS = [name for name in DESCRIBED if library()[name].draw]
-SAMPLE = [name for name in DESCRIBED if name not in IN_STEPS] + [name for name in IN_STEPS if not library()[name].like][
-    ::9
-]
+SAMPLE = [name for name in DESCRIBED if name not in IN_STEPS] + IN_STEPS[::9]
 COUNTED = [
     (name, {parameter.name: int(bound)})
     for name in DESCRIBED

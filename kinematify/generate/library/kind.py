@@ -119,7 +119,7 @@ def kind(
         called: How people call it, singular.
         words: Other names, split at their commas.
         title: A few words for lists; `called` if empty.
-        like: The kind that it is another way to build; empty where it is a kind of its own.
+        like: The kind that it is another way to build, which `all_kinds` leaves out; empty of a kind of its own.
         material: Of its base.
         part_words: Name of a part without its number -> how else people call it.
         motions: The same -> words for how it moves that hold already.
