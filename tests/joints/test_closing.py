@@ -28,7 +28,7 @@ def lid_range(angle: float, axis: np.ndarray) -> tuple[float, float]:
     )
 
 
-@pytest.mark.parametrize("angle", [0.8, np.pi / 2, 1.9, 2.3])
+@pytest.mark.parametrize("angle", [0.8, 2.3])
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_a_lid_that_stands_open_closes_by_as_much(angle: float, sign: float) -> None:
     lower, upper = lid_range(angle, sign * Y)

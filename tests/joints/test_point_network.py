@@ -11,7 +11,6 @@ import torch
 from benchmarks.fit.point_network import unfitted_model, written
 from kinematify.joints.candidate import ELSEWHERE, FIXED, SLIDE, TURN, Hypotheses
 from kinematify.joints.choice.point_network import LINE_INPUTS, POINT_INPUTS, point_inputs
-from kinematify.joints.choice.scorer import shipped_scorer
 from kinematify.joints.features.workspace import CARRIED, CHILD, OTHER, PARENT, Cloud
 
 
@@ -65,18 +64,6 @@ def test_inputs_know_no_sign_of_an_axis_and_no_heading() -> None:
         np.testing.assert_allclose(mine, yours, atol=1e-5)
 
 
-def test_a_slide_has_no_line_of_its_own_and_a_turn_is_the_same_from_any_point_of_its_line() -> None:
-    cloud, hypotheses = some_cloud(2), some_hypotheses(3)
-    along = hypotheses.pivots + 0.7 * hypotheses.axes
-    along[hypotheses.kinds == SLIDE] += 0.3
-    for mine, yours in zip(
-        point_inputs(cloud, hypotheses, MOVING),
-        point_inputs(cloud, replace(hypotheses, pivots=along), MOVING),
-        strict=True,
-    ):
-        np.testing.assert_allclose(mine, yours, atol=1e-5)
-
-
 @pytest.mark.parametrize("others", [True, False])
 def test_arrays_say_what_the_fitted_network_says(others: bool) -> None:
     torch.manual_seed(0)
@@ -92,15 +79,3 @@ def test_arrays_say_what_the_fitted_network_says(others: bool) -> None:
     found = written(models).log_probabilities(cloud, hypotheses)
     assert found[0] == -np.inf
     np.testing.assert_allclose(found[1:], wanted, atol=5e-3)  # written with half the digits
-
-
-def test_points_move_nothing_between_what_is_fixed_and_what_moves() -> None:
-    torch.manual_seed(1)
-    cloud, hypotheses = some_cloud(6), some_hypotheses(7)
-    shipped = shipped_scorer()
-    odds = {"rules_score": np.linspace(-2.0, 0.0, 9), "rules_odds": np.zeros(9)}
-    without = replace(shipped, points=None).probabilities(hypotheses, odds, cloud)
-    seen = replace(shipped, points=written([unfitted_model().eval()])).probabilities(hypotheses, odds, cloud)
-    assert seen[0] == pytest.approx(without[0])
-    assert seen.sum() == pytest.approx(1.0)
-    assert not np.allclose(seen[1:], without[1:])

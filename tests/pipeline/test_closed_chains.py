@@ -19,8 +19,6 @@ from kinematify.pipeline.record import write_inference
 from kinematify.robot.linkage import loop_gaps
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import joint_ends
-from kinematify.view.inference_view import shown_with
-from kinematify.view.viewer_scene import ViewScene
 from tests.household import edge_door, four_bars
 
 if TYPE_CHECKING:
@@ -87,13 +85,3 @@ def test_a_pin_that_would_leave_no_motion_is_reported_and_not_written() -> None:
     closed, closings = close_chains(free, pins[1:], (), 0.2, inferred().config.linkages)
     assert [closing.loop is None for closing in closings] == [False, True]
     assert len(closed.loops) == 1
-
-
-def test_the_viewer_draws_the_pin_where_both_links_meet(tmp_path: Path) -> None:
-    folder = tmp_path / "model"
-    write_inference(inferred(), folder, preview=False)
-    scene = ViewScene(read_robot(folder / "model.urdf"))
-    (chain,) = shown_with(scene, folder / "inference.json").chains
-    (driver,) = scene.robot.leaders
-    dashes = chain.dashes(scene.poses({driver.name: 0.4}), scene.size)
-    assert np.linalg.norm(dashes[-1, 1] - dashes[-9, 0]) < 1e-3 * scene.size

@@ -323,23 +323,6 @@ def test_what_is_fixed_together_may_stand_in_each_other(tmp_path: Path) -> None:
     assert reported(model, tmp_path, "pybullet").results["KV802"].status is Status.PASS
 
 
-def test_pybullet_is_pushed_by_no_more_than_it_answers_rightly(tmp_path: Path) -> None:
-    """A light link between heavy ones was thrown back by what would start the heavy ones."""
-    finger = Part(
-        name="finger", boxes=(Box(size=(0.01, 0.01, 0.04)),), parent="palm", kind="revolute", limits=(-1.5, 1.5),
-        mass=0.01, inertia=(1e-5, 1e-5, 1e-5),
-    )  # fmt: skip
-    tip = replace(finger, name="tip", parent="finger", at=(0.0, 0.0, 0.05), mass=2.0, center=(0.0, 0.0, 0.1))
-    palm = Part(name="palm", boxes=(Box(size=(0.1, 0.1, 0.02), at=(0.0, 0.0, -0.1)),))
-    result = reported(Model(parts=(palm, finger, tip)), tmp_path, "pybullet").results["KV804"]
-    assert (result.measured["right"], result.findings) == (2.0, ())
-
-
-def test_friction_does_not_press_a_limit_open(tmp_path: Path) -> None:
-    stiff = cabinet().with_part("door", extra='<dynamics friction="300"/>')
-    assert reported(stiff, tmp_path, "mujoco").results["KV805"].status is Status.PASS
-
-
 def jam(engine: str) -> CheckResult:
     finding = Finding(
         check="KV804",
