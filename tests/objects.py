@@ -33,7 +33,6 @@ BUILDERS: Mapping[str, Callable[..., KnownObject]] = {
         robots.square_lift,
         robots.universal_joint,
         robots.parallel_gripper,
-        robots.four_legged,
         robots.serial_arm,
         robots.torso,
     )

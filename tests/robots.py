@@ -7,41 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.pieces.bearing_pieces import fork, fork_room, stub
-from kinematify.generate.procedural.solids import bore, box, cylinder, off, rod, union
+from kinematify.generate.procedural.solids import bore, box, cylinder, off, union
 from tests.known import KnownJoint, KnownObject, known_object, moved, sliding, turning, varied
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
 UP = np.array([0.0, 0.0, 1.0])
-
-
-def leg_solids(
-    hip: np.ndarray, side: tuple[int, int], radius: float, lengths: tuple[float, float], clearance: float
-) -> tuple[Manifold, Manifold, dict[str, Manifold], tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """A straight leg that hangs down from `hip`: roll about x, thigh and shank about y, all on stubs [m].
-
-    Returns:
-        Boss and hole for the trunk, the three links, and the three pivots.
-    """
-    sx, sy = side
-    boss, hole, rotor = stub(hip, (sx, 0, 0), radius, clearance)
-    flange, end = sx * (radius + clearance), sx * (2 * radius + clearance)
-    pitch = off(hip, end, sy * 2.2 * radius, 0)
-    thigh_boss, thigh_hole, thigh_rotor = stub(pitch, (0, sy, 0), radius, clearance, length=2 * radius)
-    top = off(pitch, 0, sy * (radius + clearance), 0)
-    knee = off(top, 0, -sy * radius, -lengths[0])
-    knee_boss, knee_hole, knee_rotor = stub(knee, (0, -sy, 0), 0.8 * radius, clearance, length=1.6 * radius)
-    stem = knee_boss + rod(0.7 * radius, top, off(top, 0, 0, -lengths[0]), segments=20)
-    ankle = off(knee, 0, -sy * (0.8 * radius + clearance), 0)
-    shank = rod(0.5 * radius, ankle, off(ankle, 0, 0, -lengths[1]), segments=20)
-    bridge = thigh_boss + rod(0.8 * radius, off(hip, flange, 0, 0), off(hip, end, 0, 0), segments=20)
-    links = {
-        "hip": union(rotor, beyond(bridge, off(hip, sx * clearance, 0, 0), (sx, 0, 0))) - thigh_hole,
-        "thigh": union(thigh_rotor, beyond(stem, knee, (0, sy, 0))) - knee_hole,
-        "shank": union(knee_rotor, beyond(shank, off(knee, 0, -sy * clearance, 0), (0, -sy, 0))),
-    }
-    return boss, hole, links, (hip, pitch, knee)
 
 
 def beyond(solid: Manifold, point: np.ndarray, direction: tuple[int, int, int]) -> Manifold:
@@ -142,29 +114,6 @@ def parallel_gripper(
     solids = {"palm": palm, "right_finger": right, "left_finger": right.mirror((1, 0, 0))}
     shut = known_object("parallel_gripper", solids, *joints)
     return moved(shut, {"right_finger": opening, "left_finger": opening})
-
-
-def four_legged(*, length: float = 0.4, clearance: float = 5e-4, seed: int | None = None) -> KnownObject:
-    """A trunk and four legs of three links on flanged stubs: hip roll, hip pitch, knee."""
-    vary = varied(seed)
-    hx, hy, radius = 0.5 * vary(length), vary(0.09), vary(0.03)
-    thigh, shank = vary(0.2), vary(0.2)
-    trunk = [box((-hx, -hy, -0.04), (hx, hy, 0.05)), box((hx - 0.05, -0.03, 0.04), (hx + 0.03, 0.03, 0.08))]
-    holes, solids, joints = [], {}, []
-    for leg, (sx, sy) in {"fl": (1, 1), "fr": (1, -1), "rl": (-1, 1), "rr": (-1, -1)}.items():
-        hip = np.array([sx * (hx + 0.02), sy * (hy - radius), 0.0])
-        boss, hole, links, pivots = leg_solids(hip, (sx, sy), radius, (thigh, shank), clearance)
-        trunk.append(boss)
-        holes.append(hole)
-        solids |= {f"{leg}_{kind}": solid for kind, solid in links.items()}
-        joints += [
-            turning("trunk", f"{leg}_hip", (1, 0, 0), pivots[0], (-0.2, 0.5) if sy > 0 else (-0.5, 0.2)),
-            turning(f"{leg}_hip", f"{leg}_thigh", (0, 1, 0), pivots[1], (-0.8, 1.0)),
-            turning(f"{leg}_thigh", f"{leg}_shank", (0, 1, 0), pivots[2], (-1.2, 1.2)),
-        ]
-    straight = known_object("four_legged", {"trunk": union(*trunk) - union(*holes)} | solids, *joints)
-    bends = {"thigh": 0.5, "shank": -0.9}
-    return moved(straight, {joint.child: bends.get(joint.child[3:], 0.0) for joint in joints})
 
 
 def serial_arm(

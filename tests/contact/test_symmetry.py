@@ -67,13 +67,3 @@ def test_different_shapes_do_not_cluster(other: Part) -> None:
 def test_the_same_shape_in_another_size_does_not_cluster() -> None:
     larger = Part(name="larger", vertices=1.1 * hook().vertices, faces=hook().faces)
     assert clusters_of(hook(), larger) == ()
-
-
-def test_another_tessellation_does_not_part_twins() -> None:
-    smooth = union(cylinder(0.4, (0, 0, 0), (0, 0, 1), segments=64), box((0, -0.1, 0), (0.8, 0.1, 0.2))).to_mesh64()
-    rough = union(cylinder(0.4, (0, 0, 0), (0, 0, 1), segments=24), box((0, -0.1, 0), (0.8, 0.1, 0.2))).to_mesh64()
-    parts = [
-        Part(name=name, vertices=mesh.vert_properties[:, :3], faces=mesh.tri_verts)
-        for name, mesh in (("smooth", smooth), ("rough", rough))
-    ]
-    assert clusters_of(*parts) == ((0, 1),)

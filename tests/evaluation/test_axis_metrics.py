@@ -6,24 +6,11 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from kinematify.evaluation.metrics import axis_angle, axis_line_distance, limit_overlap, opening_sign
+from kinematify.evaluation.metrics import axis_angle, limit_overlap, opening_sign
 
 X, Y, Z = np.eye(3)
-
-coordinates = st.floats(-1.0, 1.0, allow_nan=False, width=32)
-points = st.tuples(coordinates, coordinates, coordinates).map(lambda values: np.array(values, dtype=np.float64))
-
-
-@st.composite
-def directions(draw: st.DrawFn) -> NDArray[np.float64]:
-    vector = draw(points)
-    length = float(np.linalg.norm(vector))
-    assume(length > 0.1)
-    return vector / length
 
 
 def tilted(degrees: float) -> NDArray[np.float64]:
@@ -35,36 +22,6 @@ def tilted(degrees: float) -> NDArray[np.float64]:
 @pytest.mark.parametrize(("degrees", "expected"), [(0, 0), (30, 30), (90, 90), (120, 60), (180, 0), (1e-6, 1e-6)])
 def test_axis_angle_is_folded_and_precise_near_zero(degrees: float, expected: float) -> None:
     assert axis_angle(Z, tilted(degrees)) == pytest.approx(expected, abs=1e-9)
-
-
-@settings(deadline=None, max_examples=100)
-@given(
-    true_axis=directions(),
-    axis=directions(),
-    true_pivot=points,
-    pivot=points,
-    near=points,
-    slides=st.tuples(coordinates, coordinates),
-)
-def test_line_and_angle_ignore_flips_and_pivots_along_the_axis(
-    *,
-    true_axis: NDArray[np.float64],
-    axis: NDArray[np.float64],
-    true_pivot: NDArray[np.float64],
-    pivot: NDArray[np.float64],
-    near: NDArray[np.float64],
-    slides: tuple[float, float],
-) -> None:
-    before = axis_line_distance(true_axis=true_axis, true_pivot=true_pivot, axis=axis, pivot=pivot, near=near)
-    after = axis_line_distance(
-        true_axis=-true_axis,
-        true_pivot=true_pivot + slides[0] * true_axis,
-        axis=-axis,
-        pivot=pivot + slides[1] * axis,
-        near=near,
-    )
-    assert after == pytest.approx(before, abs=1e-9)
-    assert axis_angle(true_axis, -axis) == pytest.approx(axis_angle(true_axis, axis), abs=1e-9)
 
 
 @pytest.mark.parametrize(

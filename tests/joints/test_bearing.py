@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from kinematify.config import load_config
 from kinematify.contact.build_graph import build_contact_graph
-from kinematify.generate.procedural.solids import bore, box, cylinder
+from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.bearing_evidence import contact_centroid, contact_sides
 from kinematify.joints.bearings.bearing_fit import fit_bearings
@@ -186,15 +186,3 @@ def test_lines_move_turn_and_grow_with_the_object(seed: int, scale: float) -> No
     assert angle_deg(line.axis, turn @ known.joints[0].axis) < 0.1
     assert np.linalg.norm(np.cross(line.pivot - shift, turn @ UP)) < 2e-3 * placed.assembly.diagonal
     assert line.score == pytest.approx(before.score, rel=0.25)  # the diagonal of the upright box changes
-
-
-def test_a_bore_that_is_no_bearing_neighbour_is_ignored() -> None:
-    """A second bore far from the contact does not move the line."""
-    plate = box((-0.1, -0.1, -0.02), (0.1, 0.1, 0.0)) - bore(0.01, 3e-4, (0, 0, -1), (0, 0, 1))
-    drilled = plate - cylinder(0.02, (0.06, 0.06, -1), (0.06, 0.06, 1))
-    pin = cylinder(0.01, (0, 0, -0.019), (0, 0, 0.02))
-    for body in (plate, drilled):
-        known = known_object("plate", {"plate": body, "pin": pin}, turning("plate", "pin", (0, 0, 1), (0, 0, 0)))
-        line = fitted(known)[0, 1].lines[0]
-        assert angle_deg(line.axis, UP) < 0.1
-        assert line_distance(line, known.joints[0]) < 2e-3 * known.assembly.diagonal

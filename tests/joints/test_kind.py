@@ -38,18 +38,6 @@ def test_bars_in_short_sleeves_slide_in_machines() -> None:
         assert found[child] is JointType.PRISMATIC, family
 
 
-def test_a_block_on_two_ropes_slides() -> None:
-    frame = box((-0.05, -0.02, 0.5), (0.05, 0.02, 0.52)) + box((-0.05, -0.02, -0.02), (0.05, 0.02, 0.0))
-    block = box((-0.03, -0.015, 0.4), (0.03, 0.015, 0.45))
-    for x in (-0.02, 0.02):
-        frame += cylinder(0.004, (x, 0, 0), (x, 0, 0.5))
-        block -= cylinder(0.0045, (x, 0, 0), (x, 0, 1.0))
-    hook = cylinder(0.004, (0, 0.005, 0.36), (0, 0.005, 0.401)) + box((-0.02, 0, 0.35), (0.02, 0.01, 0.362))
-    joint = sliding("frame", "block", (0, 0, -1), (0, 0, 0.4), (0.0, 0.3))
-    found = infer_joints(known_object("hoist", {"frame": frame, "block": block + hook}, joint))["block"]
-    assert found.kind is JointType.PRISMATIC
-
-
 @pytest.mark.parametrize(("room", "pressed"), [(0.004, True), (0.0008, False)])
 def test_a_round_plug_with_room_behind_it_is_pressed_and_one_that_bottoms_out_turns(room: float, pressed: bool) -> None:
     body = box((-0.2, 0, 0), (0.2, 0.1, 0.1)) - cylinder(0.0103, (0, -1, 0.05), (0, 0.02, 0.05))

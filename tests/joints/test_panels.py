@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kinematify.generate.procedural.solids import box, cylinder
+from kinematify.generate.procedural.solids import box
 from kinematify.joints.features.ranking import Ranked
 from tests.joints.joint_scenes import infer_joints, ranked_turns, scene_of
-from tests.known import KnownObject, known_object, turning
+from tests.known import known_object, turning
 from tests.objects import BUILDERS
 
 
@@ -46,30 +46,6 @@ def test_the_hinge_is_opposite_the_handle(side: float) -> None:
     ranked = ranked_turns(scene)
     assert abs(ranked.lines.axes[0][2]) > 0.99
     assert np.sign(ranked.lines.pivots[0][0]) == -side
-
-
-def trolley(rise: float) -> KnownObject:
-    """A cart whose wheels fill square wells, `rise` above the feet that it stands on."""
-    body, wheels, joints = box((-0.3, -0.2, 0.02), (0.3, 0.2, 0.3)), {}, []
-    for k, x in enumerate((-0.2, 0.2)):
-        body -= box((x - 0.0502, -0.2202, -1), (x + 0.0502, -0.1698, 0.1002))
-        wheels[f"wheel_{k}"] = cylinder(0.05, (x, -0.22, 0.05), (x, -0.17, 0.05))
-        joints.append(turning("cart", f"wheel_{k}", (0, 1, 0), (x, 0, 0.05), (-np.inf, np.inf)))
-    foot = box((-0.02, 0.15, -rise), (0.02, 0.19, 0.03))
-    return known_object("trolley", {"cart": body + foot, **wheels}, *joints)
-
-
-@pytest.mark.parametrize("rise", [0.0, 0.1])
-def test_only_what_stands_on_the_floor_rolls_and_only_about_its_axle(rise: float) -> None:
-    ranked = ranked_turns(scene_of(trolley(rise), "wheel_0"))
-    along = np.abs(ranked.lines.axes[:, 1]) > 0.99
-    off = np.linalg.norm(ranked.lines.pivots[:, [0, 2]] - (-0.2, 0.05), axis=1)
-    rolling = ranked.cues["rolling"] > 0
-    if rise > 0:
-        assert not rolling.any()
-    else:
-        assert rolling.any()
-        assert (along[rolling] & (off[rolling] < 0.02)).all()
 
 
 def weak_evidence(*axes_and_scores: tuple[tuple[float, float, float], float]) -> Ranked:

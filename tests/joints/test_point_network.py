@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import torch
 
 from benchmarks.fit.point_network import unfitted_model, written
 from kinematify.joints.candidate import ELSEWHERE, FIXED, SLIDE, TURN, Hypotheses
-from kinematify.joints.choice.point_network import LINE_INPUTS, POINT_INPUTS, point_inputs
+from kinematify.joints.choice.point_network import point_inputs
 from kinematify.joints.features.workspace import CARRIED, CHILD, OTHER, PARENT, Cloud
 
 
@@ -44,24 +42,6 @@ def some_hypotheses(seed: int) -> Hypotheses:
 
 
 MOVING = np.arange(1, 9)
-
-
-def test_inputs_know_no_sign_of_an_axis_and_no_heading() -> None:
-    cloud, hypotheses = some_cloud(0), some_hypotheses(1)
-    points, lines = point_inputs(cloud, hypotheses, MOVING)
-    assert points.shape == (8, len(cloud.points), POINT_INPUTS)
-    assert lines.shape == (8, LINE_INPUTS)
-    turned = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
-    moved = replace(
-        cloud,
-        points=cloud.points @ turned.T + 2.0,
-        normals=cloud.normals @ turned.T,
-        centre=turned @ cloud.centre + 2.0,
-        parent_centre=turned @ cloud.parent_centre + 2.0,
-    )
-    reversed_ = replace(hypotheses, axes=-hypotheses.axes @ turned.T, pivots=hypotheses.pivots @ turned.T + 2.0)
-    for mine, yours in zip((points, lines), point_inputs(moved, reversed_, MOVING), strict=True):
-        np.testing.assert_allclose(mine, yours, atol=1e-5)
 
 
 @pytest.mark.parametrize("others", [True, False])

@@ -18,7 +18,6 @@ from kinematify.cli.app import run
 from kinematify.cli.refine import round_rows
 from kinematify.config import load_config
 from kinematify.config.validation import ValidationSettings, load_settings
-from kinematify.contact.tree import KinematicTree
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.inference import Inference
@@ -117,41 +116,6 @@ def test_a_hint_is_kept_against_failures_and_both_are_reported() -> None:
     refinement = refine(blocked, seconds=60.0)
     assert abs(float(joint_above(refinement.inference, "drawer").axis[0])) == pytest.approx(1.0)
     assert any("a hint asked for" in refused for item in refinement.history.rounds for refused in item.refused)
-
-
-def double_door() -> Inference:
-    """A carcass with two doors that stand in it side by side and touch each other."""
-
-    def block(lower: tuple[float, float, float], upper: tuple[float, float, float]) -> trimesh.Trimesh:
-        low, high = np.array(lower), np.array(upper)
-        return trimesh.creation.box(extents=high - low).apply_translation((low + high) / 2)
-
-    walls = [
-        block((-0.42, 0.0, 0.0), (-0.4, 0.4, 0.6)), block((0.4, 0.0, 0.0), (0.42, 0.4, 0.6)),
-        block((-0.4, 0.0, 0.0), (0.4, 0.4, 0.02)), block((-0.4, 0.0, 0.58), (0.4, 0.4, 0.6)),
-        block((-0.4, 0.38, 0.02), (0.4, 0.4, 0.58)),
-    ]  # fmt: skip
-    meshes = {
-        "carcass": trimesh.util.concatenate(walls),
-        "left": block((-0.399, 0.0, 0.021), (-0.0005, 0.01, 0.579)),
-        "right": block((0.0005, 0.0, 0.021), (0.399, 0.01, 0.579)),
-    }
-    parts = (Part(name=name, vertices=mesh.vertices, faces=mesh.faces) for name, mesh in meshes.items())
-    return infer(Assembly(parts=tuple(parts), source="cabinet"), config=CONFIG)
-
-
-def test_a_wrong_parent_among_right_contacts_is_found_by_the_search() -> None:
-    right = double_door()
-    assert right.trees[0].parents == (-1, 0, 0)
-    hung = KinematicTree(parents=(-1, 0, 1))
-    joints = (right.joints[0], replace(right.joints[1], parent=1))
-    refinement = refine(replace(right, trees=(hung,), joints=joints), seconds=60.0)
-    assert refinement.inference.trees[0].parents == (-1, 0, 0)
-    assert [(change.part, change.what, change.after) for change in refinement.history.changed] == [
-        ("right", "parent", "carcass")
-    ]
-    assert refinement.inference.graph is right.graph, "the contacts were right"
-    assert np.allclose(joint_above(refinement.inference, "right").axis, right.joints[1].axis)
 
 
 @pytest.mark.parametrize("short", [-50.0, CONFIG.refine.lead_elsewhere - 0.2])

@@ -54,20 +54,6 @@ def quadruped(with_arm: bool = False) -> Machine:
     return machine
 
 
-def humanoid() -> Machine:
-    """A small pelvis between two legs under a large torso with two arms and a head."""
-    machine = Machine()
-    machine.add((0, 0, 0.9), (0.15, 0.2, 0.12))
-    legs(machine, 0, [(0, -0.12), (0, 0.12)], 0.85)
-    torso = machine.add((0, 0, 1.25), (0.25, 0.35, 0.5), 0, Z)
-    machine.add((0, 0, 1.6), (0.15, 0.15, 0.2), torso, Z)
-    for sign in (-1, 1):
-        shoulder = machine.add((0, 0.25 * sign, 1.4), (0.11, 0.09, 0.13), torso, Y)
-        upper = machine.add((0, 0.3 * sign, 1.2), (0.07, 0.07, 0.3), shoulder, X)
-        machine.add((0, 0.3 * sign, 0.95), (0.06, 0.055, 0.25), upper, Y)
-    return machine
-
-
 def hand() -> Machine:
     """Four fingers of three links on a palm, fingers up."""
     machine = Machine()
@@ -96,7 +82,7 @@ def cabinet() -> Machine:
 MACHINES = {
     build.__name__: build
     for build in (
-        serial_arm, quadruped, humanoid, hand, cabinet,
+        serial_arm, quadruped, hand, cabinet,
     )
 }  # fmt: skip
 MACHINES["quadruped_with_arm"] = lambda: quadruped(with_arm=True)

@@ -135,7 +135,7 @@ def test_no_line_is_long_and_mesh_names_are_unique(tmp_path: Path) -> None:
     assert len(list((tmp_path / "work" / "prepared_meshes").glob("*.obj"))) == 3
 
 
-@pytest.mark.parametrize("ratio", [0.9, 1.0, 1.0 + 1e-7, 1.005, 1.3])
+@pytest.mark.parametrize("ratio", [0.9, 1.005, 1.3])
 def test_moments_are_lifted_to_what_mujoco_takes(ratio: float, tmp_path: Path) -> None:
     moments = np.array([0.02, 0.05, 0.07 * ratio])
     axes = euler_matrix(0.3, 0.8, -1.1)[:3, :3]
