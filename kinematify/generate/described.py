@@ -22,7 +22,7 @@ from kinematify.generate.procedural.blueprint_file import (
     Vector,
 )
 from kinematify.generate.procedural.family import Family, Values
-from kinematify.generate.procedural.parameter import Parameter, number, parse_table
+from kinematify.generate.procedural.parameter import Parameter, details_of, number, parse_table
 from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.transforms import rotation_about
 
@@ -63,8 +63,8 @@ class CopyDescription(BaseModel):
         return found
 
 
-class ObjectNames(BaseModel):
-    """Names of an object in a request."""
+class CountParameters(BaseModel):
+    """Names and counts of a blueprint in a request."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -81,18 +81,6 @@ class ObjectNames(BaseModel):
     holds_already: tuple[str, ...] = ()
     """Other words that are true of it as it is: ``adjustable height``, ``two-door``."""
 
-    @property
-    def own(self) -> tuple[Parameter, ...]:
-        """Counts of what belongs to its parts."""
-        return tuple(
-            number(f"{word}s", count, (count, count), "Belongs to it.", words=word)
-            for word, count in self.details.items()
-        )
-
-
-class CountParameters(ObjectNames):
-    """Counts of a blueprint in a request."""
-
     category: Name
     counts: dict[str, dict[str, Any]] = Field({})
     """Word for what repeats -> how often it may; named where a shape or a copy is repeated."""
@@ -103,7 +91,7 @@ class CountParameters(ObjectNames):
             name=self.category,
             title=self.title,
             words=self.words,
-            parameters=self.own + tuple(_repeated(word, said) for word, said in self.counts.items()),
+            parameters=details_of(self.details) + tuple(_repeated(word, said) for word, said in self.counts.items()),
             material=material,
             part_words=self.part_words,
             motions=self.motions,

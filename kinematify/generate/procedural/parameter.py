@@ -96,6 +96,13 @@ def choice(
     )
 
 
+def details_of(details: Mapping[str, int]) -> tuple[Parameter, ...]:
+    """Return a count for each word for what belongs to parts of an object."""
+    return tuple(
+        number(f"{word}s", count, (count, count), "Belongs to it.", words=word) for word, count in details.items()
+    )
+
+
 def phrases(text: Words) -> tuple[str, ...]:
     """Split a text at its commas; what is a list stays one."""
     return tuple(text.split(", ") if isinstance(text, str) else text) if text else ()
