@@ -10,15 +10,9 @@ import yaml
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
 
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # ten times as fast, where PyYAML was built with it
-
-
-def read_table(path: Path) -> Any:
-    """Return what a file of the package says: lists, mappings, texts and numbers."""
-    return parse_table(path.read_text(encoding="utf-8"))
 
 
 def parse_table(text: str) -> Any:
