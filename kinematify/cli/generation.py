@@ -72,10 +72,10 @@ class Generation:
         if self.validated:
             from kinematify.simulation.engines import DEFAULT_ENGINES
             from kinematify.validation.isolation import start_server
-            from kinematify.validation.run.plan import as_loaded_stages, asset_stage, later_stages
+            from kinematify.validation.run.plan import stages_of
 
             # Its imports take a second, on another core than the inference.
-            start_server([asset_stage(), *later_stages(), *as_loaded_stages(DEFAULT_ENGINES)])
+            start_server(stages_of(DEFAULT_ENGINES))
         config = with_collision(self.config, self.collision)
         if self.inferred:
             from kinematify.pipeline.infer_assembly import infer
