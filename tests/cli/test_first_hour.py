@@ -44,7 +44,6 @@ def _view(words: list[str]) -> None:
 
 
 def test_the_first_hour(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("viser", reason="viser is not installed")
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     monkeypatch.chdir(tmp_path)
     text = (ROOT / "docs" / "first_hour.md").read_text("utf-8")

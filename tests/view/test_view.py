@@ -159,7 +159,6 @@ def test_a_candidate_gets_the_range_that_is_free(scene: ViewScene) -> None:
 
 
 def test_a_model_that_another_program_changes_is_shown_again(urdf: Path) -> None:
-    pytest.importorskip("viser", reason="viser is not installed")
     from kinematify.view.window import Window  # needs viser
 
     window = Window(urdf, port=18087)
@@ -167,7 +166,7 @@ def test_a_model_that_another_program_changes_is_shown_again(urdf: Path) -> None
     try:
         urdf.write_text(_URDF.replace("hinge", "pivot"))
         os.utime(urdf, (1.0, 1.0))
-        until = time.monotonic() + 60.0
+        until = time.monotonic() + 300.0
         while "pivot" not in window.viewer.values and time.monotonic() < until:
             time.sleep(0.2)
         assert set(window.viewer.values) == {"pivot"}
@@ -216,7 +215,6 @@ def test_bad_arguments(urdf: Path, arguments: list[str], words: str, capsys: pyt
 
 
 def test_it_prints_its_address_and_ends_with_ctrl_c(urdf: Path) -> None:
-    pytest.importorskip("viser", reason="viser is not installed")
     finding = {"check": "KV310", "severity": "error", "joint": "hinge", "pair": ["frame", "door"], "link": None,
                "q": {"hinge": -0.5}, "message": "m", "remedy": "r"}  # fmt: skip
     (urdf.parent / "validation.json").write_text(json.dumps({"findings": [finding]}))
@@ -231,7 +229,7 @@ def test_it_prints_its_address_and_ends_with_ctrl_c(urdf: Path) -> None:
     assert process.stdout is not None
     line = process.stdout.readline()
     process.send_signal(signal.SIGINT)
-    rest, errors = process.communicate(timeout=30)
+    rest, errors = process.communicate(timeout=300)
     assert line.startswith("http://localhost:"), errors
     assert rest == "Closed.\n"
     assert errors == ""
@@ -239,7 +237,6 @@ def test_it_prints_its_address_and_ends_with_ctrl_c(urdf: Path) -> None:
 
 
 def test_a_model_whose_collision_mesh_is_missing_is_seen_all_the_same(urdf: Path) -> None:
-    pytest.importorskip("viser", reason="viser is not installed")
     from kinematify.view.window import Window  # needs viser
 
     shape = '<geometry><box size="1 0.1 2"/></geometry>'
