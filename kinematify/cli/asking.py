@@ -50,4 +50,6 @@ def ask_pieces(given: Assembly, vlm: str, answer: Path | None, settings: Config)
         question = piece_question(given, settings)
         return PieceVote(voter=str(answer), question=question, answer=read_answer_file(question, answer))
     oracle = oracle_of(vlm, settings.vision)
-    return oracle and ask_about_pieces(oracle, piece_question(given, settings), lambda: known_questions(settings))
+    if oracle is None:
+        return None
+    return ask_about_pieces(oracle, piece_question(given, settings), lambda: known_questions(settings))

@@ -36,7 +36,7 @@ and the rest is pale; "pulled apart" moves pieces away from the middle. The list
 in percent of the longest side of the object. Pieces that are too small for a number follow the piece they lie \
 on.
 
-What is the object? Which parts of it move in the real object, relative to the part that stands still (the \
+What is the object? Which parts of it move in the real object, relative to the part that is still (the \
 body), or to another moving part? One part is all pieces that move together: a door with its frame, pane, \
 handle and hinge leaf; a drawer with its front, sides, bottom and handle. List everything that a hand can \
 open, fold, slide, turn, swing, press or roll, also when it is rarely done: flaps, both of two sliding panes, \
@@ -125,12 +125,10 @@ class PieceQuestion:
         notes, used, kept = list[str](), set[int](), list[tuple[dict[str, Any], set[int]]]()
         for item in stated:
             name, said = str(item.get("name") or "part"), item.get("pieces")
-            numbers = [
-                k for k in (said if isinstance(said, list) else ()) if type(k) is int and 1 <= k <= len(self.pieces)
-            ]
-            own = set(numbers) - used
-            if len(numbers) < len(said if isinstance(said, list) else ()):
-                wrong = [k for k in said if k not in numbers][:5]
+            said = said if isinstance(said, list) else []
+            numbers = [k for k in said if type(k) is int and 1 <= k <= len(self.pieces)]
+            own, wrong = set(numbers) - used, [k for k in said if k not in numbers][:5]
+            if wrong:
                 notes.append(f"{name} names {wrong}, but pieces have the numbers 1 to {len(self.pieces)}: omitted.")
             if used & set(numbers):
                 notes.append(f"{name} names pieces {sorted(used & set(numbers))} of another part: omitted.")

@@ -94,11 +94,11 @@ class _Sheet:
 
     def _cluster(self, tiny: Sequence[int]) -> list[int]:
         """Those near the piece that has most others near it."""
-        apart = np.linalg.norm(self.middles[tiny][:, None] - self.middles[tiny], axis=2) < _CLOSE * self.size
-        return [tiny[k] for k in np.flatnonzero(apart[apart.sum(axis=1).argmax()])]
+        apart: BoolArray = np.linalg.norm(self.middles[tiny][:, None] - self.middles[tiny], axis=2) < _CLOSE * self.size
+        return [tiny[k] for k in np.flatnonzero(apart[apart.sum(axis=1).argmax()]).tolist()]
 
     def _vertices(self, k: int, apart: float = 0.0) -> FloatArray:
-        return self.parts[k].vertices + apart * (self.middles[k] - 0.5 * (self.low + self.high))
+        return np.asarray(self.parts[k].vertices + apart * (self.middles[k] - 0.5 * (self.low + self.high)))
 
     def _scene(self, pieces: Sequence[int], apart: float = 0.0) -> RayScene:
         return RayScene([(self._vertices(k, apart), self.parts[k].faces) for k in pieces])
@@ -158,7 +158,7 @@ class _Sheet:
         pixels[border] = 0.1
         image = Image.fromarray((pixels * 255.0).astype(np.uint8))
         draw = ImageDraw.Draw(image)
-        taken = [(0, 0, _SIDE, 18), (0, _SIDE - 66, 66, _SIDE)]
+        taken: list[tuple[float, ...]] = [(0, 0, _SIDE, 18), (0, _SIDE - 66, 66, _SIDE)]
         _axes(draw, camera)
         side = " ".join(
             f"{'-+'[int(end > 0)]}{axis}"
@@ -254,14 +254,14 @@ def _numbered(
 
 def _box(at: Collection[float], number: int) -> FloatArray:
     half = 5.5 * len(str(number)) + 1.0
-    return np.array([*at, *at]) + np.array([-half, -9.0, half, 9.0])
+    return np.asarray(np.array([*at, *at]) + np.array([-half, -9.0, half, 9.0]))
 
 
 def _free(boxes: FloatArray, taken: Sequence[tuple[float, ...]]) -> BoolArray:
     """Boxes that lie in the panel and on no other."""
     other = np.array(taken)
     apart = (boxes[:, None, 2:] < other[:, :2]) | (boxes[:, None, :2] > other[:, 2:])
-    return np.asarray(apart.any(axis=2).all(axis=1) & (boxes > 0.0).all(axis=1) & (boxes < _SIDE).all(axis=1))
+    return np.asarray(np.all(np.any(apart, axis=2), axis=1) & (boxes > 0.0).all(axis=1) & (boxes < _SIDE).all(axis=1))
 
 
 def _write(
