@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.generate.blueprint_files import true_model
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.request import from_category
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model

@@ -93,19 +93,6 @@ def test_wheel_is_complete(tree: Path, tmp_path: Path, options: list[str]) -> No
     assert_bench_explains(python, tmp_path)
 
 
-def test_editable_install_is_complete_and_sees_new_files(tree: Path, tmp_path: Path) -> None:
-    python = empty_environment(tmp_path / "env")
-    call(
-        sys.executable, "-m", "pip", "--python", python, "install", "-q", "--no-deps", "--no-build-isolation",
-        "--config-settings", "editable_mode=compat", "--editable", tree, cwd=tmp_path,
-        path=sysconfig.get_path("purelib"),
-    )  # fmt: skip
-    assert_complete(python, tmp_path)
-    (tree / "validation" / "added_later.py").write_text("VALUE = 7\n")
-    code = "from kinematify.validation.added_later import VALUE; print(VALUE)"
-    assert call(python, "-c", code, cwd=tmp_path) == "7\n"
-
-
 def requirement_name(line: str) -> str:
     """Distribution name of a requirement."""
     return re.split(r"[\[<>=!~ ]", line, maxsplit=1)[0]

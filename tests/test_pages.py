@@ -162,12 +162,6 @@ def nights(objects: int, count: int) -> list[Night]:
     return found
 
 
-def test_pages_of_54_objects_and_ten_nights_stay_small() -> None:
-    history = nights(54, 10)
-    assert len(nights_page(history).encode()) < 5_000_000
-    assert len(night_page(history[-1]).encode()) < 5_000_000
-
-
 def test_pages_of_nights(tmp_path: Path) -> None:
     history = nights(12, 2)
     for night in history:

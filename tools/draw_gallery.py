@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from kinematify.config import load_config
 from kinematify.errors import OutputError
 from kinematify.generate.blueprint_files import true_model
-from kinematify.generate.described import SteppedDescription, known_families, library
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.described import known_families, library
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import COMMON, build
 from kinematify.generate.procedural.parameter import PARAMETER_HEADINGS, parameter_rows
 from kinematify.generate.sentence import from_text
@@ -151,7 +151,7 @@ Every object has these parameters, too:
 
 ## Objects that files describe
 
-Some of the objects whose parts, joints, parameters and words are in `kinematify/generate/objects/`.
+Some of the objects whose parts, joints, parameters and words are in `kinematify/generate/kinds/`.
 
 {_pictures({name: f"`{name}`: {', '.join(family.words[:2])}" for name, family in described.items()})}
 
@@ -177,11 +177,11 @@ def _row(name: str, family: Family) -> tuple[str, ...]:
 
 
 def _kinds() -> str:
-    """The title of every kind that a file describes, a line per file of several."""
+    """The title of every kind of the library, a line per module."""
     found: dict[str, list[str]] = {}
     for item in library().values():
         if not item.like:
-            found.setdefault(item.file if isinstance(item, SteppedDescription) else "others", []).append(item.title)
+            found.setdefault(item.module or "others", []).append(item.title)
     lines = [(name, ", ".join(sorted(titles))) for name, titles in sorted(found.items()) if name != "others"]
     return _table(("kinds", "objects"), [*lines, ("others", ", ".join(sorted(found["others"])))])
 

@@ -1,6 +1,7 @@
 """Size of the code by package: tokens of Python, classes and bytes of YAML; `--write` lowers the ceilings to it.
 
-Docstrings, comments and layout are free: they are to be good, not few.
+Docstrings, comments and layout are free: they are to be good, not few. Kinds of objects (`kinematify/generate/kinds`)
+are drawings: Python and YAML of them together are one number of bytes, outside of the product.
 """
 
 from __future__ import annotations
@@ -18,8 +19,9 @@ from tools.imports import ROOT
 
 CEILINGS = ROOT / "tests" / "ceilings.toml"
 TOPS = ("kinematify", "validation", "envs", "configs", "benchmarks", "tests", "tools")
-OUTSIDE = ("benchmarks", "tests", "tools")
-"""Packages that no user installs; all others are the product."""
+KINDS = ("kinematify", "generate", "kinds")
+OUTSIDE = ("benchmarks", "tests", "tools", "kinds")
+"""Packages that no user installs, and kinds; all others are the product."""
 LAYOUT = {
     tokenize.NEWLINE,
     tokenize.NL,
@@ -75,6 +77,8 @@ def packages(root: Path = ROOT) -> dict[str, Size]:
         if top == "kinematify" and (root / top / rest[0]).is_symlink():
             continue
         size = measured(path.name, path.read_text("utf-8"))
+        if (top, *rest)[:3] == KINDS:
+            name, size = "kinds", Size(yaml=path.stat().st_size)
         found.setdefault(name, Size()).add(size)
         if name not in OUTSIDE:
             found["product"].add(size)

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.described import SteppedDescription, library
+from kinematify.generate.described import library
 from kinematify.generate.library.builder import ModelingStyle
+from kinematify.generate.library.kind import drawn_object as drawn_by
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -18,8 +19,8 @@ if TYPE_CHECKING:
 
 _SEEDS = "library 4"
 """Namespace of the seeds: another one wherever the order of the draws changes."""
-DRAWN = tuple(sorted(name for name, item in library().items() if isinstance(item, SteppedDescription)))
-"""Names of the objects of the library that are written in steps."""
+DRAWN = tuple(sorted(name for name, item in library().items() if item.draw))
+"""Names of the objects of the library that a function draws."""
 
 
 def drawn_object(name: str, seed: int, style: ModelingStyle | None = None) -> Blueprint:
@@ -35,9 +36,7 @@ def drawn_object(name: str, seed: int, style: ModelingStyle | None = None) -> Bl
     """
     rng = np.random.default_rng([seed, zlib.crc32(f"{_SEEDS} {name}".encode())])
     someone = ModelingStyle.drawn(rng)
-    described = library()[name]
-    assert isinstance(described, SteppedDescription), name
-    built = described.draw(style or someone, rng)
+    built = drawn_by(library()[name], style or someone, rng)
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     mirrored = bool(rng.random() < 0.5)
     quarters = np.linalg.matrix_power(turn, int(rng.integers(4)))

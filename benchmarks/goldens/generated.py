@@ -10,7 +10,7 @@ from kinematify.errors import InputError
 from kinematify.generate.composer.body_sentence import sentence_of
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.described import known_families
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.sentence import from_text
 

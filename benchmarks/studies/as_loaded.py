@@ -37,7 +37,7 @@ from kinematify.evaluation.result_record import grouped, table
 from kinematify.generate.blueprint_files import true_model
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.described import known_families
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.sentence import from_text
 from kinematify.model.simulable import simulable_model

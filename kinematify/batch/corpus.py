@@ -20,7 +20,7 @@ from kinematify.errors import EnvironmentFault, OutputError
 from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.composer.body_sentence import sentence_of
 from kinematify.generate.composer.compose import compose, draw_composition
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 

@@ -39,7 +39,7 @@ def _view(words: list[str]) -> None:
     assert process.stdout is not None
     assert process.stdout.readline().startswith("http://localhost:")
     process.send_signal(signal.SIGINT)
-    process.communicate(timeout=60)
+    process.communicate(timeout=300)
     assert process.returncode == 0
 
 

@@ -77,21 +77,6 @@ def test_gradient_is_that_of_the_value_and_about_one(fields: tuple[NeuralSignedD
     assert torch.allclose(gradients.norm(dim=-1), torch.ones(3, dtype=torch.float64), atol=0.15)
 
 
-def test_field_grows_outside_of_the_box_that_it_was_trained_in(fields: tuple[NeuralSignedDistanceField, ...]) -> None:
-    rays = torch.tensor([[0.3, 0, 0], [1.0, 0, 0], [10.0, 0, 0]], dtype=torch.float64)
-    values = fields[0].value(rays)
-    assert torch.all(values[1:] > values[:-1])
-    assert float(values[2]) == pytest.approx(9.8, abs=0.05)
-
-
-def test_one_seed_gives_one_field(parts: tuple[Part, ...]) -> None:
-    quick = CONFIG.model_copy(update={"steps": 20})
-    points = torch.from_numpy(near_points(parts[0]))
-    first, second, other = (train_fields(parts[:1], quick, seed=seed)[0].value(points) for seed in (1, 1, 2))
-    assert torch.equal(first, second)
-    assert not torch.equal(first, other)
-
-
 def test_configuration_chooses_between_grid_and_network(parts: tuple[Part, ...]) -> None:
     sdf = load_config().sdf
     quick = sdf.model_copy(update={"kind": "neural", "neural": CONFIG.model_copy(update={"steps": 5})})

@@ -12,7 +12,7 @@ from PIL import Image
 
 from kinematify.errors import OutputError
 from kinematify.generate.described import known_families, library
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from tests.places import ROOT
 from tools.draw_gallery import OPENING, PICTURES, SENTENCES, SHOWN, write_gallery
 

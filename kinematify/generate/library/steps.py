@@ -29,20 +29,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.generate.library import mechanisms, panels
-from kinematify.generate.library.builder import ObjectBuilder, spread
-from kinematify.generate.library.expressions import compiled, evaluated, filled_in
+from kinematify.generate.library.builder import spread
+from kinematify.generate.library.expressions import evaluated, filled_in
 from kinematify.generate.procedural import solids
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from kinematify.robot.arrays import FloatArray
 
 Step = dict[str, Any]
 _MOST_ROUNDS = 500
 """Of one loop."""
 _TEXTS = ("parent", "other", "fork", "material", "color", "leader", "child", "names")
-_CORE = ("part", "cut", "bore", "hinge", "spin", "slide", "fix", "follow", "close")
 
 
 def public(module: Any) -> dict[str, Callable[..., Any]]:
@@ -58,68 +56,16 @@ MECHANISMS = {name: call for name, call in (public(mechanisms) | public(panels))
 """Verbs that draw a part together with its joint, keyed by name."""
 
 
-_DRAWING: Mapping[str, Callable[..., Any]] = {**MECHANISMS, **{name: getattr(ObjectBuilder, name) for name in _CORE}}
-"""Verbs of steps that draw shapes."""
-
-
-def vector(x: float, y: float, z: float) -> FloatArray:
-    """A vector, shape (3,), that formulas can add and scale."""
-    return np.array([x, y, z], dtype=np.float64)
-
-
 ARITHMETIC: Mapping[str, Any] = {
     **{name: getattr(math, name) for name in ("sqrt", "tan", "atan2", "asin", "acos", "radians")},
     **{name: getattr(np, name) for name in ("sin", "cos", "hypot", "sign", "cross", "linspace", "cumsum", "pi")},
     **{call.__name__: call for call in (abs, min, max, int, round, len, enumerate, sorted, zip, list, sum, bool)},
-    "X": solids.X, "Y": solids.Y, "Z": solids.Z, "vector": vector, "array": np.array, "norm": np.linalg.norm,
+    "X": solids.X, "Y": solids.Y, "Z": solids.Z, "vector": solids.vector, "array": np.array, "norm": np.linalg.norm,
     "arange": np.arange, "range": range, "spread": spread, "pairwise": pairwise,
 }  # fmt: skip
 """What formulas may name, besides parameters, what `let` computes, and shapes or solids."""
 SOLIDS = public(solids)
 """Solids that formulas may name."""
-
-
-def checked_steps(steps: Sequence[Step]) -> Sequence[Step]:
-    """Return steps as they are, once every verb is known and every formula is one.
-
-    Raises:
-        ValueError: One is not; the message quotes it.
-    """
-    for step in steps:
-        verb = next(iter(step), "")
-        if verb not in (*_CORE, *MECHANISMS, "let", "for", "when", "define", "call"):
-            raise ValueError(f"there is no step {verb!r}; there are {', '.join((*_CORE, *MECHANISMS))}")
-        for key in ("do", "else"):
-            checked_steps(step.get(key, ()))
-        for key, value in step.items():
-            if key not in (verb, "do", "else", *_TEXTS) or key in ("let", "when"):
-                _check(value)
-    return steps
-
-
-def _check(value: Any) -> None:
-    if isinstance(value, str):
-        compiled(value)
-    for item in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
-        _check(item)
-
-
-def run_steps(steps: Sequence[Step], builder: ObjectBuilder, values: Mapping[str, Any]) -> None:
-    """Carry out steps that draw shapes.
-
-    Args:
-        steps: In this order.
-        builder: Takes what they draw.
-        values: Of the parameters.
-
-    Raises:
-        ValueError: A step cannot be carried out; the message quotes it.
-    """
-    style = {f"style_{name}": value for name, value in vars(builder.style).items()}
-    draws = {name: getattr(builder, name) for name in ("draw", "count", "maybe", "pick", "gap")}
-    own = {"seam": lambda size, thick: panels.seam(builder, size, thick)}
-    given = {**SOLIDS, **builder.rounds, **style, **draws, **own, **values}
-    StepRunner(builder, _DRAWING).run(steps, {"__builtins__": {}, **ARITHMETIC, **given})
 
 
 class StepRunner:

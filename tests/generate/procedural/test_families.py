@@ -8,8 +8,8 @@ import trimesh
 from trimesh.collision import CollisionManager
 
 from kinematify.errors import InputError
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.blueprint import Blueprint
-from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.workshop import STYLES
 from kinematify.generate.sentence import from_text

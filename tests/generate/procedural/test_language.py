@@ -11,8 +11,8 @@ from benchmarks.expectations import SETS, broken_expectations, load_sentences
 from benchmarks.studies.sentences import RIGHT, WRONG, outcome
 from kinematify.errors import InputError
 from kinematify.generate.described import known_families
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.clearance import depth_of, solid_of
-from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.parse import head_of
 from kinematify.generate.procedural.language.words import tokens_of
