@@ -20,8 +20,7 @@ def asking_options(command: Callable[..., Any]) -> Callable[..., Any]:
     command = click.option(
         "--answer",
         type=click.Path(path_type=Path),
-        help="Which pieces are one moving part, as a person or a chat answered `kinematify question`, or as "
-        "`kinematify view MESH` wrote it.",
+        help="Which pieces are one moving part, as a person or a chat answered `kinematify question`.",
     )(command)
     return click.option(
         "--vlm",

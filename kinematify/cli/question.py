@@ -30,7 +30,7 @@ def command(*, mesh: Path, out: Path, up: str, scale: float | None, pieces: str)
 
     Give picture and text to any chat that reads pictures, or look yourself, and save the answer as OUT/answer.json;
     text around the JSON does no harm. `kinematify infer MESH --answer OUT/answer.json` with the same options makes the
-    model. `kinematify view MESH` asks the same by clicks, and `infer --vlm URL` asks a model by itself.
+    model; `infer MESH --vlm URL` asks a model by itself.
     """
     from kinematify.assembly.load import load_assembly
     from kinematify.config import load_config
