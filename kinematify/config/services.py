@@ -46,12 +46,12 @@ class RodinConfig(ServiceConfig):
 
 
 class LanguageModelConfig(ServiceConfig):
-    """A language model that writes blueprints."""
+    """A language model that fills requests and draws blueprints."""
 
     answer_seconds: float = 3600.0  # a long answer of a model of 7e9 parameters on two cores
     model: str = "default"  # local servers serve one model and take any name
     """Name of the model at the service; the variable KINEMATIFY_LLM_MODEL wins."""
-    rounds: int = 4  # what is not fixed in three answers is not fixed
+    rounds: int = 3  # what is not fixed in three answers is not fixed
     """Answers at most: the first one, and those that fix it."""
     answer_tokens: int = 16000  # a blueprint of 100 parts
     """Of one answer at most."""
