@@ -14,7 +14,7 @@ from lxml import etree
 
 from kinematify.cli.app import run as run_command
 from kinematify.config.nightly_settings import NightlySettings, load_nightly
-from kinematify.evaluation.nightly.comparison import Class, compare
+from kinematify.evaluation.nightly.comparison import ChangeKind, compare
 from kinematify.evaluation.nightly.run_night import NightRequest, run_night, write_smoke_objects
 from kinematify.evaluation.nightly.runs import Problem, Run
 from kinematify.evaluation.nightly.store import accept, load_nights
@@ -98,12 +98,12 @@ def test_the_latest_run_of_the_same_scenario_is_compared_with() -> None:
     """A night of another configuration in between does not hide a regression."""
     other, old = replace(ACCURACY, scenario="s2"), ACCURACY
     found = compare([replace(ACCURACY, problems=(AXIS,))], {ACCURACY.place: [other, old]}, SETTINGS, same_machine=True)
-    assert [change.kind for change in found] == [Class.NEW]
+    assert [change.kind for change in found] == [ChangeKind.NEW]
 
 
 def test_a_run_that_is_missing_is_reported() -> None:
     found = compare([], {ACCURACY.place: [ACCURACY]}, SETTINGS, same_machine=True)
-    assert [(change.kind, change.gate) for change in found] == [(Class.GONE, False)]
+    assert [(change.kind, change.gate) for change in found] == [(ChangeKind.GONE, False)]
 
 
 # Nights over small objects.
@@ -217,7 +217,7 @@ def test_an_arm_opens_what_is_named_and_the_share_is_kept(tmp_path: Path) -> Non
     assert set(run.families) == {"KV7"}
     worse = replace(run, values={**run.values, "opened": 0.3})
     found = compare([worse], {run.place: [run]}, SETTINGS, same_machine=True)
-    assert [(change.kind, change.subject, change.gate) for change in found] == [(Class.WORSE, "opened", True)]
+    assert [(change.kind, change.subject, change.gate) for change in found] == [(ChangeKind.WORSE, "opened", True)]
 
 
 # Killed and resumed.
