@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.asking import Asking, asking_options, with_answers
+from kinematify.cli.asking import ask_pieces, asking_options
 from kinematify.cli.inferred import (
     describe,
     describe_lengths,
@@ -22,9 +22,9 @@ from kinematify.cli.inferred import (
     validation_answer,
     validation_status,
 )
-from kinematify.cli.options import collision_option, examples, pieces_option, scale_option, with_collision
+from kinematify.cli.options import collision_option, examples, pieces_option, scale_option, up_option, with_collision
 from kinematify.cli.progress import progress_reporter
-from kinematify.errors import EnvironmentFault, InputError
+from kinematify.errors import EnvironmentFault, ExitStatus, InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -55,6 +55,7 @@ _LONGEST = 86400.0
         "kinematify infer examples/cabinet -o out/cabinet --hint knob=prismatic --hint door_left:axis=z",
         "kinematify infer scan.ply --labels labels.npy -o out/scan --scale 0.001",
         "kinematify infer whole.glb --pieces group -o out/whole",
+        "kinematify infer whole.glb --answer Q/answer.json -o out/whole",
         "kinematify infer whole.glb --pieces group --groups out/whole/groups.json -o out/corrected",
         "kinematify infer parts.zip -o out/parts --config paper --seed 7",
         "kinematify infer parts/ -o out/parts --vlm http://localhost:11434/v1",
@@ -63,13 +64,7 @@ _LONGEST = 86400.0
 )
 @click.argument("assembly", type=click.Path(path_type=Path))
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="Folder to make for the model.")
-@click.option(
-    "--up",
-    type=click.Choice(["auto", "z", "y", "x", "-z", "-y", "-x"]),
-    default="auto",
-    show_default=True,
-    help="Axis of the input that points up (-z: it lies upside down); auto: y for glTF, what COLLADA says, else z.",
-)
+@up_option
 @scale_option
 @click.option(
     "--labels",
@@ -134,8 +129,7 @@ def command(
     config: str,
     seed: int | None,
     vlm: str,
-    vlm_all: bool,
-    vlm_first: bool,
+    answer: Path | None,
     collision: str | None,
     force: bool,
     no_preview: bool,
@@ -187,16 +181,22 @@ def command(
             assembly, config=settings.assembly, up=up, scale=scale, labels=labels, pieces=pieces, number=number
         )
         click.echo(describe_lengths(given), err=True)
-        parts = grouped_parts(given, groups, settings, progress)
+        eyes = None
+        if answer is not None or not (given.segmented or groups):
+            progress("asking about the pieces" if vlm != "off" else "reading the parts", 0.0)
+            eyes = ask_pieces(given, vlm, answer, settings)
+        grouped = eyes is None or groups is not None or given.segmented
+        parts = grouped_parts(given, groups, settings, progress) if eyes is None or grouped else eyes.grouping(settings)
         settings = _weighing(settings, density, masses, parts)
         stated = _parsed(hints, _names(parts), base)
+        base = base or (eyes.base if eyes else None)
         inference = infer(
             parts, config=settings, base=base, progress=lambda stage, done: progress(stage, _INFERRED * min(done, 0.99))
         )
-        asking = Asking(vlm=vlm, everything=vlm_all, types_first=vlm_first)
-        inference, heard, status = with_answers(
-            inference, asking, {hint.part for hint in stated}, lambda stage: progress(stage, _INFERRED)
-        )
+        if eyes is None and any(joint.confidence < settings.vision.ask_below for joint in inference.joints):
+            progress("asking about the parts" if vlm != "off" else "choosing joints", _INFERRED)
+            eyes = ask_pieces(inference.assembly, vlm, None, settings)
+        inference = eyes.applied(inference) if eyes else inference
         inference = _with_hints(inference, stated)
         progress("moving every joint", _INFERRED)
         inference = repaired(inference, base=base)
@@ -205,9 +205,9 @@ def command(
     if json_to:
         write_answer({**_as_answer(inference, out), **validation_answer(report)}, json_to)
     if json_to != "-":
-        blocks = (heard, describe(inference, out), describe_validation(report, out))
+        blocks = (eyes.described() if eyes else "", describe(inference, out), describe_validation(report, out))
         click.echo("\n\n".join(block for block in blocks if block))
-    return status or validation_status(report)
+    return int(ExitStatus.FAULT) if eyes and eyes.answer.fault else validation_status(report)
 
 
 def _names(parts: Assembly | Grouping) -> Sequence[str]:

@@ -13,7 +13,7 @@ from kinematify.envs import OPEN_PART, TASK_IDS
 from kinematify.envs.expert import HandExpert
 from kinematify.envs.tasks import TASKS, TEST, TRAIN
 from kinematify.errors import InputError
-from kinematify.generate.request import from_category
+from kinematify.generate.delivery import build_kind
 
 
 def done_by_hand(env: gymnasium.Env, *, seed: int) -> dict[str, object]:
@@ -36,7 +36,7 @@ def test_there_are_twenty_tasks_and_their_splits_are_apart() -> None:
 def test_every_object_of_a_task_has_its_joint(name: str) -> None:
     task = TASKS[name]
     for seed in (*TRAIN.objects, *TEST.objects):
-        built = from_category(task.family, {}).build(seed=seed)
+        built = build_kind(task.family, seed=seed)
         assert task.joint.removesuffix("_joint") in {joint.child for joint in built.joints}, seed
 
 

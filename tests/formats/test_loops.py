@@ -18,16 +18,16 @@ from kinematify.errors import DescriptionError, InputError
 from kinematify.formats.export_model import export
 from kinematify.formats.losses import losses_markdown
 from kinematify.generate.blueprint_files import write_blueprint
-from kinematify.generate.sentence import from_text
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.validation.run import validate
+from tests.toolbox import toolbox as drawn_toolbox
 
 
 @pytest.fixture(scope="module")
 def toolbox(tmp_path_factory):
     folder = tmp_path_factory.mktemp("toolbox")
-    write_blueprint(from_text("a toolbox with two cantilever trays").build(), folder, load_config())
+    write_blueprint(drawn_toolbox(), folder, load_config())
     return folder / "model.urdf"
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from kinematify import infer
+from kinematify.generate.delivery import build_kind
 from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box, cylinder
-from kinematify.generate.sentence import from_text
 from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import (
     infer_joints,
@@ -19,7 +19,7 @@ from tests.known import known_object, sliding, turning
 @pytest.mark.parametrize("seed", range(2))
 def test_a_drawer_behind_the_whole_front_of_a_cabinet_slides(seed: int) -> None:
     """Half as deep as its front is high: no door, for it is inside its body."""
-    inference = infer(from_text("a cabinet with one drawer").build(seed=seed).assembly)
+    inference = infer(build_kind("cabinet", {"doors": 0, "drawers": 1}, seed=seed).assembly)
     assert [joint.kind for joint in inference.joints] == [JointType.PRISMATIC]
 
 

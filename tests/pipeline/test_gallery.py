@@ -19,7 +19,7 @@ from tools.draw_gallery import OPENING, PICTURES, SENTENCES, SHOWN, write_galler
 DOCS = ROOT / "docs"
 LARGEST, LARGEST_IN_ALL = 60_000, 3_000_000  # bytes
 MOST_PICTURES, MOST_LINES = 100, 350
-TOLD = ("a cart with two wheels and a drawer",)
+TOLD = ("a cabinet with two doors and a drawer",)
 
 
 def pictures_of(page: str) -> dict[str, str]:

@@ -95,7 +95,7 @@ def test_the_name_under_the_pointer_is_shown_and_a_merge_keeps_pose_and_folder(t
         page.get_by_text("Not written yet").wait_for(timeout=PATIENCE)
         press(page, "Keep this")
         page.get_by_text("The same from the command line").wait_for(timeout=PATIENCE)
-        page.get_by_text("Click a part to name or split it").wait_for(timeout=PATIENCE)
+        page.get_by_text("Click a part to name it").wait_for(timeout=PATIENCE)
         assert window.viewer.values == pytest.approx({joint: moved[joint] for joint in window.viewer.values})
         assert not mistakes(reported)
 
