@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import warnings
-
 import gymnasium
 import numpy as np
 import pytest
-from gymnasium.utils.env_checker import check_env
 
 from kinematify.envs import OPEN_PART, TASK_IDS
 from kinematify.envs.expert import HandExpert
@@ -67,20 +64,6 @@ def test_an_object_seed_draws_another_object_and_the_same_one_again() -> None:
     assert sizes[0] == sizes[2] != sizes[1]
     with pytest.raises(InputError, match="no object procedural:fridge:last"):
         gymnasium.make(OPEN_PART, model="procedural:fridge:last")
-
-
-@pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
-def test_pixels_are_what_they_are_said_to_be(engine: str) -> None:
-    env = gymnasium.make(OPEN_PART, engine=engine, observation="pixels+state", pixel_size=(48, 64), randomize=True)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        env.reset(seed=0)
-        check_env(env.unwrapped, skip_render_check=True)
-    first, again = (env.reset(seed=3)[0] for _ in range(2))
-    assert env.observation_space.contains(first)
-    assert first["pixels"].shape == (48, 64, 3)
-    assert np.array_equal(first["pixels"], again["pixels"])
-    env.close()
 
 
 def test_pixels_show_the_part_where_it_is_the_same_in_both_engines() -> None:

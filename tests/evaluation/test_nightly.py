@@ -17,7 +17,7 @@ from kinematify.config.nightly_settings import NightlySettings, load_nightly
 from kinematify.evaluation.nightly.comparison import ChangeKind, compare
 from kinematify.evaluation.nightly.run_night import NightRequest, run_night, write_smoke_objects
 from kinematify.evaluation.nightly.runs import Problem, Run
-from kinematify.evaluation.nightly.store import accept, load_nights
+from kinematify.evaluation.nightly.store import accept
 from tests.manipulation.furniture import write_drawer_cabinet
 from tests.places import ROOT
 from tests.secret_cabinets import write_object
@@ -224,20 +224,6 @@ def test_an_arm_opens_what_is_named_and_the_share_is_kept(tmp_path: Path) -> Non
 
 
 # Bad folders.
-
-
-def test_a_half_written_night_is_named_and_passed_over(boxes: Path, tmp_path: Path) -> None:
-    place = night(boxes, tmp_path).place
-    lines = (place / "runs.jsonl").read_bytes()
-    (place / "runs.jsonl").write_bytes(lines[: len(lines) // 2])
-    (tmp_path / "2020-01-01-abc").mkdir()
-    nights, warnings = load_nights(tmp_path)
-    assert nights == ()
-    assert len(warnings) == 2
-    second = night(boxes, tmp_path)
-    assert second.place != place
-    assert (place / "runs.jsonl").read_bytes() == lines[: len(lines) // 2]
-    assert kinds(second) == {"new series": 2}
 
 
 def test_the_smoke_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
