@@ -191,7 +191,12 @@ def standing_desk(b: ObjectBuilder, width: float, depth: float, height: float) -
 
 @kind(
     "piano stool",
-    words="swivel stool, bar stool, screw stool, music stool",
+    words=(
+        "swivel stool, bar stool, screw stool, music stool, stool, barstool, swivel bar stool, counter stool, "
+        "pub stool, work stool, drafting stool, lab stool, vanity stool, saddle stool, kitchen stool, drum "
+        "stool, drum throne, rotating stool, bar chair, artist stool, milking stool, massage stool, doctor "
+        "stool, dentist stool, shop stool, revolving stool, spinning stool, cobbler stool"
+    ),
     radius=length(0.15, 0.22),
     height=length(0.4, 0.6),
 )

@@ -16,7 +16,13 @@ if TYPE_CHECKING:
 
 @kind(
     "pot with lid",
-    words="pot, cooking pot, saucepan, stockpot, stew pot, casserole, dutch oven, sauce pan",
+    words=(
+        "pot, cooking pot, saucepan, stockpot, stew pot, casserole, dutch oven, sauce pan, stock pot, soup "
+        "pot, pasta pot, cauldron, fondue pot, bean pot, sauce pot, honey jar, ginger jar, tea caddy, tea "
+        "tin, biscuit tin, cookie tin, biscuit barrel, coffee can, coffee canister, diaper pail, ash bucket, "
+        "powder jar, sugar pot, soup tureen, flour bin, biscuit jar, pickle jar, soup kettle, trash pail, "
+        "steamer pot, rice pot"
+    ),
     radius=length(0.08, 0.18),
     height=length(0.06, 0.2),
 )

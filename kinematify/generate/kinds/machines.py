@@ -22,7 +22,15 @@ if TYPE_CHECKING:
 
 @kind(
     "tool cart",
-    words="tool trolley, tool chest, roller cabinet, workshop trolley, tool cabinet, mechanic cart",
+    words=(
+        "tool trolley, tool chest, roller cabinet, workshop trolley, tool cabinet, mechanic cart, cart, "
+        "trolley, utility cart, medical cart, hospital cart, crash cart, cleaning cart, workshop cart, tool "
+        "trolley cart, drinks trolley, dessert cart, food cart, hot dog cart, ice cream cart, mail cart, book "
+        "cart, library cart, av cart, tv cart, projector cart, laptop cart, computer cart, instrument "
+        "trolley, surgical trolley, surgical cart, medicine trolley, medication cart, janitor cart, "
+        "housekeeping cart, linen cart, hotel cart, airline trolley, rolling cart, roll cart, craft cart, art "
+        "cart, equipment cart, dish cart, drinks cart, service cart, service trolley, tool wagon"
+    ),
     width=length(0.55, 0.8),
     depth=length(0.4, 0.5),
     height=length(0.75, 1.0),

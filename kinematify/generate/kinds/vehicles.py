@@ -132,7 +132,11 @@ def pickup_truck(b: ObjectBuilder, length: float, width: float, radius: float) -
 
 @kind(
     "van",
-    words="delivery van, minivan, camper van, ambulance, transporter van, minibus, campervan",
+    words=(
+        "delivery van, minivan, camper van, ambulance, transporter van, minibus, campervan, cargo van, "
+        "transporter, camper, motorhome, mail van, post van, police van, food truck, panel van, rv, bakery "
+        "van, news van"
+    ),
     length=length(4.5, 6.0),
     width=length(1.8, 2.1),
     height=length(1.6, 2.2),
@@ -175,7 +179,10 @@ def van(b: ObjectBuilder, length: float, width: float, height: float) -> None:
 
 @kind(
     "bus",
-    words=("tram, city bus, coach, streetcar, trolley bus, school bus, subway car, train car, railway carriage"),
+    words=(
+        "tram, city bus, coach, streetcar, trolley bus, school bus, subway car, train car, railway carriage, "
+        "tour bus, trolleybus, shuttle bus, airport shuttle, tram car, monorail"
+    ),
     length=length(6.0, 12.0),
     swings=yes(0.5),
 )
