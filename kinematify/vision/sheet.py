@@ -32,7 +32,6 @@ _TINY, _CLOSE = 0.08, 0.16  # of the object's longest side: tiny pieces, and wha
 _ROOM = 0.04  # around what is seen close
 _APART = 0.8  # pulled apart, pieces are so much farther from the middle
 _MOST_APART = 25
-_BYTES = 120_000
 _FONT = ImageFont.load_default(15)
 
 
