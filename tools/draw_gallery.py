@@ -181,8 +181,7 @@ def _kinds() -> str:
     """The title of every kind of the library, a line per module."""
     found: dict[str, list[str]] = {}
     for item in library().values():
-        if not item.like:
-            found.setdefault(item.module or "others", []).append(item.title)
+        found.setdefault(item.module or "others", []).append(item.title)
     lines = [(name, ", ".join(sorted(titles))) for name, titles in sorted(found.items()) if name != "others"]
     return _table(("kinds", "objects"), [*lines, ("others", ", ".join(sorted(found["others"])))])
 

@@ -304,10 +304,10 @@ class AsLoadedContext:
         from kinematify.geometry.sweep import Sweeper  # noqa: PLC0415
         from kinematify.validation.model_cache import model_of  # noqa: PLC0415
 
-        model, settings = model_of(self.request), self.request.settings.geometry
+        model = model_of(self.request)
         if not simplified(model) and len(self.request.free_travel) == len(self.mechanism.travels):
             return None
-        return Sweeper.of(read_scene(model, settings, visible_shapes, most_faces=settings.most_faces))
+        return Sweeper.of(read_scene(model, self.request.settings.geometry, visible_shapes, thin=True))
 
     def _seen_end(self, travel: Travel, end: float) -> float:
         """Value up to which what is visible does not block the way to an end [rad or m]."""

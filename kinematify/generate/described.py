@@ -22,7 +22,7 @@ from kinematify.generate.procedural.blueprint_file import (
     Vector,
 )
 from kinematify.generate.procedural.family import Family, Values
-from kinematify.generate.procedural.parameter import Parameter, number, parse_table
+from kinematify.generate.procedural.parameter import Parameter, details_of, number, parse_table
 from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.transforms import rotation_about
 
@@ -63,8 +63,8 @@ class CopyDescription(BaseModel):
         return found
 
 
-class ObjectNames(BaseModel):
-    """Names of an object in a request."""
+class CountParameters(BaseModel):
+    """Names and counts of a blueprint in a request."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -80,20 +80,6 @@ class ObjectNames(BaseModel):
     """Name of a part without its number -> words for how it moves that hold already: ``drop-down``, ``folds``."""
     holds_already: tuple[str, ...] = ()
     """Other words that are true of it as it is: ``adjustable height``, ``two-door``."""
-    like: str = ""
-    """The kind that it is another way to build; empty where it is a kind of its own."""
-
-    @property
-    def own(self) -> tuple[Parameter, ...]:
-        """Counts of what belongs to its parts."""
-        return tuple(
-            number(f"{word}s", count, (count, count), "Belongs to it.", words=word)
-            for word, count in self.details.items()
-        )
-
-
-class CountParameters(ObjectNames):
-    """Counts of a blueprint in a request."""
 
     category: Name
     counts: dict[str, dict[str, Any]] = Field({})
@@ -105,12 +91,11 @@ class CountParameters(ObjectNames):
             name=self.category,
             title=self.title,
             words=self.words,
-            parameters=self.own + tuple(_repeated(word, said) for word, said in self.counts.items()),
+            parameters=details_of(self.details) + tuple(_repeated(word, said) for word, said in self.counts.items()),
             material=material,
             part_words=self.part_words,
             motions=self.motions,
             holds_already=self.holds_already,
-            like=self.like,
             build=build,
         )
 

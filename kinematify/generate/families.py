@@ -29,7 +29,7 @@ def all_kinds() -> Mapping[str, Family]:
     """Every kind in Python, keyed by name: all modules of `kinematify.generate.kinds` are imported."""
     for file in sorted(Path(__file__).with_name("kinds").glob("[a-z]*.py")):
         import_module(f"kinematify.generate.kinds.{file.stem}")
-    return KINDS
+    return {name: item for name, item in KINDS.items() if not item.like}
 
 
 FAMILIES: Mapping[str, Family] = {name: all_kinds()[name] for name in _ORDER}

@@ -221,7 +221,7 @@ def read_scene(
     *,
     by_link: bool = False,
     solids: dict[bytes, Solid] | None = None,
-    most_faces: int | None = None,
+    thin: bool = False,
 ) -> Scene:
     """Gather the geometry of the bodies; nothing is measured yet.
 
@@ -232,7 +232,7 @@ def read_scene(
         by_link: Links that fixed joints hold together are bodies of their own, in the frame of the link nearest the
             root.
         solids: `Scene.solids` of another scene with the same settings; added to.
-        most_faces: Triangles of a mesh, larger ones are simplified when they are first measured; None: none is.
+        thin: Simplify meshes with more than `most_faces` triangles when they are first measured.
     """
     solids = {} if solids is None else solids
     parts = [
@@ -254,7 +254,7 @@ def read_scene(
                 name=next(name for name in links if model.link_by_name[name].has_geometry),
                 links=tuple(links),
                 group=index,
-                solid=_solid(shapes, unit, settings, solids, most_faces),
+                solid=_solid(shapes, unit, settings, solids, thin=thin),
                 shapes=tuple(referenced(vertices, faces) for vertices, faces in shapes if len(faces)),
             )
             for index, links, shapes in solid
@@ -295,7 +295,8 @@ def _solid(
     unit: float,
     settings: GeometrySettings,
     known: dict[bytes, Solid],
-    most_faces: int | None,
+    *,
+    thin: bool,
 ) -> Solid:
     """The solid of some shapes, the known one where one was made of the same numbers."""
     vertices, faces = _together(shapes)
@@ -304,14 +305,16 @@ def _solid(
     made_of.update(faces.tobytes())
     key = made_of.digest()
     if key not in known:
-        large = most_faces is not None and any(len(faces) > most_faces for _, faces in shapes)
+        large = thin and any(len(faces) > settings.most_faces for _, faces in shapes)
         known[key] = Solid(
             vertices,
             faces,
             unit=unit,
             hole=settings.hole,
             points=settings.points,
-            measured=(lambda: _together([_thinned(*shape, most_faces or 0) for shape in shapes])) if large else None,
+            measured=(lambda: _together([_thinned(*shape, settings.most_faces) for shape in shapes]))
+            if large
+            else None,
         )
     return known[key]
 

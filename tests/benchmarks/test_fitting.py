@@ -11,8 +11,8 @@ import pytest
 from benchmarks.fit.categories import ALIKE
 from benchmarks.fit.corpora import gather_examples, generated_sources
 from benchmarks.fit.cross_validation import cause_of
+from benchmarks.fit.drawn import corpus_kinds
 from benchmarks.fit.run import run_fit
-from kinematify.generate.described import known_families
 from kinematify.joints.choice.scorer import WEIGHTS
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def test_what_is_right_has_no_cause_and_what_is_wrong_one(tmp_path: Path) -> Non
 def test_categories_name_recipes_and_families_once_and_no_category_is_of_another() -> None:
     named = [name for names in ALIKE.values() for name in names]
     assert len(named) == len(set(named))
-    assert set(named) <= set(known_families())
+    assert set(named) <= set(corpus_kinds())
     assert not set(named) & set(ALIKE)
 
 

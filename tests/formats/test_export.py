@@ -343,6 +343,8 @@ def test_formats_and_files_that_cannot_be_are_refused(
         export(urdf, "step", tmp_path / "model.step")
     with pytest.raises(OutputError, match="usda"):
         export(urdf, "usd", tmp_path / "model.txt")
+    with pytest.raises(OutputError, match=r"model\.xml"):
+        export(urdf, "mjcf", tmp_path / "model.mjcf")
     with pytest.raises(OutputError, match="folder that exists"):
         export(urdf, "mjcf", tmp_path / "nowhere" / "model.xml")
     assert run(["export", str(urdf), "--to", "glb", "-o", str(tmp_path / "m.glb"), "--free"]) == 2

@@ -70,10 +70,7 @@ class GeometryContext:
         """The same of the visual geometry; None where the collision geometry is a copy of it."""
         if not self._compare_visible or not simplified(self.scene.model):
             return None
-        settings = self.scene.settings
-        scene = read_scene(
-            self.scene.model, settings, visible_shapes, solids=self.scene.solids, most_faces=settings.most_faces
-        )
+        scene = read_scene(self.scene.model, self.scene.settings, visible_shapes, solids=self.scene.solids, thin=True)
         same = [body.group for body in scene.bodies] == [body.group for body in self.scene.bodies]
         return GeometryContext(scene) if same else None
 
@@ -190,10 +187,7 @@ class GeometryContext:
     @cached_property
     def _links_apart(self) -> Scene:
         """Every link in the frame of its body, for the names of places."""
-        settings = self.scene.settings
-        return read_scene(
-            self.scene.model, settings, by_link=True, solids=self.scene.solids, most_faces=settings.most_faces
-        )
+        return read_scene(self.scene.model, self.scene.settings, by_link=True, solids=self.scene.solids, thin=True)
 
     @cached_property
     def _overlap_of_links(self) -> OverlapQueries:

@@ -30,8 +30,7 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     every = (*AT_REST, *IN_MOTION, *TOGETHER)
     if not recorder.is_selected(*(entry.id for entry in every)):
         return
-    settings = request.settings.geometry
-    scene = read_scene(model_of(request), settings, colliding_shapes, most_faces=settings.most_faces)
+    scene = read_scene(model_of(request), request.settings.geometry, colliding_shapes, thin=True)
     if len(scene.bodies) < 2:
         recorder.skip(every, "fewer than two bodies have geometry")
         return

@@ -470,7 +470,14 @@ def switch_panel(
     "button panel",
     words=(
         "keypad, control panel, push button panel, number pad, elevator panel, key pad, remote control, "
-        "calculator, numeric pad, lift panel, elevator button panel, call panel"
+        "calculator, numeric pad, lift panel, elevator button panel, call panel, console, housing, machine "
+        "housing, lab box, instrument box, junction box, control unit, thermostat, alarm panel, light switch "
+        "panel, timer, remote, tv remote, garage door opener, walkie talkie, pager, pocket calculator, mixer "
+        "console, dj controller, drum machine, effects pedal, stopwatch, mp3 player, music player, walkman, "
+        "handheld console, handheld game console, game boy, numpad, numeric keypad, key fob, midi controller, "
+        "launchpad, digital piano, electric piano, toy piano, card reader, card terminal, pos terminal, "
+        "payment terminal, baby monitor, gps device, pocket radio, arcade stick, fight stick, tv controller, "
+        "universal remote, graphing calculator, stage piano"
     ),
     material="plastic",
     width=length(0.06, 0.6, default=0.12, usual=(0.08, 0.25), help="Outer width."),

@@ -30,7 +30,9 @@ if TYPE_CHECKING:
     "oven",
     words=(
         "stove, cooker, range, kitchen stove, range cooker, gas stove, gas oven, electric stove, cooking "
-        "range, gas cooker"
+        "range, gas cooker, kitchen range, gas range, pizza oven, baking oven, electric oven, bread oven, "
+        "stone oven, wood fired oven, wood burning stove, electric cooker, gas stove oven, induction stove, "
+        "masonry heater"
     ),
     title="oven or stove",
     material="metal",
@@ -302,7 +304,7 @@ def dishwasher(
 
 @kind(
     "fridge",
-    words="refrigerator, freezer, fridge freezer, icebox, cooler, minibar, mini fridge, kitchen fridge",
+    words=("refrigerator, freezer, fridge freezer, icebox, cooler, minibar, mini fridge, kitchen fridge, wine cooler"),
     material="metal",
     width=length(0.4, 1.5, default=0.6, usual=(0.55, 0.9), help="Outer width."),
     height=length(0.5, 2.4, default=1.7, usual=(1.3, 2.0), help="Outer height."),
@@ -523,7 +525,11 @@ def washing_machine(
 
 @kind(
     "safe",
-    words=("strongbox, strong box, vault, safe box, money safe, bank safe, office safe, home safe, hotel room safe"),
+    words=(
+        "strongbox, strong box, vault, safe box, money safe, bank safe, office safe, home safe, hotel room "
+        "safe, gun safe, wall safe, hotel safe"
+    ),
+    usual={"gun safe, wall safe, hotel safe": {"width": 0.4, "depth": 0.4, "height": 0.5}},
     material="steel",
     width=length(0.2, 1.2, default=0.35, usual=(0.28, 0.6), help="Outer width."),
     height=length(0.2, 1.8, default=0.4, usual=(0.28, 0.9), help="Outer height."),

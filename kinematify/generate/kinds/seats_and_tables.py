@@ -33,7 +33,21 @@ if TYPE_CHECKING:
         "drawer unit, commode, locker, bookcase, shelf, pantry, credenza, kitchen unit, base unit, wall unit, "
         "tv stand, tv unit, tallboy, storage unit, filing cabinet, file cabinet, bureau, chiffonier, vitrine, "
         "armoire, drawer cabinet, tool drawer cabinet, shoe cupboard, toy shelf, book cabinet, apothecary "
-        "chest, apothecary cabinet, card catalogue, card catalog, kitchen island"
+        "chest, apothecary cabinet, card catalogue, card catalog, kitchen island, aquarium stand, fish tank "
+        "stand, media console, media cabinet, media unit, hi-fi stand, bar cabinet, liquor cabinet, wine "
+        "cabinet, curio cabinet, china cabinet, hutch, gun cabinet, linen cabinet, key cabinet, wall cabinet, "
+        "spice cabinet, vanity unit, washstand, sink unit, changing table, baby changing table, night table, "
+        "end table, night stand, printer stand, plant stand, garderobe, linen closet, tv bench, tv lowboard, "
+        "lowboard, entertainment center, entertainment unit, media bench, tallboy dresser, lingerie chest, "
+        "map cabinet, buffet, storage cabinet, utility cabinet, base cabinet, sink cabinet, under sink "
+        "cabinet, vanity cabinet, bathroom vanity, chemical cabinet, lab cabinet, record cabinet, toy "
+        "cabinet, craft cabinet, larder, pantry cupboard, broom closet, broom cupboard, trophy case, trophy "
+        "cabinet, showcase, display case, gym locker, school locker, tool locker, parcel locker, pie safe, "
+        "desk organiser, organizer, organiser, drawer organizer, jewelry cabinet, jewellery cabinet, advent "
+        "calendar, tea cabinet, sewing cabinet, puzzle box, seed box, switch cabinet, electrical cabinet, "
+        "lateral file, lateral filing cabinet, file drawer cabinet, rolling tool chest, rolling cabinet, tool "
+        "storage cabinet, charging station, charging cabinet, switchgear, plc cabinet, evidence locker, ice "
+        "box, meat locker, proofing cabinet"
     ),
     title="cabinet or chest",
     material="wood",
@@ -48,6 +62,102 @@ if TYPE_CHECKING:
         "locker": {"width": 0.35, "height": 1.8, "doors": 1, "drawers": 0},
         "bookcase": {"width": 0.8, "height": 1.8, "depth": 0.35, "doors": 2, "drawers": 0, "shelves": 2},
         "tv stand, tv unit": {"width": 1.6, "height": 0.5, "depth": 0.45, "doors": 3, "drawers": 0},
+        "aquarium stand, fish tank stand, media console, media cabinet, media unit, hi-fi stand": {
+            "width": 0.9,
+            "height": 0.8,
+            "depth": 0.45,
+            "doors": 2,
+            "drawers": 0,
+        },
+        (
+            "bar cabinet, liquor cabinet, wine cabinet, curio cabinet, china cabinet, hutch, gun cabinet, linen cabinet"
+        ): {"width": 0.6, "height": 1.2, "depth": 0.4, "doors": 2, "drawers": 0},
+        "key cabinet, wall cabinet, spice cabinet": {
+            "width": 0.5,
+            "height": 0.6,
+            "depth": 0.2,
+            "doors": 1,
+            "drawers": 0,
+        },
+        "vanity unit, washstand, sink unit, changing table, baby changing table": {
+            "width": 0.7,
+            "height": 0.85,
+            "depth": 0.5,
+            "doors": 0,
+            "drawers": 2,
+        },
+        "night table, end table, night stand, printer stand, plant stand": {
+            "width": 0.5,
+            "height": 0.55,
+            "depth": 0.4,
+            "doors": 0,
+            "drawers": 1,
+        },
+        "garderobe, linen closet": {"width": 1.2, "height": 2, "depth": 0.6, "doors": 2, "drawers": 0},
+        "tv bench, tv lowboard, lowboard, entertainment center, entertainment unit, media bench": {
+            "width": 1.5,
+            "height": 0.5,
+            "depth": 0.4,
+            "doors": 0,
+            "drawers": 2,
+        },
+        "tallboy dresser, lingerie chest, map cabinet": {
+            "width": 0.9,
+            "height": 0.9,
+            "depth": 0.45,
+            "doors": 0,
+            "drawers": 3,
+        },
+        (
+            "buffet, storage cabinet, utility cabinet, base cabinet, sink cabinet, under sink cabinet, vanity "
+            "cabinet, bathroom vanity, chemical cabinet, lab cabinet, record cabinet, toy cabinet, craft cabinet"
+        ): {"width": 0.9, "height": 0.9, "depth": 0.45, "doors": 2, "drawers": 0},
+        (
+            "larder, pantry cupboard, broom closet, broom cupboard, trophy case, trophy cabinet, showcase, "
+            "display case, gym locker, school locker, tool locker, parcel locker, pie safe"
+        ): {"width": 0.8, "height": 1.8, "depth": 0.4, "doors": 2, "drawers": 0},
+        (
+            "desk organiser, organizer, organiser, drawer organizer, jewelry cabinet, jewellery cabinet, advent "
+            "calendar, tea cabinet, sewing cabinet, puzzle box, seed box"
+        ): {"width": 0.35, "height": 0.25, "depth": 0.25, "doors": 0, "drawers": 3},
+        "switch cabinet, electrical cabinet": {
+            "width": 0.5,
+            "height": 0.7,
+            "depth": 0.2,
+            "doors": 1,
+            "drawers": 0,
+            "material": "steel",
+        },
+        "lateral file, lateral filing cabinet, file drawer cabinet": {
+            "width": 0.45,
+            "height": 1.1,
+            "depth": 0.6,
+            "doors": 0,
+            "drawers": 4,
+        },
+        "rolling tool chest, rolling cabinet, tool storage cabinet": {
+            "width": 0.7,
+            "height": 0.9,
+            "depth": 0.45,
+            "doors": 0,
+            "drawers": 5,
+        },
+        "charging station, charging cabinet": {
+            "width": 0.6,
+            "height": 2,
+            "depth": 0.8,
+            "doors": 1,
+            "drawers": 0,
+            "material": "steel",
+        },
+        "switchgear, plc cabinet, evidence locker, ice box, meat locker, proofing cabinet": {
+            "width": 0.5,
+            "height": 1.6,
+            "depth": 0.6,
+            "doors": 1,
+            "drawers": 0,
+            "material": "steel",
+        },
     },
     width=length(0.1, 5.0, default=0.8, usual=(0.4, 1.2), help="Outer width."),
     height=length(0.1, 4.0, default=0.9, usual=(0.5, 1.8), help="Outer height."),
@@ -137,8 +247,31 @@ def cabinet(
     "table",
     words=(
         "desk, writing desk, workbench, console table, vanity, side table, bench table, study desk, writing "
-        "table, school table, reading desk, entrance table"
+        "table, school table, reading desk, entrance table, counter, work table, dining table, lab bench, "
+        "cocktail table, sofa table, tea table, hallway table, entry table, sewing table, potting bench, "
+        "school desk, chess table, occasional table, conference table, meeting table, kitchen table, "
+        "breakfast table, bistro table, poker table, lab table, laboratory table, examination table, packing "
+        "table, welding table, prep table, butcher block, train table, play table, altar, laboratory bench, "
+        "carpenter bench, woodworking bench, workshop bench, tool bench, work bench, garden table, gaming "
+        "desk, student desk, art desk, craft table, sewing desk, teacher desk, kids desk, children desk, kids "
+        "table, reception table, nail table, makeup table, bathroom table"
     ),
+    usual={
+        "counter, work table, dining table, lab bench": {"width": 1.2, "depth": 0.6, "height": 0.75},
+        "cocktail table, sofa table, tea table": {"width": 1.1, "depth": 0.6, "height": 0.5},
+        "hallway table, entry table, sewing table, potting bench": {"width": 1, "depth": 0.4, "height": 0.8},
+        "school desk, chess table, occasional table": {"width": 0.7, "depth": 0.5, "height": 0.7},
+        (
+            "conference table, meeting table, kitchen table, breakfast table, bistro table, poker table, lab "
+            "table, laboratory table, examination table, packing table, welding table, prep table, butcher block, "
+            "train table, play table, altar, laboratory bench, carpenter bench, woodworking bench, workshop "
+            "bench, tool bench, work bench, garden table"
+        ): {"width": 1.6, "depth": 0.8, "height": 0.75},
+        (
+            "gaming desk, student desk, art desk, craft table, sewing desk, teacher desk, kids desk, children "
+            "desk, kids table, reception table, nail table, makeup table, bathroom table"
+        ): {"width": 1.2, "depth": 0.6, "height": 0.75},
+    },
     title="table or desk with drawers",
     material="wood",
     width=length(0.4, 4.0, default=1.2, usual=(0.8, 1.8), help="Outer width."),

@@ -744,7 +744,10 @@ def hose_nozzle(b: ObjectBuilder, size: float) -> None:
 
 @kind(
     "garden cart",
-    words="dump cart, garden wagon, hand wagon, bollerwagen, pull wagon, wagon, toy wagon, handcart",
+    words=(
+        "dump cart, garden wagon, hand wagon, bollerwagen, pull wagon, wagon, toy wagon, handcart, pull cart, "
+        "hand cart, beach wagon"
+    ),
     motions={"handle": "tilts, folds", "tub": "tips, tilts", "wheel": "spins"},
     length=length(0.7, 1.1),
     width=length(0.45, 0.6),

@@ -23,7 +23,7 @@ from kinematify.generate.library.builder import CAREFUL, ObjectBuilder
 from kinematify.generate.procedural import parameter as parameters_of
 from kinematify.generate.procedural.blueprint_file import parents_first
 from kinematify.generate.procedural.family import Family, Values
-from kinematify.generate.procedural.parameter import Parameter, phrases
+from kinematify.generate.procedural.parameter import Parameter, details_of, phrases
 from kinematify.generate.procedural.solids import SEGMENTS
 from kinematify.generate.procedural.workshop import Workshop
 
@@ -119,7 +119,7 @@ def kind(
         called: How people call it, singular.
         words: Other names, split at their commas.
         title: A few words for lists; `called` if empty.
-        like: The kind that it is another way to build; empty where it is a kind of its own.
+        like: The kind that it is another way to build, which `all_kinds` leaves out; empty of a kind of its own.
         material: Of its base.
         part_words: Name of a part without its number -> how else people call it.
         motions: The same -> words for how it moves that hold already.
@@ -137,16 +137,16 @@ def kind(
         code = draw.__code__
         taken = code.co_varnames[1 : code.co_argcount]
         carves = draw.__annotations__[code.co_varnames[0]] == "Workshop"
-        own = tuple(
-            parameters_of.number(f"{word}s", count, (count, count), "Belongs to it.", words=word)
-            for word, count in (details or {}).items()
-        )
         modeling = choice(tuple(MODELING), help="How it is modelled.", drawn=False)
         KINDS[name] = Family(
             name=name,
             title=title or called,
             words=(called, *phrases(words)),
-            parameters=(*asked, *own, *([replace(modeling, name="modeling")] if styles and not carves else ())),
+            parameters=(
+                *asked,
+                *details_of(details or {}),
+                *([replace(modeling, name="modeling")] if styles and not carves else ()),
+            ),
             build=_carver(draw, taken) if carves else _drawer(draw, taken, name),
             material=material,
             kinds={word: what for group, what in (usual or {}).items() for word in phrases(group)},

@@ -48,7 +48,7 @@ class Family:
     holds_already: tuple[str, ...] = ()
     """Other words that are true of it as it is."""
     like: str = ""
-    """The kind that it is another way to build; empty where it is a kind of its own."""
+    """The kind that it is another way to build, which the fit alone knows; empty of a kind of its own."""
     module: str = ""
     """The theme that it is listed under: the module of `kinematify.generate.kinds` with its function."""
     draw: Callable[..., None] | None = None

@@ -10,15 +10,9 @@ import yaml
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
 
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # ten times as fast, where PyYAML was built with it
-
-
-def read_table(path: Path) -> Any:
-    """Return what a file of the package says: lists, mappings, texts and numbers."""
-    return parse_table(path.read_text(encoding="utf-8"))
 
 
 def parse_table(text: str) -> Any:
@@ -93,6 +87,13 @@ def choice(
         words=phrases(words),
         choice_words={key: phrases(said) for key, said in named.items() if said},
         drawn=drawn,
+    )
+
+
+def details_of(details: Mapping[str, int]) -> tuple[Parameter, ...]:
+    """Return a count for each word for what belongs to parts of an object."""
+    return tuple(
+        number(f"{word}s", count, (count, count), "Belongs to it.", words=word) for word, count in details.items()
     )
 
 

@@ -141,14 +141,6 @@ class Workshop:
         seen._look_of_all = material or before[0], color or before[1]
         return seen
 
-    def turned(self, turn: FloatArray, origin: Point) -> Workshop:
-        """The same from a frame that is turned by `turn`, shape (3, 3), and moved to `origin` in this one [m]."""
-        return self.from_frame(np.column_stack([turn, np.asarray(origin, dtype=np.float64)]))
-
-    def above_floor(self, point: Point) -> float:
-        """Height of a point in the object [m]."""
-        return float(self._point(point)[2])
-
     def body(self, name: str, *solids: Solids, material: str | None = None, color: str | RGB | None = None) -> str:
         """Add a rigid part made of solids that overlap or touch; returns its name."""
         if name in self._solids:
