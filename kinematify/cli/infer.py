@@ -174,7 +174,7 @@ def command(
         if not no_validation:
             beside = WorkerProcess(worker_context())
             stack.callback(beside.stop)
-            beside.take(load_validation, _LONGEST)  # beside the inference
+            beside.submit(load_validation, _LONGEST)  # beside the inference
         progress = stack.enter_context(progress_reporter())
         use_one_thread(settings)
         progress("reading the parts", 0.0)
@@ -305,7 +305,7 @@ def _written(
         progress("fitting collision geometry and writing the files", _REFINED)
         write_inference_files(inference, folder, preview=False)
         if beside is not None:
-            beside.take(partial(validated, folder / MODEL_FILE), _LONGEST)
+            beside.submit(partial(validated, folder / MODEL_FILE), _LONGEST)
         if preview:
             progress("drawing the picture", _WRITTEN)
             write_preview(inference, folder)
@@ -330,7 +330,7 @@ def _last_answer(worker: WorkerProcess) -> Any:
     for _ in range(2):
         if alive:
             wait_for([worker])
-            answer, alive = worker.answer()
+            answer, alive = worker.result()
     return answer
 
 

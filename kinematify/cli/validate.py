@@ -199,11 +199,11 @@ def command(
     )
     try:
         with progress_reporter() as progress:
-            run.all(progress)
+            run.run(progress)
     except KeyboardInterrupt:
         run.interrupted = True
     files.write(run.outcomes, run.pictures, run.scenes, run.rules)
-    run.say()
+    run.print()
     return run.exit_status
 
 

@@ -32,7 +32,7 @@ def test_the_picture_shows_the_part_where_it_is() -> None:
     env.close()
 
 
-@pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
+@pytest.mark.parametrize("engine", ["pybullet"])
 def test_record_video(engine: str, tmp_path: Path) -> None:
     env = gymnasium.make(OPEN_PART, engine=engine, render_mode="rgb_array", max_episode_steps=2)
     env = gymnasium.wrappers.RecordVideo(env, str(tmp_path / "films"), disable_logger=True)

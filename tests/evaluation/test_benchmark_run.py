@@ -20,7 +20,7 @@ from kinematify.config import load_config
 from kinematify.errors import ConfigError, EnvironmentFault, InputError, OutputError
 from kinematify.evaluation.benchmark_job import JobResult
 from kinematify.evaluation.benchmark_summary import summarise
-from kinematify.evaluation.datasets import bench_folder, find_objects
+from kinematify.evaluation.datasets import find_objects
 from kinematify.evaluation.result_record import Report, load_report, write_report
 from kinematify.evaluation.run_benchmark import (
     RESULTS,
@@ -256,18 +256,3 @@ def test_pip_data_is_found_or_its_installation_named() -> None:
         robots = find_objects("pip")
         assert [robot.name for robot in robots] == ["panda", "go2", "allegro", "ur10"]
         assert all(robot.urdf.is_file() for robot in robots)
-
-
-def test_benchmark_folder_holds_the_robots_of_the_paper() -> None:
-    try:
-        folder = bench_folder()
-    except InputError as error:
-        pytest.skip(f"needs the benchmark models: {error}")
-    if not (folder / "robots").is_dir():
-        pytest.skip(f"{folder} is not divided into sets")
-    objects = {item.name: item for item in find_objects()}
-    assert {"ur10e", "panda", "go2", "fetch", "allegro", "h1"} <= set(objects)
-    assert len(objects) == 54
-    assert set(objects) == {item.name for words in ("robots", "everyday") for item in find_objects(words)}
-    assert not set(objects) & {item.name for item in find_objects("everyday2")}
-    assert objects["panda"].gripper_joints == ("panda_finger_joint1", "panda_finger_joint2")

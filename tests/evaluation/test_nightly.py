@@ -14,10 +14,10 @@ from lxml import etree
 
 from kinematify.cli.app import run as run_command
 from kinematify.config.nightly_settings import NightlySettings, load_nightly
-from kinematify.evaluation.nightly.comparison import Class, compare
+from kinematify.evaluation.nightly.comparison import ChangeKind, compare
 from kinematify.evaluation.nightly.run_night import NightRequest, run_night, write_smoke_objects
 from kinematify.evaluation.nightly.runs import Problem, Run
-from kinematify.evaluation.nightly.store import accept, load_nights
+from kinematify.evaluation.nightly.store import accept
 from tests.manipulation.furniture import write_drawer_cabinet
 from tests.places import ROOT
 from tests.secret_cabinets import write_object
@@ -98,12 +98,12 @@ def test_the_latest_run_of_the_same_scenario_is_compared_with() -> None:
     """A night of another configuration in between does not hide a regression."""
     other, old = replace(ACCURACY, scenario="s2"), ACCURACY
     found = compare([replace(ACCURACY, problems=(AXIS,))], {ACCURACY.place: [other, old]}, SETTINGS, same_machine=True)
-    assert [change.kind for change in found] == [Class.NEW]
+    assert [change.kind for change in found] == [ChangeKind.NEW]
 
 
 def test_a_run_that_is_missing_is_reported() -> None:
     found = compare([], {ACCURACY.place: [ACCURACY]}, SETTINGS, same_machine=True)
-    assert [(change.kind, change.gate) for change in found] == [(Class.GONE, False)]
+    assert [(change.kind, change.gate) for change in found] == [(ChangeKind.GONE, False)]
 
 
 # Nights over small objects.
@@ -217,27 +217,13 @@ def test_an_arm_opens_what_is_named_and_the_share_is_kept(tmp_path: Path) -> Non
     assert set(run.families) == {"KV7"}
     worse = replace(run, values={**run.values, "opened": 0.3})
     found = compare([worse], {run.place: [run]}, SETTINGS, same_machine=True)
-    assert [(change.kind, change.subject, change.gate) for change in found] == [(Class.WORSE, "opened", True)]
+    assert [(change.kind, change.subject, change.gate) for change in found] == [(ChangeKind.WORSE, "opened", True)]
 
 
 # Killed and resumed.
 
 
 # Bad folders.
-
-
-def test_a_half_written_night_is_named_and_passed_over(boxes: Path, tmp_path: Path) -> None:
-    place = night(boxes, tmp_path).place
-    lines = (place / "runs.jsonl").read_bytes()
-    (place / "runs.jsonl").write_bytes(lines[: len(lines) // 2])
-    (tmp_path / "2020-01-01-abc").mkdir()
-    nights, warnings = load_nights(tmp_path)
-    assert nights == ()
-    assert len(warnings) == 2
-    second = night(boxes, tmp_path)
-    assert second.place != place
-    assert (place / "runs.jsonl").read_bytes() == lines[: len(lines) // 2]
-    assert kinds(second) == {"new series": 2}
 
 
 def test_the_smoke_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

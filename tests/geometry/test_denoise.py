@@ -70,14 +70,3 @@ def test_remeshed_parts_are_rough_and_designed_ones_are_not() -> None:
     assert all(surface.roughness < FACETED for surface in part_surfaces(design, config=CONFIG.surface))
     voxels = voxels_of(30)(design, np.random.default_rng(0))
     assert all(surface.roughness > FACETED for surface in part_surfaces(voxels, config=CONFIG.surface))
-
-
-def test_the_bearing_of_voxels_is_found() -> None:
-    design = pin_in_sleeve(64)
-    voxels = voxels_of(30)(design, np.random.default_rng(0))
-    surfaces = part_surfaces(voxels, config=CONFIG.surface)
-    graph = build_contact_graph(voxels, surfaces, config=CONFIG.contact, seed=0)
-    best = fit_bearings(voxels, surfaces, graph, config=CONFIG.bearing, seed=0)[0, 1].lines[0]
-    axis = trimesh.transformations.rotation_matrix(0.5, [1.0, 0.3, 0.0])[:3, 2]
-    assert abs(best.axis @ axis) > np.cos(np.radians(1.5))
-    assert np.linalg.norm(np.cross(best.pivot, axis)) < 0.005

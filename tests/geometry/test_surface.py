@@ -111,16 +111,3 @@ def test_distance_to_a_box_is_exact_inside_and_outside_and_far_from_the_origin(s
 
 
 # ---- samples ---------------------------------------------------------------------------------------------------------
-
-
-@settings(max_examples=20)
-@given(count=st.integers(1, 2000), seed=st.integers(0, 2**31))
-def test_samples_are_even_by_area(count: int, seed: int) -> None:
-    """Any run of faces along the walk gets its share to within one sample, here the six walls of a box together."""
-    surface = surface_of(trimesh.creation.box((1.0, 2.0, 4.0)))
-    samples = surface.sample(count, seed=seed)
-    walls = np.array([(samples.normals @ axis > 0.5).sum() for axis in (*np.eye(3), *-np.eye(3))])
-    shares = count * np.array([8.0, 4.0, 2.0, 8.0, 4.0, 2.0]) / 28.0
-    assert np.all(np.abs(walls - shares) <= 2.0)  # two triangles per wall, each within one
-    assert samples.areas.sum() == pytest.approx(28.0)
-    assert np.all(surface.distance(samples.points) < 1e-9)

@@ -35,17 +35,6 @@ def tool_pose(robot: TaskRobot, arm: tuple[float, ...], fingers: tuple[float, ..
     return {frame.name: data.oMf[index].homogeneous.copy() for index, frame in enumerate(model.frames)}
 
 
-def test_the_arm_reaches_as_far_as_research_arms(arm: TaskRobot) -> None:
-    model = pin.buildModelFromUrdf(str(arm.urdf))
-    data, rng = model.createData(), np.random.default_rng(0)
-    shoulder = np.array([0.0, 0.0, 0.33])
-    far = 0.0
-    for _ in range(2000):
-        pin.framesForwardKinematics(model, data, rng.uniform(model.lowerPositionLimit, model.upperPositionLimit))
-        far = max(far, float(np.linalg.norm(data.oMf[model.getFrameId(arm.tool)].translation - shoulder)))
-    assert 0.8 < far < 1.05
-
-
 def test_neighbours_of_the_arm_touch_in_no_configuration(arm: TaskRobot) -> None:
     scene = read_scene(read_robot(arm.urdf), load_settings().geometry)
     rng = np.random.default_rng(1)

@@ -11,7 +11,6 @@ from kinematify.errors import InputError
 from kinematify.manipulation.real_size import category_of, is_normalised, sizing, write_scaled
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
-from tests.places import BENCH
 
 
 def box_of(extent: float, *, stands: bool = True) -> np.ndarray:
@@ -83,13 +82,3 @@ def test_a_scaled_copy_moves_like_the_original(tmp_path: Path) -> None:
     for link in ("a", "b", "c"):
         one, other = (model.link_by_name[link].visuals[0].mesh.vertices for model in (first, second))
         assert other == pytest.approx(0.25 * one, abs=1e-12)
-
-
-@pytest.mark.skipif(not BENCH.is_dir(), reason="the benchmark folder is not here")
-def test_meshes_of_a_scaled_copy_are_found_and_scaled(tmp_path: Path) -> None:
-    urdf = BENCH / "everyday" / "oven_7138" / "model.urdf"
-    write_scaled(urdf, 0.5, tmp_path / "s.urdf")
-    first, second = read_robot(urdf), read_robot(tmp_path / "s.urdf")
-    for one, other in zip(first.links, second.links, strict=True):
-        for a, b in zip(one.visuals, other.visuals, strict=True):
-            assert b.mesh.vertices == pytest.approx(0.5 * a.mesh.vertices, abs=1e-9)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
-import mujoco
 import numpy as np
 import pytest
 
@@ -14,7 +12,6 @@ from kinematify.config import load_config
 from kinematify.model.dynamics import joint_load, mass_matrix, with_dynamics
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Inertial, Joint, Link, Mimic, Robot
-from kinematify.robot.write import write_robot
 
 CONFIG = load_config().dynamics
 
@@ -104,29 +101,3 @@ def test_damping_of_a_long_chain_stays_stable_where_it_is_that_of_the_last_step(
     decay = np.linalg.eigvals(np.linalg.solve(mass_matrix(made), damping)) / 240.0
     assert np.abs(decay).max() < 1.05
     assert damping.min(where=np.eye(links - 1, dtype=bool), initial=np.inf) > 0.0
-
-
-def test_the_mass_matrix_is_that_of_an_engine(tmp_path: Path) -> None:
-    generator = np.random.default_rng(5)
-    names = ("base", "a", "b", "c", "d")
-    parents = ("base", "a", "a", "c")
-    joints = []
-    for child, parent in zip(names[1:], parents, strict=True):
-        axis = generator.normal(size=3)
-        moved = np.eye(4)
-        moved[:3, 3] = generator.normal(size=3)
-        kind = JointType.PRISMATIC if child == "b" else JointType.REVOLUTE
-        joint = hinge(child, parent, tuple(axis / np.linalg.norm(axis)), -1.0, 1.0)
-        joints.append(replace(joint, kind=kind, T_parent_child=moved))
-    robot = Robot(
-        name="tree",
-        links=tuple(body(name, 1.0 + k, tuple(generator.normal(size=3))) for k, name in enumerate(names)),
-        joints=tuple(joints),
-    )
-    model = mujoco.MjModel.from_xml_path(str(write_robot(robot, tmp_path / "model.urdf")))
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    dense = np.zeros((model.nv, model.nv))
-    mujoco.mj_fullM(model, data, dense)
-    order = [model.joint(f"{name}_joint").dofadr[0] for name in names[1:]]
-    np.testing.assert_allclose(mass_matrix(robot), dense[np.ix_(order, order)], rtol=1e-5, atol=1e-6)

@@ -24,12 +24,11 @@ from kinematify.paper.cavl import (
     CavlScene,
     CavlSide,
     cavl_scene,
-    cavl_terms,
     motion_weights,
     rank_candidates,
     refine,
 )
-from kinematify.paper.contact_region import ContactRegion, revolve, slide, unit_axis
+from kinematify.paper.contact_region import ContactRegion, revolve, slide
 from kinematify.paper.joints import estimate_paper_joint, paper_candidates
 from kinematify.paper.sdf_grid import SignedDistanceCache, exact_distance
 from kinematify.robot.joint_type import JointType
@@ -229,22 +228,6 @@ def test_moving_and_scaling_the_whole_changes_nothing(
         before = [item.score for item in rank_candidates(ball_scene(config), here, config)]
         after = [item.score for item in rank_candidates(ball_scene(config, rotation, scale, shift), there, config)]
         assert np.allclose(before, after, rtol=1e-6)
-
-
-def test_gradients_of_the_objective_agree_with_differences() -> None:
-    for config in (DEFAULT, PAPER):
-        scene = ball_scene(config)
-        generator = torch.Generator().manual_seed(0)
-        free, pivots = (torch.randn((3, 3), generator=generator, dtype=torch.float64).requires_grad_() for _ in "ab")
-
-        def objective(
-            a: torch.Tensor, p: torch.Tensor, scene: CavlScene = scene, config: CavlConfig = config
-        ) -> torch.Tensor:
-            motions = torch.deg2rad(torch.tensor(config.angles_deg, dtype=torch.float64))
-            terms = cavl_terms(scene, REVOLUTE, pivots=p, axes=unit_axis(a), motions=motions, config=config)
-            return terms.objective(config) / config.length_unit**-2
-
-        assert torch.autograd.gradcheck(objective, (free, pivots), eps=1e-7, atol=1e-8, rtol=1e-4)
 
 
 # --- joints ------------------------------------------------------------------------------------------------------

@@ -114,10 +114,3 @@ def test_an_open_shell_has_the_inside_that_it_encloses() -> None:
     assert np.abs(exact_signed_distance(bowl, probes) - expected).max() < 0.06
     assert np.abs(SignedDistanceGrid(bowl, CONFIG).value(torch.from_numpy(probes)).numpy() - expected).max() < 0.06
     assert np.all(exact_distance(bowl, probes) > 0.0)
-
-
-def test_a_flat_sheet_has_a_distance_and_no_inside() -> None:
-    corners = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
-    sheet = Part(name="sheet", vertices=corners, faces=np.array([[0, 1, 2], [0, 2, 3]]))
-    values = SignedDistanceGrid(sheet, CONFIG).value(torch.tensor([[0.5, 0.5, 0.1], [0.5, 0.5, -0.1]]))
-    assert torch.allclose(values, torch.full((2,), 0.1, dtype=torch.float64), atol=0.005)

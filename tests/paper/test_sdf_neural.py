@@ -54,15 +54,6 @@ def test_error_near_the_surface_is_below_half_a_percent_of_the_diagonal(
         assert error.mean() <= 0.005 * np.linalg.norm(np.ptp(item.bounds, axis=0))
 
 
-def test_signs_tell_inside_from_outside(parts: tuple[Part, ...], fields: tuple[NeuralSignedDistanceField, ...]) -> None:
-    for item, field in zip(parts, fields, strict=True):
-        points = near_points(item)
-        exact = exact_signed_distance(item, points)
-        clear = np.abs(exact) > 0.01 * np.linalg.norm(np.ptp(item.bounds, axis=0))
-        found = field.value(torch.from_numpy(points)).detach().numpy()
-        assert (np.sign(found[clear]) == np.sign(exact[clear])).mean() > 0.99
-
-
 def test_gradient_is_that_of_the_value_and_about_one(fields: tuple[NeuralSignedDistanceField, ...]) -> None:
     points = torch.tensor([[0.25, 0.0, 0.02], [0.0, 0.19, 0.0], [0.1, 0.1, -0.2]], dtype=torch.float64)
     leaf = points.clone().requires_grad_()

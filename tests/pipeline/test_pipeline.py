@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.pipeline.infer_assembly import infer
@@ -195,12 +194,3 @@ def test_the_papers_method_calls_a_drawer_sliding_with_its_own_length_as_travel(
     assert joint.upper == pytest.approx(np.ptp(moving.vertices @ joint.axis))
     assert joint.lower == -joint.upper
     assert inference.model.joints[0].upper > 0.0
-
-
-def test_parts_that_a_virtual_edge_joins_get_a_joint_too() -> None:
-    drawer, far = built("drawer"), np.eye(4)
-    far[:3, 3] = [0.0, -2.0, 0.0]
-    parts = (drawer.parts[0], posed(drawer, far).parts[1])
-    inference = infer(Assembly(parts=parts, source="apart"), config=PAPER)
-    assert len(inference.joints) == 1
-    assert any("touches nothing" in warning for warning in inference.warnings)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import re
@@ -349,24 +348,3 @@ def test_forward_kinematics_agrees_with_pinocchio(name: str) -> None:
     for link_name, pose in poses.items():
         frame = model.getFrameId(link_name, pin.FrameType.BODY)
         np.testing.assert_allclose(pose, data.oMf[frame].homogeneous, atol=1e-9)
-
-
-@needs_bench
-def test_every_benchmark_model_has_the_parts_that_its_record_states() -> None:
-    wrong = []
-    for path in sorted(BENCH.glob("*/*/model.urdf")):
-        if path.parent.name in ("h1", "fetch"):  # seconds each; the erase tests read all robots
-            continue
-        facts = json.loads((path.parent / "source.json").read_text())
-        if "rigid_parts" not in facts:  # records of generated sets do not state them
-            continue
-        robot = read_robot(path)
-        groups = rigid_groups(robot)
-        counts = (len(groups), sum(group.has_geometry for group in groups))
-        rest = {k: v for k, v in rest_configuration(robot).items() if v != 0.0}
-        leaders = {name: value for name, value in rest.items() if robot.joint_by_name[name].mimic is None}
-        if counts != (facts["rigid_parts"], facts["rigid_parts_with_geometry"]) or leaders != pytest.approx(
-            facts["rest"]
-        ):
-            wrong.append(path.parent.name)
-    assert wrong == []

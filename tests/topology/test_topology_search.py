@@ -104,16 +104,6 @@ def test_every_tree_spans_and_every_contact_is_used_or_broken(n: int, extra: int
             assert tree.virtual == used - set(graph.by_pair)
 
 
-@settings(max_examples=30)
-@given(st.integers(5, 20), st.integers(0, 12), st.integers(0, 10_000))
-def test_paper_mode_never_joins_parts_of_one_cluster(n: int, extra: int, seed: int) -> None:
-    clusters = [(0, 1, 2), (3, 4)]
-    graph, stats, evidence = random_assembly(n, extra, seed, clusters)
-    banned = {item for cluster in clusters for item in combinations(cluster, 2)}
-    tree = rank_trees(graph, stats, evidence, PAPER, seed=seed)[0]
-    assert not banned & {pair(parent, child) for parent, child in tree.edges()}
-
-
 def test_the_default_keeps_congruent_neighbours_of_an_arm() -> None:
     # A chain whose second and third link are congruent; the paper's ban cuts it, the default does not.
     graph = graph_of(4, {(0, 1): 0.5, (1, 2): 0.5, (2, 3): 0.5}, [(1, 2)])
