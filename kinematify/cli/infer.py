@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from kinematify.refinement.hints import Hint
     from kinematify.robot.robot import Joint
     from kinematify.validation.run.report import ValidationReport
+    from kinematify.vision.ask import PieceVote
 
 _INFERRED, _REFINED, _WRITTEN, _DRAWN = 0.4, 0.5, 0.75, 0.8
 """Shares of the whole time after the inference, the refinement, the files and the picture."""
@@ -181,12 +182,7 @@ def command(
             assembly, config=settings.assembly, up=up, scale=scale, labels=labels, pieces=pieces, number=number
         )
         click.echo(describe_lengths(given), err=True)
-        eyes = None
-        if answer is not None or not (given.segmented or groups):
-            progress("asking about the pieces" if vlm != "off" else "reading the parts", 0.0)
-            eyes = ask_pieces(given, vlm, answer, settings)
-        grouped = eyes is None or groups is not None or given.segmented
-        parts = grouped_parts(given, groups, settings, progress) if eyes is None or grouped else eyes.grouping(settings)
+        parts, eyes = _asked_parts(given, groups, (vlm, answer), settings, progress)
         settings = _weighing(settings, density, masses, parts)
         stated = _parsed(hints, _names(parts), base)
         base = base or (eyes.base if eyes else None)
@@ -208,6 +204,25 @@ def command(
         blocks = (eyes.described() if eyes else "", describe(inference, out), describe_validation(report, out))
         click.echo("\n\n".join(block for block in blocks if block))
     return int(ExitStatus.FAULT) if eyes and eyes.answer.fault else validation_status(report)
+
+
+def _asked_parts(
+    given: Assembly, groups: Path | None, asked: tuple[str, Path | None], settings: Config, progress: Reporter
+) -> tuple[Assembly | Grouping, PieceVote | None]:
+    """The parts, and what a file or a model (`asked`: --vlm and --answer) said of their pieces.
+
+    Raises:
+        InputError: Both a groups file and an answer are given.
+    """
+    vlm, answer = asked
+    if groups and answer:
+        raise InputError("--groups and --answer both say which pieces are one part. Give one of them.")
+    known = answer is None and (given.segmented or groups)
+    progress("reading the parts" if vlm == "off" else "asking about the pieces", 0.0)
+    eyes = None if known else ask_pieces(given, vlm, answer, settings)
+    if eyes is None or given.segmented:
+        return grouped_parts(given, groups, settings, progress), eyes
+    return eyes.grouping(settings), eyes
 
 
 def _names(parts: Assembly | Grouping) -> Sequence[str]:

@@ -48,7 +48,6 @@ def command(*, mesh: Path, out: Path, up: str, scale: float | None, pieces: str)
     except OSError as error:
         raise OutputError(f"The question cannot be written to {out} ({error}). Give another folder with -o.") from error
     click.echo(f"{len(question.pieces)} numbered pieces: {out / 'sheet.png'}, question.txt and schema.json beside it.")
-    words = [str(mesh), *(["--up", up] if up != "auto" else []), *(["--scale", str(scale)] if scale else [])]
-    words += ["--pieces", pieces] if pieces != "auto" else []
-    click.echo(f"Next: save the answer as {out / 'answer.json'}, then kinematify infer {shlex.join(words)} --answer "
-               f"{shlex.quote(str(out / 'answer.json'))} -o OUT")  # fmt: skip
+    answer = shlex.quote(str(out / "answer.json"))
+    click.echo(f"Next: save the answer there, then kinematify infer {shlex.quote(str(mesh))} --answer {answer} -o OUT "
+               "(with the same --up, --scale and --pieces).")  # fmt: skip

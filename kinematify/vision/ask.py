@@ -95,18 +95,16 @@ class PieceVote:
             "record": None if self.record is None else {"right": self.record.right, "asked": self.record.asked},
             "trust": self.trust, "questions": 1, "tokens": self.answer.tokens, "object": self.answer.about,
             "named": self.answer.named, "taken": [part.name for part in self.answer.parts],
-            "notes": list(self.answer.notes), "fault": self.answer.fault, "joints": results,
+            "fault": self.answer.fault, "joints": results,
         }  # fmt: skip
 
     def described(self) -> str:
         """Who answered, what that cost, and what its record is."""
         if self.answer.fault:
             return f"{self.voter} gave no answer, so geometry decided alone: {self.answer.fault}"
-        said = f"{self.voter} named {self.answer.named} moving parts"
-        if self.record is None:
-            return f"{said}, which are taken as they are."
-        worth = f"its record is {self.record.right} of {self.record.asked} known parts, weight {self.trust:.0%}"
-        return f"{said} for 1 question and {self.answer.tokens} tokens; {worth}."
+        record = self.record
+        worth = "taken as they are" if record is None else f"{record.right} of {record.asked} known parts right"
+        return f"{self.voter} named {self.answer.named} moving parts for {self.answer.tokens} tokens: {worth}."
 
 
 def ask_about_pieces(

@@ -32,7 +32,6 @@ _TINY, _CLOSE = 0.08, 0.16  # of the object's longest side: tiny pieces, and wha
 _ROOM = 0.04  # around what is seen close
 _APART = 0.8  # pulled apart, pieces are so much farther from the middle
 _MOST_APART = 25
-_BYTES = 120_000
 _FONT = ImageFont.load_default(15)
 
 
@@ -173,7 +172,7 @@ class _Sheet:
             "mm",
         )
         shown = _numbered(draw, ids, [k + 1 for k in solid], taken)
-        draw.rectangle((0, 0, _SIDE - 1, _SIDE - 1), outline=(190, 190, 190))
+        draw.rectangle((0, 0, _SIDE - 1, _SIDE - 1), outline="silver")
         for number, count in shown.items():
             self.best[number - 1] = max(self.best[number - 1], count)
         return image
@@ -209,7 +208,7 @@ def _edges(ids: IntArray, depth: FloatArray, normal: FloatArray, size: float) ->
 
 
 def _axes(draw: ImageDraw.ImageDraw, camera: Camera) -> None:
-    at, ink = np.array([33.0, _SIDE - 33.0]), ((210, 30, 30), (20, 140, 20), (30, 60, 220))
+    at, ink = np.array([33.0, _SIDE - 33.0]), ("crimson", "green", "blue")
     for axis, color, name in zip(np.eye(3), ink, ("+x", "+y", "+z"), strict=True):
         end = 22.0 * camera.axes[:2] @ axis
         draw.line((*at, *(at + end)), color, 3)
@@ -247,7 +246,7 @@ def _numbered(
         if np.isfinite(cost[best]):
             draw.line((*at, *to[best]), "black", 1)
             draw.ellipse((at[0] - 2, at[1] - 2, at[0] + 2, at[1] + 2), "black")
-            _write(draw, (float(to[best, 0]), float(to[best, 1])), number, (150, 0, 0), taken)
+            _write(draw, (float(to[best, 0]), float(to[best, 1])), number, "darkred", taken)
             shown[number] = count
     return shown
 
