@@ -259,7 +259,7 @@ class _Parser:
             InputError: No kind is named.
         """
         words = [lemma(token.text) if token.kind == "word" else "" for token in self.tokens]
-        first = next((k for k, word in enumerate(words) if word and word not in _SAYS_NOTHING), 0)
+        first = next((k for k, word in enumerate(words) if word and word not in _SAYS_NOTHING | _PLAIN), 0)
         limit = next((k for k in range(first + 1, len(words)) if self._ends_name(k)), len(words))
         found = self._named(words, limit)
         for k in range(limit) if found is None else ():
@@ -297,7 +297,9 @@ class _Parser:
         ends = (
             _HAVING | _REFERS | _ABOVE | _BELOW | words_of("on made without where mounted standing next and in for at")
         )
-        return self.tokens[k].kind == "sign" or word in ends or (word in _DONE and self._text(k + 1) not in ("", "top"))
+        before, after = self._text(k - 1), self._text(k + 1)
+        state = word in _DONE and before not in _DEGREES and after not in ("", "top")
+        return self.tokens[k].kind == "sign" or word in ends or state or (word == "of" and before not in _NUMBERS)
 
     def _is_noun(self, k: int) -> bool:
         """True if a word goes on with a name, so that another thing is named: a laptop bag."""
@@ -417,6 +419,9 @@ class _Parser:
                 return after
             if "count" in self.waiting and _counted(self.family, first := words.split()[0]) is not None:
                 self._add(lemma(first), {"count": self.waiting.pop("count")}, words)  # a three finger gripper
+            if "count" in self.waiting and name != "handle":
+                self.guessed[noun := " ".join(key_of(words))] = f"{self.waiting['count']} {words}"
+                self._add(noun, {"count": self.waiting.pop("count")}, words)
             self.unread += [str(self.waiting.pop("count"))] if "count" in self.waiting else []
             for look in ("color", "material") if name == "handle" else ():
                 if look in self.waiting:
@@ -633,7 +638,6 @@ class _Parser:
                 facts |= {"count": 2} if counted is not None and not counted.default else {}
             elif article:
                 facts["count"] = 1
-                self.implied.add(noun)
         elif facts.get("count") == 1 and pick:
             del facts["count"]
         if "count" in facts:
@@ -641,6 +645,8 @@ class _Parser:
         if guessed and noun not in self.parts:
             self.guessed[noun] = said
         self._add(noun, facts, said)
+        if article:
+            self.implied.add(noun)
         if self.relation is not None:
             self._rows(self.relation[0], noun, self.relation[1])
             self.relation = None
