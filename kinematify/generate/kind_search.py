@@ -90,17 +90,20 @@ def words_of_names() -> frozenset[str]:
 
 
 def repaired(word: str, known: frozenset[str]) -> str | None:
-    """Return the known word that a word with one wrong, missing, additional or swapped letter means; None if none."""
+    """Return the known word that a word means with one wrong, missing or additional letter, or letters in another order.
+
+    None if there is none.
+    """
     if len(word) < 5 or word in known:
         return None
-    near = difflib.get_close_matches(word, known, n=3, cutoff=0.8)
+    near = difflib.get_close_matches(word, known, n=3, cutoff=0.7)
     return next((other for other in near if other[0] == word[0] and _one_letter_off(word, other)), None)
 
 
 def _one_letter_off(one: str, other: str) -> bool:
     start = next((k for k, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
     a, b = one[start:], other[start:]
-    return a[1:] == b[1:] or a[1:] == b or a == b[1:] or (a[:2] == b[1::-1] and a[2:] == b[2:])
+    return a[1:] == b[1:] or a[1:] == b or a == b[1:] or sorted(a) == sorted(b)
 
 
 def nearest_kinds(text: str, count: int = 5) -> list[Family]:

@@ -23,13 +23,14 @@ from kinematify.generate.kind_search import (
 from kinematify.generate.procedural.family import checked
 from kinematify.generate.procedural.layout import CELLS
 from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS
-from kinematify.generate.request import ANGLES, UNITS, PartRequest, Request
+from kinematify.generate.request import ANGLES, UNITS, request_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.parameter import Parameter
+    from kinematify.generate.request import Request
 
 LONGEST = 200
 """Words at most."""
@@ -188,6 +189,9 @@ def read_sentence(text: str, *, nearest: bool = False) -> Sentence:
     plain = re.sub(r"(?<=\d),(?=\d{3}\b)", "", plain)
     plain = re.sub(rf"\b({'|'.join(_NUMBERS)}) (?=(?:{_UNIT})\b)", lambda found: f"{_NUMBERS[found[1]]} ", plain)
     purposes = [item[0].strip() for item in _PURPOSE.finditer(plain)]
+    plain = re.sub(r"^((?:an? |the )?)built in ", r"\1", plain)
+    shares = re.findall(r"\bper [a-z]+", plain)
+    plain = re.sub(r"\bper [a-z]+", " ", plain)
     purposes = [
         item for item in purposes if not (set(key_of(item)) & {*_PARTS, *_MOTIONS, *_NUMBERS} or re.search(r"\d", item))
     ]
@@ -195,6 +199,7 @@ def read_sentence(text: str, *, nearest: bool = False) -> Sentence:
         plain = plain.replace(purpose, " ")
     parser = _Parser(text=text, tokens=[_Token(str(found.lastgroup), found[0]) for found in _TOKENS.finditer(plain)])
     parser.harmless += purposes
+    parser.unread += shares
     parser.find_kind(nearest=nearest)
     parser.read()
     return parser.sentence()
@@ -306,7 +311,7 @@ class _Parser:
         word = self.tokens[k].text
         known = {*_DONE, *_DEGREES, *_DIMENSIONS, *COLOR_WORDS, *_MOTIONS, *_SIDES, *_NUMBERS}
         plain = self.tokens[k].kind != "word" or _material(word)
-        return not plain and word not in _SAYS_NOTHING | _PLAIN | known
+        return not plain and word not in _SAYS_NOTHING | _PLAIN | known | {"toy"}
 
     # ---- clauses ---------------------------------------------------------------------------------------------------
 
@@ -859,20 +864,20 @@ class _Parser:
             if part.pop("grid", None) and not self._cell(noun):
                 self.unread.append(f"grid of {noun}")
             row = {"row": rows.index(part["row"]) + 1} if "row" in part else {}
-            parts[noun] = PartRequest.model_validate({**part, **row})
+            parts[noun] = {**part, **row}
         counted = {item.name for noun in parts if (item := _counted(self.family, noun))} if parts else set()
         usual = {name: value for name, value in self.usual.items() if name not in counted}
-        request = Request(
-            kind=self.family.name,
-            parameters={**usual, **self.values},
-            size=self.sizes,  # type: ignore[arg-type]  # by names of `_DIMENSIONS`
-            parts=parts,
-            copies=min(self.copies, 12),
-            instead_of=self.instead_of,
-        )
+        values = {
+            "kind": self.family.name,
+            "parameters": {**usual, **self.values},
+            "size": self.sizes,
+            "parts": parts,
+            "copies": min(self.copies, 12),
+            "instead_of": self.instead_of,
+        }
         return Sentence(
             text=self.text,
-            request=request.checked(),
+            request=request_of(values, source="text"),
             faults=(*self.faults, *([f"copies: {self.copies} asked for, at most 12"] if self.copies > 12 else [])),
             unread=tuple(filter(None, self.unread)),
             harmless=tuple(self.harmless),
@@ -889,7 +894,7 @@ class _Parser:
 
 def _values(text: str) -> list[tuple[float, str]]:
     """Numbers of a text in metres or radians, each with its unit or that of the last one."""
-    found = re.findall(rf"([-−]?{_NUMBER}) ?({_UNIT})?(?![a-z])", text)
+    found = re.findall(rf"([-−]?{_NUMBER})(?: ?({_UNIT})(?![a-z]))?", text)
     scales = {unit: (scale, "m") for unit, scale in UNITS.items()} | {
         unit: (scale, "rad") for unit, scale in ANGLES.items()
     }

@@ -71,6 +71,16 @@ def test_what_was_asked_for_and_is_otherwise_is_listed():
 
 def test_a_slip_of_the_pen_is_repaired_with_a_word():
     assert read_sentence("a cabnet").notes == ("Read 'cabnet' as 'cabinet'.",)
+    assert read_sentence("a bycicle").notes == ("Read 'bycicle' as 'bicycle'.",)
+
+
+def test_sizes_toys_and_shares_of_parts_are_read_as_they_are_written():
+    assert read_sentence("a desk 1400x700mm").request.size["width"] == pytest.approx(1.4)
+    assert (toy := read_sentence("a dump truck toy, yellow")).request.kind == "dump_truck"
+    assert toy.unread == ("toy",)
+    assert "per door" in read_sentence("a cabinet with two doors, one knob per door").unread
+    assert read_sentence("a built-in oven").request.kind == "oven"
+    assert "88" in "; ".join(read_sentence("a piano with 88 keys").made().differences)
 
 
 @pytest.mark.parametrize(
