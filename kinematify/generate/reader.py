@@ -9,6 +9,8 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from pydantic import ValidationError
+
 from kinematify.errors import InputError
 from kinematify.generate.delivery import BuildResult, deliver, nouns_of
 from kinematify.generate.kind_search import (
@@ -197,7 +199,12 @@ def read_sentence(text: str, *, nearest: bool = False) -> Sentence:
     parser.harmless += purposes
     parser.find_kind(nearest=nearest)
     parser.read()
-    return parser.sentence()
+    try:
+        return parser.sentence()
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = " of ".join(map(str, reversed(first["loc"])))
+        raise InputError(f"The text {text!r} cannot be built: {where}: {first['msg']}.") from error
 
 
 def _refuse_unreadable(text: str, plain: str) -> None:
@@ -618,7 +625,8 @@ class _Parser:
         self.waiting, self.said = {}, []
         before_name = self.is_before
         pick = facts.pop("pick", "")
-        article, without = facts.pop("article", False), facts.pop("without", False)
+        article = facts.pop("article", False) and "count" not in facts
+        without = facts.pop("without", False)
         if (before_name and "count" not in facts) or "bare" in facts or (without and noun in _NO_PARTS):
             self.unread.append(words if before_name else said)
             self.waiting = {name: facts[name] for name in ("color", "material") if name in facts and before_name}
@@ -867,13 +875,13 @@ class _Parser:
             parameters={**usual, **self.values},
             size=self.sizes,  # type: ignore[arg-type]  # by names of `_DIMENSIONS`
             parts=parts,
-            copies=min(self.copies, 12),
+            copies=self.copies,
             instead_of=self.instead_of,
         )
         return Sentence(
             text=self.text,
             request=request.checked(),
-            faults=(*self.faults, *([f"copies: {self.copies} asked for, at most 12"] if self.copies > 12 else [])),
+            faults=tuple(self.faults),
             unread=tuple(filter(None, self.unread)),
             harmless=tuple(self.harmless),
             notes=tuple(self.notes),
