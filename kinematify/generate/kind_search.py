@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 _BRITISH = {
     "aluminium": "aluminum", "tyre": "tire", "castor": "caster", "jewellery": "jewelry", "vice": "vise",
     "gray": "grey", "metre": "meter", "centimetre": "centimeter", "millimetre": "millimeter", "centre": "center",
-    "mould": "mold", "plough": "plow", "colour": "color", "theatre": "theater", "armour": "armor", "kerb": "curb",
-    "catalogue": "catalog", "draught": "draft", "grille": "grill", "storey": "story", "harbour": "harbor",
-    "organiser": "organizer", "swivelling": "swiveling", "pulley": "pulley", "motorised": "motorized",
+    "mould": "mold", "plough": "plow", "colour": "color", "kerb": "curb",
+    "catalogue": "catalog", "draught": "draft", "grille": "grill",
+    "organiser": "organizer", "swivelling": "swiveling", "motorised": "motorized",
 }  # fmt: skip
 """British or rarer spelling -> the one that names are compared in."""
 _IRREGULAR = {
     "leaves": "leaf", "shelves": "shelf", "knives": "knife", "feet": "foot", "halves": "half", "axes": "axis",
-    "teeth": "tooth", "loaves": "loaf", "people": "person", "sashes": "sash", "wolves": "wolf",
+    "teeth": "tooth", "sashes": "sash",
 }  # fmt: skip
 _SAME = (
     "car automobile vehicle sedan hatchback van taxi jeep ambulance truck lorry bus pickup|"

@@ -9,6 +9,8 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from pydantic import ValidationError
+
 from kinematify.errors import InputError
 from kinematify.generate.delivery import BuildResult, deliver, nouns_of
 from kinematify.generate.kind_search import (
@@ -23,14 +25,13 @@ from kinematify.generate.kind_search import (
 from kinematify.generate.procedural.family import checked
 from kinematify.generate.procedural.layout import CELLS
 from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS
-from kinematify.generate.request import ANGLES, UNITS, request_of
+from kinematify.generate.request import ANGLES, UNITS, PartRequest, Request
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.parameter import Parameter
-    from kinematify.generate.request import Request
 
 LONGEST = 200
 """Words at most."""
@@ -202,7 +203,12 @@ def read_sentence(text: str, *, nearest: bool = False) -> Sentence:
     parser.unread += shares
     parser.find_kind(nearest=nearest)
     parser.read()
-    return parser.sentence()
+    try:
+        return parser.sentence()
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = " of ".join(map(str, reversed(first["loc"])))
+        raise InputError(f"The text {text!r} cannot be built: {where}: {first['msg']}.") from error
 
 
 def _refuse_unreadable(text: str, plain: str) -> None:
@@ -623,7 +629,8 @@ class _Parser:
         self.waiting, self.said = {}, []
         before_name = self.is_before
         pick = facts.pop("pick", "")
-        article, without = facts.pop("article", False), facts.pop("without", False)
+        article = facts.pop("article", False) and "count" not in facts
+        without = facts.pop("without", False)
         if (before_name and "count" not in facts) or "bare" in facts or (without and noun in _NO_PARTS):
             self.unread.append(words if before_name else said)
             self.waiting = {name: facts[name] for name in ("color", "material") if name in facts and before_name}
@@ -864,21 +871,21 @@ class _Parser:
             if part.pop("grid", None) and not self._cell(noun):
                 self.unread.append(f"grid of {noun}")
             row = {"row": rows.index(part["row"]) + 1} if "row" in part else {}
-            parts[noun] = {**part, **row}
+            parts[noun] = PartRequest.model_validate({**part, **row})
         counted = {item.name for noun in parts if (item := _counted(self.family, noun))} if parts else set()
         usual = {name: value for name, value in self.usual.items() if name not in counted}
-        values = {
-            "kind": self.family.name,
-            "parameters": {**usual, **self.values},
-            "size": self.sizes,
-            "parts": parts,
-            "copies": min(self.copies, 12),
-            "instead_of": self.instead_of,
-        }
+        request = Request(
+            kind=self.family.name,
+            parameters={**usual, **self.values},
+            size=self.sizes,  # type: ignore[arg-type]  # by names of `_DIMENSIONS`
+            parts=parts,
+            copies=self.copies,
+            instead_of=self.instead_of,
+        )
         return Sentence(
             text=self.text,
-            request=request_of(values, source="text"),
-            faults=(*self.faults, *([f"copies: {self.copies} asked for, at most 12"] if self.copies > 12 else [])),
+            request=request.checked(),
+            faults=tuple(self.faults),
             unread=tuple(filter(None, self.unread)),
             harmless=tuple(self.harmless),
             notes=tuple(self.notes),

@@ -102,7 +102,7 @@ class _Fields(BaseModel):
 class PartRequest(_Fields):
     """Facts about the parts of one name; what is absent is left as the kind has it."""
 
-    count: int | None = Field(None, ge=0, le=200)
+    count: int | None = Field(None, ge=0, le=1_000_000)
     at_least: int | None = Field(None, ge=1, le=60)
     size: Sizes = Field({}, description="[m], or text with a unit: 80 cm.")
     color: Color = Field(None, description=f"One of {', '.join(COLORS)}.")
