@@ -20,7 +20,10 @@ from tools.imports import ROOT
 
 CEILINGS = ROOT / "tests" / "ceilings.toml"
 TOPS = ("kinematify", "validation", "envs", "configs", "benchmarks", "tests", "tools")
-DRAWINGS = {("kinematify", "generate", "kinds"): "kinds", ("benchmarks", "fit", "variants"): "variants"}
+DRAWINGS: dict[tuple[str, ...], str] = {
+    ("kinematify", "generate", "kinds"): "kinds",
+    ("benchmarks", "fit", "variants"): "variants",
+}
 OUTSIDE = ("benchmarks", "tests", "tools", "kinds", "variants")
 """Packages that no user installs, and kinds; all others are the product."""
 LAYOUT = {

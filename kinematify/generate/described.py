@@ -76,10 +76,6 @@ class CountParameters(BaseModel):
     """How people call its parts, besides their names."""
     details: dict[str, int] = Field({})
     """Word for what belongs to a part -> how many of it there are."""
-    motions: dict[str, tuple[str, ...]] = Field({})
-    """Name of a part without its number -> words for how it moves that hold already: ``drop-down``, ``folds``."""
-    holds_already: tuple[str, ...] = ()
-    """Other words that are true of it as it is: ``adjustable height``, ``two-door``."""
 
     category: Name
     counts: dict[str, dict[str, Any]] = Field({})
@@ -94,8 +90,6 @@ class CountParameters(BaseModel):
             parameters=details_of(self.details) + tuple(_repeated(word, said) for word, said in self.counts.items()),
             material=material,
             part_words=self.part_words,
-            motions=self.motions,
-            holds_already=self.holds_already,
             build=build,
         )
 

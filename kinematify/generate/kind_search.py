@@ -90,7 +90,7 @@ def words_of_names() -> frozenset[str]:
 
 
 def repaired(word: str, known: frozenset[str]) -> str | None:
-    """Return the known word that a word means with one wrong, missing or additional letter, or letters in another order.
+    """Return the known word that a word means with one letter wrong, missing or added, or its letters in another order.
 
     None if there is none.
     """

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     "disc brake",
     words="disk brake, brake disc, brake caliper",
     part_words={"disc": "disk, rotor", "pad": "brake pad, piston"},
-    motions={"disc": "turns, spins", "pad": "slides, clamps"},
     radius=length(0.08, 0.18),
 )
 def disc_brake(b: ObjectBuilder, radius: float) -> None:
@@ -56,7 +55,6 @@ def disc_brake(b: ObjectBuilder, radius: float) -> None:
     "shock absorber",
     words="damper, gas spring, gas strut, suspension strut, telescopic damper",
     part_words={"rod": "piston, piston rod"},
-    motions={"rod": "slides, extends, compresses"},
     length=length(0.2, 0.5),
 )
 def shock_absorber(b: ObjectBuilder, length: float) -> None:
@@ -83,7 +81,6 @@ def shock_absorber(b: ObjectBuilder, length: float) -> None:
     "steering rack",
     words="rack and pinion steering, steering gear",
     part_words={"rack": "tie rod, bar", "pinion": "shaft, steering shaft"},
-    motions={"rack": "slides", "pinion": "turns"},
     length=length(0.5, 1.0),
 )
 def steering_rack(b: ObjectBuilder, length: float) -> None:
@@ -121,7 +118,6 @@ def steering_rack(b: ObjectBuilder, length: float) -> None:
     "camshaft",
     words="cam shaft, valve train, cam shaft with followers",
     part_words={"shaft": "cam", "follower": "valve, tappet, pushrod, lifter"},
-    motions={"shaft": "turns, spins", "follower": "slides, moves up and down"},
     followers=whole(1, 6),
 )
 def camshaft(b: ObjectBuilder, followers: int) -> None:
@@ -165,7 +161,6 @@ def camshaft(b: ObjectBuilder, followers: int) -> None:
     "gear pump",
     words="hydraulic gear pump",
     part_words={"drive_gear": "shaft, driver", "idler": "gear"},
-    motions={"drive_gear": "turns, spins", "idler": "turns, spins"},
     radius=length(0.03, 0.06),
 )
 def gear_pump(b: ObjectBuilder, radius: float) -> None:

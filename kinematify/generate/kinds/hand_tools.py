@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     "jigsaw",
     words="jig saw, sabre saw, saber saw, fretsaw machine",
     part_words={"base_plate": "base, shoe, sole, plate, sole plate", "trigger": "switch"},
-    motions={"blade": "moves up and down", "base_plate": "tilts", "trigger": "presses"},
     size=length(0.9, 1.2),
 )
 def jigsaw(b: ObjectBuilder, size: float) -> None:
@@ -55,7 +54,6 @@ def jigsaw(b: ObjectBuilder, size: float) -> None:
     "hedge trimmer",
     words="hedge cutter, electric hedge trimmer",
     part_words={"blade": "knife, cutter bar", "trigger": "switch", "handle": "front handle"},
-    motions={"blade": "slides, moves back and forth", "trigger": "presses"},
     details={"handle": 2, "guard": 1},
     length=length(0.45, 0.7),
 )
@@ -88,7 +86,6 @@ def hedge_trimmer(b: ObjectBuilder, length: float) -> None:
     "nail gun",
     words="nailer, brad nailer",
     part_words={"magazine": "nail magazine", "nose": "muzzle, safety tip"},
-    motions={"trigger": "presses", "nose": "pushes in", "magazine": "slides out"},
     size=length(0.8, 1.2),
 )
 def nail_gun(b: ObjectBuilder, size: float) -> None:
@@ -114,7 +111,6 @@ def nail_gun(b: ObjectBuilder, size: float) -> None:
     "glue gun",
     words="hot glue gun, craft glue gun",
     part_words={"trigger": "lever"},
-    motions={"trigger": "presses, squeezes", "stick": "slides in"},
     size=length(0.8, 1.3),
 )
 def glue_gun(b: ObjectBuilder, size: float) -> None:
@@ -137,7 +133,6 @@ def glue_gun(b: ObjectBuilder, size: float) -> None:
     "scroll saw",
     words="fret saw, fretsaw, scrollsaw",
     part_words={"knob": "speed knob, dial", "arm": "upper arm"},
-    motions={"blade": "moves up and down", "table": "tilts", "knob": "turns"},
     size=length(0.9, 1.2),
 )
 def scroll_saw(b: ObjectBuilder, size: float) -> None:
@@ -182,7 +177,6 @@ def scroll_saw(b: ObjectBuilder, size: float) -> None:
     "paint roller",
     words="roller brush, lint roller, wallpaper roller, ink roller, brayer",
     part_words={"roller": "roll, sleeve"},
-    motions={"roller": "turns, rolls, spins"},
     details={"handle": 1},
     width=length(0.1, 0.28),
 )
@@ -206,7 +200,6 @@ def paint_roller(b: ObjectBuilder, width: float) -> None:
     words="ratchet screwdriver, ratcheting screwdriver",
     title="ratchet screwdriver",
     part_words={"shaft": "bit, blade, tip, shank"},
-    motions={"shaft": "turns, spins, rotates"},
     details={"handle": 1},
     length=length(0.16, 0.3),
 )
@@ -231,7 +224,6 @@ def ratchet_screwdriver(b: ObjectBuilder, length: float) -> None:
     "folding ruler",
     words="folding rule, carpenter's rule, zigzag rule, zigzag ruler, folding yardstick",
     part_words={"segment": "link, section, element, piece"},
-    motions={"segment": "folds, unfolds, turns"},
     segments=whole(2, 10),
 )
 def folding_ruler(b: ObjectBuilder, segments: int) -> None:
@@ -253,7 +245,6 @@ def folding_ruler(b: ObjectBuilder, segments: int) -> None:
     "sextant",
     words="octant, quadrant",
     part_words={"arm": "index arm, index, alidade"},
-    motions={"arm": "turns, swings"},
     details={"telescope": 1, "arc": 1},
     size=length(0.9, 1.2),
 )

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 @kind(
     "door handle",
     words="lever handle, door lever, door fitting, lock fitting",
-    motions={"lever": "turns, presses down", "key": "turns"},
     size=length(0.9, 1.1),
 )
 def lever_handle(b: ObjectBuilder, size: float) -> None:
@@ -42,7 +41,6 @@ def lever_handle(b: ObjectBuilder, size: float) -> None:
 @kind(
     "mortise lock",
     words="rim lock, latch lock, dead lock, spring latch, night latch",
-    motions={"bolt": "slides out, slides", "latch": "slides in", "knob": "turns"},
     size=length(0.8, 1.2),
 )
 def mortise_lock(b: ObjectBuilder, size: float) -> None:
@@ -79,7 +77,6 @@ def mortise_lock(b: ObjectBuilder, size: float) -> None:
 @kind(
     "portcullis",
     words="castle gate, sluice gate, flood gate",
-    motions={"gate": "slides up, lifts, rises"},
     width=length(1.2, 3.0),
     height=length(1.5, 3.0),
 )
@@ -107,7 +104,6 @@ def portcullis(b: ObjectBuilder, width: float, height: float) -> None:
 @kind(
     "sliding gate",
     words="driveway gate, sliding driveway gate, yard sliding gate, factory gate",
-    motions={"gate": "slides, sliding", "wheel": "spins"},
     width=length(2.0, 4.0),
     height=length(1.0, 1.8),
 )
@@ -135,7 +131,6 @@ def sliding_gate(b: ObjectBuilder, width: float, height: float) -> None:
 @kind(
     "air conditioner",
     words="split air conditioner, air conditioning unit",
-    motions={"louver": "tilts, swings", "flap": "folds", "panel": "folds up"},
     width=length(0.5, 0.9),
     number=whole(1, 4, words="louver, louvre, vane, flap"),
 )
@@ -157,7 +152,6 @@ def air_conditioner(b: ObjectBuilder, width: float, number: int) -> None:
 @kind(
     "cat litter box",
     words="litter box, litter tray, pet carrier, cat carrier",
-    motions={"flap": "swings", "lid": "lifts off, opens", "door": "swings"},
     width=length(0.35, 0.55),
 )
 def litter_box(b: ObjectBuilder, width: float) -> None:
@@ -174,7 +168,6 @@ def litter_box(b: ObjectBuilder, width: float) -> None:
 @kind(
     "hamster cage",
     words="rodent cage, hamster cage with a wheel, mouse cage",
-    motions={"wheel": "spins, turns", "door": "swings open"},
     width=length(0.4, 0.7),
 )
 def hamster_cage(b: ObjectBuilder, width: float) -> None:
@@ -209,7 +202,6 @@ def hamster_cage(b: ObjectBuilder, width: float) -> None:
 @kind(
     "coat rack",
     words="coat hook rail, hook rail, coat hooks, folding hooks, wall hooks, key rack",
-    motions={"hook": "folds down, folds", "arm": "swivels"},
     number=whole(1, 12, default=4, usual=(3, 6), words="hook, peg"),
 )
 def coat_rack(b: ObjectBuilder, number: int) -> None:
@@ -224,7 +216,6 @@ def coat_rack(b: ObjectBuilder, number: int) -> None:
 @kind(
     "shoe cabinet",
     words="shoe rack, tilting shoe cabinet, tilt out cabinet, laundry cabinet, tilt out bin",
-    motions={"flap": "tilts out, folds down, tips"},
     rows=whole(1, 4, words="flap, compartment"),
     width=length(0.5, 0.9),
     drawers=whole(0, 1, default=0, words="drawer"),
@@ -268,7 +259,6 @@ def shoe_cabinet(b: ObjectBuilder, rows: int, width: float, drawers: int) -> Non
 @kind(
     "picture frame",
     words="photo frame, easel frame, table mirror, makeup mirror with a stand",
-    motions={"stand": "folds out, folds"},
     width=length(0.1, 0.3),
     height=length(0.13, 0.4),
 )
@@ -287,7 +277,6 @@ def picture_frame(b: ObjectBuilder, width: float, height: float) -> None:
 @kind(
     "extension table",
     words=("extending table, extendable table, dining table with extension, telescopic table, pull out table"),
-    motions={"leaf": "slides out, pulls out, extends"},
     width=length(1.0, 1.8),
     depth=length(0.7, 1.0),
 )
@@ -311,7 +300,6 @@ def extension_table(b: ObjectBuilder, width: float, depth: float) -> None:
 @kind(
     "coffee table with drawer",
     words="lift top coffee table, coffee table, lift top table",
-    motions={"top": "lifts up, rises", "drawer": "pulls out"},
     width=length(0.8, 1.2),
     depth=length(0.5, 0.7),
 )
@@ -331,7 +319,7 @@ def lift_top_table(b: ObjectBuilder, width: float, depth: float) -> None:
     b.slide("top", parent="body", axis=Z, upper=0.12)
 
 
-@kind("glider chair", words="hanging chair", motions={"seat": "rocks, swings"}, size=length(0.9, 1.1))
+@kind("glider chair", words="hanging chair", size=length(0.9, 1.1))
 def glider_chair(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -358,7 +346,6 @@ def glider_chair(b: ObjectBuilder, size: float) -> None:
 @kind(
     "adjustable headrest chair",
     words="airline seat row, train seat, bus seat, gaming seat, car seat with a headrest",
-    motions={"back": "reclines, tilts, folds", "headrest": "height adjustable, slides up", "tray": "folds down"},
     size=length(0.9, 1.1),
 )
 def passenger_seat(b: ObjectBuilder, size: float) -> None:
@@ -386,7 +373,6 @@ def passenger_seat(b: ObjectBuilder, size: float) -> None:
 @kind(
     "parking bollard",
     words="bollard, traffic post, folding parking post, parking lock",
-    motions={"post": "rises, lifts, folds down"},
     height=length(0.5, 0.9),
 )
 def parking_bollard(b: ObjectBuilder, height: float) -> None:
@@ -410,7 +396,6 @@ def parking_bollard(b: ObjectBuilder, height: float) -> None:
 @kind(
     "atm",
     words="cash machine, cash dispenser",
-    motions={"flap": "flips up", "key": "presses", "door": "swings open"},
     width=length(0.5, 0.8),
 )
 def atm(b: ObjectBuilder, width: float) -> None:
@@ -445,7 +430,6 @@ def atm(b: ObjectBuilder, width: float) -> None:
 @kind(
     "shipping container",
     words="cargo container, container with doors, freight container, storage container, sea container",
-    motions={"door": "swings open", "bar": "turns"},
 )
 def shipping_container(b: ObjectBuilder) -> None:
     size = b.pick(0.1, 1)
@@ -480,7 +464,6 @@ def shipping_container(b: ObjectBuilder) -> None:
 @kind(
     "butterfly valve",
     words="throttle valve, throttle body, damper flap, air damper",
-    motions={"disc": "turns, tips", "lever": "turns"},
     radius=length(0.03, 0.12),
 )
 def butterfly_valve(b: ObjectBuilder, radius: float) -> None:
@@ -507,7 +490,6 @@ def butterfly_valve(b: ObjectBuilder, radius: float) -> None:
 @kind(
     "fire hydrant",
     words="hydrant, standpipe, garden hydrant",
-    motions={"cap": "lifts off, turns", "valve": "turns"},
     size=length(0.9, 1.1),
 )
 def fire_hydrant(b: ObjectBuilder, size: float) -> None:
@@ -548,7 +530,6 @@ def fire_hydrant(b: ObjectBuilder, size: float) -> None:
         "clothesline, rotary clothes line, clothes line, rotary washing line, washing line, rotary airer, "
         "rotary dryer, hills hoist"
     ),
-    motions={"head": "turns, rotates, spins", "arm": "folds"},
     height=length(1.5, 2.0),
 )
 def rotary_clothesline(b: ObjectBuilder, height: float) -> None:
@@ -585,7 +566,6 @@ def rotary_clothesline(b: ObjectBuilder, height: float) -> None:
 @kind(
     "birdcage",
     words="bird cage, parrot cage, aviary, budgie cage",
-    motions={"swing": "swings, hangs"},
     width=length(0.3, 0.6),
     height=length(0.45, 0.9),
 )

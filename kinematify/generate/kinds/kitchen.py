@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 @kind(
     "moka pot",
     words="stovetop espresso maker, espresso pot",
-    motions={"lid": "flips up, tilts back"},
     radius=length(0.035, 0.055),
     height=length(0.13, 0.2),
 )
@@ -45,7 +44,6 @@ def moka_pot(b: ObjectBuilder, radius: float, height: float) -> None:
 @kind(
     "rice cooker",
     words="multi cooker, slow cooker, crock pot",
-    motions={"lid": "flips open, hinged", "handle": "swings"},
     radius=length(0.11, 0.15),
     height=length(0.18, 0.26),
 )
@@ -66,7 +64,6 @@ def rice_cooker(b: ObjectBuilder, radius: float, height: float) -> None:
 @kind(
     "pressure cooker",
     words="canner",
-    motions={"lid": "lifts off", "weight": "lifts"},
     radius=length(0.1, 0.14),
     height=length(0.15, 0.24),
 )
@@ -92,7 +89,6 @@ def pressure_cooker(b: ObjectBuilder, radius: float, height: float) -> None:
 @kind(
     "air fryer",
     words="hot air fryer",
-    motions={"basket": "pulls out, slides out"},
     width=length(0.24, 0.32),
     height=length(0.28, 0.36),
 )
@@ -136,7 +132,6 @@ def air_fryer(b: ObjectBuilder, width: float, height: float) -> None:
 @kind(
     "juicer",
     words="centrifugal juicer, juice extractor",
-    motions={"pusher": "slides out, lifts out", "lid": "lifts off"},
     radius=length(0.08, 0.11),
     height=length(0.2, 0.28),
 )
@@ -165,7 +160,7 @@ def juicer(b: ObjectBuilder, radius: float, height: float) -> None:
     knob(b, "switch", parent="body", at=(radius, 0, 0.3 * height), radius=0.02, high=0.015, out=X, reach=2.0)
 
 
-@kind("rotary grater", words="drum grater", motions={"handle": "folds, turns"}, size=length(0.9, 1.3))
+@kind("rotary grater", words="drum grater", size=length(0.9, 1.3))
 def rotary_grater(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -186,7 +181,7 @@ def rotary_grater(b: ObjectBuilder, size: float) -> None:
     b.spin("drum", parent="body", axis=-Y, pivot=p(0, 0, 0.1))
 
 
-@kind("apple peeler", words="apple corer, crank peeler", motions={"blade": "swings"}, size=length(0.9, 1.2))
+@kind("apple peeler", words="apple corer, crank peeler", size=length(0.9, 1.2))
 def apple_peeler(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -215,7 +210,7 @@ def apple_peeler(b: ObjectBuilder, size: float) -> None:
     b.hinge("arm", parent="base", axis=Z, pivot=p(-0.1, 0.02, 0.02), upper=0.8, lower=0)
 
 
-@kind("teapot", words="tea pot, coffee jug, pitcher with lid", motions={"lid": "lifts off"}, radius=length(0.06, 0.1))
+@kind("teapot", words="tea pot, coffee jug, pitcher with lid", radius=length(0.06, 0.1))
 def teapot(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
@@ -256,7 +251,6 @@ def teapot(b: ObjectBuilder, radius: float) -> None:
 @kind(
     "butter dish",
     words="cheese dome, cake dome, cloche",
-    motions={"cover": "lifts off"},
     width=length(0.16, 0.3),
     depth=length(0.1, 0.2),
 )
@@ -275,7 +269,6 @@ def butter_dish(b: ObjectBuilder, width: float, depth: float) -> None:
 @kind(
     "travel mug",
     words="thermo mug, insulated mug, beer stein, tankard, coffee mug with lid",
-    motions={"lid": "flips open, hinged"},
     radius=length(0.035, 0.05),
     height=length(0.13, 0.2),
 )
@@ -296,7 +289,7 @@ def travel_mug(b: ObjectBuilder, radius: float, height: float) -> None:
     b.hinge("lid", parent="mug", axis=-X, pivot=(0, radius + 0.008, height + 0.001), upper=1.9)
 
 
-@kind("egg slicer", words="egg cutter", motions={"frame": "folds up, hinged"}, size=length(0.9, 1.2))
+@kind("egg slicer", words="egg cutter", size=length(0.9, 1.2))
 def egg_slicer(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -316,7 +309,6 @@ def egg_slicer(b: ObjectBuilder, size: float) -> None:
 @kind(
     "lazy susan",
     words="rotating tray, turntable tray, serving turntable, revolving tray",
-    motions={"tray": "turns, rotates, swivels"},
     radius=length(0.15, 0.35),
 )
 def lazy_susan(b: ObjectBuilder, radius: float) -> None:
@@ -331,9 +323,7 @@ def lazy_susan(b: ObjectBuilder, radius: float) -> None:
     b.spin("tray", parent="base", axis=Z, pivot=(0, 0, 0))
 
 
-@kind(
-    "spice rack", words="spice carousel, revolving spice rack", motions={"rack": "turns, rotates"}, number=whole(4, 8)
-)
+@kind("spice rack", words="spice carousel, revolving spice rack", number=whole(4, 8))
 def spice_rack(b: ObjectBuilder, number: int) -> None:
     b.part(
         "base", b.cylinder(0.08, (0, 0, 0), (0, 0, 0.02)), b.cylinder(0.008, (0, 0, 0.01), (0, 0, 0.3)), material="wood"
@@ -356,7 +346,7 @@ def spice_rack(b: ObjectBuilder, number: int) -> None:
     b.spin("rack", parent="base", axis=Z, pivot=(0, 0, 0))
 
 
-@kind("kitchen timer", words="wind up timer, cooking timer", motions={"dial": "turns"}, radius=length(0.03, 0.05))
+@kind("kitchen timer", words="wind up timer, cooking timer", radius=length(0.03, 0.05))
 def kitchen_timer(b: ObjectBuilder, radius: float) -> None:
     b.part("base", b.cone(radius, 0.9 * radius, (0, 0, 0), (0, 0, 0.4 * radius)), color="white")
     b.part(
@@ -371,7 +361,6 @@ def kitchen_timer(b: ObjectBuilder, radius: float) -> None:
 @kind(
     "range hood",
     words="cooker hood, extractor hood, kitchen hood, extractor fan",
-    motions={"visor": "pulls out, slides out, extends"},
     width=length(0.6, 0.9),
     depth=length(0.3, 0.5),
 )
@@ -401,7 +390,6 @@ def range_hood(b: ObjectBuilder, width: float, depth: float) -> None:
 @kind(
     "popcorn machine",
     words="popcorn cart, popcorn maker",
-    motions={"door": "swings open", "kettle": "tips"},
     width=length(0.4, 0.6),
 )
 def popcorn_machine(b: ObjectBuilder, width: float) -> None:
@@ -444,7 +432,6 @@ def popcorn_machine(b: ObjectBuilder, width: float) -> None:
 @kind(
     "deep fryer",
     words="chip pan, fryer",
-    motions={"basket": "lifts out", "lid": "lifts off"},
     width=length(0.2, 0.3),
     depth=length(0.25, 0.35),
 )
@@ -468,7 +455,6 @@ def deep_fryer(b: ObjectBuilder, width: float, depth: float) -> None:
 @kind(
     "water filter jug",
     words="measuring jug with lid, milk jug with lid, water pitcher",
-    motions={"lid": "flips up"},
     radius=length(0.05, 0.07),
     height=length(0.2, 0.27),
 )
@@ -489,7 +475,6 @@ def water_filter_jug(b: ObjectBuilder, radius: float, height: float) -> None:
 @kind(
     "beer tap",
     words="draft tower, beer dispenser, wine tap",
-    motions={"handle": "tips, pulls"},
     height=length(0.3, 0.45),
     number=whole(1, 4, words="handle, tap, lever"),
 )
@@ -520,7 +505,6 @@ def beer_tap(b: ObjectBuilder, height: float, number: int) -> None:
 @kind(
     "cocktail shaker",
     words="shaker, protein shaker",
-    motions={"lid": "lifts off", "cap": "lifts off"},
     radius=length(0.035, 0.05),
     height=length(0.15, 0.22),
 )
@@ -546,7 +530,6 @@ def cocktail_shaker(b: ObjectBuilder, radius: float, height: float) -> None:
 @kind(
     "toaster oven",
     words="mini oven, countertop oven, reflow oven",
-    motions={"door": "drop-down, drops down, folds down", "rack": "slides out"},
     width=length(0.35, 0.5),
     depth=length(0.28, 0.36),
     height=length(0.2, 0.28),
@@ -582,7 +565,6 @@ def toaster_oven(b: ObjectBuilder, width: float, depth: float, height: float) ->
 @kind(
     "cooktop",
     words="hob, gas hob, hot plate, burner, stove top, camping stove, gas burner, portable stove",
-    motions={"knob": "turns"},
     number=whole(1, 6, words="knob, burner, dial"),
 )
 def cooktop(b: ObjectBuilder, number: int) -> None:
@@ -607,7 +589,6 @@ def cooktop(b: ObjectBuilder, number: int) -> None:
 @kind(
     "chest freezer",
     words="ice cream freezer, deep freezer, ice chest",
-    motions={"lid": "lifts up, opens upward"},
     width=length(0.6, 1.4),
     depth=length(0.5, 0.7),
     height=length(0.7, 0.9),
@@ -631,7 +612,6 @@ def chest_freezer(b: ObjectBuilder, width: float, depth: float, height: float) -
 @kind(
     "paper towel holder",
     words="kitchen roll holder, paper roll stand",
-    motions={"roll": "turns, spins"},
     height=length(0.24, 0.32),
 )
 def paper_towel_holder(b: ObjectBuilder, height: float) -> None:
@@ -649,7 +629,6 @@ def paper_towel_holder(b: ObjectBuilder, height: float) -> None:
 @kind(
     "tortilla press",
     words="burger press, hamburger press, dumpling press",
-    motions={"plate": "folds up", "lever": "folds over"},
     radius=length(0.08, 0.13),
 )
 def tortilla_press(b: ObjectBuilder, radius: float) -> None:
@@ -682,7 +661,6 @@ def tortilla_press(b: ObjectBuilder, radius: float) -> None:
 @kind(
     "rotisserie",
     words="roasting spit, kebab grill, doner grill, barbecue spit",
-    motions={"spit": "turns"},
     width=length(0.6, 1.2),
 )
 def rotisserie(b: ObjectBuilder, width: float) -> None:
@@ -710,7 +688,6 @@ def rotisserie(b: ObjectBuilder, width: float) -> None:
 @kind(
     "can crusher",
     words="bottle crusher, can press",
-    motions={"lever": "pulls down", "ram": "slides"},
     height=length(0.3, 0.45),
 )
 def can_crusher(b: ObjectBuilder, height: float) -> None:
@@ -737,7 +714,6 @@ def can_crusher(b: ObjectBuilder, height: float) -> None:
 @kind(
     "cutlery box",
     words="tea box, sewing box with tray",
-    motions={"lid": "flips up, hinged", "tray": "lifts out"},
     width=length(0.2, 0.35),
     depth=length(0.15, 0.25),
 )
@@ -772,7 +748,6 @@ def cutlery_box(b: ObjectBuilder, width: float, depth: float) -> None:
 @kind(
     "shower cabin",
     words="shower cubicle, shower stall, shower enclosure, corner shower",
-    motions={"door": "slides, sliding", "lever": "turns"},
     width=length(0.8, 1.1),
     height=length(1.9, 2.1),
 )
@@ -804,7 +779,6 @@ def shower_cabin(b: ObjectBuilder, width: float, height: float) -> None:
 @kind(
     "bathtub",
     words="bath tub, walk in bathtub, bath",
-    motions={"door": "swings open", "tap": "turns"},
     length=length(1.3, 1.7),
     width=length(0.65, 0.8),
     height=length(0.5, 0.6),
@@ -844,7 +818,6 @@ def walk_in_bathtub(b: ObjectBuilder, length: float, width: float, height: float
 @kind(
     "washbasin",
     words="sink, wash basin, kitchen sink, bathroom sink, hand basin",
-    motions={"plug": "lifts out", "lever": "turns", "spout": "swivels"},
     width=length(0.45, 0.8),
     depth=length(0.38, 0.5),
 )
@@ -881,7 +854,7 @@ def washbasin(b: ObjectBuilder, width: float, depth: float) -> None:
     b.hinge("lever", parent="spout", axis=Z, pivot=(0, 0.38 * depth, 1.02), upper=0.7, lower=-0.7)
 
 
-@kind("bidet", motions={"lever": "turns"}, height=length(0.38, 0.42))
+@kind("bidet", height=length(0.38, 0.42))
 def bidet(b: ObjectBuilder, height: float) -> None:
     b.part(
         "bowl",
@@ -908,7 +881,6 @@ def bidet(b: ObjectBuilder, height: float) -> None:
 @kind(
     "medicine cabinet",
     words="mirror cabinet, bathroom cabinet, first aid cabinet",
-    motions={"door": "swings open"},
     width=length(0.35, 0.8),
     height=length(0.5, 0.7),
 )
@@ -939,7 +911,6 @@ def medicine_cabinet(b: ObjectBuilder, width: float, height: float) -> None:
 @kind(
     "laundry basket",
     words="laundry hamper, linen bin, laundry bin",
-    motions={"lid": "lifts up, hinged"},
     width=length(0.35, 0.5),
     height=length(0.5, 0.7),
 )
@@ -963,7 +934,7 @@ def laundry_basket(b: ObjectBuilder, width: float, height: float) -> None:
     )
 
 
-@kind("toilet brush", words="toilet brush set, brush holder", motions={"brush": "lifts out"}, height=length(0.35, 0.45))
+@kind("toilet brush", words="toilet brush set, brush holder", height=length(0.35, 0.45))
 def toilet_brush(b: ObjectBuilder, height: float) -> None:
     b.part("holder", b.cylinder(0.05, (0, 0, 0), (0, 0, 0.14)), material="steel")
     b.cut("holder", b.cylinder(0.046, (0, 0, 0.006), (0, 0, 1)))
@@ -980,7 +951,6 @@ def toilet_brush(b: ObjectBuilder, height: float) -> None:
 @kind(
     "toilet paper holder",
     words="toilet roll holder, paper roll holder",
-    motions={"roll": "turns, spins", "cover": "flips up"},
     size=length(0.9, 1.2),
 )
 def toilet_paper_holder(b: ObjectBuilder, size: float) -> None:
@@ -1006,7 +976,6 @@ def toilet_paper_holder(b: ObjectBuilder, size: float) -> None:
 @kind(
     "paper towel dispenser",
     words="towel dispenser, tissue dispenser",
-    motions={"cover": "swings open, folds down", "lever": "presses"},
     width=length(0.25, 0.35),
     height=length(0.3, 0.42),
 )
@@ -1029,7 +998,6 @@ def paper_towel_dispenser(b: ObjectBuilder, width: float, height: float) -> None
 @kind(
     "electric toothbrush",
     words="toothbrush",
-    motions={"head": "spins, turns", "button": "presses"},
     size=length(0.9, 1.1),
 )
 def electric_toothbrush(b: ObjectBuilder, size: float) -> None:
@@ -1047,7 +1015,7 @@ def electric_toothbrush(b: ObjectBuilder, size: float) -> None:
     b.slide("button", parent="handle", axis=Y, upper=0.002)
 
 
-@kind("hair straightener", words="flat iron", motions={"arm": "folds, opens"}, length=length(0.22, 0.3))
+@kind("hair straightener", words="flat iron", length=length(0.22, 0.3))
 def hair_straightener(b: ObjectBuilder, length: float) -> None:
     b.part(
         "arm",
@@ -1065,7 +1033,7 @@ def hair_straightener(b: ObjectBuilder, length: float) -> None:
     b.hinge("other_arm", parent="arm", axis=-Y, pivot=(-0.005, 0, 0.023), upper=0.35)
 
 
-@kind("safety razor", words="wet razor, disposable razor", motions={"head": "pivots, tilts"}, length=length(0.1, 0.14))
+@kind("safety razor", words="wet razor, disposable razor", length=length(0.1, 0.14))
 def safety_razor(b: ObjectBuilder, length: float) -> None:
     b.part(
         "handle",
@@ -1085,7 +1053,6 @@ def safety_razor(b: ObjectBuilder, length: float) -> None:
 @kind(
     "folding grab bar",
     words="support rail, toilet rail, folding support bar",
-    motions={"bar": "folds up, drop-down, folds down"},
     length=length(0.6, 0.85),
 )
 def folding_grab_bar(b: ObjectBuilder, length: float) -> None:
@@ -1111,7 +1078,6 @@ def folding_grab_bar(b: ObjectBuilder, length: float) -> None:
 @kind(
     "shower seat",
     words="folding wall seat, tip up seat",
-    motions={"seat": "folds up, folds down, drop-down"},
     width=length(0.35, 0.6),
     depth=length(0.3, 0.45),
 )
@@ -1129,7 +1095,6 @@ def shower_seat(b: ObjectBuilder, width: float, depth: float) -> None:
 @kind(
     "hand dryer",
     words="jet dryer, wall dryer",
-    motions={"button": "presses", "nozzle": "swivels"},
     width=length(0.22, 0.32),
 )
 def hand_dryer(b: ObjectBuilder, width: float) -> None:

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 @kind(
     "pipette",
     words="micropipette, dropper, pipettor",
-    motions={"plunger": "presses", "ejector": "presses"},
     size=length(0.9, 1.1),
 )
 def pipette(b: ObjectBuilder, size: float) -> None:
@@ -51,7 +50,6 @@ def pipette(b: ObjectBuilder, size: float) -> None:
 @kind(
     "fume hood",
     words="fume cupboard, safety cabinet, biosafety cabinet, laminar flow cabinet",
-    motions={"sash": "slides up, lifts", "door": "swings open"},
     width=length(1.0, 1.8),
     height=length(2.1, 2.4),
 )
@@ -97,7 +95,6 @@ def fume_hood(b: ObjectBuilder, width: float, height: float) -> None:
 @kind(
     "incubator",
     words="drying oven, drying cabinet, sterilizer, laboratory oven, climate chamber",
-    motions={"door": "swings open", "rack": "slides out, pulls out"},
     width=length(0.5, 0.8),
     height=length(0.6, 1.0),
     number=whole(1, 8, default=3, usual=(2, 4), words="rack, shelf, tray"),
@@ -136,7 +133,6 @@ def incubator(b: ObjectBuilder, width: float, height: float, number: int) -> Non
 @kind(
     "autoclave",
     words="vacuum chamber, steam sterilizer, pressure vessel",
-    motions={"door": "swings open", "wheel": "turns"},
     radius=length(0.2, 0.35),
     length=length(0.5, 0.9),
 )
@@ -177,7 +173,6 @@ def autoclave(b: ObjectBuilder, radius: float, length: float) -> None:
 @kind(
     "rotary evaporator",
     words="rotavap",
-    motions={"flask": "turns, spins", "lift": "lifts", "arm": "tilts"},
     size=length(0.9, 1.1),
 )
 def rotary_evaporator(b: ObjectBuilder, size: float) -> None:
@@ -217,7 +212,7 @@ def rotary_evaporator(b: ObjectBuilder, size: float) -> None:
     b.spin("flask", parent="arm", axis=vector(-0.43, 0, -0.9), pivot=p(-0.012, 0, 0.385))
 
 
-@kind("hot plate stirrer", words="magnetic stirrer", motions={"knob": "turns"}, width=length(0.14, 0.22))
+@kind("hot plate stirrer", words="magnetic stirrer", width=length(0.14, 0.22))
 def hot_plate_stirrer(b: ObjectBuilder, width: float) -> None:
     b.part(
         "case",
@@ -237,7 +232,6 @@ def hot_plate_stirrer(b: ObjectBuilder, width: float) -> None:
 @kind(
     "analytical balance",
     words="laboratory balance, precision scale, draft shield balance",
-    motions={"door": "slides, sliding", "pan": "sinks"},
     size=length(0.9, 1.1),
 )
 def analytical_balance(b: ObjectBuilder, size: float) -> None:
@@ -266,7 +260,6 @@ def analytical_balance(b: ObjectBuilder, size: float) -> None:
 @kind(
     "retort stand",
     words="lab stand, clamp stand, ring stand, burette stand, burette",
-    motions={"clamp": "height adjustable, slides", "arm": "turns"},
     height=length(0.5, 0.8),
 )
 def retort_stand(b: ObjectBuilder, height: float) -> None:
@@ -289,7 +282,6 @@ def retort_stand(b: ObjectBuilder, height: float) -> None:
 @kind(
     "glove box",
     words="glovebox, sandblasting cabinet, sand blaster, isolator",
-    motions={"door": "swings open", "window": "swings up"},
     width=length(0.6, 1.1),
 )
 def glove_box(b: ObjectBuilder, width: float) -> None:
@@ -324,7 +316,7 @@ def glove_box(b: ObjectBuilder, width: float) -> None:
     )
 
 
-@kind("petri dish", motions={"lid": "lifts off"}, radius=length(0.04, 0.14), height=length(0.015, 0.09))
+@kind("petri dish", radius=length(0.04, 0.14), height=length(0.015, 0.09))
 def petri_dish(b: ObjectBuilder, radius: float, height: float) -> None:
     b.part("dish", b.cylinder(radius, (0, 0, 0), (0, 0, height)), material="glass")
     b.cut("dish", b.cylinder(0.95 * radius, (0, 0, 0.002), (0, 0, 1)))
@@ -336,7 +328,6 @@ def petri_dish(b: ObjectBuilder, radius: float, height: float) -> None:
 @kind(
     "test tube rack",
     words="test tube stand, tube rack",
-    motions={"tube": "lifts out"},
     number=whole(1, 12, default=5, usual=(3, 8), words="tube, test tube"),
 )
 def test_tube_rack(b: ObjectBuilder, number: int) -> None:
@@ -358,7 +349,6 @@ def test_tube_rack(b: ObjectBuilder, number: int) -> None:
 @kind(
     "pcr machine",
     words="thermocycler, spectrometer, photometer, blood analyzer, lab analyzer",
-    motions={"lid": "flips up, hinged", "drawer": "slides out"},
     width=length(0.22, 0.35),
 )
 def pcr_machine(b: ObjectBuilder, width: float) -> None:
@@ -392,7 +382,6 @@ def pcr_machine(b: ObjectBuilder, width: float) -> None:
 @kind(
     "optical bench",
     words="optical rail, linear rail, lens rail, slide rail, motorized slider",
-    motions={"carriage": "slides, sliding"},
     number=whole(1, 4, words="carriage, rider"),
     length=length(0.6, 1.4),
 )
@@ -423,7 +412,7 @@ def optical_bench(b: ObjectBuilder, number: int, length: float) -> None:
         b.slide(f"carriage_{k}", parent="rail", axis=X, upper=step / 2 - 0.04, lower=-step / 2 + 0.04)
 
 
-@kind("bunsen burner", motions={"collar": "turns", "valve": "turns"}, size=length(0.9, 1.2))
+@kind("bunsen burner", size=length(0.9, 1.2))
 def bunsen_burner(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -442,7 +431,6 @@ def bunsen_burner(b: ObjectBuilder, size: float) -> None:
 @kind(
     "syringe pump",
     words="infusion pump, dosing pump",
-    motions={"carriage": "slides", "knob": "turns", "clamp": "swings"},
     size=length(0.9, 1.1),
 )
 def syringe_pump(b: ObjectBuilder, size: float) -> None:
@@ -463,7 +451,6 @@ def syringe_pump(b: ObjectBuilder, size: float) -> None:
 @kind(
     "operating table",
     words=("surgery table, massage table, treatment table, exam bed, dissection table, tattoo bed, physiotherapy bed"),
-    motions={"column": "height adjustable, lifts", "back": "tilts, folds up", "leg_section": "folds down"},
     height=length(0.7, 0.85),
 )
 def operating_table(b: ObjectBuilder, height: float) -> None:
@@ -491,7 +478,6 @@ def operating_table(b: ObjectBuilder, height: float) -> None:
 @kind(
     "surgical lamp",
     words="operating lamp, ceiling lamp with arms, dental lamp, ceiling mounted lamp",
-    motions={"arm": "swivels, turns", "head": "tilts"},
     size=length(0.8, 1.1),
 )
 def surgical_lamp(b: ObjectBuilder, size: float) -> None:
@@ -535,7 +521,6 @@ def surgical_lamp(b: ObjectBuilder, size: float) -> None:
 @kind(
     "overbed table",
     words="bed table, laptop table, side table on wheels, c table",
-    motions={"top": "height adjustable, tilts", "caster": "swivels"},
     width=length(0.6, 0.85),
     height=length(0.6, 0.75),
 )
@@ -563,7 +548,6 @@ def overbed_table(b: ObjectBuilder, width: float, height: float) -> None:
 @kind(
     "crutch",
     words="walking stick, walking cane, cane, trekking pole, ski pole, hiking pole",
-    motions={"tube": "telescopes, height adjustable, extends"},
     height=length(0.8, 1.1),
 )
 def crutch(b: ObjectBuilder, height: float) -> None:
@@ -587,7 +571,6 @@ def crutch(b: ObjectBuilder, height: float) -> None:
 @kind(
     "pill box",
     words="pill organizer, weekly pill box",
-    motions={"lid": "flips up, hinged"},
     number=whole(4, 8, words="lid, compartment"),
 )
 def pill_box(b: ObjectBuilder, number: int) -> None:
@@ -602,7 +585,6 @@ def pill_box(b: ObjectBuilder, number: int) -> None:
 @kind(
     "hemostat",
     words="surgical clamp, artery forceps, needle holder",
-    motions={"arm": "opens, scissors"},
     size=length(0.8, 1.3),
 )
 def hemostat(b: ObjectBuilder, size: float) -> None:
@@ -630,7 +612,6 @@ def hemostat(b: ObjectBuilder, size: float) -> None:
 @kind(
     "ct scanner",
     words="mri scanner, mri machine, tomograph, x ray scanner",
-    motions={"table": "slides, slides in"},
     size=length(0.9, 1.1),
 )
 def ct_scanner(b: ObjectBuilder, size: float) -> None:
@@ -661,7 +642,6 @@ def ct_scanner(b: ObjectBuilder, size: float) -> None:
 @kind(
     "c arm",
     words="x ray machine, x-ray machine, mobile x ray",
-    motions={"arc": "turns, tilts", "carriage": "slides", "caster": "swivels"},
     size=length(0.9, 1.1),
 )
 def c_arm(b: ObjectBuilder, size: float) -> None:
@@ -702,7 +682,6 @@ def c_arm(b: ObjectBuilder, size: float) -> None:
 @kind(
     "infant incubator",
     words="baby incubator, neonatal incubator",
-    motions={"hood": "lifts up, hinged", "door": "swings open"},
     width=length(0.6, 1.0),
 )
 def infant_incubator(b: ObjectBuilder, width: float) -> None:
@@ -744,7 +723,6 @@ def infant_incubator(b: ObjectBuilder, width: float) -> None:
 @kind(
     "prosthetic leg",
     words="knee prosthesis, leg prosthesis, artificial leg",
-    motions={"shin": "bends, folds", "foot": "tilts"},
     size=length(0.9, 1.1),
 )
 def prosthetic_leg(b: ObjectBuilder, size: float) -> None:

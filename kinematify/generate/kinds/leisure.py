@@ -706,7 +706,6 @@ def flower_press(b: ObjectBuilder, width: float, z: float) -> None:
     words="upright piano, pianola, player piano, harpsichord, clavichord",
     title="upright piano",
     part_words={"lid": "fallboard, keyboard lid, key cover, cover", "key": "white key, piano key"},
-    motions={"lid": "folds back", "key": "presses down", "pedal": "presses down"},
     details={"leg": 2},
     keys=whole(7, 52, default=28, words="key, white key", help="White keys."),
 )
@@ -755,7 +754,6 @@ def piano(b: ObjectBuilder, keys: int) -> None:
     "grand piano",
     words="baby grand piano, concert piano, concert grand, wing piano",
     part_words={"lid": "top, wing, cover", "key": "white key, piano key"},
-    motions={"lid": "lifts", "key": "presses down", "pedal": "presses down"},
     details={"leg": 3},
     keys=whole(7, 52, default=28, words="key, white key", help="White keys."),
 )

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 @kind(
     "typewriter",
     words="mechanical typewriter",
-    motions={"carriage": "slides, sliding", "key": "presses", "knob": "turns"},
     number=whole(5, 9, words="key"),
 )
 def typewriter(b: ObjectBuilder, number: int) -> None:
@@ -52,7 +51,6 @@ def typewriter(b: ObjectBuilder, number: int) -> None:
 @kind(
     "cash register",
     words="till, cash drawer",
-    motions={"drawer": "pulls out, slides out", "display": "tilts"},
     width=length(0.36, 0.46),
 )
 def cash_register(b: ObjectBuilder, width: float) -> None:
@@ -92,7 +90,6 @@ def cash_register(b: ObjectBuilder, width: float) -> None:
 @kind(
     "rotary phone",
     words="telephone, rotary telephone, dial telephone, landline phone, old phone",
-    motions={"handset": "lifts off", "dial": "turns"},
     size=length(0.9, 1.1),
 )
 def rotary_phone(b: ObjectBuilder, size: float) -> None:
@@ -136,7 +133,6 @@ def rotary_phone(b: ObjectBuilder, size: float) -> None:
 @kind(
     "radio",
     words="transistor radio, portable radio",
-    motions={"antenna": "telescopes, extends", "handle": "swings, folds", "knob": "turns"},
     width=length(0.18, 0.3),
     height=length(0.12, 0.18),
 )
@@ -178,7 +174,6 @@ def radio(b: ObjectBuilder, width: float, height: float) -> None:
 @kind(
     "boombox",
     words="cassette recorder, cassette player, tape recorder, cd player",
-    motions={"door": "folds down, opens", "handle": "swings", "knob": "turns"},
     width=length(0.4, 0.6),
 )
 def boombox(b: ObjectBuilder, width: float) -> None:
@@ -211,9 +206,7 @@ def boombox(b: ObjectBuilder, width: float) -> None:
     )
 
 
-@kind(
-    "dvd player", words="blu ray player, disc player", motions={"tray": "slides out, ejects"}, width=length(0.3, 0.43)
-)
+@kind("dvd player", words="blu ray player, disc player", width=length(0.3, 0.43))
 def dvd_player(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
@@ -238,7 +231,6 @@ def dvd_player(b: ObjectBuilder, width: float) -> None:
 @kind(
     "game controller",
     words="gamepad, game pad, controller",
-    motions={"stick": "tilts", "button": "presses"},
     size=length(0.9, 1.1),
 )
 def game_controller(b: ObjectBuilder, size: float) -> None:
@@ -275,7 +267,6 @@ def game_controller(b: ObjectBuilder, size: float) -> None:
 @kind(
     "joystick",
     words="flight stick, control stick",
-    motions={"frame": "tilts", "stick": "tilts", "trigger": "presses"},
     height=length(0.14, 0.22),
 )
 def joystick(b: ObjectBuilder, height: float) -> None:
@@ -304,7 +295,6 @@ def joystick(b: ObjectBuilder, height: float) -> None:
 @kind(
     "computer mouse",
     words="mouse, gaming mouse",
-    motions={"wheel": "spins, scrolls", "button": "presses"},
     size=length(0.9, 1.1),
 )
 def computer_mouse(b: ObjectBuilder, size: float) -> None:
@@ -327,7 +317,6 @@ def computer_mouse(b: ObjectBuilder, size: float) -> None:
 @kind(
     "computer keyboard",
     words="pc keyboard, keyboard",
-    motions={"key": "presses", "foot": "folds out"},
     columns=whole(6, 10),
     rows=whole(2, 4),
 )
@@ -352,7 +341,6 @@ def computer_keyboard(b: ObjectBuilder, columns: int, rows: int) -> None:
 @kind(
     "server rack",
     words="rack cabinet, network cabinet, server cabinet",
-    motions={"door": "swings open", "server": "slides out, pulls out"},
     number=whole(3, 6, words="server, drawer, unit"),
     height=length(1.2, 2.0),
 )
@@ -393,7 +381,6 @@ def server_rack(b: ObjectBuilder, number: int, height: float) -> None:
 @kind(
     "projector screen",
     words="projection screen, roll up screen",
-    motions={"screen": "pulls down, pulls up"},
     width=length(1.2, 2.2),
 )
 def projector_screen(b: ObjectBuilder, width: float) -> None:
@@ -411,7 +398,6 @@ def projector_screen(b: ObjectBuilder, width: float) -> None:
 @kind(
     "microphone stand",
     words="mic stand, boom stand, microphone",
-    motions={"boom": "tilts", "post": "height adjustable, telescopes, extends"},
     height=length(0.9, 1.2),
 )
 def microphone_stand(b: ObjectBuilder, height: float) -> None:
@@ -446,7 +432,6 @@ def microphone_stand(b: ObjectBuilder, height: float) -> None:
 @kind(
     "flip chart",
     words="flipchart",
-    motions={"sheet": "flips over, folds over"},
     width=length(0.6, 0.75),
     height=length(1.6, 1.9),
 )
@@ -474,7 +459,6 @@ def flip_chart(b: ObjectBuilder, width: float, height: float) -> None:
 @kind(
     "desk calendar",
     words="date block, perpetual calendar",
-    motions={"knob": "turns", "drum": "turns"},
     size=length(0.9, 1.2),
 )
 def desk_calendar(b: ObjectBuilder, size: float) -> None:
@@ -500,7 +484,6 @@ def desk_calendar(b: ObjectBuilder, size: float) -> None:
 @kind(
     "rubber stamp",
     words="self inking stamp, stamp, date stamp",
-    motions={"handle": "presses down", "wheel": "turns"},
     width=length(0.04, 0.07),
 )
 def rubber_stamp(b: ObjectBuilder, width: float) -> None:
@@ -523,7 +506,6 @@ def rubber_stamp(b: ObjectBuilder, width: float) -> None:
 @kind(
     "clapperboard",
     words="film clapper, film slate, clapper board",
-    motions={"clapper": "snaps shut, hinged"},
     width=length(0.25, 0.35),
 )
 def film_clapper(b: ObjectBuilder, width: float) -> None:
@@ -537,7 +519,6 @@ def film_clapper(b: ObjectBuilder, width: float) -> None:
 @kind(
     "movie camera",
     words="cine camera, super 8 camera",
-    motions={"crank": "turns", "lens": "turns", "door": "swings open"},
     size=length(0.9, 1.2),
 )
 def movie_camera(b: ObjectBuilder, size: float) -> None:
@@ -576,7 +557,6 @@ def movie_camera(b: ObjectBuilder, size: float) -> None:
 @kind(
     "flashlight",
     words="torch, pocket torch, pocket lamp, penlight",
-    motions={"switch": "slides", "head": "turns, twists"},
     length=length(0.12, 0.22),
 )
 def flashlight(b: ObjectBuilder, length: float) -> None:
@@ -602,7 +582,6 @@ def flashlight(b: ObjectBuilder, length: float) -> None:
 @kind(
     "lantern",
     words="oil lamp, kerosene lamp, storm lantern, camping lantern, hurricane lamp",
-    motions={"handle": "swings", "knob": "turns", "cap": "lifts off"},
     radius=length(0.05, 0.08),
     height=length(0.2, 0.3),
 )
@@ -649,7 +628,6 @@ def lantern(b: ObjectBuilder, radius: float, height: float) -> None:
 @kind(
     "floor lamp",
     words="standard lamp, standing lamp, reading floor lamp",
-    motions={"head": "tilts", "arm": "tilts, swivels"},
     height=length(1.3, 1.7),
 )
 def floor_lamp(b: ObjectBuilder, height: float) -> None:
@@ -675,7 +653,7 @@ def floor_lamp(b: ObjectBuilder, height: float) -> None:
     b.hinge("head", parent="arm", axis=Y, pivot=(0.4, 0, height + 0.12), upper=0.5, lower=-0.5)
 
 
-@kind("clip lamp", words="clamp lamp, clip on lamp", motions={"clip": "opens", "head": "tilts"}, size=length(0.9, 1.2))
+@kind("clip lamp", words="clamp lamp, clip on lamp", size=length(0.9, 1.2))
 def clip_lamp(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -703,7 +681,6 @@ def clip_lamp(b: ObjectBuilder, size: float) -> None:
 @kind(
     "chess clock",
     words="game clock, chess timer",
-    motions={"button": "presses", "rocker": "tips"},
     width=length(0.16, 0.22),
 )
 def chess_clock(b: ObjectBuilder, width: float) -> None:
@@ -736,7 +713,6 @@ def chess_clock(b: ObjectBuilder, width: float) -> None:
 @kind(
     "drafting table",
     words="drawing table, drawing board, art table, architect table",
-    motions={"board": "tilts, tilt adjustable"},
     width=length(0.8, 1.3),
     depth=length(0.55, 0.8),
 )
@@ -763,7 +739,6 @@ def drafting_table(b: ObjectBuilder, width: float, depth: float) -> None:
 @kind(
     "lectern",
     words="pulpit, speaker desk, music stand, note stand, podium, book stand",
-    motions={"desk": "tilts", "post": "height adjustable, extends"},
     height=length(0.95, 1.2),
 )
 def lectern(b: ObjectBuilder, height: float) -> None:
@@ -795,7 +770,6 @@ def lectern(b: ObjectBuilder, height: float) -> None:
 @kind(
     "binding machine",
     words="comb binder",
-    motions={"lever": "pulls down", "drawer": "pulls out"},
     width=length(0.32, 0.42),
 )
 def binding_machine(b: ObjectBuilder, width: float) -> None:
@@ -822,7 +796,6 @@ def binding_machine(b: ObjectBuilder, width: float) -> None:
 @kind(
     "visor helmet",
     words="welding helmet, motorcycle helmet, helmet with visor, knight helmet, face shield",
-    motions={"visor": "flips up, folds up", "strap": "tilts"},
     size=length(0.9, 1.1),
 )
 def visor_helmet(b: ObjectBuilder, size: float) -> None:
@@ -848,7 +821,6 @@ def visor_helmet(b: ObjectBuilder, size: float) -> None:
 @kind(
     "tablet stand",
     words="phone stand, phone holder, book holder, cookbook stand",
-    motions={"back": "tilts, folds", "foot": "swivels"},
     size=length(0.9, 1.3),
 )
 def tablet_stand(b: ObjectBuilder, size: float) -> None:
@@ -874,7 +846,6 @@ def tablet_stand(b: ObjectBuilder, size: float) -> None:
 @kind(
     "drawer box",
     words="desk organizer, desk tidy, parts cabinet, small parts organizer, craft organizer",
-    motions={"drawer": "pulls out, slides out"},
     rows=whole(2, 4),
     columns=whole(1, 3),
 )
@@ -898,7 +869,6 @@ def desk_organizer(b: ObjectBuilder, rows: int, columns: int) -> None:
 @kind(
     "intercom",
     words="door phone, doorbell, door bell button, entry phone",
-    motions={"button": "presses", "handset": "lifts off"},
     number=whole(1, 5, words="button"),
 )
 def intercom(b: ObjectBuilder, number: int) -> None:
@@ -930,7 +900,6 @@ def intercom(b: ObjectBuilder, number: int) -> None:
 @kind(
     "usb stick",
     words="flash drive, thumb drive, memory stick",
-    motions={"cover": "swivels, turns"},
     size=length(0.9, 1.2),
 )
 def usb_stick(b: ObjectBuilder, size: float) -> None:
@@ -954,7 +923,6 @@ def usb_stick(b: ObjectBuilder, size: float) -> None:
 @kind(
     "work light",
     words="flood lamp on a tripod, stage lamp stand",
-    motions={"head": "tilts, turns"},
     height=length(1.2, 2.0),
 )
 def work_light(b: ObjectBuilder, height: float) -> None:

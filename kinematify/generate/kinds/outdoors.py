@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     "swing seat",
     words="garden swing seat, hollywood swing, canopy swing, swing bench",
     part_words={"seat": "bench, swing"},
-    motions={"seat": "swings, hangs", "canopy": "tilts"},
     details={"roof": 1, "frame": 1},
     width=length(1.2, 2.0),
 )
@@ -53,7 +52,6 @@ def swing_seat(b: ObjectBuilder, width: float) -> None:
     "pull-along duck",
     words="pull along duck, duck on wheels, toy duck",
     part_words={"wing": "wings"},
-    motions={"wing": "flaps, swings", "wheel": "turns, rolls", "head": "nods"},
     details={"beak": 1},
     size=length(0.8, 1.5),
 )
@@ -98,7 +96,6 @@ def pull_along_duck(b: ObjectBuilder, size: float) -> None:
     "dumbwaiter",
     words="dumb waiter, service lift, food lift, goods lift",
     part_words={"car": "cabin, platform, lift", "door": "hatch, sash, shutter"},
-    motions={"car": "slides, moves up and down, rises", "door": "slides up"},
     height=length(1.8, 3.0),
 )
 def dumbwaiter(b: ObjectBuilder, height: float) -> None:
@@ -140,12 +137,6 @@ def dumbwaiter(b: ObjectBuilder, height: float) -> None:
         "turntable": "turret, cab",
         "lower_boom": "boom, lower arm",
         "upper_boom": "upper arm, boom",
-    },
-    motions={
-        "turntable": "turns, rotates",
-        "lower_boom": "tilts, lifts",
-        "upper_boom": "tilts, lifts",
-        "wheel": "turns, rolls",
     },
     size=length(0.8, 1.2),
 )
@@ -205,7 +196,6 @@ def cherry_picker(b: ObjectBuilder, size: float) -> None:
     "capstan",
     words="ship's capstan, anchor capstan",
     part_words={"drum": "barrel, head", "bar": "lever"},
-    motions={"drum": "turns, spins"},
     size=length(0.7, 1.3),
 )
 def capstan(b: ObjectBuilder, size: float) -> None:
@@ -234,7 +224,6 @@ def capstan(b: ObjectBuilder, size: float) -> None:
     "porthole",
     words="ship's window, bullseye window, port light",
     part_words={"window": "glass, cover, lid, door", "dog": "screw, wing nut, clamp, latch"},
-    motions={"window": "swings open, opens", "dog": "turns"},
     radius=length(0.12, 0.25),
 )
 def porthole(b: ObjectBuilder, radius: float) -> None:
@@ -271,7 +260,6 @@ def porthole(b: ObjectBuilder, radius: float) -> None:
     "puppet theatre",
     words="puppet theater, puppet stage, toy theatre, toy theater",
     part_words={"curtain": "drape"},
-    motions={"curtain": "slides open, slides, opens"},
     width=length(0.5, 1.2),
 )
 def puppet_theatre(b: ObjectBuilder, width: float) -> None:
@@ -301,7 +289,6 @@ def puppet_theatre(b: ObjectBuilder, width: float) -> None:
     "dish rack",
     words="dish drainer, draining rack, plate rack",
     part_words={"tray": "drip tray, drawer"},
-    motions={"tray": "slides out, slides"},
     details={"wire": 1},
     width=length(0.35, 0.55),
 )
@@ -326,7 +313,6 @@ def dish_rack(b: ObjectBuilder, width: float) -> None:
     "bread slicer",
     words="meat slicer, food slicer, bread cutter, ham slicer, bacon slicer, slicing machine",
     part_words={"blade": "disc, knife", "carriage": "sled, table", "crank": "hand crank, handle"},
-    motions={"blade": "turns, spins", "carriage": "slides", "crank": "turns"},
     size=length(0.9, 1.3),
 )
 def bread_slicer(b: ObjectBuilder, size: float) -> None:
@@ -366,7 +352,6 @@ def bread_slicer(b: ObjectBuilder, size: float) -> None:
     "laboratory stirrer",
     words="lab stirrer, overhead stirrer, stirrer, stirring machine, agitator",
     part_words={"paddle": "impeller, propeller, blade, stirrer shaft", "head": "motor, drive"},
-    motions={"paddle": "turns, spins, rotates", "head": "slides, height adjustable"},
     size=length(0.9, 1.3),
 )
 def laboratory_stirrer(b: ObjectBuilder, size: float) -> None:

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 @kind(
     "spinning top",
     words="humming top, toy top",
-    motions={"handle": "slides, pumps", "top": "spins, turns"},
     size=length(0.9, 1.3),
 )
 def spinning_top(b: ObjectBuilder, size: float) -> None:
@@ -60,7 +59,6 @@ def spinning_top(b: ObjectBuilder, size: float) -> None:
 @kind(
     "rubiks cube",
     words="rubik's cube, magic cube, puzzle cube, twisty puzzle",
-    motions={"layer": "turns, rotates, twists"},
     size=length(0.05, 0.07),
 )
 def rubiks_cube(b: ObjectBuilder, size: float) -> None:
@@ -78,7 +76,7 @@ def rubiks_cube(b: ObjectBuilder, size: float) -> None:
         b.spin(name, parent="middle_layer", axis=Z, pivot=(0, 0, 0))
 
 
-@kind("crossbow", motions={"trigger": "pulls", "slide": "slides"}, size=length(0.8, 1.2))
+@kind("crossbow", size=length(0.8, 1.2))
 def crossbow(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -98,7 +96,6 @@ def crossbow(b: ObjectBuilder, size: float) -> None:
 @kind(
     "fishing rod",
     words="fishing reel, fishing pole",
-    motions={"crank": "turns, reels", "tip": "telescopes, extends", "spool": "turns"},
     length=length(0.8, 1.4),
 )
 def fishing_rod(b: ObjectBuilder, length: float) -> None:
@@ -128,7 +125,6 @@ def fishing_rod(b: ObjectBuilder, length: float) -> None:
 @kind(
     "elliptical trainer",
     words="cross trainer, elliptical, air walker",
-    motions={"handle": "swings", "pedal": "swings"},
     size=length(0.9, 1.1),
 )
 def elliptical_trainer(b: ObjectBuilder, size: float) -> None:
@@ -161,7 +157,6 @@ def elliptical_trainer(b: ObjectBuilder, size: float) -> None:
 @kind(
     "weight bench",
     words="bench press, training bench, sit up bench, barbell rack",
-    motions={"back": "folds up, tilts, adjustable", "bar": "lifts"},
     size=length(0.9, 1.1),
 )
 def weight_bench(b: ObjectBuilder, size: float) -> None:
@@ -190,7 +185,7 @@ def weight_bench(b: ObjectBuilder, size: float) -> None:
     b.slide("bar", parent="frame", axis=Z, upper=0.3)
 
 
-@kind("dart board cabinet", words="dartboard", motions={"door": "swings open, folds open"}, width=length(0.45, 0.6))
+@kind("dart board cabinet", words="dartboard", width=length(0.45, 0.6))
 def dartboard_cabinet(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
@@ -209,7 +204,6 @@ def dartboard_cabinet(b: ObjectBuilder, width: float) -> None:
 @kind(
     "pinball machine",
     words="pinball, flipper machine",
-    motions={"flipper": "flips, swings", "plunger": "pulls out", "button": "presses"},
     width=length(0.45, 0.6),
     length=length(0.9, 1.2),
 )
@@ -273,7 +267,6 @@ def pinball_machine(b: ObjectBuilder, width: float, length: float) -> None:
 @kind(
     "arcade machine",
     words="arcade cabinet, video game machine",
-    motions={"joystick": "tilts", "button": "presses", "door": "swings open"},
     width=length(0.5, 0.7),
     number=whole(1, 10, default=4, usual=(3, 6), words="button"),
 )
@@ -321,7 +314,6 @@ def arcade_machine(b: ObjectBuilder, width: float, number: int) -> None:
 @kind(
     "table tennis table",
     words="ping pong table, folding table tennis table",
-    motions={"half": "folds up", "leg": "folds"},
     size=length(0.8, 1.0),
 )
 def table_tennis_table(b: ObjectBuilder, size: float) -> None:
@@ -344,7 +336,7 @@ def table_tennis_table(b: ObjectBuilder, size: float) -> None:
         b.hinge(f"half_{k}", parent="frame", axis=s * X, pivot=p(0, s * 0.005, 0.76), upper=1.5)
 
 
-@kind("roulette", words="roulette wheel", motions={"wheel": "spins, turns"}, radius=length(0.2, 0.5))
+@kind("roulette", words="roulette wheel", radius=length(0.2, 0.5))
 def roulette(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
@@ -369,7 +361,7 @@ def roulette(b: ObjectBuilder, radius: float) -> None:
     b.spin("wheel", parent="bowl", axis=Z, pivot=(0, 0, 0))
 
 
-@kind("accordion", words="squeezebox", motions={"key": "presses", "half": "slides, pulls out"}, size=length(0.8, 1.1))
+@kind("accordion", words="squeezebox", size=length(0.8, 1.1))
 def accordion(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -393,7 +385,6 @@ def accordion(b: ObjectBuilder, size: float) -> None:
 @kind(
     "trumpet",
     words="cornet, flugelhorn, bugle with valves",
-    motions={"valve": "presses", "slide": "slides"},
     size=length(0.9, 1.1),
 )
 def trumpet(b: ObjectBuilder, size: float) -> None:
@@ -420,7 +411,7 @@ def trumpet(b: ObjectBuilder, size: float) -> None:
         b.slide(f"valve_{k}", parent="body", axis=-Z, upper=0.014)
 
 
-@kind("trombone", words="slide trombone", motions={"slide": "slides, extends"}, size=length(0.9, 1.1))
+@kind("trombone", words="slide trombone", size=length(0.9, 1.1))
 def trombone(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -448,7 +439,6 @@ def trombone(b: ObjectBuilder, size: float) -> None:
 @kind(
     "guitar",
     words="acoustic guitar, ukulele, electric guitar, bass guitar",
-    motions={"peg": "turns"},
     size=length(0.5, 1.0),
     number=whole(4, 6, words="peg, string, tuner"),
 )
@@ -484,7 +474,7 @@ def guitar(b: ObjectBuilder, size: float, number: int) -> None:
         )
 
 
-@kind("bass drum", words="drum, kick drum", motions={"pedal": "presses", "beater": "swings"}, radius=length(0.22, 0.32))
+@kind("bass drum", words="drum, kick drum", radius=length(0.22, 0.32))
 def bass_drum(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
@@ -514,7 +504,6 @@ def bass_drum(b: ObjectBuilder, radius: float) -> None:
 @kind(
     "synthesizer",
     words="electronic keyboard, keytar, midi keyboard, music keyboard",
-    motions={"key": "presses", "knob": "turns", "wheel": "turns"},
     number=whole(7, 12, words="key"),
 )
 def synthesizer(b: ObjectBuilder, number: int) -> None:
@@ -534,7 +523,7 @@ def synthesizer(b: ObjectBuilder, number: int) -> None:
         knob(b, f"knob_{k}", parent="case", at=(x, 0.2, 0.07), radius=0.01, high=0.014, out=Z, reach=4.7)
 
 
-@kind("castanets", words="castanet", motions={"shell": "claps, hinged"}, radius=length(0.03, 0.05))
+@kind("castanets", words="castanet", radius=length(0.03, 0.05))
 def castanets(b: ObjectBuilder, radius: float) -> None:
     r = radius
     b.part(
@@ -559,7 +548,6 @@ def castanets(b: ObjectBuilder, radius: float) -> None:
 @kind(
     "nodding dog",
     words="bobblehead, bobble head, nodding toy, wobbly toy",
-    motions={"head": "nods, bobs"},
     size=length(0.8, 1.3),
 )
 def bobblehead(b: ObjectBuilder, size: float) -> None:
@@ -582,9 +570,7 @@ def bobblehead(b: ObjectBuilder, size: float) -> None:
     b.hinge("head", parent="body", axis=X, pivot=p(0, 0, 0.092), upper=0.12, lower=-0.12)
 
 
-@kind(
-    "gymnast toy", words="acrobat toy, high bar toy", motions={"figure": "turns, swings, flips"}, size=length(0.8, 1.4)
-)
+@kind("gymnast toy", words="acrobat toy, high bar toy", size=length(0.8, 1.4))
 def acrobat_toy(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -610,7 +596,6 @@ def acrobat_toy(b: ObjectBuilder, size: float) -> None:
 @kind(
     "claw machine",
     words="crane game, claw crane game, grabber machine",
-    motions={"carriage": "slides", "claw": "lifts", "finger": "opens"},
     width=length(0.6, 0.9),
 )
 def claw_machine(b: ObjectBuilder, width: float) -> None:
@@ -653,7 +638,6 @@ def claw_machine(b: ObjectBuilder, width: float) -> None:
 @kind(
     "spyglass",
     words="monocular, pirate telescope, hand telescope",
-    motions={"tube": "turns, telescopes, extends"},
     length=length(0.12, 0.25),
     radius=length(0.015, 0.03),
 )

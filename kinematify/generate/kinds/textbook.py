@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 @kind(
     "scissor lift",
     words="scissor lift table, scissor jack, scissor platform, lab jack, pantograph lift",
-    motions={"arm": "folds, rises", "platform": "lifts, rises, height adjustable"},
     length=length(0.3, 1.4),
     stages=whole(1, 4),
 )
@@ -115,7 +114,6 @@ def scissor_lift(b: ObjectBuilder, length: float, stages: int) -> None:
 @kind(
     "crank slider",
     words="slider crank, piston engine, single cylinder engine, crank mechanism, reciprocating engine",
-    motions={"crank": "turns, spins", "piston": "slides, reciprocates"},
     radius=length(0.03, 0.08),
 )
 def crank_slider(b: ObjectBuilder, radius: float) -> None:
@@ -163,7 +161,6 @@ def crank_slider(b: ObjectBuilder, radius: float) -> None:
 @kind(
     "four bar linkage",
     words="four-bar linkage, four bar mechanism, parallelogram linkage, parallel linkage",
-    motions={"crank": "turns, swings", "rocker": "swings"},
     length=length(0.12, 0.3),
 )
 def four_bar_linkage(b: ObjectBuilder, length: float) -> None:
@@ -205,7 +202,6 @@ def four_bar_linkage(b: ObjectBuilder, length: float) -> None:
 @kind(
     "geneva drive",
     words="geneva mechanism, maltese cross, indexing mechanism",
-    motions={"wheel": "turns, indexes", "driver": "turns, spins"},
     radius=length(0.04, 0.09),
     slots=whole(4, 8, default=4, words="slot, station, position"),
 )
@@ -262,7 +258,6 @@ def geneva_drive(b: ObjectBuilder, radius: float, slots: int) -> None:
 @kind(
     "orrery",
     words="planetarium model, solar system model, tellurion, model of the solar system",
-    motions={"planet": "orbits, turns, circles"},
     number=whole(3, 8, words="planet"),
     size=length(0.8, 1.4),
 )
@@ -299,7 +294,6 @@ def orrery(b: ObjectBuilder, number: int, size: float) -> None:
 @kind(
     "scotch yoke",
     words="slotted link mechanism",
-    motions={"yoke": "slides, reciprocates", "crank": "turns, spins"},
     radius=length(0.03, 0.08),
 )
 def scotch_yoke(b: ObjectBuilder, radius: float) -> None:
@@ -343,7 +337,6 @@ def scotch_yoke(b: ObjectBuilder, radius: float) -> None:
 @kind(
     "rack and pinion",
     words="rack and pinion gear, gear rack",
-    motions={"rack": "slides", "pinion": "turns, spins"},
     radius=length(0.02, 0.05),
 )
 def rack_and_pinion(b: ObjectBuilder, radius: float) -> None:
@@ -387,7 +380,6 @@ def rack_and_pinion(b: ObjectBuilder, radius: float) -> None:
 @kind(
     "worm gear",
     words="worm drive, worm and wheel",
-    motions={"worm": "turns, spins", "wheel": "turns"},
     radius=length(0.03, 0.08),
 )
 def worm_gear(b: ObjectBuilder, radius: float) -> None:
@@ -427,7 +419,6 @@ def worm_gear(b: ObjectBuilder, radius: float) -> None:
 @kind(
     "bevel gears",
     words="bevel gear, right angle gearbox, angle drive",
-    motions={"gear": "turns, spins"},
     radius=length(0.03, 0.08),
 )
 def bevel_gears(b: ObjectBuilder, radius: float) -> None:
@@ -466,7 +457,6 @@ def bevel_gears(b: ObjectBuilder, radius: float) -> None:
         "planetary gear set, planetary gearbox, planetary gear train, epicyclic gearbox, epicyclic gear, sun "
         "and planet gear"
     ),
-    motions={"sun": "turns, spins", "carrier": "turns", "planet": "turns, spins"},
     radius=length(0.04, 0.1),
     number=whole(3, 4, words="planet, planet gear"),
 )
@@ -512,7 +502,6 @@ def planetary_gear(b: ObjectBuilder, radius: float, number: int) -> None:
 @kind(
     "cam and follower",
     words="cam follower, cam mechanism",
-    motions={"cam": "turns, spins", "follower": "lifts, slides"},
     radius=length(0.03, 0.06),
 )
 def cam_follower(b: ObjectBuilder, radius: float) -> None:
@@ -549,7 +538,6 @@ def cam_follower(b: ObjectBuilder, radius: float) -> None:
 @kind(
     "ratchet and pawl",
     words="ratchet wheel, ratchet mechanism",
-    motions={"pawl": "tips, swings", "wheel": "turns"},
     radius=length(0.03, 0.09),
     number=whole(8, 16, words="tooth, teeth"),
 )
@@ -598,7 +586,6 @@ def ratchet(b: ObjectBuilder, radius: float, number: int) -> None:
 @kind(
     "universal joint",
     words="cardan joint, u joint, hooke joint",
-    motions={"yoke": "tilts, turns", "cross": "tilts"},
     radius=length(0.015, 0.05),
 )
 def universal_joint(b: ObjectBuilder, radius: float) -> None:
@@ -634,7 +621,6 @@ def universal_joint(b: ObjectBuilder, radius: float) -> None:
 @kind(
     "double pendulum",
     words="chaos pendulum",
-    motions={"arm": "swings, turns"},
     number=whole(1, 3, words="arm, link, pendulum, bob"),
     length=length(0.15, 0.4),
 )
@@ -667,7 +653,6 @@ def double_pendulum(b: ObjectBuilder, number: int, length: float) -> None:
 @kind(
     "cart pole",
     words="inverted pendulum, cart and pole, pendulum on a cart",
-    motions={"cart": "slides", "pole": "swings, tips"},
     length=length(0.8, 1.6),
 )
 def cart_pole(b: ObjectBuilder, length: float) -> None:
@@ -700,7 +685,6 @@ def cart_pole(b: ObjectBuilder, length: float) -> None:
 @kind(
     "furuta pendulum",
     words="rotary pendulum, rotary inverted pendulum",
-    motions={"arm": "turns, swings", "pendulum": "swings"},
     size=length(0.8, 1.3),
 )
 def furuta_pendulum(b: ObjectBuilder, size: float) -> None:
@@ -736,7 +720,6 @@ def furuta_pendulum(b: ObjectBuilder, size: float) -> None:
 @kind(
     "ball and plate",
     words="tilting plate, labyrinth game, marble labyrinth, tilting maze, gimbal table, two axis gimbal",
-    motions={"frame": "tilts", "plate": "tilts"},
     width=length(0.25, 0.45),
 )
 def ball_and_plate(b: ObjectBuilder, width: float) -> None:
@@ -774,7 +757,6 @@ def ball_and_plate(b: ObjectBuilder, width: float) -> None:
 @kind(
     "centrifugal governor",
     words="flyball governor, watt governor",
-    motions={"spindle": "turns, spins", "arm": "swings, flies out"},
     size=length(0.8, 1.3),
 )
 def centrifugal_governor(b: ObjectBuilder, size: float) -> None:
@@ -808,7 +790,6 @@ def centrifugal_governor(b: ObjectBuilder, size: float) -> None:
 @kind(
     "belt drive",
     words="pulley and belt, timing belt drive, chain drive, two pulleys",
-    motions={"pulley": "turns, spins"},
     radius=length(0.04, 0.12),
 )
 def belt_drive(b: ObjectBuilder, radius: float) -> None:
@@ -838,7 +819,6 @@ def belt_drive(b: ObjectBuilder, radius: float) -> None:
 @kind(
     "lead screw",
     words="leadscrew, ball screw, linear screw drive, screw drive, linear actuator stage, spindle drive",
-    motions={"nut": "slides, travels", "screw": "turns, spins"},
     length=length(0.25, 0.7),
 )
 def lead_screw(b: ObjectBuilder, length: float) -> None:
@@ -870,7 +850,6 @@ def lead_screw(b: ObjectBuilder, length: float) -> None:
 @kind(
     "pump jack",
     words="oil pump jack, beam engine, oil pump, nodding donkey",
-    motions={"beam": "rocks, tips", "crank": "turns, spins"},
     size=length(0.5, 1.5),
 )
 def pump_jack(b: ObjectBuilder, size: float) -> None:

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 @kind(
     "train wagon",
     words="freight car, box wagon, railway wagon, goods wagon, cattle car",
-    motions={"door": "slides, sliding", "wheel": "spins"},
 )
 def train_wagon(b: ObjectBuilder) -> None:
     size = b.pick(0.1, 1)
@@ -52,7 +51,6 @@ def train_wagon(b: ObjectBuilder) -> None:
 @kind(
     "cable car",
     words="gondola lift, ski lift, cable car cabin, funicular cabin",
-    motions={"door": "slides, sliding", "cabin": "swings", "wheel": "turns"},
 )
 def cable_car(b: ObjectBuilder) -> None:
     size = b.pick(0.1, 1)
@@ -91,7 +89,8 @@ def cable_car(b: ObjectBuilder) -> None:
 
 
 @kind(
-    "horse carriage", words="carriage, stagecoach", motions={"wheel": "spins", "door": "swings open", "shaft": "tilts"}
+    "horse carriage",
+    words="carriage, stagecoach",
 )
 def horse_carriage(b: ObjectBuilder) -> None:
     size = b.pick(0.15, 1)
@@ -132,7 +131,10 @@ def horse_carriage(b: ObjectBuilder) -> None:
     b.hinge("shaft", parent="body", axis=-Y, pivot=p(0.92, 0, 0.8), upper=0.4, lower=-0.2)
 
 
-@kind("snowmobile", words="snow scooter", motions={"handlebar": "turns, steers", "ski": "steers"})
+@kind(
+    "snowmobile",
+    words="snow scooter",
+)
 def snowmobile(b: ObjectBuilder) -> None:
     size = b.pick(0.15, 1)
     p = scaled(size)
@@ -180,7 +182,6 @@ def snowmobile(b: ObjectBuilder) -> None:
 @kind(
     "go kart",
     words="gokart, go-kart, pedal car, soap box, soapbox car",
-    motions={"wheel": "spins", "steering_wheel": "turns"},
 )
 def go_kart(b: ObjectBuilder) -> None:
     size = b.pick(0.2, 1)
@@ -221,7 +222,6 @@ def go_kart(b: ObjectBuilder) -> None:
 @kind(
     "cement truck",
     words="concrete truck, mixer truck",
-    motions={"drum": "turns, rotates", "chute": "swings", "wheel": "spins"},
 )
 def cement_truck(b: ObjectBuilder) -> None:
     size = b.pick(0.1, 1)
@@ -277,12 +277,6 @@ def cement_truck(b: ObjectBuilder) -> None:
 @kind(
     "ladder truck",
     words="turntable ladder, aerial ladder, fire engine with ladder",
-    motions={
-        "ladder": "lifts, raises",
-        "turntable": "turns, swivels",
-        "extension": "extends, slides out, telescopes",
-        "wheel": "spins",
-    },
 )
 def ladder_truck(b: ObjectBuilder) -> None:
     size = b.pick(0.1, 1)
@@ -334,7 +328,6 @@ def ladder_truck(b: ObjectBuilder) -> None:
 @kind(
     "planet rover",
     words="mars rover, moon rover, rover, lunar rover, exploration robot",
-    motions={"wheel": "spins", "mast": "turns, swivels", "camera": "tilts", "rocker": "tilts"},
     size=length(0.5, 1.2),
 )
 def planet_rover(b: ObjectBuilder, size: float) -> None:
@@ -387,7 +380,6 @@ def planet_rover(b: ObjectBuilder, size: float) -> None:
 @kind(
     "satellite",
     words="space probe, spacecraft, cubesat",
-    motions={"panel": "folds out, unfolds, turns", "dish": "tilts"},
     size=length(0.3, 1.5),
 )
 def satellite(b: ObjectBuilder, size: float) -> None:
@@ -423,7 +415,7 @@ def satellite(b: ObjectBuilder, size: float) -> None:
     b.hinge("dish", parent="bus", axis=X, pivot=p(0, 0, 0.9), upper=0.25, lower=-0.25)
 
 
-@kind("segway", words="self balancing scooter", motions={"wheel": "spins", "handle": "tilts"}, size=length(0.9, 1.1))
+@kind("segway", words="self balancing scooter", size=length(0.9, 1.1))
 def segway(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -455,7 +447,6 @@ def segway(b: ObjectBuilder, size: float) -> None:
 @kind(
     "stroller",
     words="baby stroller, pram, baby carriage, pushchair, buggy for babies, baby buggy, doll carriage",
-    motions={"hood": "folds, folds back", "wheel": "spins", "caster": "swivels", "handle": "folds"},
     size=length(0.9, 1.1),
 )
 def stroller(b: ObjectBuilder, size: float) -> None:
@@ -498,7 +489,6 @@ def stroller(b: ObjectBuilder, size: float) -> None:
 @kind(
     "caravan",
     words="camper trailer, mobile home",
-    motions={"door": "swings open", "flap": "folds up, lifts up", "wheel": "spins", "step": "folds down"},
 )
 def caravan(b: ObjectBuilder) -> None:
     size = b.pick(0.15, 1)
@@ -557,7 +547,6 @@ def caravan(b: ObjectBuilder) -> None:
 @kind(
     "semaphore",
     words="railway signal, semaphore signal, rail signal",
-    motions={"arm": "drops, tips, swings"},
     height=length(1.0, 4.0),
 )
 def semaphore(b: ObjectBuilder, height: float) -> None:
@@ -577,7 +566,6 @@ def semaphore(b: ObjectBuilder, height: float) -> None:
 @kind(
     "railroad switch",
     words="railway switch, rail points, track switch",
-    motions={"blade": "slides, swings", "lever": "tips"},
 )
 def rail_switch(b: ObjectBuilder) -> None:
     size = b.pick(0.1, 0.5)

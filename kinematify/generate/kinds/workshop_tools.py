@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 @kind(
     "ratchet wrench",
     words="ratchet, socket wrench, torque wrench, ratchet spanner",
-    motions={"socket": "turns", "lever": "flips"},
     length=length(0.18, 0.3),
 )
 def ratchet_wrench(b: ObjectBuilder, length: float) -> None:
@@ -48,7 +47,7 @@ def ratchet_wrench(b: ObjectBuilder, length: float) -> None:
     b.hinge("lever", parent="handle", axis=Z, pivot=(0, 0, 0), upper=0.6, lower=-0.6)
 
 
-@kind("pipe cutter", words="tube cutter", motions={"jaw": "slides", "screw": "turns"}, size=length(0.9, 1.3))
+@kind("pipe cutter", words="tube cutter", size=length(0.9, 1.3))
 def pipe_cutter(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -80,7 +79,6 @@ def pipe_cutter(b: ObjectBuilder, size: float) -> None:
 @kind(
     "toggle clamp",
     words="quick clamp",
-    motions={"arm": "folds down, clamps", "handle": "flips over"},
     size=length(0.9, 1.4),
 )
 def toggle_clamp(b: ObjectBuilder, size: float) -> None:
@@ -112,7 +110,6 @@ def toggle_clamp(b: ObjectBuilder, size: float) -> None:
 @kind(
     "caulking gun",
     words="sealant gun, silicone gun",
-    motions={"rod": "slides", "trigger": "squeezes, pulls"},
     length=length(0.2, 0.26),
 )
 def caulking_gun(b: ObjectBuilder, length: float) -> None:
@@ -141,7 +138,7 @@ def caulking_gun(b: ObjectBuilder, length: float) -> None:
     b.hinge("trigger", parent="frame", axis=Y, pivot=(-0.036, 0, -0.012), upper=0.08, lower=-0.1)
 
 
-@kind("staple gun", words="tacker", motions={"lever": "squeezes, presses"}, size=length(0.9, 1.2))
+@kind("staple gun", words="tacker", size=length(0.9, 1.2))
 def staple_gun(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -162,7 +159,7 @@ def staple_gun(b: ObjectBuilder, size: float) -> None:
     b.hinge("lever", parent="body", axis=-Y, pivot=p(0.138, 0, 0.113), upper=0.12, lower=-0.3)
 
 
-@kind("heat gun", words="hot air gun", motions={"trigger": "pulls, squeezes"}, size=length(0.9, 1.2))
+@kind("heat gun", words="hot air gun", size=length(0.9, 1.2))
 def heat_gun(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -181,7 +178,6 @@ def heat_gun(b: ObjectBuilder, size: float) -> None:
 @kind(
     "circular saw",
     words="hand circular saw, plunge saw, track saw",
-    motions={"guard": "swings", "blade": "spins", "base": "tilts"},
     size=length(0.9, 1.2),
 )
 def circular_saw(b: ObjectBuilder, size: float) -> None:
@@ -217,7 +213,6 @@ def circular_saw(b: ObjectBuilder, size: float) -> None:
 @kind(
     "chainsaw",
     words="chain saw",
-    motions={"brake": "tips", "trigger": "squeezes", "starter": "pulls out"},
     size=length(0.9, 1.1),
 )
 def chainsaw(b: ObjectBuilder, size: float) -> None:
@@ -250,7 +245,6 @@ def chainsaw(b: ObjectBuilder, size: float) -> None:
 @kind(
     "band saw",
     words="bandsaw",
-    motions={"table": "tilts", "door": "swings open", "guide": "slides"},
     height=length(0.8, 1.3),
 )
 def band_saw(b: ObjectBuilder, height: float) -> None:
@@ -298,7 +292,6 @@ def band_saw(b: ObjectBuilder, height: float) -> None:
 @kind(
     "saw horse",
     words="sawhorse, folding trestle, trestle",
-    motions={"leg": "folds"},
     width=length(0.7, 1.1),
     height=length(0.6, 0.85),
 )
@@ -325,7 +318,6 @@ def saw_horse(b: ObjectBuilder, width: float, height: float) -> None:
 @kind(
     "folding workbench",
     words="portable workbench, work stand, bench with a vise jaw",
-    motions={"jaw": "slides", "crank": "turns"},
     width=length(0.55, 0.75),
     height=length(0.72, 0.85),
 )
@@ -348,7 +340,6 @@ def folding_workbench(b: ObjectBuilder, width: float, height: float) -> None:
 @kind(
     "mechanics creeper",
     words="dolly, furniture dolly, piano dolly, plant trolley, wheeled board",
-    motions={"caster": "swivels"},
     width=length(0.4, 0.6),
     length=length(0.5, 1.1),
 )
@@ -361,7 +352,6 @@ def mechanics_creeper(b: ObjectBuilder, width: float, length: float) -> None:
 @kind(
     "engine hoist",
     words="shop crane, floor crane",
-    motions={"boom": "lifts, tilts", "caster": "swivels", "hook": "swivels"},
     size=length(0.8, 1.1),
 )
 def engine_hoist(b: ObjectBuilder, size: float) -> None:
@@ -393,7 +383,6 @@ def engine_hoist(b: ObjectBuilder, size: float) -> None:
 @kind(
     "air compressor",
     words="compressor",
-    motions={"wheel": "spins", "valve": "turns", "handle": "folds"},
     length=length(0.5, 0.8),
 )
 def air_compressor(b: ObjectBuilder, length: float) -> None:
@@ -431,7 +420,7 @@ def air_compressor(b: ObjectBuilder, length: float) -> None:
     )
 
 
-@kind("bellows", words="fireplace bellows, hand bellows", motions={"board": "squeezes, folds"}, size=length(0.8, 1.2))
+@kind("bellows", words="fireplace bellows, hand bellows", size=length(0.8, 1.2))
 def bellows(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(
@@ -481,7 +470,6 @@ def bellows(b: ObjectBuilder, size: float) -> None:
 @kind(
     "multimeter",
     words="voltmeter, measuring device, geiger counter",
-    motions={"dial": "turns", "stand": "folds out"},
     size=length(0.9, 1.2),
 )
 def multimeter(b: ObjectBuilder, size: float) -> None:
@@ -500,7 +488,6 @@ def multimeter(b: ObjectBuilder, size: float) -> None:
 @kind(
     "oscilloscope",
     words="signal generator, power supply, laboratory power supply, measuring instrument",
-    motions={"knob": "turns", "handle": "swings, folds"},
     width=length(0.25, 0.4),
     number=whole(3, 6, words="knob, dial"),
 )
@@ -543,7 +530,6 @@ def oscilloscope(b: ObjectBuilder, width: float, number: int) -> None:
 @kind(
     "protractor",
     words="angle finder, bevel gauge, goniometer, angle gauge, t bevel",
-    motions={"arm": "turns, folds"},
     length=length(0.15, 0.3),
 )
 def protractor(b: ObjectBuilder, length: float) -> None:
@@ -568,7 +554,6 @@ def protractor(b: ObjectBuilder, length: float) -> None:
 @kind(
     "micrometer",
     words="micrometer screw gauge, outside micrometer, screw gauge",
-    motions={"thimble": "turns", "spindle": "slides"},
     size=length(0.9, 1.3),
 )
 def micrometer(b: ObjectBuilder, size: float) -> None:
@@ -605,7 +590,6 @@ def micrometer(b: ObjectBuilder, size: float) -> None:
 @kind(
     "dial indicator",
     words="dial gauge, pressure gauge, manometer, barometer, thermometer dial, speedometer, gauge",
-    motions={"needle": "turns"},
     radius=length(0.025, 0.08),
 )
 def dial_indicator(b: ObjectBuilder, radius: float) -> None:
@@ -632,7 +616,6 @@ def dial_indicator(b: ObjectBuilder, radius: float) -> None:
 
 @kind(
     "feeler gauge",
-    motions={"leaf": "folds out, fans out"},
     number=whole(3, 8, words="leaf, blade"),
     length=length(0.08, 0.12),
 )
@@ -654,7 +637,6 @@ def feeler_gauge(b: ObjectBuilder, number: int, length: float) -> None:
 @kind(
     "hand plane",
     words="wood plane, block plane, planer",
-    motions={"knob": "turns", "lever": "flips up"},
     length=length(0.16, 0.35),
 )
 def hand_plane(b: ObjectBuilder, length: float) -> None:
@@ -676,7 +658,6 @@ def hand_plane(b: ObjectBuilder, length: float) -> None:
 @kind(
     "jib crane",
     words="pillar crane, slewing crane, davit crane, davit",
-    motions={"jib": "swivels, turns", "trolley": "slides", "hook": "lifts"},
     height=length(1.8, 2.8),
 )
 def jib_crane(b: ObjectBuilder, height: float) -> None:
@@ -724,7 +705,6 @@ def jib_crane(b: ObjectBuilder, height: float) -> None:
 @kind(
     "hose nozzle",
     words="garden spray gun, shower gun",
-    motions={"lever": "squeezes", "head": "turns"},
     size=length(0.9, 1.2),
 )
 def hose_nozzle(b: ObjectBuilder, size: float) -> None:
@@ -748,7 +728,6 @@ def hose_nozzle(b: ObjectBuilder, size: float) -> None:
         "dump cart, garden wagon, hand wagon, bollerwagen, pull wagon, wagon, toy wagon, handcart, pull cart, "
         "hand cart, beach wagon"
     ),
-    motions={"handle": "tilts, folds", "tub": "tips, tilts", "wheel": "spins"},
     length=length(0.7, 1.1),
     width=length(0.45, 0.6),
 )
@@ -794,7 +773,6 @@ def garden_cart(b: ObjectBuilder, length: float, width: float) -> None:
 @kind(
     "compost tumbler",
     words="rotating drum, bingo cage, lottery drum, raffle drum",
-    motions={"drum": "turns, tumbles, rotates", "hatch": "swings open"},
     radius=length(0.15, 0.32),
     length=length(0.4, 0.8),
 )
@@ -832,7 +810,6 @@ def compost_tumbler(b: ObjectBuilder, radius: float, length: float) -> None:
 @kind(
     "rain barrel",
     words="rain butt, water barrel, wine barrel, barrel, cask",
-    motions={"lid": "lifts off", "tap": "turns"},
     radius=length(0.2, 0.35),
     height=length(0.6, 1.0),
 )
@@ -886,7 +863,6 @@ def rain_barrel(b: ObjectBuilder, radius: float, height: float) -> None:
 @kind(
     "chicken coop",
     words="rabbit hutch, dog house, pet house, hen house",
-    motions={"door": "swings open, slides", "roof": "lifts up, hinged"},
     width=length(0.5, 1.2),
     height=length(0.5, 1.0),
 )
@@ -935,7 +911,6 @@ def chicken_coop(b: ObjectBuilder, width: float, height: float) -> None:
 @kind(
     "beehive",
     words="bee hive",
-    motions={"lid": "lifts off", "frame": "lifts out", "box": "lifts off"},
     number=whole(3, 6, words="frame"),
 )
 def beehive(b: ObjectBuilder, number: int) -> None:
@@ -956,7 +931,6 @@ def beehive(b: ObjectBuilder, number: int) -> None:
 @kind(
     "log splitter",
     words="wood splitter, hydraulic splitter",
-    motions={"ram": "slides", "lever": "tips", "wheel": "spins"},
     length=length(1.2, 1.7),
 )
 def log_splitter(b: ObjectBuilder, length: float) -> None:
@@ -997,7 +971,6 @@ def log_splitter(b: ObjectBuilder, length: float) -> None:
 @kind(
     "garden roller",
     words="lawn roller",
-    motions={"drum": "rolls, spins", "handle": "tilts"},
     width=length(0.3, 0.6),
     radius=length(0.1, 0.2),
 )
@@ -1019,7 +992,6 @@ def garden_roller(b: ObjectBuilder, width: float, radius: float) -> None:
 @kind(
     "snow blower",
     words="snow thrower, snowblower",
-    motions={"auger": "spins", "chute": "turns, swivels", "wheel": "spins"},
     size=length(0.9, 1.2),
 )
 def snow_blower(b: ObjectBuilder, size: float) -> None:

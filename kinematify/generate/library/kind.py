@@ -107,7 +107,6 @@ def kind(
     like: str = "",
     material: str = "plastic",
     part_words: Mapping[str, Words] | None = None,
-    motions: Mapping[str, Words] | None = None,
     details: Mapping[str, int] | None = None,
     usual: Mapping[str, Mapping[str, Value]] | None = None,
     styles: bool = True,
@@ -122,7 +121,6 @@ def kind(
         like: The kind that it is another way to build, which `all_kinds` leaves out; empty of a kind of its own.
         material: Of its base.
         part_words: Name of a part without its number -> how else people call it.
-        motions: The same -> words for how it moves that hold already.
         details: Word for what belongs to a part -> how many of it there are.
         usual: Names, split at their commas -> what is usual of those that are called so.
         styles: It may be modelled in any of `MODELING`; of what is drawn alone.
@@ -151,7 +149,6 @@ def kind(
             material=material,
             kinds={word: what for group, what in (usual or {}).items() for word in phrases(group)},
             part_words={part: phrases(said) for part, said in (part_words or {}).items()},
-            motions={part: phrases(said) for part, said in (motions or {}).items()},
             like=like,
             module=draw.__module__.rpartition(".")[2],
             draw=draw if styles and not carves else None,
