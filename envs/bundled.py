@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.generate.blueprint_files import true_model
-from kinematify.generate.procedural.families import FAMILIES
-from kinematify.generate.request import from_category
+from kinematify.generate.delivery import build_kind
+from kinematify.generate.families import FAMILIES
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 
@@ -89,5 +89,5 @@ def write_bundled(bundled: BundledObject, folder: Path) -> Path:
     """
     folder.mkdir(parents=True)
     config = load_config()
-    model = true_model(from_category(bundled.family, bundled.settings).build(seed=bundled.seed), config)
+    model = true_model(build_kind(bundled.family, bundled.settings, seed=bundled.seed), config)
     return write_model(simulable_model(model, config).robot, folder)

@@ -11,7 +11,7 @@ from benchmarks.browser import open_browser
 from kinematify.errors import EnvironmentFault
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from playwright.sync_api import Page
 
@@ -35,6 +35,15 @@ def opened(address: str, *, dark: bool = False, width: int = 1200) -> Iterator[t
         page.on("request", lambda request: _note_request(request.url, messages))
         page.goto(address)
         yield page, messages
+
+
+def wait_until(page: Page, is_so: Callable[[], object]) -> None:
+    """Wait for a state of the page or of the program behind it, however slow the machine is, or fail."""
+    for _ in range(_PATIENCE // 200):
+        if is_so():
+            return
+        page.wait_for_timeout(200)
+    raise AssertionError("The page never came into the state that was waited for.")
 
 
 def _note_request(url: str, messages: list[str]) -> None:

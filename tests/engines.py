@@ -1,4 +1,4 @@
-"""The four readers of a URDF behind one face: joints, poses and vertices as each of them understands the file."""
+"""The three readers of a URDF behind one face: joints, poses and vertices as each of them understands the file."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def _read_body(pybullet, client: int, body: int, q: Mapping[str, float]) -> Read
 
     def mesh(link: int, T_world_inertial: np.ndarray) -> np.ndarray:
         _, points = pybullet.getMeshData(body, link, physicsClientId=client)
-        return np.array(points) @ T_world_inertial[:3, :3].T + T_world_inertial[:3, 3]
+        return np.reshape(points, (-1, 3)) @ T_world_inertial[:3, :3].T + T_world_inertial[:3, 3]
 
     kinds = {pybullet.JOINT_REVOLUTE: "turns", pybullet.JOINT_PRISMATIC: "slides"}
     infos = [pybullet.getJointInfo(body, j, physicsClientId=client) for j in range(pybullet.getNumJoints(body))]
@@ -139,31 +139,7 @@ def read_pinocchio(urdf: Path, q: Mapping[str, float]) -> Reading:
     return Reading(joints, poses, {name: np.concatenate(blocks) for name, blocks in vertices.items()})
 
 
-def read_yourdfpy(urdf: Path, q: Mapping[str, float]) -> Reading:
-    import yourdfpy
-
-    model = yourdfpy.URDF.load(str(urdf))
-    assert model.validate()
-    kinds = {"revolute": "turns", "continuous": "turns", "prismatic": "slides"}
-    joints = {}
-    for item in model.robot.joints:
-        if item.type in kinds:
-            limits = None if item.type == "continuous" else (item.limit.lower, item.limit.upper)
-            axis = model.get_transform(item.child)[:3, :3] @ item.axis
-            joints[item.name] = ReadJoint(kinds[item.type], axis, limits)
-    model.update_cfg(dict(q) if q else np.zeros(len(model.actuated_joint_names)))
-    base = np.linalg.inv(model.get_transform(model.base_link))
-    poses = {link.name: base @ model.get_transform(link.name) for link in model.robot.links}
-    vertices: dict[str, list[np.ndarray]] = {}
-    for node in model.scene.graph.nodes_geometry:
-        T_world_mesh, name = model.scene.graph.get(node)
-        link = model.scene.graph.transforms.parents[node]
-        points = model.scene.geometry[name].vertices
-        vertices.setdefault(link, []).append(points @ T_world_mesh[:3, :3].T + T_world_mesh[:3, 3])
-    return Reading(joints, poses, {name: np.concatenate(blocks) for name, blocks in vertices.items()})
-
-
-READERS = {"mujoco": read_mujoco, "pybullet": read_pybullet, "pinocchio": read_pinocchio, "yourdfpy": read_yourdfpy}
+READERS = {"mujoco": read_mujoco, "pybullet": read_pybullet, "pinocchio": read_pinocchio}
 
 
 def pose(position, rotation) -> np.ndarray:

@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.pieces.bearing_pieces import ALONG_X, at, barrel, fork, fork_room
+from kinematify.generate.procedural.pieces.bearing_pieces import barrel, fork, fork_room
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, rod, tray, union
-from kinematify.robot.transforms import rotation_about
-from tests.known import KnownJoint, KnownObject, fixed, known_object, moved, sliding, turning, varied
+from tests.known import KnownJoint, KnownObject, known_object, moved, sliding, turning, varied
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -164,63 +163,6 @@ def sliding_lid(*, length: float = 0.2, clearance: float = 4e-4, seed: int | Non
     return known_object("sliding_lid", {"box": body, "lid": lid + ridge}, joint)
 
 
-def scissors(
-    *, length: float = 0.1, opening: float = 0.5, clearance: float = 2e-4, seed: int | None = None
-) -> KnownObject:
-    """Two blades, the pin a part of the lower one; `opening` is the angle between them [rad]."""
-    vary = varied(seed)
-    blade, thick, pin, grip = vary(length), 0.002, vary(0.003), vary(0.018)
-    layer = thick + clearance
-    tip = box((-0.001, blade, 0), (0.001, blade + 0.001, thick))
-    heel = box((-0.008, -0.012, 0), (0.008, 0.012, thick))
-    ring_centre = (0.02, -0.7 * blade)
-    shank = hull(heel, box((0.012, ring_centre[1], 0), (0.02, ring_centre[1] + 0.01, thick)))
-    ring = cylinder(grip, (*ring_centre, 0), (*ring_centre, thick))
-    hole = cylinder(0.7 * grip, (*ring_centre, -thick), (*ring_centre, 2 * thick))
-    plate = union(hull(tip, heel), shank, ring) - hole
-    rivet = cylinder(pin, (0, 0, 0.5 * thick), (0, 0, layer + thick + 2 * clearance))
-    head = cylinder(1.8 * pin, (0, 0, layer + thick + clearance), (0, 0, layer + 1.6 * thick + clearance))
-    lower = union(plate, rivet, head).transform(at((0, 0, 0), rotation_about(UP, 0.5 * opening)))
-    upper = plate.mirror((1, 0, 0)).translate((0, 0, layer))
-    upper = (upper - bore(pin, clearance, (0, 0, -thick), (0, 0, 4 * thick))).transform(
-        at((0, 0, 0), rotation_about(UP, -0.5 * opening))
-    )
-    joint = turning("lower_blade", "upper_blade", (0, 0, -1), (0, 0, 0), (-opening, 0.9))
-    return known_object("scissors", {"lower_blade": lower, "upper_blade": upper}, joint)
-
-
-def laptop(
-    *, width: float = 0.32, opening: float = 1.8, clearance: float = 4e-4, seed: int | None = None
-) -> KnownObject:
-    """A laptop, open by `opening` [rad], on two short barrels behind the keyboard."""
-    vary = varied(seed)
-    half, deep, thick, radius = 0.5 * vary(width), vary(0.22), vary(0.012), 0.005
-    near, slit = radius + clearance, 2 * clearance
-    base = [box((-half, -deep, -slit - thick), (half, -near, -slit))]
-    screen = [box((-half, -deep, slit), (half, -near, slit + 0.5 * thick))]
-    anchors = ((-near - 2e-4, -near, -slit - radius, -slit), (-near - 2e-4, -near, slit, slit + radius))
-    for x in (-0.6 * half, 0.6 * half):
-        for solids, side in zip((base, screen), barrel(0.05, radius, clearance, anchors), strict=True):
-            solids.append(side.transform(ALONG_X).translate((x, 0, 0)))
-    joint = turning("base", "screen", (-1, 0, 0), (0, 0, 0), (0.0, 2.8), stops=(True, False))
-    return moved(known_object("laptop", {"base": union(*base), "screen": union(*screen)}, joint), {"screen": opening})
-
-
-def piano_box(*, width: float = 0.3, clearance: float = 4e-4, seed: int | None = None) -> KnownObject:
-    """A box whose lid hangs on two piano hinges of seven knuckles."""
-    vary = varied(seed)
-    half, deep, high, wall, radius = 0.5 * vary(width), vary(0.2), vary(0.12), 0.008, 0.004
-    near, slit = radius + clearance, clearance
-    body = [tray((-half, -deep, -high), (half, -near, -slit), wall)]
-    lid = [box((-half, -deep - 0.004, slit), (half, -near, slit + wall))]
-    anchors = ((-near - 2e-4, -near, -slit - radius, -slit), (-near - 2e-4, -near, slit, slit + radius))
-    for x in (-0.5 * half, 0.5 * half):
-        for solids, side in zip((body, lid), barrel(0.7 * half, radius, clearance, anchors, knuckles=7), strict=True):
-            solids.append(side.transform(ALONG_X).translate((x, 0, 0)))
-    joint = turning("box", "lid", (-1, 0, 0), (0, 0, 0), (0.0, 2.0), stops=(True, False))
-    return known_object("piano_box", {"box": union(*body), "lid": union(*lid)}, joint)
-
-
 def toilet(
     *, width: float = 0.36, opening: float = 1.75, clearance: float = 6e-4, seed: int | None = None
 ) -> KnownObject:
@@ -295,24 +237,6 @@ def lever_solids(length: float, clearance: float, seed: int | None) -> tuple[dic
     return {"block": block, "lever": arm}, turning("block", "lever", (1, 0, 0), (0, 0, 0), (-1.2, 1.2))
 
 
-def over_segmented(*, length: float = 0.15, clearance: float = 3e-4, seed: int | None = None) -> KnownObject:
-    """The lever, its block cut in two pieces that belong together."""
-    solids, joint = lever_solids(length, clearance, seed)
-    upper, lower = solids["block"].split_by_plane((0, 0.3, 1), -0.032)
-    pieces = {"block_lower": lower, "block": upper, "lever": solids["lever"]}
-    return known_object("over_segmented", pieces, fixed("block_lower", "block"), joint)
-
-
-def gapped_pair(*, width: float = 0.4, gap: float = 0.01, seed: int | None = None) -> KnownObject:
-    """A cabinet and a door that does not touch it: the gap is `gap` times the diagonal of the object."""
-    vary = varied(seed)
-    wide, high, deep, wall = vary(width), vary(0.5), vary(0.35), 0.018
-    clearance = gap * float(np.sqrt(wide**2 + high**2 + (deep + wall) ** 2))
-    door = box((0, -wall - clearance, 0), (wide, -clearance, high))
-    joint = turning("cabinet", "door", (0, 0, -1), (0, -clearance, 0), (0.0, 1.9))
-    return known_object("gapped_pair", {"cabinet": carcass(wide, deep, high, wall), "door": door}, joint)
-
-
 def four_bars() -> KnownObject:
     """A crank, a rocker and the bar between their ends, which turns on the crank and takes the rocker's pin."""
     radius, clearance = 0.004, 2e-4
@@ -337,20 +261,3 @@ def four_bars() -> KnownObject:
         turning("ground", "rocker", (0, 0, 1), (0.1, 0, 0), (-0.5, 0.5)),
         turning("crank", "coupler", (0, 0, 1), (0, 0.06, 0), (-0.5, 0.5)),
     )
-
-
-def ball_in_socket(*, radius: float = 0.015, clearance: float = 4e-4, seed: int | None = None) -> KnownObject:
-    """A stud whose ball sits in a socket beyond its equator: three rotations in one joint."""
-    vary = varied(seed)
-    size, long = vary(radius), vary(0.06)
-    socket = cylinder(1.6 * size, (0, 0, -2.2 * size), (0, 0, 0.3 * size)) + box(
-        (-3 * size, -2 * size, -3 * size), (2.5 * size, 2 * size, -2 * size)
-    )
-    socket -= ball((size + clearance) / np.cos(np.pi / 32) ** 2, (0, 0, 0), segments=64)
-    stud = union(
-        ball(size, (0, 0, 0), segments=64),
-        cylinder(0.4 * size, (0, 0, 0), (0, 0, long)),
-        box((-1.5 * size, -size, long - 0.5 * size), (size, size, long)),
-    )
-    joint = turning("socket", "stud", (0, 0, 1), (0, 0, 0), freedom=3)
-    return known_object("ball_in_socket", {"socket": socket, "stud": stud}, joint)

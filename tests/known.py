@@ -31,8 +31,6 @@ class KnownJoint(BlueprintJoint):
 
     stops: tuple[bool, bool] = (False, False)
     """Whether the geometry itself blocks motion a little below `lower` and a little above `upper`."""
-    freedom: int = 1
-    """1, or 3 for a ball joint: every axis through `pivot` is then right and `axis` is one of them."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -108,6 +108,3 @@ def flat_and_fixed() -> Mechanism:
     )
     assembly = Assembly(parts=parts, source="flap", set_aside=set_aside)
     return Mechanism("flap", assembly, KinematicTree(parents=(-1, 0, 0)), joints)
-
-
-ALL = (door, drawer, knob, chain, flat_and_fixed)

@@ -6,45 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.pieces.bearing_pieces import at, fork, fork_room, stub
-from kinematify.generate.procedural.solids import bore, box, cylinder, off, rod, union
-from kinematify.robot.transforms import rotation_about
+from kinematify.generate.procedural.pieces.bearing_pieces import fork, fork_room, stub
+from kinematify.generate.procedural.solids import bore, box, cylinder, off, union
 from tests.known import KnownJoint, KnownObject, known_object, moved, sliding, turning, varied
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
 UP = np.array([0.0, 0.0, 1.0])
-QUARTER = rotation_about(UP, 0.5 * np.pi)
-"""Turns a fork about x into a fork about y."""
-
-
-def leg_solids(
-    hip: np.ndarray, side: tuple[int, int], radius: float, lengths: tuple[float, float], clearance: float
-) -> tuple[Manifold, Manifold, dict[str, Manifold], tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """A straight leg that hangs down from `hip`: roll about x, thigh and shank about y, all on stubs [m].
-
-    Returns:
-        Boss and hole for the trunk, the three links, and the three pivots.
-    """
-    sx, sy = side
-    boss, hole, rotor = stub(hip, (sx, 0, 0), radius, clearance)
-    flange, end = sx * (radius + clearance), sx * (2 * radius + clearance)
-    pitch = off(hip, end, sy * 2.2 * radius, 0)
-    thigh_boss, thigh_hole, thigh_rotor = stub(pitch, (0, sy, 0), radius, clearance, length=2 * radius)
-    top = off(pitch, 0, sy * (radius + clearance), 0)
-    knee = off(top, 0, -sy * radius, -lengths[0])
-    knee_boss, knee_hole, knee_rotor = stub(knee, (0, -sy, 0), 0.8 * radius, clearance, length=1.6 * radius)
-    stem = knee_boss + rod(0.7 * radius, top, off(top, 0, 0, -lengths[0]), segments=20)
-    ankle = off(knee, 0, -sy * (0.8 * radius + clearance), 0)
-    shank = rod(0.5 * radius, ankle, off(ankle, 0, 0, -lengths[1]), segments=20)
-    bridge = thigh_boss + rod(0.8 * radius, off(hip, flange, 0, 0), off(hip, end, 0, 0), segments=20)
-    links = {
-        "hip": union(rotor, beyond(bridge, off(hip, sx * clearance, 0, 0), (sx, 0, 0))) - thigh_hole,
-        "thigh": union(thigh_rotor, beyond(stem, knee, (0, sy, 0))) - knee_hole,
-        "shank": union(knee_rotor, beyond(shank, off(knee, 0, -sy * clearance, 0), (0, -sy, 0))),
-    }
-    return boss, hole, links, (hip, pitch, knee)
 
 
 def beyond(solid: Manifold, point: np.ndarray, direction: tuple[int, int, int]) -> Manifold:
@@ -77,17 +46,6 @@ def square_lift(*, height: float = 0.6, clearance: float = 5e-4, seed: int | Non
     inner = half + clearance
     hole = box((-inner, -inner, -1), (inner, inner, 2))
     return lift("square_lift", column, hole, half, clearance)
-
-
-def round_lift(*, height: float = 0.6, clearance: float = 5e-4, seed: int | None = None) -> KnownObject:
-    """A carriage on a round column whose key keeps it from turning."""
-    vary = varied(seed)
-    half = vary(0.03)
-    key, top = 0.2 * half, vary(height)
-    column = cylinder(half, (0, 0, -0.02), (0, 0, top)) + box((0, -key, -0.02), (1.25 * half, key, top))
-    wide = key + clearance
-    slot = box((0, -wide, -1), (1.25 * half + clearance, wide, 2))
-    return lift("round_lift", column, bore(half, clearance, (0, 0, -1), (0, 0, 2)) + slot, half, clearance)
 
 
 def lift(name: str, column: Manifold, hole: Manifold, half: float, clearance: float) -> KnownObject:
@@ -131,47 +89,6 @@ def universal_joint(*, radius: float = 0.012, clearance: float = 3e-4, seed: int
     )
 
 
-def gimbal(*, radius: float = 0.05, clearance: float = 3e-4, seed: int | None = None) -> KnownObject:
-    """Three revolute joints that meet in one point: a ball-like joint with its rings to be seen."""
-    vary = varied(seed)
-    size, pin, wall = vary(radius), vary(0.004), vary(0.008)
-    thick = 1.5 * pin
-
-    def ring(inner: float) -> Manifold:
-        solid = cylinder(inner + wall, (0, 0, -thick), (0, 0, thick))
-        return solid - cylinder(inner, (0, 0, -1), (0, 0, 1))
-
-    space = 0.006
-    outer_inner = size + wall + space
-    post = outer_inner + wall + space
-    base = box((-post - wall, -0.5 * size, -1.6 * size - wall), (post + wall, 0.7 * size, -1.6 * size))
-    for sign in (-1, 1):
-        x0, x1 = sorted((sign * post, sign * (post + wall)))
-        base += box((x0, -thick, -1.6 * size - 0.001), (x1, thick, 0)) + cylinder(thick, (x0, 0, 0), (x1, 0, 0))
-    base -= bore(pin, clearance, (-2 * post, 0, 0), (2 * post, 0, 0))
-    outer, inner = ring(outer_inner), ring(size)
-    for sign in (-1, 1):
-        outer += cylinder(pin, (sign * (outer_inner + 0.5 * wall), 0, 0), (sign * (post + wall), 0, 0))
-        inner += cylinder(pin, (0, sign * (size + 0.5 * wall), 0), (0, sign * (outer_inner + wall), 0))
-    outer -= bore(pin, clearance, (0, -post, 0), (0, post, 0))
-    spin = cylinder(size - clearance, (0, 0, -thick), (0, 0, thick), segments=64)
-    rims = [
-        cylinder(size + 0.4 * wall, (0, 0, min(z, z + s * 0.002)), (0, 0, max(z, z + s * 0.002)))
-        for s in (-1, 1)
-        for z in (s * (thick + clearance),)
-    ]
-    spin = spin.scale((np.cos(np.pi / 48), np.cos(np.pi / 48), 1.0))
-    neck = cylinder(0.8 * size, (0, 0, -thick - clearance), (0, 0, thick + clearance))
-    platform = union(spin, neck, *rims, rod(0.2 * size, (0.3 * size, 0, 0), (0.3 * size, 0, 0.7 * size)))
-    return known_object(
-        "gimbal",
-        {"base": base, "outer_ring": outer, "inner_ring": inner, "platform": platform},
-        turning("base", "outer_ring", (1, 0, 0), (0, 0, 0), (-0.7, 0.7)),
-        turning("outer_ring", "inner_ring", (0, 1, 0), (0, 0, 0), (-0.6, 0.6)),
-        turning("inner_ring", "platform", (0, 0, 1), (0, 0, 0)),
-    )
-
-
 def parallel_gripper(
     *, width: float = 0.12, opening: float = 0.02, clearance: float = 3e-4, seed: int | None = None
 ) -> KnownObject:
@@ -197,58 +114,6 @@ def parallel_gripper(
     solids = {"palm": palm, "right_finger": right, "left_finger": right.mirror((1, 0, 0))}
     shut = known_object("parallel_gripper", solids, *joints)
     return moved(shut, {"right_finger": opening, "left_finger": opening})
-
-
-def finger_hand(
-    *, fingers: int = 3, phalanges: int = 3, curl: float = 0.25, clearance: float = 2e-4, seed: int | None = None
-) -> KnownObject:
-    """A palm and fingers of phalanges on pins, every joint bent by `curl` [rad]."""
-    vary = varied(seed)
-    wide, radius = 0.018, 0.007
-    pitch, start = 1.4 * wide, fork_room(radius, clearance)
-    high = vary(0.08)
-    palm = [box((-0.5 * pitch * fingers, -radius, -high), (0.5 * pitch * fingers, radius, -2 * radius))]
-    solids, joints = {}, []
-    for finger in range(fingers):
-        x, z, parent = (finger - 0.5 * (fingers - 1)) * pitch, 0.0, "palm"
-        for k in range(phalanges):
-            name, long = f"finger{finger}_{k}", vary((0.045, 0.032, 0.028)[min(k, 2)])
-            forked, tongue = (solid.translate((x, 0, z)) for solid in fork(wide, radius, clearance, 2.2 * radius))
-            pieces = palm if parent == "palm" else solids[parent]
-            pieces.append(forked)
-            top = z + long - (2 * radius if k + 1 < phalanges else radius)
-            body = box((x - 0.5 * wide, -radius, z + start), (x + 0.5 * wide, radius, top))
-            solids[name] = [tongue, body]
-            if k + 1 == phalanges:
-                solids[name].append(cylinder(radius, (x - 0.5 * wide, 0, top), (x + 0.5 * wide, 0, top)))
-            joints.append(turning(parent, name, (1, 0, 0), (x, 0, z), (-0.2, 1.5)))
-            parent, z = name, z + long
-    merged = {"palm": union(*palm)} | {name: union(*pieces) for name, pieces in solids.items()}
-    straight = known_object("finger_hand", merged, *joints)
-    return moved(straight, {joint.child: curl for joint in joints})
-
-
-def four_legged(*, length: float = 0.4, clearance: float = 5e-4, seed: int | None = None) -> KnownObject:
-    """A trunk and four legs of three links on flanged stubs: hip roll, hip pitch, knee."""
-    vary = varied(seed)
-    hx, hy, radius = 0.5 * vary(length), vary(0.09), vary(0.03)
-    thigh, shank = vary(0.2), vary(0.2)
-    trunk = [box((-hx, -hy, -0.04), (hx, hy, 0.05)), box((hx - 0.05, -0.03, 0.04), (hx + 0.03, 0.03, 0.08))]
-    holes, solids, joints = [], {}, []
-    for leg, (sx, sy) in {"fl": (1, 1), "fr": (1, -1), "rl": (-1, 1), "rr": (-1, -1)}.items():
-        hip = np.array([sx * (hx + 0.02), sy * (hy - radius), 0.0])
-        boss, hole, links, pivots = leg_solids(hip, (sx, sy), radius, (thigh, shank), clearance)
-        trunk.append(boss)
-        holes.append(hole)
-        solids |= {f"{leg}_{kind}": solid for kind, solid in links.items()}
-        joints += [
-            turning("trunk", f"{leg}_hip", (1, 0, 0), pivots[0], (-0.2, 0.5) if sy > 0 else (-0.5, 0.2)),
-            turning(f"{leg}_hip", f"{leg}_thigh", (0, 1, 0), pivots[1], (-0.8, 1.0)),
-            turning(f"{leg}_thigh", f"{leg}_shank", (0, 1, 0), pivots[2], (-1.2, 1.2)),
-        ]
-    straight = known_object("four_legged", {"trunk": union(*trunk) - union(*holes)} | solids, *joints)
-    bends = {"thigh": 0.5, "shank": -0.9}
-    return moved(straight, {joint.child: bends.get(joint.child[3:], 0.0) for joint in joints})
 
 
 def serial_arm(
@@ -278,35 +143,6 @@ def serial_arm(
         tip, parent = end, name
     solids[parent] = union(*pieces, box(tip - 0.8 * size, off(tip, 1.2 * size, 0.8 * size, 0.2 * size)))
     return known_object(f"serial_arm_{joints}", solids, *truth)
-
-
-def aligned_arm(
-    *, pairs: int = 3, radius: float = 0.04, clearance: float = 5e-4, seed: int | None = None
-) -> KnownObject:
-    """An upright arm of roll and pitch joints in turn; at zero all roll axes are one line."""
-    vary = varied(seed)
-    size = vary(radius)
-    high = size
-    pieces = [box((-3 * size, -2 * size, -0.02), (2 * size, 2 * size, 0)), cylinder(size, (0, 0, -0.01), (0, 0, size))]
-    solids, truth, parent = {}, [], "foot"
-    for pair in range(pairs):
-        roll, pitch = f"roll{pair}", f"pitch{pair}"
-        boss, hole, rotor = stub((0, 0, high + size), (0, 0, 1), size, clearance)
-        solids[parent] = union(*pieces, boss) - hole
-        truth.append(turning(parent, roll, (0, 0, 1), (0, 0, high + size), (-2.9, 2.9)))
-        hinge = high + 2 * size + clearance + vary(2.5 * size)
-        shoulder = cylinder(size, (0, 0, high + 1.5 * size), (0, 0, hinge - 1.2 * size))
-        forked, tongue = (
-            solid.transform(at((0, 0, hinge), QUARTER)) for solid in fork(1.6 * size, 0.7 * size, clearance, 1.6 * size)
-        )
-        shoulder ^= box((-9, -9, high + size + clearance), (9, 9, 9))
-        solids[roll] = union(rotor, shoulder, forked)
-        truth.append(turning(roll, pitch, (0, 1, 0), (0, 0, hinge), (-1.4, 1.4)))
-        start, high = hinge + fork_room(0.7 * size, clearance), hinge + vary(3.0 * size)
-        pieces = [tongue, cylinder(0.65 * size, (0, 0, start), (0, 0, high + 0.5 * size))]
-        parent = pitch
-    solids[parent] = union(*pieces, box((-0.5 * size, -size, high), (size, size, high + size)))
-    return known_object("aligned_arm", solids, *truth)
 
 
 def torso(*, height: float = 0.4, clearance: float = 5e-4, seed: int | None = None) -> KnownObject:

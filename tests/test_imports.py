@@ -7,12 +7,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import kinematify
 from kinematify.cli.app import COMMANDS
-from kinematify.robot.mesh_file import read_meshes
 from tests.places import ROOT
 
 HEAVY = {
@@ -85,18 +83,6 @@ def test_each_public_name_is_the_object_of_its_home() -> None:
 def test_unknown_names_raise_attribute_error() -> None:
     with pytest.raises(AttributeError, match="no attribute 'no_such_name'"):
         _ = kinematify.no_such_name  # type: ignore[attr-defined]
-
-
-def test_a_binary_stl_is_read_without_trimesh(tmp_path: Path) -> None:
-    triangle = np.zeros(2, dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-    triangle["corners"] = np.arange(18).reshape(2, 3, 3)
-    path = tmp_path / "a.STL"
-    path.write_bytes(bytes(80) + (2).to_bytes(4, "little") + triangle.tobytes())
-    (mesh,) = read_meshes(path)
-    assert (mesh.name, mesh.vertices.tolist()) == ("a.STL", np.arange(18.0).reshape(6, 3).tolist())
-    assert mesh.faces.tolist() == [[0, 1, 2], [3, 4, 5]]
-    imports = "from pathlib import Path; from kinematify.robot.mesh_file import read_meshes"
-    assert "trimesh" not in loaded_after(f"{imports}; read_meshes(Path({str(path)!r}))")
 
 
 def test_every_public_name_is_in_the_reference() -> None:

@@ -19,7 +19,17 @@ import kinematify
 from kinematify.cli.doctor import MODULES
 from tests.places import ROOT
 
-SOURCES = ("pyproject.toml", "README.md", "LICENSE", "benchmarks", "kinematify", "validation", "envs", "configs")
+SOURCES = (
+    "pyproject.toml",
+    "README.md",
+    "LICENSE",
+    "benchmarks",
+    "kinematify",
+    "validation",
+    "envs",
+    "configs",
+    "skills",
+)
 INSTALLED = """
 from importlib import resources, util
 for name in ("", ".validation", ".envs", ".configs", ".assembly", ".model"):
@@ -27,6 +37,7 @@ for name in ("", ".validation", ".envs", ".configs", ".assembly", ".model"):
 data = resources.files("kinematify.configs")
 print(*sorted(entry.name for entry in data.iterdir() if entry.name.endswith(".yaml")))
 print(resources.files("kinematify").joinpath("py.typed").is_file())
+print(resources.files("kinematify").joinpath("skills", "kinematify", "SKILL.md").is_file())
 print(resources.files("kinematify.validation.formats").joinpath("assets", "viewer.js").is_file())
 """
 
@@ -65,7 +76,7 @@ def assert_complete(python: Path, cwd: Path) -> None:
     lines = call(python, "-c", INSTALLED, cwd=cwd).splitlines()
     names = ["kinematify" + name for name in ("", ".validation", ".envs", ".configs", ".assembly", ".model")]
     shipped = sorted(path.name for path in (ROOT / "configs").glob("*.yaml"))
-    assert lines == [*names, " ".join(shipped), "True", "True"]
+    assert lines == [*names, " ".join(shipped), "True", "True", "True"]
 
 
 def assert_bench_explains(python: Path, cwd: Path) -> None:
@@ -93,19 +104,6 @@ def test_wheel_is_complete(tree: Path, tmp_path: Path, options: list[str]) -> No
     assert_bench_explains(python, tmp_path)
 
 
-def test_editable_install_is_complete_and_sees_new_files(tree: Path, tmp_path: Path) -> None:
-    python = empty_environment(tmp_path / "env")
-    call(
-        sys.executable, "-m", "pip", "--python", python, "install", "-q", "--no-deps", "--no-build-isolation",
-        "--config-settings", "editable_mode=compat", "--editable", tree, cwd=tmp_path,
-        path=sysconfig.get_path("purelib"),
-    )  # fmt: skip
-    assert_complete(python, tmp_path)
-    (tree / "validation" / "added_later.py").write_text("VALUE = 7\n")
-    code = "from kinematify.validation.added_later import VALUE; print(VALUE)"
-    assert call(python, "-c", code, cwd=tmp_path) == "7\n"
-
-
 def requirement_name(line: str) -> str:
     """Distribution name of a requirement."""
     return re.split(r"[\[<>=!~ ]", line, maxsplit=1)[0]
@@ -124,7 +122,7 @@ def declared(extra: str | None = None) -> set[str]:
 
 
 def test_the_doctor_knows_every_declared_package() -> None:
-    extras = ("bench", "cad", "cloud", "formats", "paper", "pinocchio", "ray", "usd")
+    extras = ("bench", "cad", "cloud", "formats", "mcp", "paper", "pinocchio", "ray", "usd")
     assert set(MODULES) == declared().union(*map(declared, extras))
 
 
@@ -132,7 +130,7 @@ def test_every_import_of_the_package_is_declared() -> None:
     providers = {module: {normalised(name) for name in names} for module, names in packages_distributions().items()}
     providers |= {"pinocchio": {"pin"}, "coal": {"coal"}}  # they live behind a .pth file, which the metadata ignores
     providers |= {"manifold3d": {"manifold3d"}}  # a bare extension module, which the metadata does not list
-    extras = (None, "bench", "fit", "formats", "paper", "pinocchio", "ray", "rl", "usd")
+    extras = (None, "bench", "fit", "formats", "mcp", "paper", "pinocchio", "ray", "rl", "usd")
     allowed = {normalised(name) for extra in extras for name in declared(extra)}
     missing = set()
     for folder, _, files in os.walk(ROOT / "kinematify", followlinks=True):

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 from kinematify.config import load_config
 from kinematify.errors import OutputError
 from kinematify.generate.blueprint_files import true_model
-from kinematify.generate.described import SteppedDescription, known_families, library
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.described import known_families, library
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import COMMON, build
 from kinematify.generate.procedural.parameter import PARAMETER_HEADINGS, parameter_rows
-from kinematify.generate.sentence import from_text
+from kinematify.generate.reader import read_sentence
 from kinematify.model.picture_scene import moving_joints
 from kinematify.model.preview import draw_pair, draw_steps
 from kinematify.robot.joint_type import JointType
@@ -23,24 +23,21 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from kinematify.config import PreviewConfig
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.family import Family
     from kinematify.model.kinematic_model import KinematicModel
 
 SENTENCES = (
-    "a walnut tool cart with four casters, a push handle, three drawers, a glass door, a turntable and brass handles",
-    "a red toolbox with two cantilever trays and a carrying handle",
-    "a green scissor lift on four wheels",
-    "a control box with a crank, a gauge needle and nine buttons",
-    "an oak cabinet with two glass doors and three drawers and golden handles",
-    "a yellow mobile robot with four wheels and an arm",
-    "an oak cabinet with a glass sliding door on the left and two drawers",
-    "an orange car with four wheels and two doors",
-    "a vending machine with a glass door, six yellow buttons and a flap",
-    "a platform with four black wheels and a telescopic mast",
-    "a grey housing with two black fans and a red lever",
-    "a purple toy truck with six wheels and a tailgate",
+    "an oak cabinet with two glass doors above three drawers and brass knobs",
+    "a red fridge with two doors, 1.6 m high",
+    "a robot arm with seven joints and a three finger gripper",
+    "a white dresser with six drawers in two columns",
+    "an office chair on six castors",
+    "a walnut desk with three drawers, 1.5 m wide",
+    "a window with two sliding sashes, 1.6 m wide",
+    "a blue bicycle, 1.1 m high",
 )
-"""What is shown of composed objects."""
+"""What is shown of sentences."""
 SHOWN = (
     "bicycle", "forklift", "helicopter", "motorcycle", "tractor", "stroller",
     "hospital_bed", "microscope", "wheelchair", "c_arm", "pipette", "infant_incubator",
@@ -90,7 +87,7 @@ def write_gallery(
     """
     config = load_config()
     config = config.model_copy(update={"preview": config.preview.model_copy(update=_PANEL)})
-    requests = [(f"composed_{number}", text, from_text(text).build) for number, text in enumerate(sentences, start=1)]
+    requests = [(f"sentence_{k}", text, partial(_said, text)) for k, text in enumerate(sentences, start=1)]
     requests += [(name, name, partial(build, family, {})) for name, family in {**families, **described}.items()]
     try:
         (folder / PICTURES).mkdir(parents=True, exist_ok=True)
@@ -99,7 +96,7 @@ def write_gallery(
             model = true_model(make(), config)
             picture = draw_pair(model, config.preview)
             picture.save(folder / PICTURES / f"{name}.webp", quality=_QUALITY, method=6)
-            if name == "composed_1":
+            if name == "sentence_1":
                 _draw_opening(model, folder / PICTURES / OPENING, config.preview)
         page = folder / PAGE
         page.write_text(_page(families, sentences, described, command), encoding="utf-8")
@@ -109,6 +106,10 @@ def write_gallery(
             "on a disk with space."
         ) from error
     return page
+
+
+def _said(text: str) -> Blueprint:
+    return read_sentence(text).made().blueprint
 
 
 def _draw_opening(model: KinematicModel, path: Path, config: PreviewConfig) -> None:
@@ -124,16 +125,16 @@ def _draw_opening(model: KinematicModel, path: Path, config: PreviewConfig) -> N
 def _page(
     families: Mapping[str, Family], sentences: Sequence[str], described: Mapping[str, Family], command: str
 ) -> str:
-    composed = {f"composed_{number}": text for number, text in enumerate(sentences, start=1)}
+    said = {f"sentence_{number}": text for number, text in enumerate(sentences, start=1)}
     return f"""# Gallery
 
 Made by `{command}`. Each picture shows an object at rest and with every joint moved. Red arrows turn, blue ones slide.
 
 ## From a sentence
 
-A sentence names an object and its properties, or mechanisms that are composed on a body.
+A sentence names a kind of object, its sizes, its parts and their looks; see [Objects from words and data](generate.md).
 
-{_pictures(composed)}
+{_pictures(said)}
 
 ## Families
 
@@ -151,7 +152,7 @@ Every object has these parameters, too:
 
 ## Objects that files describe
 
-Some of the objects whose parts, joints, parameters and words are in `kinematify/generate/objects/`.
+Some of the objects whose parts, joints, parameters and words are in `kinematify/generate/kinds/`.
 
 {_pictures({name: f"`{name}`: {', '.join(family.words[:2])}" for name, family in described.items()})}
 
@@ -177,11 +178,10 @@ def _row(name: str, family: Family) -> tuple[str, ...]:
 
 
 def _kinds() -> str:
-    """The title of every kind that a file describes, a line per file of several."""
+    """The title of every kind of the library, a line per module."""
     found: dict[str, list[str]] = {}
     for item in library().values():
-        if not item.like:
-            found.setdefault(item.file if isinstance(item, SteppedDescription) else "others", []).append(item.title)
+        found.setdefault(item.module or "others", []).append(item.title)
     lines = [(name, ", ".join(sorted(titles))) for name, titles in sorted(found.items()) if name != "others"]
     return _table(("kinds", "objects"), [*lines, ("others", ", ".join(sorted(found["others"])))])
 

@@ -96,7 +96,7 @@ class AsLoadedContext:
     @cached_property
     def robot(self) -> Robot:
         """The file without its geometry."""
-        return read_robot(self.request.urdf, geometry="none")
+        return read_robot(self.request.resolved or self.request.urdf, geometry="none")  # less what is broken
 
     @cached_property
     def mechanism(self) -> LeaderMechanism:
@@ -302,12 +302,12 @@ class AsLoadedContext:
         """Return the visible surfaces in motion, for joints that fall short; None where they are what collides."""
         from kinematify.geometry.scene import read_scene, simplified, visible_shapes  # noqa: PLC0415 - for these only
         from kinematify.geometry.sweep import Sweeper  # noqa: PLC0415
-        from kinematify.validation.model_cache import thin_model_of  # noqa: PLC0415
+        from kinematify.validation.model_cache import model_of  # noqa: PLC0415
 
-        model = thin_model_of(self.request)
+        model = model_of(self.request)
         if not simplified(model) and len(self.request.free_travel) == len(self.mechanism.travels):
             return None
-        return Sweeper.of(read_scene(model, self.request.settings.geometry, visible_shapes))
+        return Sweeper.of(read_scene(model, self.request.settings.geometry, visible_shapes, thin=True))
 
     def _seen_end(self, travel: Travel, end: float) -> float:
         """Value up to which what is visible does not block the way to an end [rad or m]."""

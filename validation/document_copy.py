@@ -25,8 +25,10 @@ LEFT_OUT = frozenset(("KV140", "KV141", "KV142", "KV150"))
 """Checks of shapes that reading leaves out, with a note."""
 _SHAPES = ("KV138", "KV139", "KV151", "KV152")
 """Checks after whose errors a model is read without the shape that they name."""
-_JOINTS = ("KV127", "KV128", "KV130", "KV131", "KV134", "KV136", "KV137")
+_JOINTS = ("KV130", "KV131", "KV134", "KV136", "KV137")
 """The same with a fixed joint in place of the one that they name."""
+_MIMICS = ("KV127", "KV128")
+"""The same with a joint that follows no other one, as most engines read it."""
 _NO_LIMIT = "KV136"
 
 
@@ -39,8 +41,6 @@ class DocumentCopy:
     """Links that lack a shape."""
     joints: frozenset[str] = frozenset()
     """Joints that are fixed in it."""
-    only_visuals: bool = True
-    """It lacks nothing that collides or moves."""
 
     def doubts(self, finding: Finding) -> bool:
         """Whether a finding on the copy may come of what it lacks."""
@@ -61,25 +61,26 @@ def readable_copy(request: StageRequest, errors: Iterable[Finding], name: str) -
         robot = parse_description(request.urdf)
     except DescriptionError:  # the text is not well-formed, which a finding says
         return None
-    shapes, joints, only_visuals = set[str](), set[str](), True
+    shapes, joints = set[str](), set[str]()
     for finding in errors:
         if finding.check == _NO_LIMIT and _turns(robot, finding.joint):
             continue  # it is read as continuous
-        if finding.check in _JOINTS and finding.joint is not None:
+        if finding.check in _MIMICS and finding.joint is not None:
+            for joint in _named(robot, finding.joint):
+                for mimic in joint.findall("mimic"):
+                    _blank(mimic)
+        elif finding.check in _JOINTS and finding.joint is not None:
             _fix_joint(robot, finding.joint)
             joints.add(finding.joint)
-            only_visuals = False
         elif finding.check in _SHAPES and finding.link is not None:
-            tags = _drop_shapes(robot, finding)
-            if not tags:
+            if not _drop_shapes(robot, finding):
                 return None
             shapes.add(finding.link)
-            only_visuals &= tags == {"visual"}
         elif finding.severity is Severity.ERROR:
             return None
     path = request.work / name
     _write_resolved(robot, request, path)
-    return DocumentCopy(path=path, shapes=frozenset(shapes), joints=frozenset(joints), only_visuals=only_visuals)
+    return DocumentCopy(path=path, shapes=frozenset(shapes), joints=frozenset(joints))
 
 
 def resolved_copy(request: StageRequest, name: str, left_out: Iterable[Finding]) -> Path:
@@ -117,20 +118,23 @@ def _write_resolved(robot: _Element, request: StageRequest, path: Path) -> None:
 
 
 def _turns(robot: _Element, name: str | None) -> bool:
-    return any(joint.get("name") == name and joint.get("type") == "revolute" for joint in robot.findall("joint"))
+    return any(joint.get("type") == "revolute" for joint in _named(robot, name))
+
+
+def _named(robot: _Element, name: str | None) -> list[_Element]:
+    return [joint for joint in robot.findall("joint") if joint.get("name") == name]
 
 
 def _fix_joint(robot: _Element, name: str) -> None:
-    for joint in robot.findall("joint"):
-        if joint.get("name") == name:
-            joint.set("type", "fixed")
-            for element in (*joint.findall("axis"), *joint.findall("limit"), *joint.findall("mimic")):
-                _blank(element)
+    for joint in _named(robot, name):
+        joint.set("type", "fixed")
+        for element in (*joint.findall("axis"), *joint.findall("limit"), *joint.findall("mimic")):
+            _blank(element)
 
 
-def _drop_shapes(robot: _Element, finding: Finding) -> set[str]:
-    """Drop the shape in the line of a finding, and what names the same file in that link; return their tags."""
-    dropped = set[str]()
+def _drop_shapes(robot: _Element, finding: Finding) -> bool:
+    """Drop the shape in the line of a finding, and what names the same file in that link; False if none is there."""
+    dropped = False
     for link in robot.findall("link"):
         if link.get("name") != finding.link:
             continue
@@ -141,7 +145,7 @@ def _drop_shapes(robot: _Element, finding: Finding) -> set[str]:
         files = {mesh.get("filename") for shape in named for mesh in shape.iter("mesh")}
         for shape in shapes:
             if shape in named or {mesh.get("filename") for mesh in shape.iter("mesh")} & files:
-                dropped.add(str(shape.tag))
+                dropped = True
                 _blank(shape)
     return dropped
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from kinematify.processes.pool import TaskFailure, WorkerProcess, WorkItem, run_tasks, tell, wait_for
+from kinematify.processes.pool import TaskFailure, WorkerProcess, WorkItem, run_tasks, send, wait_for
 from kinematify.processes.start import ONE_THREAD, environment_variables, use_server, without_main, worker_context
 
 if TYPE_CHECKING:
@@ -170,7 +170,7 @@ def _work(stage: Stage, request: StageRequest) -> float:
         # Imported here, and by a server: the sooner the caller starts that, the sooner everything ends.
         from kinematify.validation.stage import Recorder  # noqa: PLC0415
 
-        stage.run(request, Recorder(tell, request.selected))
+        stage.run(request, Recorder(send, request.selected))
     except Exception:
         traceback.print_exc()  # its last line becomes the cause
         sys.exit(1)

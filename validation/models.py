@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
 from kinematify.robot.description import SUFFIXES
+from kinematify.robot.known_robots import robot_named
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -46,6 +47,9 @@ def _models_of(word: str) -> list[Path]:
         raise InputError(f"{word} is neither a file nor a folder. Give a URDF file or a folder with URDF files.")
     if glob.has_magic(word):
         return _matching(word)
+    named = robot_named(word)
+    if named is not None:
+        return [named]
     raise InputError(_missing(path))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.described import library
+from benchmarks.fit.drawn import corpus_kinds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -121,7 +121,7 @@ _OF_NAME = {name: category for category, names in ALIKE.items() for name in name
 def category_of(example: Example | TreeExample) -> str:
     """The word that real objects of the same kind carry."""
     name = example.category
-    if name in _OF_NAME or name not in library():
+    if name in _OF_NAME or name not in corpus_kinds():
         return _OF_NAME.get(name, name)
-    kind = library()[name].like or name
+    kind = corpus_kinds()[name].like or name
     return _OF_NAME.get(kind, kind)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from benchmarks.fit.composed import compose
-from benchmarks.fit.drawn import DRAWN, drawn_object
+from benchmarks.fit.drawn import DRAWN, corpus_kinds, drawn_object
 from benchmarks.fit.edges import read_tree_examples, tree_example, write_tree_examples
 from benchmarks.fit.examples import content_key, examples_of, read_examples, write_examples
 from benchmarks.fit.fragmentation import with_pieces_broken_off
@@ -25,9 +25,8 @@ from kinematify.assembly.erasure import erase
 from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, InputError, KinematifyError
-from kinematify.generate.described import known_families
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.blueprint import ground_truth
-from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 from kinematify.robot.read import read_robot
@@ -71,7 +70,7 @@ class CorpusSource:
 def generated_sources(rounds: int, composed: int) -> list[CorpusSource]:
     """`rounds` objects of every kind, each modelled in another way, and `composed` random mechanisms."""
     origins = dict.fromkeys(FAMILIES, FAMILY) | dict.fromkeys(DRAWN, PROGRAMMED)
-    named = [(origins.get(name, DESCRIBED), name) for name in sorted(known_families())]
+    named = [(origins.get(name, DESCRIBED), name) for name in sorted(corpus_kinds())]
     found = [CorpusSource(origin=origin, name=name, number=n) for n in range(rounds) for origin, name in named]
     return found + [CorpusSource(origin=COMPOSED, name="composed", number=n) for n in range(composed)]
 
@@ -308,5 +307,5 @@ def _drawn(source: CorpusSource, number: int) -> Blueprint:
     rng = np.random.default_rng([number, zlib.crc32(source.name.encode())])
     ajar = round(float(rng.uniform(0.05, 0.6)), 2) if rng.random() < _AJAR else 0.0
     drawn = int(rng.integers(2**31))
-    blueprint = build(known_families()[source.name], {"open": ajar}, seed=drawn, name=source.name)
+    blueprint = build(corpus_kinds()[source.name], {"open": ajar}, seed=drawn, name=source.name)
     return augment(blueprint, ways[(number + zlib.crc32(source.name.encode())) % len(ways)], rng=rng)

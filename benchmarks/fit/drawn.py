@@ -4,22 +4,40 @@ from __future__ import annotations
 
 import zlib
 from dataclasses import replace
+from functools import cache
+from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.described import SteppedDescription, library
+from kinematify.generate.described import known_families
 from kinematify.generate.library.builder import ModelingStyle
+from kinematify.generate.library.kind import KINDS
+from kinematify.generate.library.kind import drawn_object as drawn_by
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
+    from kinematify.generate.procedural.family import Family
     from kinematify.robot.arrays import FloatArray
 
 _SEEDS = "library 4"
 """Namespace of the seeds: another one wherever the order of the draws changes."""
-DRAWN = tuple(sorted(name for name, item in library().items() if isinstance(item, SteppedDescription)))
-"""Names of the objects of the library that are written in steps."""
+
+
+@cache
+def corpus_kinds() -> Mapping[str, Family]:
+    """All kinds, and other ways to build some of them, keyed by name."""
+    for file in sorted(Path(__file__).with_name("variants").glob("[a-z]*.py")):
+        import_module(f"benchmarks.fit.variants.{file.stem}")
+    return {**known_families(), **{name: item for name, item in KINDS.items() if item.like}}
+
+
+DRAWN = tuple(sorted(name for name, item in corpus_kinds().items() if item.draw))
+"""Names of the objects that a function draws, in any style of modelling."""
 
 
 def drawn_object(name: str, seed: int, style: ModelingStyle | None = None) -> Blueprint:
@@ -35,9 +53,7 @@ def drawn_object(name: str, seed: int, style: ModelingStyle | None = None) -> Bl
     """
     rng = np.random.default_rng([seed, zlib.crc32(f"{_SEEDS} {name}".encode())])
     someone = ModelingStyle.drawn(rng)
-    described = library()[name]
-    assert isinstance(described, SteppedDescription), name
-    built = described.draw(style or someone, rng)
+    built = drawn_by(corpus_kinds()[name], style or someone, rng)
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     mirrored = bool(rng.random() < 0.5)
     quarters = np.linalg.matrix_power(turn, int(rng.integers(4)))

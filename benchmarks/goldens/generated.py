@@ -1,4 +1,4 @@
-"""Goldens of what is generated: families, described objects, compositions, parses of sentences, and episodes."""
+"""Goldens of what is generated: families, described objects, requests of sentences, and episodes."""
 
 from __future__ import annotations
 
@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING, Any
 from benchmarks.expectations import SETS, load_sentences
 from benchmarks.goldens.values import array_hash, blueprint_values, made, plain
 from kinematify.errors import InputError
-from kinematify.generate.composer.body_sentence import sentence_of
-from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.described import known_families
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.sentence import from_text
+from kinematify.generate.reader import read_sentence
 
 if TYPE_CHECKING:
     from benchmarks.goldens.values import Values
@@ -20,7 +18,6 @@ if TYPE_CHECKING:
 
 _SEEDS = (None, 0, 1, 2)
 """None: the defaults."""
-_COMPOSITIONS = 300
 _ACTIONS = 50
 
 
@@ -50,41 +47,25 @@ def family_values(item: tuple[str, tuple[int | None, ...]]) -> dict[str, Values]
     return _values({f"{name} {'defaults' if seed is None else seed}": build(family, {}, seed=seed) for seed in seeds})
 
 
-def composition_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
-    """Seeds of compositions, ten in each item."""
-    count = 20 if sample else _COMPOSITIONS
-    return {f"{first} to {first + 9}": range(first, first + 10) for first in range(0, count, 10)}, {}
+# ---- sentences and requests ------------------------------------------------------------------------------------------
 
 
-def composition_values(seeds: range) -> dict[str, Values]:
-    """Compositions that are drawn, with the sentences that ask for them."""
-    built, sentences = {}, {}
-    for seed in seeds:
-        composition = draw_composition(seed)
-        sentences[f"sentence {seed}"] = sentence_of(composition)
-        built[str(seed)] = compose(composition, seed=seed)
-    found = _values(built)
-    return made(exact=found["exact"], portable={**found["portable"], **sentences})
-
-
-# ---- sentences -----------------------------------------------------------------------------------------------------
-
-
-def sentence_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
+def request_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
     """Lists of sentences."""
     return {name: name for name in (list(SETS)[:3] if sample else SETS)}, {}
 
 
-def sentence_values(name: str) -> dict[str, Values]:
-    """What every sentence of a list is understood as, or why it is refused, and what it becomes."""
+def request_values(name: str) -> dict[str, Values]:
+    """The request that every sentence of a list becomes, or why it is refused, and what is built of it."""
     exact: Values = {}
     portable: Values = {}
     for item in load_sentences(name):
         text = item["text"]
         try:
-            built = from_text(text).made()
+            built = read_sentence(text).made()
             exact[text], structure = blueprint_values(built.blueprint)
-            portable[text] = {"parse": built.facts, "built": structure}
+            listed = [*built.differences, *built.unread]
+            portable[text] = {"request": built.facts["request"], "listed": listed, "built": structure}
         except InputError as error:
             portable[text] = {"refused": str(error)}
     return made(exact=exact, portable=portable)

@@ -19,7 +19,7 @@ from kinematify.errors import InputError
 from kinematify.evaluation.benchmark_job import erased_item, shown_parts
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, bench_folder, find_objects
 from kinematify.generate.blueprint_files import write_blueprint
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference

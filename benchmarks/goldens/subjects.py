@@ -28,8 +28,7 @@ SUBJECTS = {
     "features": GoldenSubject(items=models.feature_items, values=models.feature_values),
     "families": GoldenSubject(items=generated.family_items, values=generated.family_values, reuse=100),
     "objects": GoldenSubject(items=generated.object_items, values=generated.family_values, reuse=100),
-    "compositions": GoldenSubject(items=generated.composition_items, values=generated.composition_values, reuse=100),
-    "sentences": GoldenSubject(items=generated.sentence_items, values=generated.sentence_values, reuse=100),
+    "requests": GoldenSubject(items=generated.request_items, values=generated.request_values, reuse=100),
     "episodes": GoldenSubject(items=generated.episode_items, values=generated.episode_values),
     "surface": GoldenSubject(items=surface.surface_items, values=surface.surface_values),
 }

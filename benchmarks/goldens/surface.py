@@ -21,7 +21,7 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.described import ObjectDescription
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference

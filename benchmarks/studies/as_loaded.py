@@ -35,11 +35,10 @@ from kinematify.evaluation.datasets import CONDITIONS, find_objects
 from kinematify.evaluation.metrics import score_blueprint
 from kinematify.evaluation.result_record import grouped, table
 from kinematify.generate.blueprint_files import true_model
-from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.described import known_families
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.sentence import from_text
+from kinematify.generate.reader import read_sentence
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.pipeline.infer_assembly import infer
@@ -84,8 +83,7 @@ class AsLoadedOptions(Options):
     )
     inferred: int = Field(0, ge=0, description="Objects per family of the generator that are inferred.")
     described: int = Field(0, ge=0, description="Seeds of each object that a file describes.")
-    composed: int = Field(0, ge=0, description="Objects composed of mechanisms on bodies.")
-    sentences: int = Field(0, ge=0, description="Seeds of each of the sixty sentences for composed objects.")
+    sentences: int = Field(0, ge=0, description="Seeds of each of sixty sentences.")
     engines: Annotated[tuple[str, ...], among(ENGINES)] = Field(
         ("mujoco", "pybullet"), description="Engines, separated by commas."
     )
@@ -102,9 +100,8 @@ class TriedFile:
     item: BenchObject | None = None
     """None for an object of the generator."""
     family: str = ""
-    """Empty for a composed object."""
+    """Empty where a sentence says it."""
     sentence: str = ""
-    """The sentence of a composed object; empty for one that is drawn."""
     seed: int = 0
 
 
@@ -126,9 +123,8 @@ def measure(options: AsLoadedOptions, work: Work) -> Measured:
     for seed in range(options.described):
         for family in sorted(known_families().keys() - FAMILIES.keys()):
             cases[f"{family} {seed}"] = case(made="exact", family=family, seed=seed)
-    cases |= {f"composed {seed}": case(made="exact", seed=seed) for seed in range(options.composed)}
     for seed in range(options.sentences):
-        for number, said in enumerate(load_sentences("composed"), start=1):
+        for number, said in enumerate(load_sentences("fresh"), start=1):
             cases[f"sentence {number} {seed}"] = case(made="exact", sentence=said["text"], seed=seed)
     return list(work.each(tried_as_loaded, cases, timeout=1800.0, reuse=20).values()), {
         "versions": package_versions(ENGINES[engine].packages[0] for engine in options.engines)
@@ -140,11 +136,11 @@ def tried_as_loaded(case: TriedFile) -> Record:
     config = load_config()
     config = config.model_copy(update={"collision": config.collision.model_copy(update={"mode": case.collision})})
     if case.item is None:
-        kind = case.family or case.sentence or "composed"
-        made_by = "composed from a sentence" if case.sentence else "composed"
-        if case.family:
-            made_by = "generated" if case.family in FAMILIES else "described by files"
-        facts = {"set": f"{made_by}, {case.made}", "object": f"{kind} {case.seed}"}
+        made_by = "generated" if case.family in FAMILIES else "described by files"
+        facts = {
+            "set": f"{'from a sentence' if case.sentence else made_by}, {case.made}",
+            "object": f"{case.family or case.sentence} {case.seed}",
+        }
         blueprint = _generated(case)
         if case.made == "exact":
             return {**facts, **_written(true_model(blueprint, config), config, case.engines)}
@@ -177,10 +173,8 @@ def _joints_right(blueprint: Blueprint, inference: Inference) -> bool:
 
 def _generated(case: TriedFile) -> Blueprint:
     if case.sentence:
-        return from_text(case.sentence).build(seed=case.seed)
-    if case.family:
-        return build(known_families()[case.family], {}, seed=case.seed, name=f"{case.family}_{case.seed}")
-    return compose(draw_composition(case.seed), seed=case.seed, name=f"composed_{case.seed}")
+        return read_sentence(case.sentence).made(seed=case.seed).blueprint
+    return build(known_families()[case.family], {}, seed=case.seed, name=f"{case.family}_{case.seed}")
 
 
 def _written(model: KinematicModel, config: Config, engines: Sequence[str]) -> Record:

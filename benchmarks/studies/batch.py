@@ -51,7 +51,6 @@ class BatchOptions(Options):
     every: float = Field(20.0, gt=0.0, description="Seconds between two kills of a worker.")
     drivers: int = Field(2, ge=0, description="Times that the driver is killed.")
     workers: int = Field(2, ge=1, description="Workers beside the run with one.")
-    composed: bool = Field(False, description="Mechanisms on bodies instead of families.")
     steps: str = Field("infer,validate", description="Steps, separated by commas.")
     seed: int = Field(0, description="Of the objects.")
 
@@ -82,14 +81,11 @@ class Killed:
 
 def measure(options: BatchOptions, work: Work) -> Measured:
     """Time one worker, several, and Ray where it is installed; then kill."""
-    kind = "composed" if options.composed else "families"
     patterns = []
     for count in (options.objects, options.killed):
-        folder = work.folder.absolute() / f"{kind}-{count}-{options.seed}"
+        folder = work.folder.absolute() / f"families-{count}-{options.seed}"
         pool = work.pool
-        write_corpus(
-            folder, count, seed=options.seed, progress=pool.progress, workers=pool.workers, composed=options.composed
-        )
+        write_corpus(folder, count, seed=options.seed, progress=pool.progress, workers=pool.workers)
         patterns.append(f"{folder}/*/model.urdf")
     engines = ["local", *(["ray"] if importlib.util.find_spec("ray") else [])]
     runs = {

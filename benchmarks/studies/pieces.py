@@ -6,7 +6,11 @@ S2O). *Parts* counts matches alone; M asks for the right type as well (continuou
 within 5 deg, MAO for the line of a turning joint within 10 % of the part's diagonal. All are F1: 2 * right / (true +
 predicted). *Whole* objects have every moving part with MA and no other. PartNet objects never enter weights that ship,
 and with --weights the category of every object is held out of the weights that group its pieces. With --nodes the
-object is a GLB with a node per part, or per link, which has the name of its link; --pieces group regroups it.
+object is a GLB with a node per part, or per link, which has the name of its link; --pieces group regroups it. With
+--answers only objects with a recorded answer to `kinematify question` are inferred, without and with it: those in
+`benchmarks/answers` were given from picture and text alone, before truth was opened, to objects that had not been used
+for the wording. *Named* are the parts of answers, *right* those whose pieces match a true moving part. A voter that is
+right in a share of its parts has others of random pieces in their place, and its record.
 """
 
 from __future__ import annotations
@@ -40,18 +44,24 @@ from kinematify.pipeline.infer_assembly import infer
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
+from kinematify.vision.ask import PieceVote
+from kinematify.vision.piece_question import piece_question
+from kinematify.vision.votes import VoterRecord
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from benchmarks.study import Measured, Record, Work
     from kinematify.assembly.erasure import ErasedModel
+    from kinematify.assembly.part import Assembly
     from kinematify.assembly.truth import TrueJoint
     from kinematify.evaluation.datasets import BenchObject
     from kinematify.evaluation.result_record import Report
+    from kinematify.grouping.numbered_pieces import NamedPart
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.vision.piece_question import PieceQuestion
 
 _ENOUGH = 0.5
 """IoU of triangles above which two parts are the same."""
@@ -68,6 +78,8 @@ class PiecesOptions(Options):
     weights: str | None = Field(None, description="Folder of held-out weights that `benchmarks.fit.pieces` wrote.")
     pieces: Literal["auto", "keep", "group"] = Field("auto", description="As `infer` takes it.")
     nodes: Literal["none", "part", "link"] = Field("none", description="A node for each, in place of one mesh.")
+    answers: str | None = Field(None, description="JSON file of recorded answers by set/object.")
+    voter: float | None = Field(None, ge=0.0, le=1.0, description="Share of parts of an answer that stay as they are.")
     seconds: float = Field(240.0, gt=0.0, description="Wall time for one object.")
 
 
@@ -80,20 +92,30 @@ class MergedObject:
     weights: str | None
     pieces: str
     nodes: str
+    answer: str | None = None
+    voter: float | None = None
 
 
 def measure(options: PiecesOptions, work: Work) -> Measured:
     """Merge every object and infer it."""
     folder = bench_folder()
     asked = {}
+    answers = {} if options.answers is None else json.loads(Path(options.answers).read_text(encoding="utf-8"))
     for data in options.data:
         place = folder / data if (folder / data).is_dir() else Path(data)
         found = find_objects(place)
         rows = np.linspace(0, len(found) - 1, min(options.most, len(found))).round().astype(int)
         for item in (found[row] for row in rows):
-            asked[f"{place.name}/{item.name}"] = MergedObject(
+            name = f"{place.name}/{item.name}"
+            case = MergedObject(
                 item=item, group=place.name, weights=options.weights, pieces=options.pieces, nodes=options.nodes
             )
+            if not answers:
+                asked[name] = case
+            elif name in answers:
+                asked[name] = case
+                said = json.dumps(answers[name])
+                asked[f"{name}, asked"] = replace(case, group=f"{place.name}, asked", answer=said, voter=options.voter)
 
     def failed(name: str, failure: object) -> Record:
         return {**_facts(asked[name]), **_counts(erased_object(asked[name].item), None), "status": str(failure)}
@@ -111,7 +133,7 @@ def run_case(case: MergedObject) -> Record:
     """Merge one object, infer it and count what is right."""
     erased, category = erased_object(case.item), category_of_piece(case.item.category)
     started = time.process_time()
-    found, status, pieces = None, "ok", 0
+    found, status, pieces, named = None, "ok", 0, {}
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / ("object.ply" if case.nodes == "none" else "object.glb")
         write_merged(erased, path) if case.nodes == "none" else write_nodes(case.item, path, case.nodes)
@@ -119,7 +141,11 @@ def run_case(case: MergedObject) -> Record:
             config = load_config()
             given = load_assembly(path, config=config.assembly, up="z", pieces=case.pieces)
             pieces = len(given.parts)
-            if not given.segmented:
+            if case.answer is not None:
+                vote = _vote(case, piece_question(given, config))
+                named = {"named": len(vote.answer.parts), "hit": _hits(erased.parts, given, vote.answer.parts)}
+                found = vote.applied(infer(vote.grouping(config), config=config, base=vote.base))
+            elif not given.segmented:
                 weights = None if case.weights is None else HeldOut(Path(case.weights)).weights_of(category)
                 found = infer(group_pieces(given, config.grouping, weights), config=config)
             else:
@@ -127,7 +153,40 @@ def run_case(case: MergedObject) -> Record:
         except KinematifyError as error:
             status = str(error)
     seconds = time.process_time() - started
-    return {**_facts(case), **_counts(erased, found), "status": status, "pieces": pieces, "seconds": seconds}
+    facts = {**_facts(case), **named, "status": status, "pieces": pieces, "seconds": seconds}
+    return {**facts, **_counts(erased, found)}
+
+
+def _vote(case: MergedObject, question: PieceQuestion) -> PieceVote:
+    """The recorded answer, or that of a voter who is right in a share of its parts only."""
+    answer = question.read(case.answer or "")
+    if case.voter is None:
+        return PieceVote(voter="recorded", question=question, answer=answer)
+    random = np.random.default_rng(list(case.item.name.encode()))
+    order, taken, kept = random.permutation(len(question.pieces)).tolist(), set[int](), list[NamedPart]()
+    for part in answer.parts:
+        right = random.random() < case.voter
+        pieces = [k for k in (part.pieces if right else question.pieces[order.pop()]).tolist() if k not in taken]
+        taken |= {*pieces}
+        if pieces:
+            kept.append(replace(part, pieces=np.array(pieces), turns=part.turns if right else not part.turns))
+    record = VoterRecord(right=round(10 * case.voter), asked=10)
+    return PieceVote(voter="simulated", question=question, answer=replace(answer, parts=tuple(kept)), record=record)
+
+
+def _hits(parts: Sequence[Part], given: Assembly, named: Sequence[NamedPart]) -> int:
+    """Number of named sets of pieces that are a true part, by IoU of triangles; the first part is the body."""
+    centres = np.concatenate([part.vertices[part.faces].mean(axis=1) for part in given.parts])
+    owner = np.repeat(np.arange(len(given.parts)), [len(part.faces) for part in given.parts])
+    tree = cKDTree(centres)
+    counts = np.array([
+        np.bincount(owner[tree.query(part.vertices[part.faces].mean(axis=1))[1]], minlength=len(given.parts))
+        for part in parts
+    ])  # fmt: skip
+    sizes, faces = counts.sum(axis=1), np.bincount(owner, minlength=len(given.parts))
+    both = [counts[:, item.pieces].sum(axis=1) for item in named]
+    either = [sizes + faces[item.pieces].sum() - one for item, one in zip(named, both, strict=True)]
+    return sum(float((one / all_).max()) > _ENOUGH for one, all_ in zip(both, either, strict=True))
 
 
 def write_merged(erased: ErasedModel, path: Path) -> None:
@@ -155,6 +214,7 @@ def _facts(case: MergedObject) -> Record:
     facts = json.loads((case.item.urdf.parent / "source.json").read_text(encoding="utf-8"))
     of_partnet = "partnet" in str(facts.get("license", "")).lower()
     group = "PartNet" if of_partnet else case.group
+    group = f"{group}, asked" if case.answer is not None and of_partnet else group
     return {"object": case.item.name, "group": group, "category": case.item.category, "fits": may_be_fitted_to(facts)}
 
 
@@ -233,7 +293,11 @@ def _marks(true: TrueJoint, guess: JointEstimate, part: Part) -> tuple[bool, boo
 def report(found: Report[Record]) -> list[str]:
     """F1 of every set, and every object."""
     records = found.records
-    sets = {**grouped(records, by=lambda record: str(record["group"])), "**all**": list(records)}
+    sets = {
+        **grouped(records, by=lambda record: str(record["group"])),
+        **grouped(records, by=lambda record: f"**all{', asked' if 'named' in record else ''}**"),
+    }
+    named = [sum(record.get(key, 0) for record in records) for key in ("hit", "named")]
     rows = [_row(name, group) for name, group in sets.items()]
     kinds = tuple(f"F1 {kind}" for kind in _KINDS)
     columns = ("set", "objects", "move", "predicted", "precision", "recall", *kinds, "whole")
@@ -243,7 +307,8 @@ def report(found: Report[Record]) -> list[str]:
         explained(__doc__),
         (
             f"Weights of the grouping: {'category held out' if held_out else 'those that ship'}. Precision and recall "
-            f"are those of MA. Processor time: median {np.median(seconds):.1f} s, longest {max(seconds):.1f} s."
+            f"are those of MA. Named parts that are right: {named[0]} of {named[1]}. "
+            f"Processor time: median {np.median(seconds):.1f} s, longest {max(seconds):.1f} s."
         ),
         table(columns, rows),
         "## Objects",

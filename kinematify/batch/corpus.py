@@ -8,7 +8,6 @@ import shutil
 import zlib
 from collections import Counter
 from contextlib import closing
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -18,9 +17,7 @@ from kinematify import __version__
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, OutputError
 from kinematify.generate.blueprint_files import write_blueprint
-from kinematify.generate.composer.body_sentence import sentence_of
-from kinematify.generate.composer.compose import compose, draw_composition
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 
@@ -31,8 +28,6 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.blueprint import Blueprint
 
 MANIFEST = "manifest.json"
-COMPOSED = "composed"
-"""Category of objects that no family builds."""
 _AJAR = 0.25  # of the objects, as of things that are seen in rooms
 _AJAR_BY = (0.05, 0.6)  # share of the way; more is as good as open, and no object is found so
 _LONGEST = 600.0  # seconds for one object
@@ -46,7 +41,6 @@ def write_corpus(
     seed: int,
     progress: Callable[[str, float], None],
     workers: int = 1,
-    composed: bool = False,
 ) -> Path:
     """Write `count` objects below a folder, one folder each with a URDF, and a manifest.
 
@@ -61,7 +55,6 @@ def write_corpus(
         seed: Draws the parameters; an object of a name has the same ones in a corpus of any size.
         progress: Called with the object and the share done.
         workers: Processes at a time.
-        composed: Mechanisms on bodies instead of families; their ``source.json`` has a sentence for each.
 
     Returns:
         The path of the manifest.
@@ -72,7 +65,7 @@ def write_corpus(
     """
     manifest = out / MANIFEST
     _check_seed(manifest, seed)
-    entries = [_entry(k, seed, composed=composed) for k in range(count)]
+    entries = [_entry(k, seed) for k in range(count)]
     try:
         out.mkdir(parents=True, exist_ok=True)
         counts = Counter(entry["category"] for entry in entries)
@@ -90,24 +83,18 @@ def write_corpus(
     return manifest
 
 
-def _entry(k: int, seed: int, *, composed: bool) -> dict[str, Any]:
+def _entry(k: int, seed: int) -> dict[str, Any]:
     """Object k of a corpus; what it is like hangs on its name alone, so that new families change no other."""
     names = sorted(FAMILIES)
-    family, number = (COMPOSED, k) if composed else (names[k % len(names)], k // len(names))
-    rng = np.random.default_rng([seed, k] if composed else [seed, zlib.crc32(family.encode()), number])
+    family, number = names[k % len(names)], k // len(names)
+    rng = np.random.default_rng([seed, zlib.crc32(family.encode()), number])
     drawn, ajar = int(rng.integers(2**31)), rng.random() < _AJAR
     share = round(float(rng.uniform(*_AJAR_BY)), 2) if ajar else 0.0
-    name = f"{family}_{number:04d}" if composed else f"{family}_{number:03d}"
-    return {"name": name, "category": family, "seed": drawn, "open": share}
+    return {"name": f"{family}_{number:03d}", "category": family, "seed": drawn, "open": share}
 
 
 def _built(entry: dict[str, Any]) -> Blueprint:
-    seed = entry["seed"]
-    if entry["category"] != COMPOSED:
-        return build(FAMILIES[entry["category"]], {"open": entry["open"]}, seed=seed, name=entry["name"])
-    composition = replace(draw_composition(seed), rest=entry["open"])
-    blueprint = compose(composition, name=entry["name"], seed=seed)
-    return replace(blueprint, parameters={**blueprint.parameters, "text": sentence_of(composition)})
+    return build(FAMILIES[entry["category"]], {"open": entry["open"]}, seed=entry["seed"], name=entry["name"])
 
 
 def _write_objects(out: Path, entries: Sequence[dict[str, Any]], workers: int) -> Iterator[str]:

@@ -74,13 +74,13 @@ class RayWorker:
         self._started, self.deadline = 0.0, 0.0
         self.answered: Any = None
 
-    def take(self, task: Callable[[], Any], timeout: float) -> None:
+    def submit(self, task: Callable[[], Any], timeout: float) -> None:
         """Begin a task."""
         self._started = time.monotonic()
         self.deadline = self._started + timeout + _PATIENCE
         self.answered = self._keeper.do.remote(task, timeout)
 
-    def answer(self) -> tuple[Any, bool]:
+    def result(self) -> tuple[Any, bool]:
         """Return the result or what became of the task, and whether the worker lives."""
         seconds = time.monotonic() - self._started
         try:
@@ -106,9 +106,9 @@ class _Keeper:
     def do(self, task: Callable[[], Any], timeout: float) -> tuple[Any, bool]:
         """Return the result of a task, or its failure, and whether the process lives."""
         worker = self._worker or self._executor.start()
-        worker.take(task, timeout)
+        worker.submit(task, timeout)
         self._executor.wait([worker])
-        result, alive = worker.answer()
+        result, alive = worker.result()
         if not alive:
             worker.stop()
         self._worker = worker if alive else None

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 COMMANDS = (
-    "generate", "infer", "refine", "validate", "explain", "fix", "view", "export", "erase", "batch", "bench", "fit",
-    "nightly", "doctor",
+    "generate", "infer", "question", "refine", "validate", "explain", "fix", "view", "export", "erase", "batch",
+    "bench", "fit", "nightly", "doctor", "mcp",
 )  # fmt: skip
 """Each is a module of this package that defines `command`."""
 

@@ -1,83 +1,54 @@
-"""Options of `kinematify infer` that ask a vision-language model about joints."""
+"""Options of `kinematify infer` that ask a person or a vision-language model which parts move, and how."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from kinematify.errors import ExitStatus
-
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection
+    from collections.abc import Callable
 
-    from kinematify.pipeline.inference import Inference
-
-    Progress = Callable[[str], None]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Asking:
-    """Who is asked, and about what."""
-
-    vlm: str
-    everything: bool
-    types_first: bool
+    from kinematify.assembly.part import Assembly
+    from kinematify.config import Config
+    from kinematify.vision.ask import PieceVote
 
 
 def asking_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options; they reach the command as `asking`, a dictionary of the fields of `Asking`."""
-    options = (
-        click.option(
-            "--vlm",
-            default="off",
-            show_default=True,
-            metavar="off|auto|URL",
-            help="Ask a vision-language model about doubtful joints: a chat interface, or that of KINEMATIFY_VLM_URL.",
-        ),
-        click.option("--vlm-all", is_flag=True, help="Ask about all joints, without a budget."),
-        click.option(
-            "--vlm-first", is_flag=True, help="Ask for the types alone, before axes are chosen, as the paper does."
-        ),
-    )
-    for option in reversed(options):
-        command = option(command)
-    return command
+    """Add the options `vlm` and `answer`."""
+    command = click.option(
+        "--answer",
+        type=click.Path(path_type=Path),
+        help="Which pieces are one moving part, as a person or a chat answered `kinematify question`.",
+    )(command)
+    return click.option(
+        "--vlm",
+        default="off",
+        show_default=True,
+        metavar="off|auto|URL",
+        help="Ask a vision-language model the same: a chat interface, or that of KINEMATIFY_VLM_URL. One question an "
+        "object, none where parts are given and no joint is doubtful.",
+    )(command)
 
 
-def with_answers(
-    inference: Inference, asking: Asking, known: Collection[str], progress: Progress
-) -> tuple[Inference, str, int]:
-    """The joints chosen again with answers, what is to be printed of them, and the exit status that they ask for.
-
-    Args:
-        inference: What geometry says.
-        asking: Who is asked.
-        known: Parts that the user has given hints on.
-        progress: Is given what is going on.
+def ask_pieces(given: Assembly, vlm: str, answer: Path | None, settings: Config) -> PieceVote | None:
+    """What is said of the pieces of an object, by a file or a model; None where nobody is asked.
 
     Raises:
-        InputError: `--vlm` is neither off, auto nor an address.
+        InputError: The answer cannot be read, or `vlm` is neither off, auto nor an address.
     """
+    if answer is None and vlm == "off":
+        return None
+    from kinematify.vision.ask import PieceVote, ask_about_pieces
     from kinematify.vision.client import oracle_of
+    from kinematify.vision.piece_question import piece_question, read_answer_file
+    from kinematify.vision.screening import known_questions
 
-    oracle = oracle_of(asking.vlm, inference.config.vision)
+    if answer is not None:
+        question = piece_question(given, settings)
+        return PieceVote(voter=str(answer), question=question, answer=read_answer_file(question, answer))
+    oracle = oracle_of(vlm, settings.vision)
     if oracle is None:
-        return inference, "", 0
-    progress("asking a vision model about the joints")
-    from kinematify.config import load_config
-    from kinematify.vision.ask import Voting, voter_record, with_types_first, with_votes
-    from kinematify.vision.screening import screening_questions
-    from kinematify.vision.votes import to_ask
-
-    if asking.types_first or inference.config.vision.first:
-        inference, voting = with_types_first(inference, oracle)
-    elif not to_ask(inference, everything=asking.everything, known=known)[0]:
-        voting = Voting(voter=oracle.name, answers={})
-    else:
-        progress("asking a vision model about known objects, once for each model")
-        record = voter_record(oracle, lambda: screening_questions(load_config()))
-        progress("asking a vision model about the joints")
-        inference, voting = with_votes(inference, oracle, record, everything=asking.everything, known=known)
-    return inference, voting.described(), 0 if voting.reached else int(ExitStatus.FAULT)
+        return None
+    return ask_about_pieces(oracle, piece_question(given, settings), lambda: known_questions(settings))

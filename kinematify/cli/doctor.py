@@ -50,6 +50,7 @@ MODULES = {
     "packaging": ("packaging", "this command"),
     "lib3mf": ("lib3mf", "3MF files"),
     "xacro": ("xacro", "xacro files"),
+    "mcp": ("mcp", "tools for coding agents, kinematify mcp"),
     "DracoPy": ("DracoPy", "glTF files compressed with Draco"),
     "meshopt": ("meshopt", "glTF files compressed with meshoptimizer"),
     "cascadio": ("cascadio", "STEP files"),

@@ -61,7 +61,6 @@ def command(*, checks: tuple[str, ...], as_list: bool, markdown: bool, json_to: 
 def as_markdown(checks: Sequence[Check]) -> str:
     """Return the page `docs/checks.md`."""
     from kinematify.validation.check import FAMILIES
-    from kinematify.validation.simready import answered_markdown
 
     lines = [
         "# Checks of `kinematify validate`",
@@ -77,7 +76,6 @@ def as_markdown(checks: Sequence[Check]) -> str:
             lines += ["", f"## {prefix}xx: {family}", "", *_index(members)]
             lines += [line for check in members for line in ("", *_section(check))]
     lines += ["", "## What `kinematify refine` makes of findings", "", *_feedback(checks)]
-    lines += ["", *answered_markdown()]
     return "\n".join(lines) + "\n"
 
 

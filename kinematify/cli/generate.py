@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import json
 import os
-import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,14 +26,15 @@ _WIDTH = 100
 
 @click.command(
     "generate",
-    short_help="A sentence or a photo -> a model; sentences work offline.",
+    short_help="A sentence, a request or a photo -> a model; sentences and requests work offline.",
     epilog=examples(
         'kinematify generate "a kitchen cabinet with two doors above three drawers, 80 cm wide" -o out/cabinet',
-        "kinematify generate --category cabinet --set doors=2 --set drawers=3 --set handle=knob -o out/c2",
+        "kinematify generate --category cabinet --set doors=2 --set drawer.color=red --set size.width=80cm -o out/c2",
+        "kinematify generate --request oven.yaml -o out/oven",
+        "kinematify generate --schema cabinet",
         'kinematify generate "a chest of drawers, half open" --seed 7 -o out/chest',
         "kinematify generate --blueprint toolbox.yaml -o out/toolbox",
         "kinematify generate --list",
-        "kinematify generate --list --category cabinet",
         "kinematify generate --corpus 100 --seed 1 -o corpus",
         "kinematify generate --image robot.jpg --source rodin --budget 2 -o out/robot",
         'kinematify generate "a cantilever toolbox" --source llm --budget 60000 -o out/box',
@@ -48,7 +49,28 @@ _WIDTH = 100
     shell_complete=complete_categories,
     help="What to build, by category; see --list.",
 )
-@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="A parameter of the category, repeatable.")
+@click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="A field of the request: a parameter of the kind, size.width, door.color, door.range; repeatable.",
+)
+@click.option(
+    "--request",
+    "request_file",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="What to build, as a typed request in YAML or JSON; --set goes before it.",
+)
+@click.option(
+    "--schema",
+    is_flag=False,
+    flag_value="",
+    metavar="[KIND]",
+    help="Print the JSON schema of requests, with the parameters of KIND.",
+)
+@click.option("--nearest", is_flag=True, help="Take the nearest kind where the sentence names none that is known.")
 @click.option(
     "--blueprint",
     type=click.Path(path_type=Path),
@@ -56,9 +78,6 @@ _WIDTH = 100
     help="What to build, as YAML or JSON: parts made of primitives, and joints.",
 )
 @click.option("--corpus", type=click.IntRange(min=1), metavar="N", help="N objects of all categories, as a benchmark.")
-@click.option(
-    "--compose", "composed", is_flag=True, help="With --corpus: mechanisms on bodies, each with its sentence."
-)
 @click.option("--seed", type=int, help="Draw at random what is not asked for; default: the defaults of the category.")
 @click.option("--list", "listing", is_flag=True, help="Show the categories, or the parameters of --category.")
 @click.option(
@@ -92,7 +111,7 @@ _WIDTH = 100
 @click.option("--up", type=click.Choice(["auto", "y", "z"]), default="auto", help="Axis that points up in the parts.")
 @scale_option
 @click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder to write.")
-@click.option("--strict", is_flag=True, help="Write nothing unless everything in the sentence is built.")
+@click.option("--strict", is_flag=True, help="Write nothing unless all is as asked for and every word was read.")
 @click.option("--infer", "inferred", is_flag=True, help="Infer the joints from the parts alone, and compare.")
 @collision_option
 @click.option(
@@ -108,9 +127,11 @@ def command(
     text: str | None,
     category: str | None,
     settings: tuple[str, ...],
+    request_file: Path | None,
+    schema: str | None,
+    nearest: bool,
     blueprint: Path | None,
     corpus: int | None,
-    composed: bool,
     seed: int | None,
     listing: bool,
     images: tuple[Path, ...],
@@ -134,11 +155,13 @@ def command(
     no_validation: bool,
     json_to: str | None,
 ) -> int:
-    """Build what a sentence, a category or a blueprint asks for, with its exact joints, and validate it.
+    """Build what a sentence, a request or a blueprint asks for, with its exact joints, and validate it.
 
-    What the sentence asks for and the object does not have (a part, a count, a side, a size, a colour) is listed as
-    "Not built", and the command ends with 1; with --strict it writes nothing and ends with 2. An unknown object or a
-    contradiction ends with 2.
+    A request names a kind, its parameters, sizes, and facts about named parts: count, size, colour, material, side,
+    range, opening; --schema shows all fields. A sentence fills as much of a request as it can. Words that it does not
+    read are listed, and the object is measured against the request: what is not as asked is listed, and the command
+    ends with 1; with --strict it writes nothing and ends with 2. An unknown kind, key or value ends with 2, and the
+    message lists what there is.
 
     OUT becomes a model folder: model.urdf, meshes/, preview.png, the validation report (validation.html and
     validation.json), the exact joints (truth.json) and the parameters (source.json). parts/ holds one mesh per part,
@@ -147,30 +170,29 @@ def command(
 
     The command also ends with 1 if the model has an error; see `kinematify validate`.
 
-    Without --source nothing is downloaded: objects are built from a library of descriptions.
+    Without --source nothing is downloaded: objects are built from a library of kinds.
 
     With --source, another generator makes the parts from --image or --text, and the joints are inferred. A language
-    model (llm) writes a blueprint; the command builds it and sends the findings of the validation back. The job is
-    saved beside OUT (OUT.job): the same command resumes it, and no step is paid for twice.
+    model (llm) fills the request or draws a blueprint, and lists what the sentence asks for; the command measures that
+    and sends back what does not hold. The job is saved beside OUT (OUT.job): the same command resumes it, and no step
+    is paid for twice.
     """
     if words and text is not None:
         raise click.UsageError(f'The sentence is given twice: "{" ".join(words)}" and --text "{text}". Remove one.')
     text = " ".join(words) or text
-    if listing:
-        _list(category, json_to)
+    if schema is not None or listing:
+        _list(category if schema is None else schema or category, json_to, is_schema=schema is not None)
         return 0
     if corpus is not None:
-        _write_corpus(corpus, seed or 0, _needed(out), text or category, composed=composed)
+        _write_corpus(corpus, seed or 0, _needed(out), text or category)
         return 0
-    if composed:
-        raise click.UsageError("--compose belongs to --corpus. For one object, describe it in --text.")
     if source is not None:
         from kinematify.cli.provided import LanguageGeneration, ProvidedGeneration, ProvidedOptions
         from kinematify.config import load_config
 
-        if category is not None or settings or blueprint is not None:
+        if category or settings or blueprint or request_file or nearest:
             raise click.UsageError(
-                "--category, --set and --blueprint cannot be combined with --source. Remove one of them."
+                "--category, --set, --request, --nearest and --blueprint cannot be combined with --source. Remove one."
             )
         asked = ProvidedOptions(
             text=text, images=images, source=source, command=program, time_limit=time_limit, budget=budget,
@@ -191,19 +213,22 @@ def command(
             raise click.UsageError("Joints of this --source are always inferred. Remove --infer.")
         return _run(ProvidedGeneration(asked, place, not no_preview, not no_validation, collision), force, json_to)
     _refuse_without_source(images, program, time_limit, budget, rounds, record, replay, resend)
-    if (text is not None) + (category is not None) + (blueprint is not None) != 1:
-        raise click.UsageError("Give one of a sentence, --category and --blueprint (or --corpus, or --list for all).")
+    given = {"a sentence": text, "--category": category, "--request": request_file, "--blueprint": blueprint}
+    if sum(value is not None for value in given.values()) != 1:
+        raise click.UsageError(f"Give one of {', '.join(given)} (or --corpus, or --list for all).")
     if blueprint is not None and (settings or seed is not None):
         raise click.UsageError("--set and --seed have no effect on a --blueprint. Remove them.")
     if settings and text is not None:
-        raise click.UsageError("--set belongs to --category. Put the value into the text, or give --category.")
+        raise click.UsageError("--set belongs to --category and --request. Put the value into the sentence.")
+    if nearest and text is None:
+        raise click.UsageError("--nearest belongs to a sentence. Remove it.")
     if strict and text is None:
-        raise click.UsageError("--strict belongs to --text. Remove it.")
+        raise click.UsageError("--strict belongs to a sentence. Remove it.")
     from kinematify.cli.generation import Generation
     from kinematify.config import load_config
 
     generation = Generation(
-        _requested(text, category, settings, blueprint),
+        _requested(text, category, settings, request_file, blueprint, nearest=nearest),
         seed,
         _needed(out),
         preview=not no_preview,
@@ -216,18 +241,27 @@ def command(
     return _run(generation, force, json_to)
 
 
-def _requested(text: str | None, category: str | None, settings: tuple[str, ...], blueprint: Path | None) -> Requested:
+def _requested(
+    text: str | None,
+    category: str | None,
+    settings: tuple[str, ...],
+    file: Path | None,
+    blueprint: Path | None,
+    *,
+    nearest: bool,
+) -> Requested:
     if blueprint is not None:
         from kinematify.generate.procedural.blueprint_file import WrittenBlueprint
 
         return WrittenBlueprint(blueprint)
     if text is not None:
-        from kinematify.generate.sentence import from_text
+        from kinematify.generate.reader import read_sentence
 
-        return from_text(text)
-    from kinematify.generate.request import from_category
+        return read_sentence(text, nearest=nearest)
+    from kinematify.generate.request import read_request, request_of, with_settings
 
-    return from_category(category or "", _pairs(settings))
+    values = {"kind": category} if file is None else read_request(file)
+    return request_of(with_settings(values, _pairs(settings)), source="request" if file is None else f"request {file}")
 
 
 def _run(run: Generation | ProvidedGeneration, force: bool, json_to: str | None) -> int:
@@ -270,8 +304,6 @@ def _pairs(settings: Sequence[str]) -> dict[str, str]:
 
 
 def _categories() -> str:
-    from kinematify.generate.composer.bodies import BODIES
-    from kinematify.generate.composer.placed_mechanisms import MECHANISMS
     from kinematify.generate.described import known_families
 
     rows = [
@@ -279,16 +311,15 @@ def _categories() -> str:
         for family in known_families().values()
     ]
     table = format_table(("category", "what it is", "parameters"), rows, width=_WIDTH)
-    bodies, mechanisms = (", ".join(kind.words[0] for kind in kinds) for kinds in (BODIES, MECHANISMS))
-    composed = (f"bodies: {bodies}", f"mechanisms: {mechanisms}")
-    return (
-        f"{table}\n\nWhat no category builds is composed, as in --text 'a cart with four casters and two drawers':\n"
-        + "".join(textwrap.fill(line, _WIDTH, subsequent_indent="  ") + "\n" for line in composed)
-        + "\nParameters with units and ranges: kinematify generate --list --category NAME"
-    )
+    return f"{table}\n\nParameters with units and ranges: kinematify generate --list --category NAME"
 
 
-def _list(category: str | None, json_to: str | None) -> None:
+def _list(category: str | None, json_to: str | None, *, is_schema: bool) -> None:
+    if is_schema:
+        from kinematify.generate.request import schema_of
+
+        click.echo(json.dumps(schema_of(category), indent=1))
+        return
     if json_to:
         write_answer(_listing(category), json_to)
     if json_to != "-":
@@ -297,8 +328,6 @@ def _list(category: str | None, json_to: str | None) -> None:
 
 def _listing(category: str | None) -> dict[str, Any]:
     """Categories with their parameters, or one of them, as JSON values."""
-    from kinematify.generate.composer.bodies import BODIES
-    from kinematify.generate.composer.placed_mechanisms import MECHANISMS
     from kinematify.generate.described import known_families
     from kinematify.generate.request import find_family
 
@@ -324,8 +353,6 @@ def _listing(category: str | None) -> dict[str, Any]:
             }
             for family in families
         ],
-        "bodies": [kind.words[0] for kind in BODIES],
-        "mechanisms": [kind.words[0] for kind in MECHANISMS],
     }
 
 
@@ -339,13 +366,11 @@ def _parameters(category: str) -> str:
     return f"{family.title}\n\n{table}\n\n{words}"
 
 
-def _write_corpus(count: int, seed: int, out: Path, only: str | None, *, composed: bool) -> None:
+def _write_corpus(count: int, seed: int, out: Path, only: str | None) -> None:
     from kinematify.batch.corpus import write_corpus
 
     if only is not None:
         raise click.UsageError("--corpus takes all categories; remove --text and --category.")
     with progress_reporter() as progress:
-        manifest = write_corpus(
-            out, count, seed=seed, progress=progress, workers=os.cpu_count() or 1, composed=composed
-        )
+        manifest = write_corpus(out, count, seed=seed, progress=progress, workers=os.cpu_count() or 1)
     click.echo(f"{count} objects: {manifest}\nNext: kinematify bench {out} -o results --name corpus")

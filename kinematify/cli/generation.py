@@ -13,7 +13,9 @@ from kinematify.cli.report_files import generated_files, report_on
 from kinematify.config import load_config
 from kinematify.errors import ExitStatus, InputError
 from kinematify.generate.blueprint_files import INFERRED_FOLDER, PARTS_FOLDER, write_blueprint, write_parts
-from kinematify.generate.sentence import BuildResult, Sentence
+from kinematify.generate.delivery import BuildResult, deliver
+from kinematify.generate.reader import Sentence
+from kinematify.generate.request import Request
 from kinematify.model.output import MODEL_FILE, PREVIEW_FILE, check_output, write_model_folder
 
 if TYPE_CHECKING:
@@ -24,7 +26,6 @@ if TYPE_CHECKING:
     from kinematify.evaluation.metrics import ObjectScore
     from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.blueprint_file import WrittenBlueprint
-    from kinematify.generate.request import Request
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline.inference import Inference
     from kinematify.validation.run.report import ValidationReport
@@ -51,7 +52,7 @@ class Generation:
     """``auto`` or ``mesh``; None: as the configuration says."""
     config: Config = field(default_factory=load_config)
     strict: bool = False
-    """Whether nothing is written unless all that is asked for is built."""
+    """True: nothing is written unless all is as asked for."""
     made: BuildResult = field(init=False)
     model: KinematicModel = field(init=False)
     inference: Inference | None = None
@@ -66,15 +67,15 @@ class Generation:
         """
         check_output(self.out, overwrite=overwrite)
         self.made = self.build(progress)
-        if self.strict and self.made.not_built:
-            raise InputError(f"{_not_built(self.made)}\nNothing is written; without --strict the rest is built.")
+        if self.strict and not self.made.is_complete:
+            raise InputError(f"{_not_as_asked(self.made)}\nNothing is written; without --strict the rest is built.")
         if self.validated:
             from kinematify.simulation.engines import DEFAULT_ENGINES
             from kinematify.validation.isolation import start_server
-            from kinematify.validation.run.plan import as_loaded_stages, asset_stage, later_stages
+            from kinematify.validation.run.plan import stages_of
 
             # Its imports take a second, on another core than the inference.
-            start_server([asset_stage(), *later_stages(), *as_loaded_stages(DEFAULT_ENGINES)])
+            start_server(stages_of(DEFAULT_ENGINES))
         config = with_collision(self.config, self.collision)
         if self.inferred:
             from kinematify.pipeline.infer_assembly import infer
@@ -101,7 +102,12 @@ class Generation:
         assert self.request is not None, "who asks no language model has a request"
         if isinstance(self.request, Sentence):
             return self.request.made(seed=self.seed)
-        return BuildResult(blueprint=self.request.build(seed=self.seed))
+        if isinstance(self.request, Request):
+            made = deliver(self.request, seed=self.seed)
+            if made.missing:  # a sentence may name what is not there; a request says exactly what is
+                raise InputError(f"{made.differences[0][0].upper()}{made.differences[0][1:]}.")
+            return made
+        return BuildResult(blueprint=self.request.build())
 
     @property
     def blueprint(self) -> Blueprint:
@@ -133,8 +139,8 @@ class Generation:
 
     @property
     def exit_status(self) -> int:
-        """1 if the model has an error or something is not built, 130 if the validation was interrupted, else 0."""
-        return status_of(self.report) or (ExitStatus.FAILURES if self.made.not_built else 0)
+        """1 if the model has an error or is not as asked, 130 if the validation was interrupted, else 0."""
+        return status_of(self.report) or (0 if self.made.is_complete else ExitStatus.FAILURES)
 
     @property
     def answer(self) -> dict[str, Any]:
@@ -144,8 +150,10 @@ class Generation:
             "out": str(self.out),
             "category": self.blueprint.family,
             "parameters": dict(self.blueprint.parameters),
-            "understood": self.made.specification and self.made.specification.as_json(),
-            "not_built": list(self.made.not_built),
+            "request": self.made.facts.get("request"),
+            "notes": list(self.made.notes),
+            "differences": list(self.made.differences),
+            "unread": list(self.made.unread),
             "validation": summary_of(self.report),
             "accuracy": None if self.inference is None else _accuracy(self.score(self.inference)),
         }
@@ -155,7 +163,7 @@ class Generation:
         if quiet:
             return
         blocks = [
-            _understood(self.made),
+            _read(self.made),
             f"Base: {self.model.root}\n\n{describe_joints(self.model.joints)}",
             "\n".join(describe_files(self.out)),
             verdict_on(self.report, self.out),
@@ -163,7 +171,7 @@ class Generation:
         if self.inference is not None:
             score = _describe_score(self.score(self.inference))
             blocks.append(f"Inferred from the parts alone: {self.out / INFERRED_FOLDER / MODEL_FILE}\n{score}")
-        blocks.append(_not_built(self.made))
+        blocks.append(_not_as_asked(self.made))
         say("\n\n".join(block for block in blocks if block))
         warn_if_interrupted(self.report)
 
@@ -212,17 +220,35 @@ def summary_of(report: ValidationReport | None) -> dict[str, Any] | None:
     }
 
 
-def _understood(made: BuildResult) -> str:
-    if made.specification is None:
+def _read(made: BuildResult) -> str:
+    """The request as it was read, for who wants to see whether that is what was meant."""
+    if made.request is None:
         return ""
-    lines = [f"Understood: {made.specification}."]
-    if made.specification.harmless:
-        lines.append(f"Of no effect on shape or motion: {', '.join(made.specification.harmless)}.")
+    asked = made.request
+    facts = [f"{name} {value}" for name, value in asked.parameters.items()]
+    facts += [f"{name} {value:.3g} m" for name, value in asked.size.items()]
+    for noun, part in asked.parts.items():
+        said = part.model_dump(exclude_defaults=True)
+        facts.append(f"{noun} ({', '.join(f'{name} {_shown(value)}' for name, value in said.items()) or 'any'})")
+    copies = f"{asked.copies} of " if asked.copies > 1 else ""
+    return "\n".join([*made.notes, f"Request: {copies}{asked.kind}{': ' if facts else ''}{'; '.join(facts)}."])
+
+
+def _shown(value: Any) -> str:
+    return (
+        ", ".join(map(_shown, value))
+        if isinstance(value, tuple)
+        else f"{value:.3g}"
+        if isinstance(value, float)
+        else str(value)
+    )
+
+
+def _not_as_asked(made: BuildResult) -> str:
+    lines = [f"Not as asked: {'; '.join(made.differences)}"] if made.differences else []
+    if words := (*made.unread, *made.harmless):
+        lines.append(f"Words not read: {', '.join(dict.fromkeys(words))}")
     return "\n".join(lines)
-
-
-def _not_built(made: BuildResult) -> str:
-    return f"Not built: {'; '.join(made.not_built)}" if made.not_built else ""
 
 
 def _accuracy(score: ObjectScore) -> dict[str, Any]:

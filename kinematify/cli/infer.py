@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.asking import Asking, asking_options, with_answers
+from kinematify.cli.asking import ask_pieces, asking_options
 from kinematify.cli.inferred import (
     describe,
     describe_lengths,
@@ -22,9 +22,9 @@ from kinematify.cli.inferred import (
     validation_answer,
     validation_status,
 )
-from kinematify.cli.options import collision_option, examples, pieces_option, scale_option, with_collision
+from kinematify.cli.options import collision_option, examples, pieces_option, scale_option, up_option, with_collision
 from kinematify.cli.progress import progress_reporter
-from kinematify.errors import EnvironmentFault, InputError
+from kinematify.errors import EnvironmentFault, ExitStatus, InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from kinematify.refinement.hints import Hint
     from kinematify.robot.robot import Joint
     from kinematify.validation.run.report import ValidationReport
+    from kinematify.vision.ask import PieceVote
 
 _INFERRED, _REFINED, _WRITTEN, _DRAWN = 0.4, 0.5, 0.75, 0.8
 """Shares of the whole time after the inference, the refinement, the files and the picture."""
@@ -55,6 +56,7 @@ _LONGEST = 86400.0
         "kinematify infer examples/cabinet -o out/cabinet --hint knob=prismatic --hint door_left:axis=z",
         "kinematify infer scan.ply --labels labels.npy -o out/scan --scale 0.001",
         "kinematify infer whole.glb --pieces group -o out/whole",
+        "kinematify infer whole.glb --answer Q/answer.json -o out/whole",
         "kinematify infer whole.glb --pieces group --groups out/whole/groups.json -o out/corrected",
         "kinematify infer parts.zip -o out/parts --config paper --seed 7",
         "kinematify infer parts/ -o out/parts --vlm http://localhost:11434/v1",
@@ -63,13 +65,7 @@ _LONGEST = 86400.0
 )
 @click.argument("assembly", type=click.Path(path_type=Path))
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="Folder to make for the model.")
-@click.option(
-    "--up",
-    type=click.Choice(["auto", "z", "y", "x", "-z", "-y", "-x"]),
-    default="auto",
-    show_default=True,
-    help="Axis of the input that points up (-z: it lies upside down); auto: y for glTF, what COLLADA says, else z.",
-)
+@up_option
 @scale_option
 @click.option(
     "--labels",
@@ -134,8 +130,7 @@ def command(
     config: str,
     seed: int | None,
     vlm: str,
-    vlm_all: bool,
-    vlm_first: bool,
+    answer: Path | None,
     collision: str | None,
     force: bool,
     no_preview: bool,
@@ -179,7 +174,7 @@ def command(
         if not no_validation:
             beside = WorkerProcess(worker_context())
             stack.callback(beside.stop)
-            beside.take(load_validation, _LONGEST)  # beside the inference
+            beside.submit(load_validation, _LONGEST)  # beside the inference
         progress = stack.enter_context(progress_reporter())
         use_one_thread(settings)
         progress("reading the parts", 0.0)
@@ -187,16 +182,17 @@ def command(
             assembly, config=settings.assembly, up=up, scale=scale, labels=labels, pieces=pieces, number=number
         )
         click.echo(describe_lengths(given), err=True)
-        parts = grouped_parts(given, groups, settings, progress)
+        parts, eyes = _asked_parts(given, groups, (vlm, answer), settings, progress)
         settings = _weighing(settings, density, masses, parts)
         stated = _parsed(hints, _names(parts), base)
+        base = base or (eyes.base if eyes else None)
         inference = infer(
             parts, config=settings, base=base, progress=lambda stage, done: progress(stage, _INFERRED * min(done, 0.99))
         )
-        asking = Asking(vlm=vlm, everything=vlm_all, types_first=vlm_first)
-        inference, heard, status = with_answers(
-            inference, asking, {hint.part for hint in stated}, lambda stage: progress(stage, _INFERRED)
-        )
+        if eyes is None and any(joint.confidence < settings.vision.ask_below for joint in inference.joints):
+            progress("asking about the parts" if vlm != "off" else "choosing joints", _INFERRED)
+            eyes = ask_pieces(inference.assembly, vlm, None, settings)
+        inference = eyes.applied(inference) if eyes else inference
         inference = _with_hints(inference, stated)
         progress("moving every joint", _INFERRED)
         inference = repaired(inference, base=base)
@@ -205,9 +201,28 @@ def command(
     if json_to:
         write_answer({**_as_answer(inference, out), **validation_answer(report)}, json_to)
     if json_to != "-":
-        blocks = (heard, describe(inference, out), describe_validation(report, out))
+        blocks = (eyes.described() if eyes else "", describe(inference, out), describe_validation(report, out))
         click.echo("\n\n".join(block for block in blocks if block))
-    return status or validation_status(report)
+    return int(ExitStatus.FAULT) if eyes and eyes.answer.fault else validation_status(report)
+
+
+def _asked_parts(
+    given: Assembly, groups: Path | None, asked: tuple[str, Path | None], settings: Config, progress: Reporter
+) -> tuple[Assembly | Grouping, PieceVote | None]:
+    """The parts, and what a file or a model (`asked`: --vlm and --answer) said of their pieces.
+
+    Raises:
+        InputError: Both a groups file and an answer are given.
+    """
+    vlm, answer = asked
+    if groups and answer:
+        raise InputError("--groups and --answer both say which pieces are one part. Give one of them.")
+    known = answer is None and (given.segmented or groups)
+    progress("reading the parts" if vlm == "off" else "asking about the pieces", 0.0)
+    eyes = None if known else ask_pieces(given, vlm, answer, settings)
+    if eyes is None or given.segmented:
+        return grouped_parts(given, groups, settings, progress), eyes
+    return eyes.grouping(settings), eyes
 
 
 def _names(parts: Assembly | Grouping) -> Sequence[str]:
@@ -290,7 +305,7 @@ def _written(
         progress("fitting collision geometry and writing the files", _REFINED)
         write_inference_files(inference, folder, preview=False)
         if beside is not None:
-            beside.take(partial(validated, folder / MODEL_FILE), _LONGEST)
+            beside.submit(partial(validated, folder / MODEL_FILE), _LONGEST)
         if preview:
             progress("drawing the picture", _WRITTEN)
             write_preview(inference, folder)
@@ -315,7 +330,7 @@ def _last_answer(worker: WorkerProcess) -> Any:
     for _ in range(2):
         if alive:
             wait_for([worker])
-            answer, alive = worker.answer()
+            answer, alive = worker.result()
     return answer
 
 

@@ -87,10 +87,9 @@ def load_validation() -> None:
     """Load what `validated` needs, in a process that is asked for it later."""
     from kinematify.simulation.engines import DEFAULT_ENGINES
     from kinematify.validation.isolation import load_imports
-    from kinematify.validation.run.plan import as_loaded_stages, asset_stage, later_stages, needed
+    from kinematify.validation.run.plan import needed, stages_of
 
-    later = needed(later_stages(), _checks())
-    load_imports([asset_stage(), *later, *as_loaded_stages(DEFAULT_ENGINES)])
+    load_imports(needed(stages_of(DEFAULT_ENGINES), _checks()))
 
 
 def _checks() -> set[str]:

@@ -161,15 +161,15 @@ def _described(result: NightResult) -> str:
 
 
 def _change_lines(changes: Sequence[Change]) -> list[str]:
-    from kinematify.evaluation.nightly.comparison import Class
+    from kinematify.evaluation.nightly.comparison import ChangeKind
 
     lines = []
-    for kind in Class:
+    for kind in ChangeKind:
         found = [change for change in changes if change.kind is kind]
         if not found:
             continue
         lines.append(f"  {kind.value}: {len(found)}")
-        if kind not in (Class.STILL_FAILING, Class.NEW_SERIES):
+        if kind not in (ChangeKind.STILL_FAILING, ChangeKind.NEW_SERIES):
             lines += [f"    {_line(change)}" for change in found[:_SHOWN]]
             lines += [f"    and {len(found) - _SHOWN} more, see the page"] if len(found) > _SHOWN else []
     return lines or ["  nothing changed"]

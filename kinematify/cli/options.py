@@ -76,6 +76,13 @@ def _metres(_context: click.Context, _parameter: click.Parameter, given: str) ->
         raise click.BadParameter(f"{given!r} is no number; give auto, or metres per unit: 0.001 for mm.") from error
 
 
+up_option = click.option(
+    "--up",
+    type=click.Choice(["auto", "z", "y", "x", "-z", "-y", "-x"]),
+    default="auto",
+    show_default=True,
+    help="Axis of the input that points up (-z: it lies upside down); auto: y for glTF, what COLLADA says, else z.",
+)
 scale_option = click.option(
     "--scale",
     callback=_metres,

@@ -16,33 +16,27 @@ from kinematify.cli.generation import Generation, status_of, summary_of, verdict
 from kinematify.cli.inferred import describe
 from kinematify.cli.options import say, with_collision
 from kinematify.cli.report_files import generated_files, report_on
-from kinematify.errors import InputError
 from kinematify.generate.blueprint_files import write_blueprint
-from kinematify.generate.procedural.blueprint_file import read_blueprint
-from kinematify.generate.procedural.language.compare import compare
-from kinematify.generate.procedural.language.parse import parse_any
 from kinematify.generate.providers.command import CommandSource
 from kinematify.generate.providers.job import open_job
 from kinematify.generate.providers.judge_blueprint import drawn_findings
-from kinematify.generate.providers.language_model import LanguageModel, examples_for, language_model
+from kinematify.generate.providers.language_model import LanguageModel, language_model
 from kinematify.generate.providers.rodin import RodinSource
 from kinematify.generate.providers.source import RecordingSource, ReplayedSource, check_prompt
-from kinematify.generate.sentence import BuildResult, from_text, kinds_of_object
 from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference_files
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from kinematify.cli.progress import Reporter
     from kinematify.config import Config
+    from kinematify.generate.delivery import BuildResult
     from kinematify.generate.procedural.blueprint import Blueprint
-    from kinematify.generate.procedural.language.specification import Specification
-    from kinematify.generate.providers.job import PaidJob
     from kinematify.generate.providers.language_model import Written
-    from kinematify.generate.providers.source import Generated, PartSource, Prompt
+    from kinematify.generate.providers.source import Generated, PartSource
     from kinematify.pipeline.inference import Inference
     from kinematify.validation.run.report import ValidationReport
 
@@ -214,17 +208,14 @@ class ProvidedGeneration:
 
 @dataclass
 class LanguageGeneration(Generation):
-    """A request that a language model translates into words of the library, or designs."""
+    """A request that a language model fills, or an object that it draws."""
 
     options: ProvidedOptions = field(kw_only=True)
     model_asked: LanguageModel = field(init=False)
-    rounds: int = 0
-    tokens: int = 0
-    written: Written | None = None
-    """The blueprint, where the library has no such object."""
+    written: Written = field(init=False)
 
     def build(self, progress: Reporter) -> BuildResult:
-        """Build what a model translates, writes or corrects; compare it with the request.
+        """Build what a model answers, and send back what does not hold of it.
 
         Raises:
             InputError: See `LanguageModel.write`.
@@ -232,60 +223,19 @@ class LanguageGeneration(Generation):
         """
         self.model_asked = self.options.language_model()
         prompt = check_prompt(self.options.text, self.options.images, seed=0)
-        asked = parse_any(prompt.text) if prompt.text else None
         with open_job(job_folder(self.out), "llm", prompt.digest(self.model_asked.options())) as job:
             if self.options.resend:
                 job.resend()
-            made = None if asked is None or prompt.images else self._translated(asked, prompt, job, progress)
-            if made is None or made.not_built:
-                made = self._designed(asked, prompt, job, progress, made)
-        facts = {"source": "llm", "model": self.model_asked.model, "text": self.options.text, "rounds": self.rounds}
+            self.written = self.model_asked.write(prompt, job, self._judged, progress)
+        facts = {
+            "source": "llm", "model": self.model_asked.model, "text": self.options.text, "rounds": self.written.rounds,
+        }  # fmt: skip
+        made = self.written.made
         return replace(made, blueprint=replace(made.blueprint, parameters={**made.blueprint.parameters, **facts}))
 
-    def _translated(self, asked: Specification, prompt: Prompt, job: PaidJob, progress: Reporter) -> BuildResult | None:
-        """The object of the library that the model names; None if there is none."""
-        found = self.model_asked.translate(prompt, job, kinds_of_object(), progress)
-        self.tokens = found.tokens
-        if not found.sentence:
-            return None
-        try:
-            sentence = from_text(found.sentence)
-            made = sentence.made()
-        except InputError:
-            return None
-        missing = compare(asked, made.blueprint, sentence.plan.nouns).missing
-        listed = (*found.unmapped, *made.not_built, *map(str, missing))
-        return replace(made, not_built=tuple(dict.fromkeys(listed)))
-
-    def _designed(
-        self, asked: Specification | None, prompt: Prompt, job: PaidJob, progress: Reporter, other: BuildResult | None
-    ) -> BuildResult:
-        """The blueprint that the model writes; what the library has instead, if that comes nearer to the request.
-
-        Raises:
-            InputError: Nothing can be built.
-        """
-
-        def judged(blueprint: Blueprint, nouns: Mapping[str, tuple[str, ...]]) -> Sequence[str]:
-            missing = () if asked is None else compare(asked, blueprint, nouns).missing
-            unmet = [
-                f"Asked for and not built: {item}. Add it, and name its part under requirements." for item in missing
-            ]
-            return [*unmet, *drawn_findings(blueprint), *self._findings(blueprint)]
-
-        try:
-            self.written = self.model_asked.write(
-                prompt, job, judged, progress, examples=examples_for(prompt.text or ""), spent=self.tokens
-            )
-        except InputError:
-            if other is None:
-                raise
-            return other
-        self.rounds, self.tokens = self.written.rounds, self.written.tokens
-        blueprint = read_blueprint(self.written.path)
-        missing = () if asked is None else compare(asked, blueprint, self.written.nouns).missing
-        made = BuildResult(blueprint=blueprint, specification=asked, not_built=tuple(dict.fromkeys(map(str, missing))))
-        return made if other is None or len(made.not_built) <= len(other.not_built) else other
+    def _judged(self, made: BuildResult) -> Sequence[str]:
+        drawn = drawn_findings(made.blueprint) if made.request is None else ()
+        return [*drawn, *self._findings(made.blueprint)]
 
     def _findings(self, blueprint: Blueprint) -> Sequence[str]:
         """Return what the validation holds against the model of a blueprint; nothing without validation."""
@@ -299,14 +249,13 @@ class LanguageGeneration(Generation):
     @property
     def answer(self) -> dict[str, Any]:
         """Everything as JSON values."""
-        path = None if self.written is None else str(self.written.path)
-        facts = {"rounds": self.rounds, "tokens": self.tokens, "blueprint": path}
+        facts = {"rounds": self.written.rounds, "tokens": self.written.tokens, "answer": str(self.written.path)}
         return {**super().answer, "language_model": facts}
 
     def say(self, *, quiet: bool) -> None:
         """Tell the user; nothing if a machine reads stdout."""
         if not quiet:
-            by = f"by {self.model_asked.model}, {self.tokens} tokens"
-            where = "" if self.written is None else f" in {self.rounds} rounds: {self.written.path}"
-            say(f"{'Translated' if self.written is None else 'Written'} {by}{where}\n")
+            written = self.written
+            by = f"by {self.model_asked.model} in {written.rounds} rounds, {written.tokens} tokens: {written.path}"
+            say(f"{'Drawn' if written.made.request is None else 'Filled in'} {by}\n")
         super().say(quiet=quiet)

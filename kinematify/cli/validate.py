@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 _QUICK = "KV1*,KV2*,KV30*,KV31*,KV32*,KV801,KV802,KV803,KV804"
 """Checks of `--quick`."""
-_COARSE = {"most_faces": 3000, "points": 450}
-"""Settings of its sweeps: half of the usual triangles and points."""
+_COARSE = {"points": 450}
+"""Settings of its sweeps: half of the usual points."""
 
 
 @click.command(
@@ -199,11 +199,11 @@ def command(
     )
     try:
         with progress_reporter() as progress:
-            run.all(progress)
+            run.run(progress)
     except KeyboardInterrupt:
         run.interrupted = True
     files.write(run.outcomes, run.pictures, run.scenes, run.rules)
-    run.say()
+    run.print()
     return run.exit_status
 
 

@@ -61,20 +61,20 @@ class ValidationRun:
     scenes: dict[str, str] = field(default_factory=dict)
     interrupted: bool = False
 
-    def all(self, progress: Reporter) -> None:
+    def run(self, progress: Reporter) -> None:
         """Validate one model after the other; each has all processes for itself."""
         for number, model in enumerate(self.models):
             label = f"{model.parent.name}/{model.name} ({number + 1} of {len(self.models)}): "
             prefix = label if len(self.models) > 1 else ""
 
-            def tell(stage: str, fraction: float, done: int = number, prefix: str = prefix) -> None:
+            def report(stage: str, fraction: float, done: int = number, prefix: str = prefix) -> None:
                 progress(prefix + stage, (done + fraction) / len(self.models))
 
-            self._one(model, tell)
+            self._run_one(model, report)
             if self.interrupted:
                 return
 
-    def _one(self, model: Path, progress: Reporter) -> None:
+    def _run_one(self, model: Path, progress: Reporter) -> None:
         try:
             report = validate(
                 model,
@@ -126,7 +126,7 @@ class ValidationRun:
         order = (ExitStatus.UNUSABLE, ExitStatus.FAILURES, ExitStatus.FAULT)
         return next((status for status in order if status in found), ExitStatus.FINE)
 
-    def say(self) -> None:
+    def print(self) -> None:
         """Tell the user: the report on stdout unless a machine reads that, what is no result on stderr."""
         reports = [outcome for outcome in self.outcomes if not isinstance(outcome, Unusable)]
         if len(self.models) > 1 and not self.quiet:

@@ -25,6 +25,7 @@ _SHOWN_TITLE = 60
         "kinematify view out/cabinet/model.urdf",
         "kinematify view out/cabinet",
         "kinematify view model.urdf --joint door_joint --q 0.8",
+        "kinematify view model.urdf --joint door_joint --q 0.8 --png open.png",
         "kinematify view model.urdf --report report.json --port 8090",
     ),
 )
@@ -39,6 +40,7 @@ _SHOWN_TITLE = 60
     help="Joint to move to the value of the --q that follows it.",
 )
 @click.option("--q", "values", multiple=True, type=float, metavar="VALUE", help="Its value [rad or m].")
+@click.option("--png", type=click.Path(path_type=Path), metavar="FILE", help="Write a picture there, and show nothing.")
 @package_dirs_option
 @click.option(
     "--report",
@@ -56,6 +58,7 @@ def command(
     arguments: dict[str, str],
     joints: tuple[str, ...],
     values: tuple[float, ...],
+    png: Path | None,
     package_dirs: tuple[Path, ...],
     report: Path | None,
     host: str,
@@ -74,6 +77,9 @@ def command(
 
     if len(joints) != len(values):
         raise InputError(f"There are {len(joints)} --joint and {len(values)} --q. Give one value for each joint.")
+    if png is not None:
+        _draw(model, png, dict(zip(joints, values, strict=True)), package_dirs, arguments)
+        return 0
     urdf = urdf_of(model, package_dirs, arguments)
     findings = report or urdf.parent / "validation.json"
     sights = _sights(findings) if report is not None or findings.is_file() else []
@@ -97,6 +103,20 @@ def command(
     finally:
         window.close()
     return 0
+
+
+def _draw(
+    model: Path, png: Path, q: Mapping[str, float], package_dirs: tuple[Path, ...], arguments: dict[str, str]
+) -> None:
+    from kinematify.errors import OutputError
+    from kinematify.view.loaded import load
+
+    picture = load(model, package_dirs=package_dirs, arguments=arguments).picture(q)
+    try:
+        picture.save(png, format="PNG")
+    except OSError as error:
+        raise OutputError(f"The picture {png} cannot be written: {error.strerror}. Give another file.") from error
+    click.echo(f"Wrote {png}")
 
 
 def _sights(report: Path) -> list[FindingMarker]:

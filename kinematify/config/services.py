@@ -46,12 +46,12 @@ class RodinConfig(ServiceConfig):
 
 
 class LanguageModelConfig(ServiceConfig):
-    """A language model that writes blueprints."""
+    """A language model that fills requests and draws blueprints."""
 
     answer_seconds: float = 3600.0  # a long answer of a model of 7e9 parameters on two cores
     model: str = "default"  # local servers serve one model and take any name
     """Name of the model at the service; the variable KINEMATIFY_LLM_MODEL wins."""
-    rounds: int = 4  # what is not fixed in three answers is not fixed
+    rounds: int = 3  # what is not fixed in three answers is not fixed
     """Answers at most: the first one, and those that fix it."""
     answer_tokens: int = 16000  # a blueprint of 100 parts
     """Of one answer at most."""
@@ -67,49 +67,22 @@ class SourcesConfig(StageConfig):
 
 
 class VisionConfig(ServiceConfig):
-    """A vision-language model that is asked about joints."""
+    """A vision-language model that is asked which parts move, and how."""
 
     first_pause: float = 1.0
     tries: int = 2  # a local model that is slow once is slow again
     answer_seconds: float = 600.0  # a local model on a processor takes minutes for a picture
     model: str = "default"  # local servers serve one model and take any name
     """Name of the model at the service; the variable KINEMATIFY_VLM_MODEL wins."""
-    first: bool = False
-    """Ask for the types alone, before axes are chosen, as the paper does (section III-D)."""
     ask_below: float = 0.9  # above, 96 % are right, and an answer can only do harm (results/choice.md)
-    """Joints of less confidence are asked about; all of them with ``--vlm-all``."""
-    budget: float = 0.4
-    """Questions of one inference at most, as a share of its joints, rounded up, and two in any case; the least sure
-    joints first."""
+    """Parts that were given are asked about where a joint has less confidence; a mesh of pieces always is."""
     tokens: int = 60000  # twenty questions
     """No further question is asked after so many, pictures included."""
     concurrency: int = 2
     """Questions at a time."""
-    answer_tokens: int = 2000
+    answer_tokens: int = 4000  # forty parts
     """Of one answer at most: models that think aloud need room."""
-    options: int = 6  # the right motion ranks below 5th in 1 of 25 wrong joints
-    """Motions that a question offers at most."""
-    same_axis_deg: float = 10.0
-    """Axes that differ by less are not offered beside each other [deg]."""
-    same_line: float = 0.1
-    """Neither are hinge lines that are nearer to each other than this share of the part's diagonal."""
-    view_pixels: int = 320  # three in a row; services scale pictures to some 1000 to 1500 pixels
-    """Side of each picture of a question."""
-    field_of_view: float = 6.0  # sides of a box look parallel
-    """Of the pictures [deg]; small angles are nearly orthographic."""
-    least_pixels: int = 400
-    """A part that cannot be shown with so many pixels is not asked about."""
-    least_confidence: float = 0.7  # of recorded answers 6 of 14 below it are right, 55 of 57 above
-    """Answers of which the voter itself is less sure count as unsure."""
     reliability: float = 0.9
-    """No voter counts as right more often than this, whatever its record says (results/voters.md)."""
+    """No voter counts as right more often than this, whatever its record says."""
     caution: float = 0.1  # ten answers of ten count as 81 %, three of ten as 17 %
     """A voter counts as right as often as its record shows with all but this probability."""
-    rank_share: float = 0.5  # of 25 wrong joints the right one ranks 2nd in 17, 3rd in 5, later in 1
-    """Of what the choice leaves, the next candidate has so much of what the one before it has."""
-    fixed_share: float = 0.08
-    """What being fixed has of that, relative to all other options together."""
-    other_share: float = 0.08
-    """What motions that are not offered have of it."""
-    surest: float = 0.95
-    """No choice counts as surer."""

@@ -245,7 +245,7 @@ class GeometrySettings(StageConfig):
     """Share of its guide that a slide may run out."""
     always: float = 0.95  # the customary share in motion planning
     """Share of configurations in which a pair that always collides does so."""
-    random_rows: int = 128  # a power of two, as Sobol points want
+    random_rows: int = 128
     """Quasi-random configurations of all joints."""
     listed: int = 8
     """Pairs that one finding names."""

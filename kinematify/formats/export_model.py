@@ -31,6 +31,8 @@ _WRITERS = {
     "srdf": ("kinematify.manipulation.srdf", "write_srdf"),
 }
 FORMATS = tuple(_WRITERS)
+_SUFFIXES = {"mjcf": (".xml",), "usd": (".usd", ".usda", ".usdc")}
+"""Ends of names by which the readers of a format know it, where they refuse others."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,7 +83,13 @@ def export(
     """
     if to not in FORMATS:
         raise InputError(f"There is no format {to!r} to export to. Give one of {', '.join(FORMATS)}.")
-    urdf, path = urdf_of(Path(model), package_dirs, arguments), Path(out)
+    path, known = Path(out), _SUFFIXES.get(to)
+    if known and path.suffix.lower() not in known:
+        raise OutputError(
+            f"{path} would not be read as {to.upper()}: its name has to end with {' or '.join(known)}. "
+            f"Give for example {path.with_suffix(known[0])}."
+        )
+    urdf = urdf_of(Path(model), package_dirs, arguments)
     chosen = load_settings() if settings is None else settings
     try:
         if to == "srdf":

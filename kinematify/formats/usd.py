@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade
 
-from kinematify.errors import OutputError
 from kinematify.formats.content import GREY, shown_surfaces
 from kinematify.robot.appearance import linear_of
 from kinematify.robot.joint_type import JointType
@@ -24,7 +23,6 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.robot import Joint, Link, LoopJoint, Shape
 
-SUFFIXES = (".usd", ".usda", ".usdc")
 _FRICTION = 1.0
 """Of surfaces that state none: MuJoCo's default, which a URDF is simulated with; USD's own is 0."""
 
@@ -32,10 +30,8 @@ _FRICTION = 1.0
 def write_usd(content: Content, out: Path, *, free: bool) -> None:
     """Write a USD file, text (``.usda``) or binary (``.usd``, ``.usdc``).
 
-    Arguments and errors as for `write_mjcf`; another suffix is an `OutputError`.
+    Arguments and errors as for `write_mjcf`.
     """
-    if out.suffix.lower() not in SUFFIXES:
-        raise OutputError(f"USD cannot be written to {out}: its name has to end with {', '.join(SUFFIXES)}.")
     writer = _UsdWriter(content, out)
     writer.add_all(free=free)
     if not writer.stage.GetRootLayer().Export(str(out)):

@@ -11,7 +11,7 @@ from kinematify.config import load_config
 from kinematify.contact.tree import KinematicTree
 from kinematify.errors import InputError
 from kinematify.generate.procedural.blueprint import ground_truth
-from kinematify.generate.sentence import from_text
+from kinematify.generate.reader import read_sentence
 from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
 from kinematify.model.output import SOURCE_FILE, write_model_folder
@@ -74,9 +74,10 @@ def write_described(
     text: str, out: str | Path, *, seed: int | None, strict: bool, overwrite: bool, config: Config | None
 ) -> KinematicModel:
     """Write the model folder of what a sentence describes; see `kinematify.generate`."""
-    made = from_text(text).made(seed=seed)
-    if strict and made.not_built:
-        raise InputError(f"Not built: {'; '.join(made.not_built)}. Nothing is written; strict=False builds the rest.")
+    made = read_sentence(text).made(seed=seed)
+    if strict and not made.is_complete:
+        wrong = "; ".join([*made.differences, *(f"not read: {words}" for words in made.unread)])
+        raise InputError(f"Not as asked: {wrong}. Nothing is written; strict=False builds the rest.")
     models: list[KinematicModel] = []
 
     def write(folder: Path) -> None:

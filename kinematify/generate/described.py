@@ -1,10 +1,9 @@
-"""Objects that files describe, read as families: a file in `objects/` holds one blueprint, or many written in steps."""
+"""Kinds that a blueprint lists: a file in `kinds/` holds one, and says how people call it."""
 
 from __future__ import annotations
 
 import math
 import re
-import textwrap
 from dataclasses import replace
 from functools import cache, cached_property
 from pathlib import Path
@@ -13,9 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from kinematify.generate.library.assembled import MODELING, builder_of, carried_out, put_together
-from kinematify.generate.library.builder import ModelingStyle, ObjectBuilder
-from kinematify.generate.library.steps import Step
+from kinematify.generate.families import FAMILIES, all_kinds
+from kinematify.generate.library.kind import put_together
 from kinematify.generate.procedural.blueprint_file import (
     MIRRORS,
     BlueprintDescription,
@@ -23,19 +21,18 @@ from kinematify.generate.procedural.blueprint_file import (
     Repetition,
     Vector,
 )
-from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import Family, Values
-from kinematify.generate.procedural.parameter import Parameter, choice, number, parse_table, read_parameter
+from kinematify.generate.procedural.parameter import Parameter, details_of, number, parse_table
 from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Mapping
 
-    from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
+    from kinematify.generate.procedural.blueprint import BlueprintJoint
     from kinematify.robot.arrays import FloatArray
 
-_FOLDER = Path(__file__).with_name("objects")
+_FOLDER = Path(__file__).with_name("kinds")
 
 
 class CopyDescription(BaseModel):
@@ -66,8 +63,8 @@ class CopyDescription(BaseModel):
         return found
 
 
-class ObjectNames(BaseModel):
-    """Names of an object in a request."""
+class CountParameters(BaseModel):
+    """Names and counts of a blueprint in a request."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -79,24 +76,6 @@ class ObjectNames(BaseModel):
     """How people call its parts, besides their names."""
     details: dict[str, int] = Field({})
     """Word for what belongs to a part -> how many of it there are."""
-    motions: dict[str, tuple[str, ...]] = Field({})
-    """Name of a part without its number -> words for how it moves that hold already: ``drop-down``, ``folds``."""
-    holds_already: tuple[str, ...] = ()
-    """Other words that are true of it as it is: ``adjustable height``, ``two-door``."""
-    like: str = ""
-    """The kind that it is another way to build; empty where it is a kind of its own."""
-
-    @property
-    def own(self) -> tuple[Parameter, ...]:
-        """Counts of what belongs to its parts."""
-        return tuple(
-            number(f"{word}s", count, (count, count), "Belongs to it.", words=word)
-            for word, count in self.details.items()
-        )
-
-
-class CountParameters(ObjectNames):
-    """Counts of a blueprint in a request."""
 
     category: Name
     counts: dict[str, dict[str, Any]] = Field({})
@@ -108,11 +87,9 @@ class CountParameters(ObjectNames):
             name=self.category,
             title=self.title,
             words=self.words,
-            parameters=self.own + tuple(_repeated(word, said) for word, said in self.counts.items()),
+            parameters=details_of(self.details) + tuple(_repeated(word, said) for word, said in self.counts.items()),
             material=material,
             part_words=self.part_words,
-            motions=self.motions,
-            holds_already=self.holds_already,
             build=build,
         )
 
@@ -181,75 +158,11 @@ class ObjectDescription(CountParameters, BlueprintDescription):
         put_together(solids, looks, list(joints.values()), values, workshop)
 
 
-class SteppedDescription(ObjectNames):
-    """An object that a file writes down in steps, with parameters; see `kinematify.generate.library.steps`."""
-
-    name: Name
-    file: str
-    """Its file without the ending: ``kitchen``."""
-    about: str = ""
-    """One sentence for readers of the file."""
-    parameters: dict[Name, Any] = Field({})
-    """As `read_parameter` reads them."""
-    written_steps: str
-    """YAML, which is only read once the object is built."""
-
-    @cached_property
-    def steps(self) -> tuple[Step, ...]:
-        """Return how it is built."""
-        return tuple(parse_table(self.written_steps))
-
-    def family(self) -> Family:
-        """The object as a family with its parameters."""
-        return Family(
-            name=self.name,
-            title=self.title,
-            words=self.words,
-            parameters=(
-                *self.asked,
-                *self.own,
-                choice("modeling", tuple(MODELING), "How it is modelled.", drawn=False),
-            ),
-            material="plastic",
-            part_words=self.part_words,
-            motions=self.motions,
-            holds_already=self.holds_already,
-            build=self._build,
-        )
-
-    @cached_property
-    def asked(self) -> tuple[Parameter, ...]:
-        """Return what may be asked of it."""
-        return tuple(read_parameter(name, said) for name, said in self.parameters.items())
-
-    def draw(self, style: ModelingStyle, rng: np.random.Generator) -> Blueprint:
-        """The object with everything drawn.
-
-        Raises:
-            InputError: A step cannot be carried out with what was drawn.
-        """
-        workshop = Workshop(self.name, material="plastic")
-        builder = ObjectBuilder(self.name, style, workshop, rng)
-        usual = Values({"material": "", "color": "", "open": 0.0}, rng)
-        carried_out(self.steps, builder, {item.name: _drawn(item, builder) for item in self.asked}, usual, workshop)
-        return workshop.finish(self.name, {}, style="clean", clearance=style.gap, rng=rng)
-
-    def _build(self, values: Values, workshop: Workshop) -> None:
-        builder_of(self.name, self.title, lambda: self.steps, self.parameters)(values, workshop)
-
-
-def _drawn(asked: Parameter, builder: ObjectBuilder) -> float | int | str:
-    """A value for one more object of a corpus."""
-    if asked.bounds is not None:
-        low, high = asked.usual or asked.bounds
-        return builder.count(int(low), int(high)) if isinstance(asked.default, int) else builder.draw(low, high)
-    return str(builder.pick(*asked.choices)) if asked.yes is None else "yes" if builder.maybe(asked.yes) else "no"
-
-
 def _repeated(word: str, said: Mapping[str, Any]) -> Parameter:
     """The count of what a blueprint repeats."""
     words = (word, *said.get("words", ()))
-    return read_parameter(f"{word}s", {"help": "So many.", "drawn": False, **said, "words": words})
+    low, high = said["bounds"]
+    return number(f"{word}s", said["count"], (low, high), "So many.", words=words, drawn=False)
 
 
 def _carried(name: str, joints: Mapping[str, BlueprintJoint]) -> list[str]:
@@ -281,30 +194,17 @@ def _joint_elsewhere(joint: BlueprintJoint, names: Mapping[str, str], transform:
 
 
 @cache
-def library() -> Mapping[str, WrittenObject | SteppedDescription]:
-    """Every object that a file describes, keyed by name: one blueprint a file, or a mapping of objects in steps."""
-    found: dict[str, WrittenObject | SteppedDescription] = {}
+def library() -> Mapping[str, Family]:
+    """Kinds that are no members of `FAMILIES`, keyed by name: those that are drawn, and blueprints."""
+    found = [(item.module, item) for item in all_kinds().values() if item.name not in FAMILIES]
     for file in sorted(_FOLDER.glob("*.yaml")):
         text = file.read_text(encoding="utf-8")
-        if "\nparts:\n" in text:
-            written = WrittenObject.model_validate({**parse_table(text.partition("\nparts:\n")[0]), "text": text})
-            found[written.category] = written
-        else:
-            found |= {item.name: item for item in _in_steps(text, file.stem)}
-    return found
-
-
-def _in_steps(text: str, file: str) -> Iterator[SteppedDescription]:
-    """Objects of a file of objects; their steps come last and stay text, since they are most of it."""
-    for chunk in re.split(r"^(?=\w+:$)", text, flags=re.MULTILINE):
-        head, _, steps = chunk.partition("\n  steps:\n")
-        for name, said in (parse_table(head) or {}).items():
-            yield SteppedDescription.model_validate(
-                {"name": name, "file": file, **said, "written_steps": textwrap.dedent(steps)}
-            )
+        said = parse_table(text.partition("\nparts:\n")[0])
+        found.append((file.stem, WrittenObject.model_validate({**said, "text": text}).family()))
+    return {item.name: item for _, item in sorted(found, key=lambda pair: pair[0])}
 
 
 @cache
 def known_families() -> Mapping[str, Family]:
-    """All families: those that programs build, then those that files describe."""
-    return {**FAMILIES, **{name: item.family() for name, item in library().items()}}
+    """All kinds: the families of corpora, then the library."""
+    return {**FAMILIES, **library()}

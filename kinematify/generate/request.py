@@ -1,294 +1,290 @@
-"""Request to the library: a family with values, or mechanisms on a body; and how two objects stand together."""
+"""A typed request for an object: its kind, parameters of the kind, sizes of the whole, and facts about named parts."""
 
 from __future__ import annotations
 
 import difflib
-from contextlib import suppress
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+import json
+import math
+import re
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-import numpy as np
+import yaml
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from kinematify.errors import InputError
-from kinematify.generate.composer.attached import attached
-from kinematify.generate.composer.compose import compose
-from kinematify.generate.composer.recount import recounted
-from kinematify.generate.composer.resized import fitted_values, stretched
 from kinematify.generate.described import known_families
-from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.language.parts import looking, opened
-from kinematify.generate.procedural.language.sizes import OVERALL
-from kinematify.generate.procedural.language.understand import handle_choice
-from kinematify.robot.transforms import rotation_about
+from kinematify.generate.kind_search import words_of
+from kinematify.generate.procedural.family import checked
+from kinematify.generate.procedural.materials import COLOR_WORDS, COLORS, MATERIALS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
 
-    from kinematify.assembly.part import Part
-    from kinematify.generate.composer.compose import Composition, MechanismSpec
-    from kinematify.generate.composer.resized import Resize
-    from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
     from kinematify.generate.procedural.family import Family
-    from kinematify.generate.procedural.language.compare import Fitting
-    from kinematify.generate.procedural.parameter import Value
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.generate.procedural.parameter import Parameter
 
-_SCALES = 3.0  # to so many times the usual size and as much smaller, walls and gaps stay those of such an object
-_HELD, _LARGE_SCALES = 0.5, 1.5  # tools are of very different sizes [m]; furniture and vehicles are not
-_GAP = 0.05  # between several [m]
-_TOY_LENGTH, _TOY_SCALE = 0.4, 0.2  # longest side [m], and at most so much smaller than usual
-_BESIDE = 0.3  # between what stands side by side [m]
-_LEVEL = 2e-3  # of a surface that something stands on [m]
-_GRID = 15  # places along either side at which it is looked for
-_STANDS = 0.4  # share of an object's length and depth that it needs to stand on
-_HANDS = ("right_hand", "left_hand", "palm")
-_GRASP = 5e-4  # between a hand and what it holds [m]
+UNITS = {
+    **dict.fromkeys(words_of("mm millimeter millimeters millimetre millimetres"), 1e-3),
+    **dict.fromkeys(words_of("cm centimeter centimeters centimetre centimetres"), 0.01),
+    **dict.fromkeys(words_of("m meter meters metre metres"), 1.0),
+    **dict.fromkeys(words_of('in inch inches "'), 0.0254),
+    **dict.fromkeys(words_of("ft foot feet"), 0.3048),
+}  # fmt: skip
+"""Metres per unit of length."""
+ANGLES = {"rad": 1.0, **dict.fromkeys(("deg", "degree", "degrees", "°"), math.pi / 180.0)}
+"""Radians per unit of angle."""
+_SIGNED = r"[-+−]?\s?\d+(?:\.\d+)?"
+_UNIT = "|".join(sorted(map(re.escape, (*UNITS, *ANGLES)), key=len, reverse=True))
+_QUANTITY = re.compile(rf"({_SIGNED})\s*({_UNIT})?")
+_RANGE = re.compile(rf"({_SIGNED})\s*(?:{_UNIT})?\s*(?:to|\.\.|,)\s*({_SIGNED})\s*({_UNIT})?")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Request:
-    """A family with what was asked for."""
+def quantity(text: str) -> tuple[float, str]:
+    """Return a length [m], an angle [rad] or a plain number that a text says, and the unit: ``m``, ``rad`` or empty.
 
-    family: str
-    values: Mapping[str, Value]
-    composition: Composition | None = None
-    """Of mechanisms on a body, where no family builds it."""
-    added: tuple[MechanismSpec, ...] = ()
-    """Mechanisms that such an object has not, and that are put on it where there is a place."""
-    counts: tuple[tuple[tuple[str, ...], int], ...] = ()
-    """Names of parts, and how many there are to be instead, where there is a place for them."""
-    handles: tuple[Fitting, ...] = ()
-    """Handles of some parts alone."""
-    resized: tuple[Resize, ...] = ()
-    """Sizes of parts."""
-    looks: tuple[tuple[tuple[str, ...], str, str], ...] = ()
-    """Names of parts, and the material or the colour of these alone."""
-    opened: tuple[tuple[tuple[str, ...], str, float], ...] = ()
-    """Names of parts, and how far these alone are open: see `opened`."""
-    overall: tuple[str, float] | None = None
-    """A size of the whole [m] that it is scaled to."""
-    may_scale: bool = False
-    """No size was asked for: it may be larger where a part is to slide farther."""
-    copies: int = 1
-    """How many, side by side."""
-    other: Request | None = None
-    """What it holds, stands on or is beside."""
-    is_toy: bool = False
-    """It is small: all of it is scaled."""
-    how: str = ""
-    """``holding``, ``on``, ``carrying`` or ``beside`` the other one; not empty if it need not move."""
+    Raises:
+        ValueError: It says none.
+    """
+    found = _QUANTITY.fullmatch(text.strip())
+    if found is None:
+        raise ValueError(f"{text!r} is no number with a unit; write for example 80 cm, 0.8 or 30 deg")
+    return _in_si(found[1], found[2])
 
-    def build(self, *, seed: int | None = None) -> Blueprint:
-        """Build the object; a seed draws what was not asked for.
+
+def _in_si(number: str, unit: str | None) -> tuple[float, str]:
+    value = float(number.replace(" ", "").replace("−", "-"))
+    if unit in UNITS:
+        return value * UNITS[unit], "m"
+    return (value * ANGLES[unit], "rad") if unit in ANGLES else (value, "")
+
+
+def _plain(value: Any) -> Any:
+    return quantity(value)[0] if isinstance(value, str) else value
+
+
+def _pair(value: Any) -> Any:
+    if isinstance(value, str):
+        found = _RANGE.fullmatch(value.strip())
+        if found is None:
+            raise ValueError(f"{value!r} is no range; write for example -30 to 90 deg, or 0 to 40 cm")
+        return _in_si(found[1], found[3])[0], _in_si(found[2], found[3])[0]
+    return value
+
+
+def _opening(value: Any) -> Any:
+    words = {"closed": 0.0, "half": 0.5, "half open": 0.5, "open": 1.0}
+    if isinstance(value, str):
+        number, unit = (words[value], "") if value in words else quantity(value)
+        return (number, unit) if unit else number
+    return value
+
+
+def _name_among(known: Mapping[str, str], what: str) -> BeforeValidator:
+    def found(value: Any) -> Any:
+        if value is not None and value not in known:
+            raise ValueError(f"{value!r} is no {what}; there are {', '.join(dict.fromkeys(known.values()))}")
+        return known[value] if value is not None else None
+
+    return BeforeValidator(found)
+
+
+Size = Annotated[float, BeforeValidator(_plain), Field(gt=0.0, le=100.0)]
+Sizes = dict[Literal["width", "depth", "height", "length", "diameter", "thickness"], Size]
+Color = Annotated[str | None, _name_among(COLOR_WORDS, "colour")]
+Material = Annotated[str | None, _name_among({name: name for name in MATERIALS}, "material")]
+
+
+class _Fields(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class PartRequest(_Fields):
+    """Facts about the parts of one name; what is absent is left as the kind has it."""
+
+    count: int | None = Field(None, ge=0, le=1_000_000)
+    at_least: int | None = Field(None, ge=1, le=60)
+    size: Sizes = Field({}, description="[m], or text with a unit: 80 cm.")
+    color: Color = Field(None, description=f"One of {', '.join(COLORS)}.")
+    material: Material = Field(None, description=f"One of {', '.join(MATERIALS)}.")
+    side: Literal["left", "right", "front", "back", "top", "bottom"] | None = Field(
+        None, description="Where they are, seen from the front."
+    )
+    row: int | None = Field(None, ge=1, description="From the top: all of row 1 is above all of row 2.")
+    motion: Literal["move", "hinge", "slide", "spin", "pan", "tilt", "lift", "fixed"] | None = Field(
+        None,
+        description="How they move: at all, by turning, sliding, turning without end, turning about an upright or a "
+        "level axis, sliding upwards, or not.",
+    )
+    hinge: Literal["left", "right"] | None = Field(None, description="Side of the part on which its hinge is.")
+    range: Annotated[tuple[float, float] | None, BeforeValidator(_pair)] = Field(
+        None, description="Of the joint [rad or m], signed, from the closed pose; or text: -30 to 90 deg."
+    )
+    open: Annotated[float | tuple[float, Literal["m", "rad"]] | None, BeforeValidator(_opening)] = Field(
+        None, description="How far they stand open: a share in [0, 1], or text: 30 deg, 12 cm."
+    )
+
+
+class Request(_Fields):
+    """An object that is asked for."""
+
+    kind: str = Field(description="Name of the kind; `kinematify generate --list` shows all.")
+    parameters: dict[str, float | int | str] = Field({}, description="Of the kind: lengths [m], angles [rad], counts.")
+    size: Sizes = Field({}, description="Of the whole, closed [m], or text with a unit: 80 cm.")
+    parts: dict[str, PartRequest] = Field(
+        {}, description="Name of parts -> what is asked of them; 'left door' or 'second drawer' means one of them."
+    )
+    copies: int = Field(1, ge=1, le=12, description="How many, side by side.")
+    instead_of: str = Field("", description="What was asked for, where the kind is only the nearest one.")
+
+    @property
+    def family(self) -> Family:
+        """Return its kind.
 
         Raises:
-            InputError: A value is out of its bounds.
+            InputError: There is no such kind.
         """
-        blueprint = self._large_enough(seed)
-        if self.copies > 1:  # of which one may look otherwise, or be open
-            width = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[0])
-            blueprint = blueprint.repeated(self.copies, width + _GAP)
-        for names, material, color in self.looks:
-            blueprint = looking(blueprint, names, material, color)
-        for names, how, much in self.opened:
-            with suppress(InputError):  # who compares it with the sentence reports it
-                blueprint = opened(blueprint, [name for name in names if name in blueprint.joint_above], how, much)
-        if self.is_toy:
-            longest = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0).max())
-            blueprint = blueprint.scaled(min(max(_TOY_LENGTH / longest, _TOY_SCALE), 1.0))
-        return blueprint if self.other is None else _JOINED[self.how](blueprint, self.other.build(seed=seed))
+        return find_family(self.kind)
 
-    def _large_enough(self, seed: int | None) -> Blueprint:
-        """Build an object whose slides can go as far as `opened` asks, if one is found.
+    def checked(self) -> Request:
+        """Return the request with its values as the types of the kind's parameters.
 
-        The side along which a part slides grows if nothing was asked of it, else the whole.
+        Raises:
+            InputError: The kind, a parameter or a value does not exist or is out of its bounds; the message lists what
+                is allowed.
         """
-        made = self._single(seed)
-        for names, how, much in self.opened:
-            slides = [joint for joint in made.joints if joint.child in names and not joint.kind.turns]
-            for request in (self, *self._larger(made, slides[0], much)) if how == "range" and slides else ():
-                with suppress(InputError):
-                    larger = made if request is self else request._single(seed)
-                    opened(larger, names, how, much)
-                    return larger
-        return made
-
-    def _larger(self, made: Blueprint, joint: BlueprintJoint, much: float) -> Iterator[Request]:
-        """Requests for larger objects: so much deeper, deeper by that share, larger by that share."""
-        there, side = joint.upper - joint.lower, OVERALL[int(np.argmax(np.abs(joint.axis)))]
-        now = made.parameters.get(side)
-        if isinstance(now, float) and side not in self.values:
-            for size in (now + 1.05 * (much - there), 1.05 * now * much / there):
-                yield replace(self, values={**self.values, side: size})
-        whole = np.ptp(_closed(made).assembly.bounds, axis=0)
-        if self.may_scale and much < (_SCALES if whole.max() < _HELD else _LARGE_SCALES) * there:
-            yield replace(self, overall=(OVERALL[0], 1.001 * float(whole[0]) * much / there))
-
-    def _single(self, seed: int | None) -> Blueprint:
-        if self.composition is not None:
-            made = compose(self.composition, seed=seed, may_stand_still=bool(self.how))
-        else:
-            family = known_families()[self.family]
-            values = fitted_values(family, tuple(self.values.items()), seed, self.resized)
-            made = build(family, values, seed=seed)
-            for fitting in self.handles:
-                made = _with_handles(made, family, values, seed, fitting)
-        if self.overall is not None:
-            made = _scaled_to(made, *self.overall)
-        for item in self.resized:
-            with suppress(InputError):  # as above
-                made = stretched(made, item)
-        for names, count in self.counts:
-            with suppress(InputError):  # as above
-                made = recounted(made, [name for name in names if name in made.joint_above], count)
-        for mechanism in self.added:
-            with suppress(InputError):  # as above
-                made = attached(made, mechanism)
-        return made
+        family = self.family
+        values = {name: checked(family, name, _said(family, name, value)) for name, value in self.parameters.items()}
+        return self.model_copy(update={"kind": family.name, "parameters": values})
 
 
-def _scaled_to(blueprint: Blueprint, size: str, metres: float) -> Blueprint:
-    """Return an object that is so wide, deep or high when it is closed.
-
-    Raises:
-        InputError: Its joints and walls would be too small or too large for what they are.
-    """
-    there = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[OVERALL.index(size)])
-    factor = metres / there
-    if not 1.0 / _SCALES <= factor <= _SCALES:
-        raise InputError(
-            f"The {size} of a {known_families()[blueprint.family].title} cannot be {metres:g} m; it can be from "
-            f"{there / _SCALES:.2g} m to {there * _SCALES:.2g} m."
-        )
-    return blueprint.scaled(factor)
-
-
-def _with_handles(
-    made: Blueprint, family: Family, values: Mapping[str, Value], seed: int | None, fitting: Fitting
-) -> Blueprint:
-    """Return an object of which some parts are as they would be if all had another handle."""
-    names, noun, color, material = fitting
-    own = {"handle": handle_choice(family, noun), "handle_color": color, "handle_material": material}
-    chosen = {name: value for name, value in own.items() if value}
-    like = {part.name: part for part in build(family, {**values, **chosen}, seed=seed).parts}
-    if not chosen or not like.keys() >= set(names):
-        return made
-    said = {f"handle of {name}": " ".join(filter(None, fitting[1:])) for name in names}
-    parts = tuple(like[part.name] if part.name in names else part for part in made.parts)
-    return replace(made, parts=parts, parameters={**made.parameters, **said})
-
-
-def _holding(blueprint: Blueprint, held: Blueprint) -> Blueprint:
-    """Return an object with another one at the outer side of its hand, its thinnest side towards the hand."""
-    hand = hand_of(blueprint)
-    bounds = held.assembly.bounds
-    thinnest = int(np.argmin(np.ptp(bounds, axis=0)))
-    # A turn about x stands what lies; one about z turns what is narrow, its front then looks along x.
-    turn = rotation_about(np.eye(3)[0 if thinnest == 2 else 2], 0.0 if thinnest == 1 else 0.5 * np.pi)
-    outward = -1.0 if hand.bounds.mean(axis=0)[1] < 0.0 else 1.0
-    place = np.eye(4)
-    place[:3, :3] = turn
-    corners = bounds @ turn.T
-    middle, half = corners.mean(axis=0), 0.5 * np.abs(np.ptp(corners, axis=0))
-    place[:3, 3] = hand.bounds.mean(axis=0) - middle
-    reach = 0.5 * float(np.ptp(hand.bounds, axis=0)[1]) + half[1] + _GRASP
-    place[1, 3] += outward * reach
-    return blueprint.carrying(held, hand.name, place)
-
-
-def _standing_on(blueprint: Blueprint, carrier: Blueprint) -> Blueprint:
-    """Return an object on the middle of another one.
-
-    Raises:
-        InputError: There is no level place of its size.
-    """
-    bounds, below = blueprint.assembly.bounds, carrier.parts[0].bounds[:, :2]
-
-    def heights_at(places: FloatArray) -> FloatArray:
-        return np.array([max(_height(part, place) for part in carrier.parts) for place in places])
-
-    # Where it is level may be less than its bounds: a cart has a push handle behind it.
-    over = below[0] + np.ptp(below, axis=0) * (np.indices((_GRID, _GRID)).reshape(2, -1).T + 0.5) / _GRID
-    level = _height(carrier.parts[0], below.mean(axis=0))
-    flat = over[np.abs(heights_at(over) - level) < _LEVEL] if np.isfinite(level) else over[:0]
-    footprint, room = np.ptp(bounds, axis=0)[:2], np.ptp(flat, axis=0) if len(flat) else np.zeros(2)
-    middle = (flat.min(axis=0) + flat.max(axis=0)) / 2.0 if len(flat) else below.mean(axis=0)
-    half = 0.4 * np.minimum(footprint, room)
-    heights = heights_at(middle + half * np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]))
-    if (room < _STANDS * footprint).any() or not (np.isfinite(heights).all() and np.ptp([*heights, level]) < _LEVEL):
-        raise InputError(
-            f"There is no level place for a {blueprint.family.replace('_', ' ')} on a "
-            f"{carrier.family.replace('_', ' ')}. Ask for them apart."
-        )
-    place = np.eye(4)
-    place[:3, 3] = [*(middle - bounds.mean(axis=0)[:2]), level - bounds[0, 2] + _GRASP]
-    on = carrier.carrying(blueprint, carrier.root, place)
-    return replace(on, name=blueprint.name, family=blueprint.family)
-
-
-def _height(part: Part, place: FloatArray) -> float:
-    """Highest point of a part above a place x, y; minus infinity where there is none."""
-    corners = part.vertices[part.faces]
-    a, b, c = (corners[:, k, :2] - place for k in range(3))
-    shares = np.stack([p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0] for p, q in ((b, c), (c, a), (a, b))], axis=1)
-    total = shares.sum(axis=1)
-    inside = (np.abs(total) > 1e-12) & ((shares * np.sign(total)[:, None]) >= 0.0).all(axis=1)
-    z = (shares[inside] * corners[inside, :, 2]).sum(axis=1) / total[inside]
-    return float(z.max(initial=-np.inf))
-
-
-def _beside(blueprint: Blueprint, other: Blueprint) -> Blueprint:
-    """Return an object with another one on its right, on the same floor."""
-    here, there = blueprint.assembly.bounds, other.assembly.bounds
-    place = np.eye(4)
-    place[:3, 3] = [here[1, 0] + _BESIDE - there[0, 0], (here - there).mean(axis=0)[1], here[0, 2] - there[0, 2]]
-    return blueprint.carrying(other, blueprint.root, place)
-
-
-def hand_of(blueprint: Blueprint) -> Part:
-    """Its hand.
-
-    Raises:
-        InputError: It has none.
-    """
-    found = next((part for name in _HANDS for part in blueprint.parts if part.name == name), None)
-    if found is None:
-        raise InputError(f"A {blueprint.family.replace('_', ' ')} has no hand to hold anything with. Leave that out.")
-    return found
-
-
-def _closed(blueprint: Blueprint) -> Blueprint:
-    return blueprint.moved({joint.child: -joint.value for joint in blueprint.joints})
-
-
-_JOINED: Mapping[str, Callable[[Blueprint, Blueprint], Blueprint]] = {
-    "holding": _holding,
-    "on": _standing_on,
-    "carrying": lambda carrier, other: replace(_standing_on(other, carrier), name=carrier.name, family=carrier.family),
-    "beside": _beside,
-}
-
-
-def from_category(name: str, settings: Mapping[str, str]) -> Request:
-    """Take a category with settings as they are typed.
-
-    Raises:
-        InputError: There is no such category; the message names the nearest.
-    """
-    return Request(family=find_family(name).name, values=dict(settings))
+def _said(family: Family, name: str, value: Any) -> Any:
+    """A value of a parameter that is a number, where the text says a unit."""
+    parameter = next((item for item in family.all_parameters if item.name == name), None)
+    if isinstance(value, str) and parameter is not None and not isinstance(parameter.default, str):
+        try:
+            return quantity(value)[0]
+        except ValueError:
+            return value
+    return value
 
 
 def find_family(name: str) -> Family:
-    """Return the family of a name, in any letter case, with spaces or underscores.
+    """Return the kind of a name, in any letter case, with spaces or underscores.
 
     Raises:
         InputError: There is none; the message names the nearest.
     """
     wanted = name.strip().lower().replace(" ", "_").replace("-", "_")
     families = known_families()
-    words = {word.replace(" ", "_"): name for name, family in families.items() for word in (name, *family.words)}
+    words = {word.replace(" ", "_"): key for key, family in families.items() for word in (*family.words, key)}
+    if wanted in families:
+        return families[wanted]
     if wanted in words:
         return families[words[wanted]]
-    near = [words[match] for match in difflib.get_close_matches(wanted, words, n=3, cutoff=0.6)]
-    hint = f"Did you mean {' or '.join(dict.fromkeys(near))}?" if near else f"There are {', '.join(families)}."
-    raise InputError(f"There is no category {name!r}. {hint}")
+    near = [words[match] for match in difflib.get_close_matches(wanted, words, n=5, cutoff=0.6)]
+    hint = f"Did you mean {' or '.join(dict.fromkeys(near))}?" if near else "kinematify generate --list shows all."
+    raise InputError(f"There is no kind {name!r}. {hint}")
+
+
+# ---- from words, files and settings --------------------------------------------------------------------------------
+
+
+def request_of(values: Mapping[str, Any], *, source: str = "request") -> Request:
+    """Return the request that JSON values say.
+
+    Raises:
+        InputError: They do not fit; the message says where, and what is allowed.
+    """
+    try:
+        return Request.model_validate(values).checked()
+    except ValidationError as error:
+        found = [
+            f"{'.'.join(map(str, item['loc'])) or 'all'}: {_reason(item)}" for item in error.errors(include_url=False)
+        ]
+        raise InputError(f"The {source} cannot be used: {'; '.join(found[:5])}.") from error
+
+
+def _reason(problem: Any) -> str:
+    if problem["type"] != "extra_forbidden":
+        return str(problem["msg"])
+    model: type[BaseModel] = PartRequest if problem["loc"][0] == "parts" else Request
+    return f"there is no such field; there are {', '.join(model.model_fields)}"
+
+
+def read_request(path: Path) -> dict[str, Any]:
+    """Read the values of a request from a YAML or JSON file.
+
+    Raises:
+        InputError: It cannot be read, or is no mapping.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+        values = json.loads(text) if path.suffix.lower() == ".json" else yaml.safe_load(text)
+    except (OSError, ValueError, yaml.YAMLError, RecursionError) as error:
+        raise InputError(f"The file {path} cannot be read as JSON or YAML: {error}.") from error
+    if not isinstance(values, dict):
+        raise InputError(f"The file {path} holds no request: a mapping with kind, parameters, size and parts.")
+    return values
+
+
+def with_settings(values: Mapping[str, Any], settings: Mapping[str, str]) -> dict[str, Any]:
+    """Return the values of a request with settings as they are typed.
+
+    Args:
+        values: As in a file.
+        settings: ``doors`` for a parameter, ``size.width`` for the whole, ``door.color`` for the parts of a name.
+    """
+    known = set(PartRequest.model_fields)
+    made = {**values, "parameters": dict(values.get("parameters") or {}), "size": dict(values.get("size") or {})}
+    parts = {name: dict(part) for name, part in (values.get("parts") or {}).items()}
+    for key, value in settings.items():
+        name, dot, fact = key.partition(".")
+        if key in ("copies",):
+            made[key] = value
+        elif name == "size" and dot:
+            made["size"][fact] = value
+        elif dot and fact.split(".")[0] in known:
+            field, _, dimension = fact.partition(".")
+            part = parts.setdefault(name.replace("_", " "), {})
+            part[field] = {**part.get(field, {}), dimension: value} if dimension else _typed(field, value)
+        else:
+            made["parameters"][key] = value
+    return {**made, "parts": parts}
+
+
+def _typed(field: str, value: str) -> Any:
+    return value if field not in ("count", "row") else int(value) if value.isdigit() else value
+
+
+def schema_of(kind: str | None) -> dict[str, Any]:
+    """Return the JSON schema of requests, with the parameters of a kind if one is named.
+
+    Raises:
+        InputError: There is no such kind.
+    """
+    schema = Request.model_json_schema()
+    if kind:
+        family = find_family(kind)
+        schema["title"], schema["description"] = family.name, family.title
+        schema["properties"]["kind"] = {"const": family.name}
+        schema["properties"]["parameters"] = {
+            "type": "object",
+            "additionalProperties": False,
+            "properties": {item.name: _schema_of(item) for item in family.all_parameters},
+        }
+    return schema
+
+
+def _schema_of(parameter: Parameter) -> dict[str, Any]:
+    unit = f" [{parameter.unit}]" if parameter.unit else ""
+    facts: dict[str, Any] = {"description": f"{parameter.help}{unit}", "default": parameter.default}
+    if isinstance(parameter.default, str):
+        return {"type": "string", **facts, **({"enum": list(parameter.choices)} if parameter.choices else {})}
+    bounds = dict(zip(("minimum", "maximum"), parameter.bounds or (), strict=False))
+    return {"type": "integer" if isinstance(parameter.default, int) else "number", **facts, **bounds}
+
+
+def listed(words: Sequence[str]) -> str:
+    """Return words with commas and a last *and*."""
+    return " and ".join(filter(None, (", ".join(words[:-1]), words[-1]))) if words else "nothing"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.solid import Solid
+from kinematify.geometry.solid import Solid, merged_corners
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import rigid_groups
 from kinematify.robot.vectors import referenced
@@ -221,6 +221,7 @@ def read_scene(
     *,
     by_link: bool = False,
     solids: dict[bytes, Solid] | None = None,
+    thin: bool = False,
 ) -> Scene:
     """Gather the geometry of the bodies; nothing is measured yet.
 
@@ -231,6 +232,7 @@ def read_scene(
         by_link: Links that fixed joints hold together are bodies of their own, in the frame of the link nearest the
             root.
         solids: `Scene.solids` of another scene with the same settings; added to.
+        thin: Simplify meshes with more than `most_faces` triangles when they are first measured.
     """
     solids = {} if solids is None else solids
     parts = [
@@ -252,7 +254,7 @@ def read_scene(
                 name=next(name for name in links if model.link_by_name[name].has_geometry),
                 links=tuple(links),
                 group=index,
-                solid=_solid(shapes, unit, settings, solids),
+                solid=_solid(shapes, unit, settings, solids, thin=thin),
                 shapes=tuple(referenced(vertices, faces) for vertices, faces in shapes if len(faces)),
             )
             for index, links, shapes in solid
@@ -289,19 +291,50 @@ def _shapes(
 
 
 def _solid(
-    shapes: Sequence[tuple[FloatArray, IntArray]], unit: float, settings: GeometrySettings, known: dict[bytes, Solid]
+    shapes: Sequence[tuple[FloatArray, IntArray]],
+    unit: float,
+    settings: GeometrySettings,
+    known: dict[bytes, Solid],
+    *,
+    thin: bool,
 ) -> Solid:
     """The solid of some shapes, the known one where one was made of the same numbers."""
-    starts = np.cumsum([0, *(len(vertices) for vertices, _ in shapes)])
-    vertices = np.concatenate([vertices for vertices, _ in shapes])
-    faces = np.concatenate([faces + start for (_, faces), start in zip(shapes, starts, strict=False)])
+    vertices, faces = _together(shapes)
     made_of = blake2b(repr((unit, len(vertices))).encode())
     made_of.update(vertices.tobytes())
     made_of.update(faces.tobytes())
     key = made_of.digest()
     if key not in known:
-        known[key] = Solid(vertices, faces, unit=unit, hole=settings.hole, points=settings.points)
+        large = thin and any(len(faces) > settings.most_faces for _, faces in shapes)
+        known[key] = Solid(
+            vertices,
+            faces,
+            unit=unit,
+            hole=settings.hole,
+            points=settings.points,
+            measured=(lambda: _together([_thinned(*shape, settings.most_faces) for shape in shapes]))
+            if large
+            else None,
+        )
     return known[key]
+
+
+def _together(shapes: Sequence[tuple[FloatArray, IntArray]]) -> tuple[FloatArray, IntArray]:
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in shapes)])
+    vertices = np.concatenate([vertices for vertices, _ in shapes])
+    return vertices, np.concatenate([faces + start for (_, faces), start in zip(shapes, starts, strict=False)])
+
+
+def _thinned(vertices: FloatArray, faces: IntArray, most: int) -> tuple[FloatArray, IntArray]:
+    """A shape of at most `most` triangles."""
+    if len(faces) <= most:
+        return vertices, faces
+    import fast_simplification  # noqa: PLC0415 - for large meshes only
+
+    vertices, faces = merged_corners(vertices, faces)
+    if len(faces) > most:
+        vertices, faces = fast_simplification.simplify(vertices, faces, target_count=most)
+    return np.asarray(vertices, dtype=np.float64), np.asarray(faces, dtype=np.int64)
 
 
 def transformed(points: FloatArray, T: FloatArray) -> FloatArray:

@@ -21,6 +21,8 @@ from kinematify.geometry.sampling import curve_order, place_samples
 from kinematify.robot.vectors import all_three, crossed, highest, lengths_of, lowest, referenced
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import fcl
 
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
@@ -33,7 +35,16 @@ _SHARP = np.cos(np.radians(30.0))  # edges of facets of a cylinder of 12 sides a
 class Solid:
     """One body in its own frame; each structure is built when first asked for."""
 
-    def __init__(self, vertices: FloatArray, faces: IntArray, *, unit: float, hole: float, points: int) -> None:
+    def __init__(
+        self,
+        vertices: FloatArray,
+        faces: IntArray,
+        *,
+        unit: float,
+        hole: float,
+        points: int,
+        measured: Callable[[], tuple[FloatArray, IntArray]] | None = None,
+    ) -> None:
         """Keep the mesh.
 
         Args:
@@ -42,8 +53,9 @@ class Solid:
             unit: Length of one unit of the FCL tree [m]; FCL takes short lengths for none.
             hole: See `shells_of`.
             points: Number of points that represent the surface in questions of depth.
+            measured: Gives a simpler mesh with the same box, which all else is asked of.
         """
-        self._mesh = vertices, faces
+        self._measured = measured or (lambda: (vertices, faces))
         self._unit, self._hole, self._count = unit, hole, points
         used = referenced(vertices, faces)
         self.low, self.high = lowest(used), highest(used)
@@ -61,7 +73,7 @@ class Solid:
     @cached_property
     def shells(self) -> Shells:
         """Closed shells and sheets."""
-        return shells_of(*self._mesh, hole=self._hole)
+        return shells_of(*self._measured(), hole=self._hole)
 
     @cached_property
     def points(self) -> FloatArray:

@@ -32,6 +32,8 @@ class Meeting:
     pair: Pair
     first: float
     """Value of the joint where it begins [rad or m]."""
+    deep: float
+    """Value of the joint at the first sample where it is deeper than it may be [rad or m]."""
     depth: float
     """Deepest within the declared range, or where it was noticed beyond it [m]."""
     at: float
@@ -143,7 +145,7 @@ class Sweeper:
             declared=float(values[-1]),
             reached=float(beyond[-1]),
             meetings=tuple(meetings),
-            gaps=tuple(gap for pair in sorted(own) for gap in self._widest(pair, values, relative(poses, pair))),
+            gaps=tuple(gap for pair in sorted(own) for gap in self.widest(leader, pair, sign)),
         )
 
     def _way_to_end(self, leader: int, sign: float) -> tuple[FloatArray, FloatArray]:
@@ -192,8 +194,8 @@ class Sweeper:
         if not len(events):  # what is on its way in at the last row may get too deep after it
             deeper = rows < len(values) and growth[-1] > self._scene.settings.noise * self._scene.size
             return self._within(leader, pair, values, T) if deeper else None
-        first = self._onset(leader, pair, values[: events[0] + 1], growth, hit)
-        return _meeting(pair, first, values[:rows], growth, passed, inside=True)
+        begin = self._onset(leader, pair, values[: events[0] + 1], growth, hit), float(values[events[0]])
+        return _meeting(pair, begin, values[:rows], growth, passed, inside=True)
 
     def _outside(self, leader: int, pair: Pair, values: FloatArray, beyond: FloatArray) -> Meeting | None:
         """The same beyond the declared range, piece by piece, for the first place is enough."""
@@ -209,8 +211,8 @@ class Sweeper:
             events = np.flatnonzero(growth > self._allowance.tolerance(pair))
             if len(events):
                 stop = int(events[0]) + 1
-                first = self._onset(leader, pair, way[:stop], growth, hit)
-                return _meeting(pair, first, way[:stop], growth[:stop], passed, inside=False)
+                begin = self._onset(leader, pair, way[:stop], growth, hit), float(way[stop - 1])
+                return _meeting(pair, begin, way[:stop], growth[:stop], passed, inside=False)
         return None
 
     def _growth(self, pair: Pair, T: FloatArray, hit: BoolArray, *, since: int = 0) -> tuple[FloatArray, BoolArray]:
@@ -244,9 +246,11 @@ class Sweeper:
         fine = np.radians(settings.fine_angle) if turns else min(settings.fine_length, 1e-4 * self._scene.size)
         return bisected(free, low, high, float(fine))
 
-    def _widest(self, pair: Pair, values: FloatArray, T: FloatArray) -> Iterator[tuple[Pair, float, float]]:
-        """Largest gap of a pair over some of the poses; nothing where it is certainly lost in none of them."""
+    def widest(self, leader: int, pair: Pair, sign: float) -> Iterator[tuple[Pair, float, float]]:
+        """Yield the largest gap of a pair on the way to one side [m], and where; nothing where it is small for sure."""
         settings, overlap = self._scene.settings, self._overlap
+        values, poses = self._way(leader, sign)
+        T = relative(poses, pair)
         chosen: IntArray = np.unique(np.linspace(0, len(values) - 1, settings.gap_samples + 1).astype(np.int64))
         apart = [row for row in chosen if not overlap.near(pair, T[row], settings.lost * self._scene.size)]
         if apart:
@@ -256,12 +260,13 @@ class Sweeper:
 
 
 def _meeting(
-    pair: Pair, first: float, values: FloatArray, growth: FloatArray, passed: BoolArray, *, inside: bool
+    pair: Pair, begin: tuple[float, float], values: FloatArray, growth: FloatArray, passed: BoolArray, *, inside: bool
 ) -> Meeting:
     deepest = int(np.argmax(growth))
     return Meeting(
         pair=pair,
-        first=first,
+        first=begin[0],
+        deep=begin[1],
         depth=float(growth[deepest]),
         at=float(values[deepest]),
         passed=bool(passed[deepest]),

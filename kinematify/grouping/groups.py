@@ -11,6 +11,7 @@ import numpy as np
 from kinematify.assembly.assemble import part_names
 from kinematify.assembly.part import Assembly, Part
 from kinematify.errors import AssemblyError, InputError
+from kinematify.grouping.numbered_pieces import BODY, MOST_NUMBERS, evidence, few_numbers
 from kinematify.grouping.pair_measurements import measure_pieces
 from kinematify.grouping.piece_sets import Candidate, alike, measure_candidates, node_of_pieces, propose
 from kinematify.joints.candidate import JointEstimate, JointType
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config import GroupingConfig
+    from kinematify.grouping.numbered_pieces import NamedPart
     from kinematify.joints.choice.scorer import Scorer
     from kinematify.robot.arrays import FloatArray, IntArray
 
@@ -100,6 +102,8 @@ def _said(group: Group) -> str:
 
 
 _DOUBTFUL = 0.7
+_MOST_MEASURED = 300
+"""Pieces whose pairs are judged before they are numbered; of more, small ones follow the nearest large one."""
 _WHOLE_NODES = 3.0
 """Log odds by which a set of whole nodes is likelier than one of their pieces (results/grouping.md)."""
 _LIKELY = 0.25
@@ -122,24 +126,36 @@ def shipped_weights() -> PieceWeights:
     return PieceWeights(pairs=shipped_scorer(PIECES_WEIGHTS), moving=shipped_scorer(MOVING_WEIGHTS))
 
 
-def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeights | None = None) -> Grouping:
+def group_pieces(
+    assembly: Assembly,
+    config: GroupingConfig,
+    weights: PieceWeights | None = None,
+    *,
+    named: Sequence[NamedPart] = (),
+    trust: float = 0.0,
+) -> Grouping:
     """Decide which pieces are one rigid part.
 
     Args:
         assembly: Pieces, world frame, z up.
         config: How likely a moving part must be, and the size of crumbs.
         weights: Those that ship by default.
+        named: Moving parts that somebody named.
+        trust: What that is worth beside geometry, from 0 for nothing to 1: it is taken as it is.
 
     Raises:
         AssemblyError: All pieces are one part.
     """
+    if trust >= 1.0:
+        return _as_named(assembly, named)
     parts = assembly.parts
     owner = assign_fragments(parts, config.crumb * assembly.diagonal)
     kept = np.flatnonzero(owner == np.arange(len(parts)))
     if len(kept) < 2:
         raise one_part(assembly)
     weights = weights or shipped_weights()
-    candidates, odds, pairs, of_pairs = judged([parts[k] for k in kept], weights)
+    said = [frozenset(np.flatnonzero(np.isin(kept, part.pieces)).tolist()) for part in named if trust > 0.0]
+    candidates, odds, pairs, of_pairs = judged([parts[k] for k in kept], weights, said)
     candidates, odds = alike(candidates, odds, [parts[k] for k in kept])
     node = node_of_pieces([assembly.original_names.get(parts[k].name, "") for k in kept], pairs)
     if node is not None:
@@ -151,6 +167,12 @@ def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeigh
             pieces = frozenset(np.flatnonzero(np.isin(node, list(members))).tolist())
             best[pieces] = max(value, best.get(pieces, value))
         candidates, odds = list(best), np.array(list(best.values()))
+    source = np.full(len(candidates), -1)
+    if said:
+        added, source = evidence(
+            candidates, said, [part.sure for part in named], np.array([parts[k].area for k in kept])
+        )
+        odds = odds + trust * added
     likely = 1.0 / (1.0 + np.exp(-odds))
     chosen, rejected = select(candidates, likely, config)
     if not chosen:
@@ -161,13 +183,21 @@ def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeigh
     label = label[owner]
     indices = [np.flatnonzero(label == number) for number in range(-1, len(chosen))]
     moves = [None, *(round(float(likely[row]), 3) for row in chosen)]
+    names = [None, *(named[source[row]].name if source[row] >= 0 else None for row in chosen)]
     if not len(indices[0]):
-        indices, moves = indices[1:], moves[1:]
+        indices, moves, names = indices[1:], moves[1:], names[1:]
     if len(indices) < 2:
         raise one_part(assembly)
     doubtful = {} if node is not None else _doubtful(label[kept], pairs, of_pairs)
     return replace(
-        grouped_as(pieces_of(assembly), indices, moves=moves),
+        grouped_as(
+            pieces_of(assembly),
+            indices,
+            moves=moves,
+            names=[
+                name or assembly.names[_main_piece(assembly, index)] for name, index in zip(names, indices, strict=True)
+            ],
+        ),
         doubtful=tuple((k + 1, np.flatnonzero(owner == kept[piece])) for k, piece in doubtful.items()),
         pieces=assembly if doubtful else None,
         rejected=tuple(
@@ -176,6 +206,40 @@ def group_pieces(assembly: Assembly, config: GroupingConfig, weights: PieceWeigh
             if likely[row] > _LIKELY
         ),
     )
+
+
+def _as_named(assembly: Assembly, named: Sequence[NamedPart]) -> Grouping:
+    """The grouping that somebody stated, the body first."""
+    if not named:
+        raise one_part(assembly)
+    label = np.zeros(len(assembly.parts), dtype=np.int64)
+    for number, part in enumerate(named, 1):
+        label[part.pieces] = number
+    indices = [np.flatnonzero(label == number) for number in range(len(named) + 1)]
+    return grouped_as(pieces_of(assembly), indices, names=[BODY, *(part.name for part in named)])
+
+
+def numbered_pieces(assembly: Assembly, config: GroupingConfig) -> tuple[IntArray, ...]:
+    """Indices of the pieces that have one number, by falling area, 60 numbers at most; crumbs follow their piece.
+
+    Args:
+        assembly: The pieces.
+        config: Size of crumbs.
+    """
+    parts = assembly.parts
+    owner = assign_fragments(parts, config.crumb * assembly.diagonal)
+    kept = np.unique(owner)
+    number, areas = np.arange(len(kept)), np.array([parts[k].area for k in kept])
+    if len(kept) > MOST_NUMBERS:
+        pairs, odds = np.empty((0, 2), dtype=np.int64), np.empty(0)
+        if len(kept) <= _MOST_MEASURED:
+            measured = measure_pieces([parts[k] for k in kept])
+            pairs, odds = measured.pairs, odds_of(shipped_weights().pairs, measured.columns, measured.names)
+        number = few_numbers(areas, np.array([parts[k].bounds.mean(axis=0) for k in kept]), pairs, odds)
+    of_part = number[np.searchsorted(kept, owner)]
+    total = np.bincount(number, areas)
+    order = sorted(set(number.tolist()), key=lambda k: (-round(total[k] / areas.sum(), 9), k))
+    return tuple(np.flatnonzero(of_part == k) for k in order)
 
 
 def _doubtful(label: IntArray, pairs: IntArray, odds: FloatArray) -> dict[int, int]:
@@ -256,11 +320,17 @@ def confidence_of(joints: Sequence[JointEstimate], config: GroupingConfig) -> di
     }
 
 
-def judged(parts: Sequence[Part], weights: PieceWeights) -> tuple[list[Candidate], FloatArray, IntArray, FloatArray]:
-    """Sets of pieces that may be a moving part, their log odds, shape (c,); neighbours, shape (m, 2), and theirs."""
+def judged(
+    parts: Sequence[Part], weights: PieceWeights, said: Sequence[Candidate] = ()
+) -> tuple[list[Candidate], FloatArray, IntArray, FloatArray]:
+    """Sets of pieces that may be a moving part, their log odds, shape (c,); neighbours, shape (m, 2), and theirs.
+
+    Sets that somebody named are judged beside those that geometry proposes.
+    """
     measured = measure_pieces(parts)
     odds = odds_of(weights.pairs, measured.columns, measured.names)
-    candidates = propose(measured, odds)
+    own = (item for item in said if 0 < len(item) < len(parts))
+    candidates = list(dict.fromkeys((*propose(measured, odds), *own)))
     if not candidates:
         return [], np.empty(0), measured.pairs, odds
     areas = np.array([part.area for part in parts])

@@ -68,6 +68,9 @@ def urdf_of(model: Path, package_dirs: Sequence[Path] = (), arguments: Mapping[s
         InputError: There is no such file, it cannot be read, or the folder has no URDF or several.
     """
     if not model.is_dir():
+        from kinematify.robot.known_robots import robot_named  # noqa: PLC0415
+
+        model = model if model.is_file() else robot_named(str(model)) or model
         if not model.is_file():
             raise InputError(f"There is no file {model}. Give a URDF, or a model folder that `kinematify infer` wrote.")
         from kinematify.robot.description import urdf_for  # noqa: PLC0415 - loads NumPy, which --help needs not

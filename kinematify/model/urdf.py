@@ -127,13 +127,21 @@ def link_colors(model: KinematicModel) -> dict[str, FloatArray]:
     Returns:
         Link name -> sRGB in [0, 1], shape (3,).
     """
-    colors = {model.root: _oklch(*_ROOT)}
-    moving = [link.name for link in model.links if link.name != model.root]
-    for index, name in enumerate(moving):
-        hue = _FIRST_HUE + index * _GOLDEN_ANGLE
-        colors[name] = _oklch(float(_LIGHTNESS[index % len(_LIGHTNESS)]), _CHROMA, hue)
+    names = [model.root, *(link.name for link in model.links if link.name != model.root)]
+    colors = dict(zip(names, usual_colors(len(names)), strict=True))
     known = {link.name: np.array(link.part.color) for link in model.links if link.part.color is not None}
     return {**colors, **known}
+
+
+def usual_colors(count: int) -> list[FloatArray]:
+    """Colours of links that have none: grey for the root link, which is the first, distinct hues for the others.
+
+    Returns:
+        sRGB in [0, 1], each of shape (3,).
+    """
+    hues = (_FIRST_HUE + index * _GOLDEN_ANGLE for index in range(count - 1))
+    lights = (float(_LIGHTNESS[index % len(_LIGHTNESS)]) for index in range(count - 1))
+    return [_oklch(*_ROOT), *(_oklch(light, _CHROMA, hue) for light, hue in zip(lights, hues, strict=True))][:count]
 
 
 def link_shades(model: KinematicModel) -> dict[str, float]:

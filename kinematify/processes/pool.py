@@ -38,7 +38,7 @@ class WorkItem(Generic[_Result_co]):
     key: str
     """Each task has its own."""
     call: Callable[[], _Result_co]
-    """Picklable; while it runs it can `tell` the caller more than its result."""
+    """Picklable; while it runs it can `send` the caller more than its result."""
     timeout: float
     """Wall time after which it is stopped with all that it has started [s]."""
 
@@ -64,10 +64,10 @@ class Message:
 class Worker(Protocol):
     """Does one task at a time; a task that ends it, hangs or leaks takes down nothing else."""
 
-    def take(self, call: Callable[[], Any], timeout: float) -> None:
+    def submit(self, call: Callable[[], Any], timeout: float) -> None:
         """Begin a picklable task that is stopped after `timeout` seconds, with all that it has started."""
 
-    def answer(self) -> tuple[Any, bool]:
+    def result(self) -> tuple[Any, bool]:
         """Return the result of the task, its `TaskFailure` or a `Message`, and whether the worker can take another one.
 
         To be called when `Executor.wait` has named the worker.
@@ -118,11 +118,11 @@ def run_tasks(
                 with deaf():  # an interrupt before it is listed would leave a process that nobody stops
                     worker = executor.start()
                     active[worker] = task, 1
-                worker.take(task.call, task.timeout)
+                worker.submit(task.call, task.timeout)
             if not active:
                 return
             for worker in executor.wait(active):
-                result, alive = worker.answer()
+                result, alive = worker.result()
                 ended, taken = active[worker]
                 if isinstance(result, Message):
                     heard(ended.key, result.content)
@@ -133,7 +133,7 @@ def run_tasks(
                     again.append(ended)
                 if alive and taken < reuse and (task := again.popleft() if again else next(upcoming, None)):
                     active[worker] = task, taken + 1
-                    worker.take(task.call, task.timeout)
+                    worker.submit(task.call, task.timeout)
                 else:
                     worker.stop()
                     del active[worker]
@@ -205,14 +205,14 @@ class WorkerProcess:
         other.close()  # only the process may hold its end: then its death is seen as the end of the stream
         self._started, self.deadline = 0.0, 0.0
 
-    def take(self, call: Callable[[], Any], timeout: float) -> None:
+    def submit(self, call: Callable[[], Any], timeout: float) -> None:
         """Begin a task."""
         self._started = time.monotonic()
         self.deadline = self._started + timeout
         with suppress(BrokenPipeError):  # it died between two tasks: the next look at it tells
             self.channel.send(call)
 
-    def answer(self) -> tuple[Any, bool]:
+    def result(self) -> tuple[Any, bool]:
         """Return the result, what became of the task or a `Message`, and whether the process lives."""
         seconds = time.monotonic() - self._started
         if not self.channel.poll():
@@ -241,7 +241,7 @@ _CALLERS: list[Connection] = []
 """Channels of this worker and of those that it was forked from; the last is its own."""
 
 
-def tell(message: Any) -> None:
+def send(message: Any) -> None:
     """Send the caller of this worker a message that its task has before it ends."""
     _CALLERS[-1].send(Message(message))
 

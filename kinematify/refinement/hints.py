@@ -262,7 +262,7 @@ def with_hints(inference: Inference, hints: Sequence[Hint]) -> Inference:
         raise _about_the_base(base)
     parents = {names.index(hint.part): names.index(hint.parent) for hint in hints if hint.parent is not None}
     if parents:
-        inference = _with_parents(inference, parents)
+        inference = with_parents(inference, parents)
     maker = CandidateJoints(inference.assembly, inference.graph, inference.bearings, inference.config)
     joints, warnings = list(inference.joints), list(inference.warnings)
     place = {names[joint.child]: k for k, joint in enumerate(joints)}
@@ -374,7 +374,7 @@ def _objections(joint: JointEstimate, hint: Hint, inference: Inference, before: 
     return [f"{said} Without the hint it is {described(before)}."]
 
 
-def _with_parents(inference: Inference, parents: Mapping[int, int]) -> Inference:
+def with_parents(inference: Inference, parents: Mapping[int, int]) -> Inference:
     """The inference on the tree that hints ask for: parts hang where a hint says, others where they did if possible.
 
     Joints stay where neither parent nor what the part carries has changed; the others are chosen as `infer` would. A

@@ -174,7 +174,7 @@ class Simulator:
 
     def judge(self, model: KinematicModel) -> MotionVerdict:
         """Judge a whole plan."""
-        look = GeometryContext(self._world.scene(model), compare_visible=False)
+        look = GeometryContext(self._world.scene(model))
         found = _findings([check for check in checks_of("KV30") if check.id != "KV304"], look)  # a table, no failure
         summaries: list[JointSummary] = []
         for leader, travel in enumerate(look.scene.travels):
@@ -185,7 +185,7 @@ class Simulator:
 
     def judge_joint(self, model: KinematicModel, joint: str) -> MotionVerdict:
         """Judge one joint of a plan by its motion alone; a fixed joint has nothing to say."""
-        look = GeometryContext(self._world.scene(model), compare_visible=False)
+        look = GeometryContext(self._world.scene(model))
         names = [travel.joint for travel in look.scene.travels]
         if joint not in names:
             return MotionVerdict(findings=(), joints=())

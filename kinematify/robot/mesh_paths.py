@@ -132,6 +132,7 @@ def _package_candidates(package: str, inside: str, folder: Path, package_dirs: S
     return candidates + [place / inside for place in (*package_dirs, *above[:_LEVELS])]
 
 
+@lru_cache(maxsize=64)
 def _cloned_beside(folder: Path, package: str) -> list[Path]:
     """Packages near a document by the name in their manifest: clones are often in folders of other names."""
     found = []

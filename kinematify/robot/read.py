@@ -190,6 +190,8 @@ def _joint(element: _Element) -> Joint:
     )
 
 
+_ENDLESS = 1e6
+"""Limits beyond this are none [rad]."""
 _LOOPS = {
     "loop_joint": (("link1", "link", "link1", "xyz"), ("link2", "link", "link2", "xyz")),
     "ball_constraint": (
@@ -224,16 +226,23 @@ def _kind(element: _Element, declared: str, where: str) -> JointType:
     if declared not in tuple(JointType):
         known = ", ".join([*JointType, *FREE_KINDS])
         raise DescriptionError(f"The {where} has the type {declared!r}; URDF knows {known}. Correct it.")
-    if declared == JointType.REVOLUTE and element.find("limit") is None:
-        return JointType.CONTINUOUS
-    return JointType(declared)
+    return JointType.CONTINUOUS if declared == JointType.REVOLUTE and _is_endless(element) else JointType(declared)
+
+
+def _is_endless(joint: _Element) -> bool:
+    """True if a joint states no limits, or some so far to both sides that they are none, as the 1e16 of Gazebo."""
+    limit = joint.find("limit")
+    if limit is None:
+        return True
+    lower, upper = (number(limit, end, 0.0, f"joint {joint.get('name')}") for end in ("lower", "upper"))
+    return lower < -_ENDLESS and upper > _ENDLESS
 
 
 def _note(joint: Joint) -> str:
     if joint.declared_kind in FREE_KINDS:
         return f"The {joint.declared_kind} joint {joint.name} above the root body is read as fixed."
     if joint.declared_kind != joint.kind:
-        return f"The revolute joint {joint.name} has no limits and is read as continuous."
+        return f"The revolute joint {joint.name} has no limits, or endless ones, and is read as continuous."
     return ""
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,6 +30,12 @@ _SECTIONS = 64
 """Sides of a tessellated cylinder: its flats lie 0.12 % of the radius inside the circle."""
 _SUBDIVISIONS = 4
 """Of an icosphere: 5,120 faces, 0.1 % of the radius inside the sphere."""
+
+
+_CUBE = np.array(list(product((0.0, 1.0), repeat=3)))
+_CUBE_FACES = np.array(
+    [1, 3, 0, 4, 1, 0, 0, 3, 2, 2, 4, 0, 1, 7, 3, 5, 1, 4, 5, 7, 1, 3, 7, 2, 6, 4, 2, 2, 7, 6, 6, 5, 4, 7, 5, 6]
+).reshape(-1, 3)
 
 
 class NoShape(DescriptionError):
@@ -203,17 +210,30 @@ def _primitive_size(shape: _Element, where: str) -> tuple[float, ...]:
 
 
 def _tessellated(kind: str, size: tuple[float, ...]) -> RawMesh:
-    from trimesh import creation  # noqa: PLC0415  # takes longer than reading an OBJ, which needs none of it
-
     if kind == "box":
-        mesh = creation.box(extents=size)
-    elif kind == "sphere":
+        return RawMesh(name="", vertices=(_CUBE - 0.5) * size, faces=_CUBE_FACES)
+    if kind == "cylinder":
+        return _cylinder(*size)
+    from trimesh import creation  # noqa: PLC0415  # takes longer than all else that reads a URDF
+
+    if kind == "sphere":
         mesh = creation.icosphere(subdivisions=_SUBDIVISIONS, radius=size[0])
-    elif kind == "cylinder":
-        mesh = creation.cylinder(radius=size[0], height=size[1], sections=_SECTIONS)
     else:
         mesh = creation.capsule(radius=size[0], height=size[1], count=(_SECTIONS // 2, _SECTIONS))
     return RawMesh(name="", vertices=np.asarray(mesh.vertices), faces=np.asarray(mesh.faces, dtype=np.int64))
+
+
+def _cylinder(radius: float, height: float) -> RawMesh:
+    angle = np.linspace(0.0, 2.0 * np.pi, _SECTIONS, endpoint=False)
+    rim = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    low, high = (np.insert(rim, 2, end, axis=1) for end in (-0.5 * height, 0.5 * height))
+    sides = np.stack([low, high], axis=1).reshape(-1, 3)
+    vertices = np.insert(sides, [0, 2], [[0.0, 0.0, -0.5 * height], [0.0, 0.0, 0.5 * height]], axis=0)
+    below = np.array([1, *range(4, len(vertices), 2)])
+    after, bottom, top = np.roll(below, -1), np.zeros_like(below), np.full_like(below, 3)
+    above, over = below + 1, after + 1
+    faces = [below, bottom, after, below, after, above, above, after, over, above, over, top]
+    return RawMesh(name="", vertices=vertices, faces=np.stack(faces, axis=1).reshape(-1, 3))
 
 
 def _color(material: _Element | None) -> tuple[float, float, float, float] | None:

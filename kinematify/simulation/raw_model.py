@@ -306,22 +306,22 @@ class RunningFile(RawEngineModel):
 
     def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
         """Push a joint from `values`, the others held there."""
-        moved = [self.joints.index(name) for name in push.moved]
-        self.begin(values, contacts=contacts, gravity=False, released=moved)
+        moved = np.array([self.joints.index(name) for name in push.moved])
+        self.begin(values, contacts=contacts, gravity=False, released=moved.tolist())
         rest, ratios, weights = self.row(values), np.array(push.ratios), np.array(push.weights)
         progress = PushProgress(start=values[push.joint], push=push, time_step=self.time_step)
-        done = 0
-        self.apply(moved[0], progress.force(0.0))
+        done, pushed, still = 0, int(moved[0]), np.zeros_like(rest)
+        self.apply(pushed, progress.force(0.0))
         for done in self.steps(push.steps):
             q, v = self.state()
             way, speed = weights @ (q - rest)[moved], float(weights @ v[moved])
-            q, v = rest.copy(), np.zeros_like(rest)
+            q, v = rest.copy(), still.copy()
             q[moved] += ratios * way
             v[moved] = ratios * speed
             self.set_state(q, v)
-            if not progress.goes_on(float(q[moved[0]]), done):
+            if not progress.goes_on(float(q[pushed]), done):
                 break
-            self.apply(moved[0], progress.force(speed))
+            self.apply(pushed, progress.force(speed))
         return Pushed(farthest=progress.value, steps=done, overlaps=self._overlaps())
 
     def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
@@ -429,8 +429,8 @@ class PushProgress:
     def goes_on(self, value: float, step: int) -> bool:
         """Take in the joint's value [rad or m] after a step; False once it has arrived or is stuck."""
         way = self.push.target - self.start
-        gone = float((value - self.start) * np.sign(way))
-        self.farthest = max(self.farthest, gone) if np.isfinite(gone) else self.farthest
+        gone = (value - self.start) * math.copysign(1.0, way)
+        self.farthest = max(self.farthest, gone) if math.isfinite(gone) else self.farthest
         if self.farthest > self._marked + 0.01 * abs(way):
             self._marked, self._since = self.farthest, step
         return self.farthest < abs(way) and (step - self._since) * self.time_step < self.push.patience

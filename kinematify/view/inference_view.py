@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.grouping.groups import stated_groups
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics
 from kinematify.view.alternatives import JointAlternative
@@ -18,7 +17,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from kinematify.grouping.groups import Group
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import LoopJoint, Robot
     from kinematify.view.viewer_scene import ViewScene
@@ -84,8 +82,6 @@ class ViewModel:
     """What each part but the base could hang on: the parts that it touches first, then all others."""
     twins: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Congruent parts with a joint, of each part that has such."""
-    rejected: tuple[Group, ...] = ()
-    """Pieces of a mesh that was not segmented that were taken for fixed, but may move."""
 
 
 def _dashed(start: FloatArray, end: FloatArray) -> FloatArray:
@@ -119,7 +115,6 @@ def shown_with(scene: ViewScene, path: Path) -> ViewModel:
             ),
             parents=_possible_parents(record),
             twins=_twins(record),
-            rejected=stated_groups(record, "rejected"),
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(

@@ -15,10 +15,10 @@ from kinematify.pipeline.infer_assembly import infer
 from kinematify.refinement.folder import open_model_folder, read_record, stored_state, write_refined
 from kinematify.refinement.hints import AXES, Hint, parse_hints, with_hints
 from kinematify.robot.joint_type import JointType
-from kinematify.view.regroup import merge_parts, rename_part, split_part, stated_grouping
+from kinematify.view.regroup import merge_parts, rename_part, stated_grouping
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
     from pathlib import Path
 
     from kinematify.grouping.groups import Grouping
@@ -65,32 +65,17 @@ class ModelFolder:
 
     def merge(self, one: str, other: str) -> SavedEdit:
         """Make one part of two, infer again and write the model; errors as those of `keep`."""
-        return self._regroup(lambda grouping, _: merge_parts(grouping, (one, other)))
-
-    def split(self, part: str) -> SavedEdit:
-        """Make the connected pieces of a part parts, infer again and write the model; errors as those of `keep`."""
-        return self._regroup(lambda grouping, weld: split_part(grouping, part, tolerance=weld))
+        return self._regroup(lambda grouping: merge_parts(grouping, (one, other)))
 
     def rename(self, part: str, name: str) -> SavedEdit:
         """Give a part and its link another name, and write the model; errors as those of `keep`."""
         before = self._current_state()
         return self._write(before, rename_part(before, self._grouping(before), part, name), ())
 
-    def free(self, pieces: Sequence[str]) -> SavedEdit:
-        """Make one part of pieces of a larger part, infer again and write the model; errors as those of `keep`."""
-
-        def freed(grouping: Grouping, weld: float) -> Grouping:
-            owner = next((group.name for group in grouping.groups if set(pieces) <= set(group.pieces)), None)
-            if owner is None:
-                raise InputError("These pieces are of several parts now. Merge or split those parts instead.")
-            return split_part(grouping, owner, tolerance=weld, apart=pieces)
-
-        return self._regroup(freed)
-
-    def _regroup(self, change: Callable[[Grouping, float], Grouping]) -> SavedEdit:
+    def _regroup(self, change: Callable[[Grouping], Grouping]) -> SavedEdit:
         """Infer with other parts; what was said of parts that are still there is kept."""
         before = self._current_state()
-        grouping = change(self._grouping(before), before.config.assembly.weld)
+        grouping = change(self._grouping(before))
         root = before.assembly.names[before.trees[0].root]
         after = infer(grouping, config=before.config, base=root if root in grouping.assembly.names else None)
         known = [text for text in before.hints if text.partition("=")[0].partition(":")[0] in after.assembly.names]

@@ -23,12 +23,17 @@ from kinematify.versions import require
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from PIL.Image import Image
     from trimesh import Trimesh
 
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint, Robot
     from kinematify.view.window import Window
 
+_AZIMUTH = -1.0
+"""Of the camera of a picture [rad]: in front of the model, which looks along -y, and a little to its right."""
+_MARGIN = 24.0
+"""Around the model in a picture [pixels]."""
 _SLACK = 1e-6
 """Share of a limit by which a value may pass it: files round their limits to six digits."""
 
@@ -114,6 +119,40 @@ class LoadedModel:
                 whole.apply_transform(poses[link.name])
                 found[link.name] = whole
         return found
+
+    def picture(self, q: Mapping[str, float] | None = None, *, azimuth: float = _AZIMUTH) -> Image:
+        """Return a picture of the model, drawn without a window.
+
+        Args:
+            q: The configuration; all joints at zero if absent.
+            azimuth: Of the camera, from x towards y [rad].
+
+        Raises:
+            InputError: As for `pose`, or the model has no geometry.
+        """
+        from kinematify.config import load_config  # noqa: PLC0415  # and the renderer: half a second
+        from kinematify.model.picture_scene import camera_for  # noqa: PLC0415
+        from kinematify.model.urdf import usual_colors  # noqa: PLC0415
+        from kinematify.render.picture import PictureScene, PosedMesh, render_scene  # noqa: PLC0415
+
+        poses, colors = self.pose(q), usual_colors(len(self.robot.links))
+        meshes = [
+            PosedMesh(
+                vertices=mesh.vertices @ poses[link.name][:3, :3].T + poses[link.name][:3, 3],
+                faces=mesh.faces,
+                color=color,
+                appearance=mesh.appearance,
+            )
+            for link, color in zip(self.robot.links, colors, strict=True)
+            for mesh in link.meshes
+            if len(mesh.faces)
+        ]
+        if not meshes:
+            raise InputError(f"{self.path} has no geometry that can be drawn.")
+        scene, config = PictureScene(meshes=tuple(meshes)), load_config().preview
+        size = (config.panel_width, config.panel_height)
+        camera = camera_for([scene], azimuth, config, size=size, margin=_MARGIN)
+        return render_scene(scene, camera, config)
 
     def to_mujoco(self) -> Any:
         """Return a `mujoco.MjModel` of this model, with its colours, and a motor for each joint that has an effort.

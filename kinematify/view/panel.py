@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     import viser
 
-    from kinematify.grouping.groups import Group
     from kinematify.robot.robot import Joint
     from kinematify.view.inference_view import FindingMarker, ViewModel
     from kinematify.view.keep import SavedEdit
@@ -156,31 +155,22 @@ class Panel:
         if len(sights) > _LISTED_FINDINGS:
             self._gui.add_markdown(f"{len(sights) - _LISTED_FINDINGS} more are in the report.")
 
-    def add_groups(self, rejected: Sequence[Group], *, opened: bool) -> None:
-        """Add the folder in which parts are named, merged and split.
+    def add_groups(self, *, opened: bool) -> None:
+        """Add the folder in which parts are named and merged.
 
         Args:
-            rejected: Sets of pieces that may move.
             opened: Whether it shows what is in it.
         """
-        gui = self._gui
-        self.may_move = {f"{group.name}, {len(group.pieces)} pieces": group.pieces for group in rejected}
-        with gui.add_folder("Parts as they were grouped", expand_by_default=opened):
-            gui.add_markdown("Click a part to name or split it, or two to merge them.")
-            self.name: Any = gui.add_text("Name", "", disabled=True)
-            self.merge = gui.add_button("Merge", disabled=True)
-            self.split = gui.add_button("Split", disabled=True)
-            self.set_of_pieces: Any = gui.add_dropdown(
-                "May move", tuple(self.may_move) or ("",), visible=bool(rejected)
-            )
-            self.free = gui.add_button("It is a moving part", visible=bool(rejected))
+        with self._gui.add_folder("Parts as they were grouped", expand_by_default=opened):
+            self._gui.add_markdown("Click a part to name it, or two to merge them.")
+            self.name: Any = self._gui.add_text("Name", "", disabled=True)
+            self.merge = self._gui.add_button("Merge", disabled=True)
 
     def click(self, name: str) -> None:
-        """Choose a part to be named, merged or split; the one before it remains chosen as well."""
+        """Choose a part to be named or merged; the one before it remains chosen as well."""
         if self._can_keep:
             self.clicked = [*(other for other in self.clicked if other != name), name][-2:]
             self.name.disabled, self.name.value = False, name
-            self.split.disabled, self.split.label = False, f"Split {name} into its pieces"
             self.merge.disabled = len(self.clicked) < 2
             self.merge.label = "Merge" if self.merge.disabled else f"Merge {' and '.join(self.clicked)}"
 

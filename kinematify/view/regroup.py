@@ -1,4 +1,4 @@
-"""Parts of a model are named, merged or split, as on the page."""
+"""Parts of a model are named or merged, as on the page."""
 
 from __future__ import annotations
 
@@ -10,12 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.assembly.assemble import part_names
-from kinematify.assembly.part import Part
-from kinematify.assembly.pieces import connected_sheets
 from kinematify.errors import InputError
 from kinematify.grouping.groups import Group, Grouping, grouped_as, stated_groups
 from kinematify.refinement.hints import parse_hints
-from kinematify.robot.raw_mesh import RawMesh
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -58,62 +55,6 @@ def merge_parts(grouping: Grouping, names: Sequence[str]) -> Grouping:
         if k == first or not inside[k]
     ]
     return grouped_as(grouping, indices)
-
-
-def split_part(grouping: Grouping, name: str, *, tolerance: float, apart: Sequence[str] = ()) -> Grouping:
-    """Make the connected pieces of a part parts of their own.
-
-    Args:
-        grouping: Parts and their pieces.
-        name: The part.
-        tolerance: Fraction of its diagonal below which vertices are one.
-        apart: Names of the pieces that become one part, while the others remain together; none: every piece is a part.
-
-    Raises:
-        InputError: It is no part, or one connected piece.
-    """
-    assembly = grouping.assembly
-    _check_part(assembly, name)
-    place = assembly.names.index(name)
-    whole = assembly.originals.get(name, assembly.parts[place])
-    mesh = RawMesh(name=name, vertices=whole.vertices, faces=whole.faces, appearance=whole.appearance)
-    sheets = connected_sheets(mesh, tolerance)
-    stated = grouping.groups[place].pieces
-    if len(sheets) < 2 or (apart and len(sheets) != len(stated)):
-        raise InputError(
-            f"The part {name} consists of {len(sheets)} connected piece{'s' if len(sheets) > 1 else ''}, so that it "
-            "cannot be split so. Give --labels with the part of every face."
-        )
-    of_piece = stated if len(sheets) == len(stated) else [f"{name}_{k}" for k in range(1, len(sheets) + 1)]
-    others = [other for other in assembly.names if other != name]
-    new = part_names([*others, *of_piece])[len(others) :]
-    pieces = [
-        Part(
-            name=piece,
-            vertices=sheet.vertices,
-            faces=sheet.faces,
-            color=whole.color,
-            appearance=sheet.appearance,
-            density=whole.density,
-        )
-        for piece, sheet in zip(new, sheets, strict=True)
-    ]
-    parts = (*assembly.parts[:place], *pieces, *assembly.parts[place + 1 :])
-    main = max(pieces, key=lambda piece: piece.area).name
-    split = replace(
-        assembly,
-        parts=parts,
-        originals={key: part for key, part in assembly.originals.items() if key != name},
-        set_aside=tuple(replace(item, nearest=main) if item.nearest == name else item for item in assembly.set_aside),
-    )
-    groups = [Group(name=own, pieces=(piece,)) for own, piece in zip(new, of_piece, strict=True)]
-    found = replace(grouping, assembly=split, groups=(*grouping.groups[:place], *groups, *grouping.groups[place + 1 :]))
-    if not apart:
-        return found
-    for side in (True, False):
-        together = [own for own, piece in zip(new, of_piece, strict=True) if (piece in apart) is side]
-        found = merge_parts(found, together) if len(together) > 1 else found
-    return found
 
 
 def rename_part(inference: Inference, grouping: Grouping, name: str, new: str) -> Inference:

@@ -146,12 +146,10 @@ class ModelViewer:
         panel.undo.visible = self._folder is not None and self._folder.can_undo
         if self._open_folder is None:
             return
-        panel.add_groups(self._shown.rejected, opened=self._regrouped)
-        changes: list[tuple[Any, str, Literal["rename", "merge", "split", "free"], Callable[[], Sequence[Any]]]] = [
+        panel.add_groups(opened=self._regrouped)
+        changes: list[tuple[Any, str, Literal["rename", "merge"], Callable[[], Sequence[Any]]]] = [
             (panel.name, "{} is named {}", "rename", lambda: (panel.clicked[-1], panel.name.value)),
             (panel.merge, "{} and {} are one part", "merge", lambda: panel.clicked),
-            (panel.split, "every piece of {} is a part", "split", lambda: panel.clicked[-1:]),
-            (panel.free, "{} are a part", "free", lambda: [panel.may_move[panel.set_of_pieces.value]]),
         ]
         for widget, words, method, arguments in changes:
             _connect(widget, partial(self._regroup_from, words, method, arguments))
@@ -303,7 +301,7 @@ class ModelViewer:
     def _regroup_from(self, words: str, method: Any, arguments: Callable[[], Any], _: Any) -> None:
         self.regroup(words, method, *arguments())
 
-    def regroup(self, words: str, method: Literal["rename", "merge", "split", "free"], *arguments: Any) -> None:
+    def regroup(self, words: str, method: Literal["rename", "merge"], *arguments: Any) -> None:
         """Propose other parts: what a method of `ModelFolder` makes of its arguments, which `words` take, too."""
         with self._lock:
             self.show_as_in_file()

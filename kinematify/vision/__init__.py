@@ -1,1 +1,1 @@
-"""Answers of a vision-language model about joints, added to what the geometry says (paper section III-D)."""
+"""Question about the pieces of an object, and answers of a person or a vision-language model beside geometry."""

@@ -1,172 +1,137 @@
-"""Questions about the joints of an inference, to a model, and what comes of their answers."""
+"""One question about an object, to a model or a person, and what comes of the answer."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from kinematify.refinement.candidates import CandidateJoints
+import numpy as np
+
+from kinematify.contact.graph import pair
+from kinematify.grouping.groups import group_pieces
+from kinematify.grouping.numbered_pieces import BODY
+from kinematify.refinement.hints import with_parents
 from kinematify.vision.client import read_kept, write_kept
-from kinematify.vision.pictures import joint_question
-from kinematify.vision.votes import VoterRecord, choose_again, to_ask, with_types
+from kinematify.vision.screening import right_parts
+from kinematify.vision.votes import VoterRecord, follow_parts
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping
+    from collections.abc import Callable, Iterable
 
-    from kinematify.joints.candidate import JointCandidate
+    from kinematify.config import Config
+    from kinematify.grouping.groups import Grouping
     from kinematify.pipeline.inference import Inference
     from kinematify.vision.client import ChatOracle
-    from kinematify.vision.question import Answer, JointOracle
+    from kinematify.vision.piece_question import PieceAnswer, PieceQuestion
     from kinematify.vision.screening import KnownQuestion
-    from kinematify.vision.votes import VoteResult
-
-_NAMED = 5
 
 
 @dataclass(frozen=True, kw_only=True)
-class Voting:
-    """Result of the questions."""
+class PieceVote:
+    """What was said of an object of numbered pieces."""
 
     voter: str
-    answers: Mapping[str, Answer]
-    """By the part that was asked about."""
-    results: tuple[VoteResult, ...] = ()
-    """Joints that an answer speaks of."""
-    not_shown: tuple[str, ...] = ()
-    """Parts that no picture shows, so that nobody was asked about them."""
-    not_asked: tuple[str, ...] = ()
-    """Doubtful joints beyond the budget."""
+    question: PieceQuestion
+    answer: PieceAnswer
     record: VoterRecord | None = None
+    """None for what a user gives, which is taken as it is."""
 
     @property
-    def reached(self) -> bool:
-        """True if there was an answer, or nothing to ask."""
-        return not self.answers or any(not answer.fault for answer in self.answers.values())
+    def trust(self) -> float:
+        """Weight beside geometry, in [0, 1]."""
+        return 1.0 if self.record is None else self.record.trust
 
-    def as_json(self) -> dict[str, Any]:
+    @property
+    def base(self) -> str | None:
+        """Name of the base link, where the answer says what stands still."""
+        return None if self.question.assembly.segmented or self.trust < 1.0 else BODY
+
+    def grouping(self, config: Config) -> Grouping:
+        """The pieces grouped with the answer.
+
+        Raises:
+            AssemblyError: No part moves.
+        """
+        named = self.answer.parts
+        return group_pieces(self.question.assembly, config.grouping, named=named, trust=self.trust)
+
+    def applied(self, inference: Inference) -> Inference:
+        """The inference with the types and axes that were named, and with what carries what where parts touch."""
+        names, record = inference.assembly.names, self.record
+        index = {name: k for k, name in enumerate(names)}
+        if self.base is not None:
+            above = {index[part.name]: index[part.on] for part in self.answer.parts if {part.name, part.on} <= {*names}}
+            touching = {pair(edge.a, edge.b) for edge in inference.graph.edges}
+            inference = with_parents(inference, {k: on for k, on in above.items() if pair(k, on) in touching})
+        pieces = self.question.assembly
+        links = {
+            part.name: {
+                index.get(name, -1)
+                for name in ([pieces.names[k] for k in part.pieces] if pieces.segmented else [part.name])
+            }
+            for part in self.answer.parts
+        }
+        named = {
+            joint.child: part for joint in inference.joints for part in self.answer.parts
+            if joint.child in links[part.name] and joint.parent not in links[part.name]
+        }  # fmt: skip
+        found, results = inference, list[dict[str, Any]]()
+        if self.trust > 0.0:
+            config = inference.config.vision
+            reliability = config.reliability if record is None else record.reliability(config)
+            found, results = follow_parts(inference, named, reliability, taken=self.trust >= 1.0)
+        notes = [
+            f"{item['child']}: no candidate of geometry moves as the answer says." for item in results
+            if not item["candidates"] and item["before"] == item["after"]
+        ]  # fmt: skip
+        return replace(
+            found, vision=self._as_json(results), warnings=(*self.answer.described(), *notes, *found.warnings)
+        )
+
+    def _as_json(self, results: list[dict[str, Any]]) -> dict[str, Any]:
         """For `inference.json`."""
         return {
             "voter": self.voter,
             "record": None if self.record is None else {"right": self.record.right, "asked": self.record.asked},
-            "tokens": sum(answer.tokens for answer in self.answers.values()),
-            "joints": [result.as_json() for result in self.results],
-            "not_shown": list(self.not_shown),
-            "not_asked": list(self.not_asked),
-        }
+            "trust": self.trust, "questions": 1, "tokens": self.answer.tokens, "object": self.answer.about,
+            "named": self.answer.named, "taken": [part.name for part in self.answer.parts],
+            "fault": self.answer.fault, "joints": results,
+        }  # fmt: skip
 
     def described(self) -> str:
-        """Return how many questions were answered, what changed, and why there were no answers."""
-        usable = [answer for answer in self.answers.values() if not answer.fault]
-        changed = [result.child for result in self.results if result.changed]
-        lines = [
-            f"{self.voter} answered {len(usable)} of {len(self.answers)} questions about joints and changed "
-            f"{len(changed)} joints." if self.answers else "No joint is doubtful enough to ask about (--vlm-all asks).",
-        ]  # fmt: skip
-        if self.record is not None and self.answers:
-            lines.append(f"Record of {self.voter}: {self.record.right} of {self.record.asked} known joints right.")
-        for title, names in (
-            ("Changed", changed), ("Not asked, no picture shows the part", self.not_shown),
-            ("Not asked, beyond the budget", self.not_asked),
-        ):  # fmt: skip
-            if names:
-                lines.append(f"{title}: {', '.join(names[:_NAMED])}{', ...' if len(names) > _NAMED else ''}.")
-        faults = dict.fromkeys(answer.fault for answer in self.answers.values() if answer.fault)
-        lines += [f"Counted as unsure: {fault}" for fault in list(faults)[:_NAMED]]
-        return "\n".join(lines)
+        """Who answered, what that cost, and what its record is."""
+        if self.answer.fault:
+            return f"{self.voter} gave no answer, so geometry decided alone: {self.answer.fault}"
+        record = self.record
+        worth = "taken as they are" if record is None else f"{record.right} of {record.asked} known parts right"
+        return f"{self.voter} named {self.answer.named} moving parts for {self.answer.tokens} tokens: {worth}."
 
 
-def with_votes(
-    inference: Inference,
-    oracle: JointOracle,
-    record: VoterRecord,
-    *,
-    everything: bool = False,
-    known: Collection[str] = (),
-) -> tuple[Inference, Voting]:
-    """Ask about the doubtful joints of an inference and choose again with the answers.
-
-    Args:
-        inference: What geometry says.
-        oracle: Who is asked.
-        record: How often it was right.
-        everything: Ask about sure joints, too, and without a budget.
-        known: Parts that nobody needs to be asked about.
-    """
-    heard, voting = _heard(inference, oracle, everything=everything, known=known)
-    reliability = record.reliability(inference.config.vision)
-    chosen, results = choose_again(inference, heard.answers, heard.shown, reliability)
-    voting = replace(voting, results=tuple(results), record=record)
-    return (replace(chosen, vision=voting.as_json()) if voting.answers else inference), voting
-
-
-def with_types_first(inference: Inference, oracle: JointOracle) -> tuple[Inference, Voting]:
-    """Ask for the type of every joint before its axis is chosen, with a majority over congruent parts (III-D)."""
-    drawn = {place: joint_question(inference, place, None) for place in range(len(inference.joints))}
-    asked = {place: question for place, question in drawn.items() if question is not None}
-    answers = dict(zip(asked, oracle.ask(list(asked.values())), strict=True))
-    least = inference.config.vision.least_confidence
-    types = {place: answer.choice for place, answer in answers.items() if answer.counts(least)}
-    names = _children(inference)
-    chosen, results = with_types(inference, types, answers)
-    voting = Voting(
-        voter=oracle.name, answers={names[place]: answer for place, answer in answers.items()},
-        results=tuple(results), not_shown=tuple(names[place] for place in drawn if place not in asked),
-    )  # fmt: skip
-    return replace(chosen, vision=voting.as_json()), voting
-
-
-def voter_record(oracle: ChatOracle, known: Callable[[], Iterable[KnownQuestion]]) -> VoterRecord:
-    """The record of a model, from the user's cache, or else from questions whose right answers are known.
+def ask_about_pieces(
+    oracle: ChatOracle, question: PieceQuestion, known: Callable[[], Iterable[KnownQuestion]]
+) -> PieceVote:
+    """Ask a model about an object; without an answer geometry decides alone.
 
     Args:
         oracle: The model.
-        known: Makes the questions, with the answers that are right.
+        question: About the object.
+        known: Makes questions whose answers are known.
     """
+    [answer] = oracle.ask([question])
+    record = VoterRecord(right=0, asked=0) if answer.fault else voter_record(oracle, known)
+    return PieceVote(voter=oracle.name, question=question, answer=answer, record=record)
+
+
+def voter_record(oracle: ChatOracle, known: Callable[[], Iterable[KnownQuestion]]) -> VoterRecord:
+    """The record of a model, from the user's cache, or else from questions whose right answers are known."""
     kept = read_kept(oracle.record_path)
     if kept is not None and all(isinstance(kept.get(key), int) for key in ("right", "asked")):
         return VoterRecord(right=kept["right"], asked=kept["asked"])
-    questions = list(known())
-    answers = oracle.ask([question for question, _ in questions])
-    pairs = zip(answers, questions, strict=True)
-    counted = [(answer, right) for answer, (_, right) in pairs if answer.counts(oracle.config.least_confidence)]
-    record = VoterRecord(right=sum(answer.choice in right for answer, right in counted), asked=len(counted))
-    if not oracle.fault:
-        write_kept(oracle.record_path, {"right": record.right, "asked": record.asked})
-    return record
-
-
-@dataclass(frozen=True, kw_only=True)
-class Answers:
-    """By the place of the joint."""
-
-    shown: Mapping[int, tuple[JointCandidate, ...]]
-    answers: Mapping[int, Answer]
-
-
-def _heard(
-    inference: Inference, oracle: JointOracle, *, everything: bool, known: Collection[str]
-) -> tuple[Answers, Voting]:
-    """Ask a few questions at a time, until the tokens are spent."""
-    config, names = inference.config.vision, _children(inference)
-    maker = CandidateJoints(inference.assembly, inference.graph, inference.bearings, inference.config)
-    places, beyond = to_ask(inference, everything=everything, known=known)
-    hidden = list[int]()
-    shown: dict[int, tuple[JointCandidate, ...]] = {}
-    answers: dict[int, Answer] = {}
-    for start in range(0, len(places), oracle.at_once):
-        if not everything and sum(answer.tokens for answer in answers.values()) >= config.tokens:
-            beyond = [*places[start:], *beyond]
-            break
-        drawn = {place: joint_question(inference, place, maker) for place in places[start : start + oracle.at_once]}
-        asked = {place: question for place, question in drawn.items() if question is not None}
-        hidden += [place for place in drawn if place not in asked]
-        shown |= {place: question.options for place, question in asked.items()}
-        answers |= dict(zip(asked, oracle.ask(list(asked.values())), strict=True))
-    return Answers(shown=shown, answers=answers), Voting(
-        voter=oracle.name, answers={names[place]: answer for place, answer in answers.items()},
-        not_shown=tuple(names[place] for place in hidden), not_asked=tuple(names[place] for place in beyond),
-    )  # fmt: skip
-
-
-def _children(inference: Inference) -> list[str]:
-    return [inference.assembly.names[joint.child] for joint in inference.joints]
+    questions, right, asked = list(known()), 0, 0
+    for answer, (question, truth) in zip(oracle.ask([question for question, _ in questions]), questions, strict=True):
+        right += right_parts(answer.parts, truth, np.array([part.area for part in question.assembly.parts]))
+        asked += max(answer.named, len(truth))
+    if oracle.fault:
+        return VoterRecord(right=0, asked=0)
+    write_kept(oracle.record_path, {"right": right, "asked": asked})
+    return VoterRecord(right=right, asked=asked)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import EnvironmentFault, InputError
 from kinematify.geometry.cut_cache import cache_folder
-from kinematify.vision.question import Answer, read_answer
+from kinematify.vision.piece_question import PieceAnswer
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from kinematify.config import VisionConfig
     from kinematify.generate.providers.service import Service
-    from kinematify.vision.question import JointQuestion
+    from kinematify.vision.piece_question import PieceQuestion
 
 ADDRESS, KEY, MODEL = "KINEMATIFY_VLM_URL", "KINEMATIFY_VLM_KEY", "KINEMATIFY_VLM_MODEL"
 OFF, AUTO = "off", "auto"
@@ -33,7 +33,7 @@ OFF, AUTO = "off", "auto"
 
 @dataclass
 class ChatOracle:
-    """Asks a model about joints, several at a time; what goes wrong counts as unsure, with its reason.
+    """Asks a model, several at a time; what goes wrong counts as unsure, with its reason.
 
     A service that refuses one question, or does not answer it in time, is not asked any further.
     """
@@ -45,6 +45,8 @@ class ChatOracle:
     cache: Path
     fault: str = ""
     """Why the service is not asked any further."""
+    spent: int = 0
+    """Tokens of answers that were not in the cache."""
 
     @property
     def name(self) -> str:
@@ -52,51 +54,49 @@ class ChatOracle:
         return f"{self.model} at {self.url}"
 
     @property
-    def at_once(self) -> int:
-        """Implement `JointOracle`."""
-        return self.config.concurrency
-
-    @property
     def record_path(self) -> Path:
         """Where its record is kept."""
         return self.cache / f"record-{hashlib.sha256(self.name.encode()).hexdigest()[:16]}.json"
 
-    def ask(self, questions: Sequence[JointQuestion]) -> list[Answer]:
-        """Implement `JointOracle`."""
+    def ask(self, questions: Sequence[PieceQuestion]) -> list[PieceAnswer]:
+        """Return the answer to each question, in their order."""
         from kinematify.generate.providers.service import Service  # noqa: PLC0415 - most calls ask nobody
 
         try:
             service = Service(name="The vision model", url=self.url, key=self.key, settings=self.config, key_name=KEY)
         except InputError as error:
             self.fault = str(error)
-            return [Answer(fault=self.fault)] * len(questions)
+            return [PieceAnswer(fault=self.fault)] * len(questions)
         with closing(service), ThreadPoolExecutor(self.config.concurrency) as pool:
             return list(pool.map(lambda question: self._answer(service, question), questions))
 
-    def _answer(self, service: Service, question: JointQuestion) -> Answer:
+    def _answer(self, service: Service, question: PieceQuestion) -> PieceAnswer:
         request = self._request(question)
         digest = hashlib.sha256(json.dumps([self.url, request], sort_keys=True).encode()).hexdigest()
         path = self.cache / f"{digest}.json"
         said = read_kept(path)
+        if said is None and self.spent >= self.config.tokens:
+            self.fault = f"the budget of {self.config.tokens} tokens (vision.tokens) is spent"
         if said is None and self.fault:
-            return Answer(fault=self.fault)
+            return PieceAnswer(fault=self.fault)
         if said is None:
             try:
                 said = _said(service.ask("/chat/completions", json=request))
+                self.spent += said["tokens"]
             except (EnvironmentFault, InputError) as error:
                 self.fault = str(error)
-                return Answer(fault=self.fault)
-        answer = read_answer(str(said.get("text")), question.choices, tokens=int(said.get("tokens") or 0))
+                return PieceAnswer(fault=self.fault)
+        answer = question.read(str(said.get("text")), int(said.get("tokens") or 0))
         if not answer.fault:
             write_kept(path, said)
         return answer
 
-    def _request(self, question: JointQuestion) -> dict[str, Any]:
+    def _request(self, question: PieceQuestion) -> dict[str, Any]:
         file = io.BytesIO()
         question.picture.save(file, format="PNG")
         picture = f"data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}"
         content = [{"type": "text", "text": question.text}, {"type": "image_url", "image_url": {"url": picture}}]
-        form = {"name": "joint", "strict": True, "schema": question.schema()}
+        form = {"name": "answer", "strict": True, "schema": question.schema()}
         return {
             "model": self.model,
             "temperature": 0,

@@ -1,4 +1,4 @@
-"""A voter's record: questions about objects of the library, whose joints are known, before its answers count.
+"""A voter's record: objects of the library, broken into pieces, whose parts and joints are known.
 
 They are asked once for each model and kept in the user's cache. The objects are generated, so that no voter can have
 seen them, and their questions are made as all others are.
@@ -10,83 +10,70 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from kinematify.assembly.part import Assembly, Part
+from kinematify.assembly.pieces import connected_sheets
 from kinematify.generate.procedural.family import build
 from kinematify.generate.request import find_family
-from kinematify.pipeline.infer_assembly import infer
-from kinematify.refinement.candidates import CandidateJoints
-from kinematify.vision.pictures import joint_question
+from kinematify.grouping.numbered_pieces import NamedPart
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.raw_mesh import RawMesh
+from kinematify.vision.piece_question import PieceQuestion, piece_question
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from kinematify.config import Config
-    from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
-    from kinematify.joints.candidate import JointCandidate
-    from kinematify.pipeline.inference import Inference
-    from kinematify.vision.question import JointQuestion
+    from kinematify.robot.arrays import FloatArray
 
-OBJECTS = (
-    "laptop", "cabinet", "faucet", "trash_can", "syringe", "stapler", "window", "scissors", "door", "box",
-)  # fmt: skip
-"""Of the library: what turns about an edge, a pin and an upright axis, and what slides in and up."""
+OBJECTS = ("cabinet", "trash_can", "stapler", "window", "box")
+"""Of the library: what turns about an edge and a pin, and what slides."""
 _SEED = 2026
-_SAME_DEG, _SAME_LINE = 5.0, 0.05  # as `kinematify bench` tells right joints from wrong ones
+_SAME, _NEAR = 0.5, np.cos(np.radians(30.0))  # IoU of areas, and axes, of a right part
 
 
-KnownQuestion: TypeAlias = "tuple[JointQuestion, frozenset[str]]"
-"""A question, and the answers to it that are right."""
+KnownQuestion: TypeAlias = "tuple[PieceQuestion, tuple[NamedPart, ...]]"
+"""A question, and the parts that move."""
 
 
-def screening_questions(config: Config) -> Iterator[KnownQuestion]:
-    """Questions of which the right answers are known: about the largest moving part of each object.
-
-    Objects whose joint is not among the options are omitted.
+def known_questions(config: Config) -> Iterator[KnownQuestion]:
+    """Questions of which the right answers are known.
 
     Args:
-        config: All stages; objects are inferred with it.
+        config: How meshes are divided and numbered.
     """
     for name in OBJECTS:
         blueprint = build(find_family(name), {}, seed=_SEED)
-        inference = infer(blueprint.assembly, config=config)
-        maker = CandidateJoints(inference.assembly, inference.graph, inference.bearings, config)
-        for place in _largest_first(inference):
-            question, true = _known_question(inference, place, maker, blueprint)
-            if question is not None and true is not None:
-                right = right_choices(question.options, true, inference.assembly.diagonal)
-                if right:
-                    yield question, right
-                    break
+        owner, pieces = list[str](), list[Part]()
+        for part in blueprint.parts:
+            mesh = RawMesh(name=part.name, vertices=part.vertices, faces=part.faces)
+            for sheet in connected_sheets(mesh, config.assembly.weld):
+                pieces.append(Part(name=f"piece_{len(pieces):03d}", vertices=sheet.vertices, faces=sheet.faces))
+                owner.append(part.name)
+        for joint in reversed(blueprint.joints):  # what is fixed to a part is of it
+            if joint.kind is JointType.FIXED:
+                owner = [joint.parent if part == joint.child else part for part in owner]
+        truth = tuple(
+            NamedPart(
+                name=joint.child, pieces=np.flatnonzero([part == joint.child for part in owner]),
+                turns=joint.kind.turns, axis=joint.axis,
+            )
+            for joint in blueprint.joints if joint.kind is not JointType.FIXED
+        )  # fmt: skip
+        yield piece_question(Assembly(parts=tuple(pieces), source=name, segmented=False), config), truth
 
 
-def _largest_first(inference: Inference) -> list[int]:
-    area_of = [inference.assembly.parts[joint.child].area for joint in inference.joints]
-    return sorted(range(len(area_of)), key=lambda place: -area_of[place])
-
-
-def _known_question(
-    inference: Inference, place: int, maker: CandidateJoints, blueprint: Blueprint
-) -> tuple[JointQuestion | None, BlueprintJoint | None]:
-    """The question about a joint and the true joint; None where the tree is wrong there, or the part hidden."""
-    joint, names = inference.joints[place], inference.assembly.names
-    true = blueprint.joint_above.get(names[joint.child])
-    if true is None or true.parent != names[joint.parent]:
-        return None, None
-    return joint_question(inference, place, maker), true
-
-
-def right_choices(options: tuple[JointCandidate, ...], true: BlueprintJoint, diagonal: float) -> frozenset[str]:
-    """Numbers of the options that are the true joint.
+def right_parts(named: Sequence[NamedPart], truth: Sequence[NamedPart], areas: FloatArray) -> int:
+    """Number of true parts that were named, with their type and roughly their axis.
 
     Args:
-        options: In the order of their numbers.
-        true: Type, axis and pivot.
-        diagonal: Of the object [m].
+        named: By an answer.
+        truth: The parts that move.
+        areas: Of the pieces, shape (n,).
     """
-    found = set()
-    for number, option in enumerate(options, 1):
-        near = abs(float(option.axis @ true.axis)) > np.cos(np.radians(_SAME_DEG))
-        apart = float(np.linalg.norm(np.cross(option.pivot - true.pivot, true.axis)))
-        placed = not option.kind.turns or apart <= _SAME_LINE * diagonal
-        if option.kind.turns == true.kind.turns and near and placed:
-            found.add(str(number))
-    return frozenset(found)
+
+    def is_right(one: NamedPart, true: NamedPart) -> bool:
+        both, either = (areas[way(one.pieces, true.pieces)].sum() for way in (np.intersect1d, np.union1d))
+        along = one.axis is not None and true.axis is not None and abs(float(one.axis @ true.axis)) > _NEAR
+        return bool(both > _SAME * either and one.turns == true.turns and along)
+
+    return sum(any(is_right(one, true) for one in named) for true in truth)

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from kinematify.assembly.erasure import erase, truth_path, write_erased
 from kinematify.assembly.load import load_assembly
 from kinematify.config import load_config
-from kinematify.errors import DescriptionError, OutputError
+from kinematify.errors import OutputError
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Joint, Link, LinkMesh, Mimic, Robot, Shape
@@ -91,30 +91,8 @@ def test_names_are_anonymous_and_order_is_shuffled() -> None:
     assert sorted(erased.truth.part_links) == sorted(plain.truth.part_links)
 
 
-def test_same_seed_same_result() -> None:
-    one, other = (erase(chain(), pose="random", seed=5) for _ in range(2))
-    assert [part.mesh_hash for part in one.parts] == [part.mesh_hash for part in other.parts]
-    assert one.truth.to_json() == other.truth.to_json()
-    assert erase(chain(), pose="random", seed=6).truth.to_json() != one.truth.to_json()
-
-
-def test_shuffling_keeps_every_surface() -> None:
-    plain, erased = erase(chain(), shuffle=False), erase(chain(), seed=2)
-    for part, links in zip(erased.parts, erased.truth.part_links, strict=True):
-        twin = plain.parts[plain.truth.part_links.index(links)]
-        assert part.mesh_hash != twin.mesh_hash
-        assert corner_sets(part.vertices[part.faces]) == corner_sets(twin.vertices[twin.faces])
-        np.testing.assert_allclose(part.centroid, twin.centroid)
-        np.testing.assert_allclose(enclosed_volume(part), enclosed_volume(twin))
-
-
 def corner_sets(triangles: FloatArray) -> set[frozenset[tuple[float, ...]]]:
     return {frozenset(tuple(corner) for corner in triangle) for triangle in triangles.tolist()}
-
-
-def enclosed_volume(part: object) -> float:
-    a, b, c = (part.vertices[part.faces[:, k]] for k in range(3))  # type: ignore[attr-defined]
-    return float(np.einsum("fi,fi->", a, np.cross(b, c)) / 6.0)
 
 
 @given(seed=st.integers(0, 10_000))
@@ -128,19 +106,6 @@ def test_random_pose_stays_within_the_protocol(seed: int) -> None:
         assert true.lower + true.value == pytest.approx(-1.0)
         assert true.upper + true.value == pytest.approx(2.0)
         assert true.value == q[true.name]
-
-
-def test_random_pose_moves_a_continuous_joint_by_up_to_54_degrees() -> None:
-    described = robot([wedge("a", 1), wedge("b", 1)], joint("j", "a", "b", "continuous"))
-    values = [erase(described, pose="random", seed=seed).truth.configuration["j"] for seed in range(100)]
-    assert 0.25 * math.pi < np.abs(values).max() <= 0.3 * math.pi
-
-
-def test_random_pose_keeps_to_limits_near_rest() -> None:
-    described = robot([wedge("a", 1), wedge("b", 1)], joint("j", "a", "b", "prismatic", lower=0.0, upper=1.0))
-    values = [erase(described, pose="random", seed=seed).truth.configuration["j"] for seed in range(40)]
-    assert min(values) == 0.0
-    assert 0.1 < max(values) <= 0.15
 
 
 @given(seed=st.integers(0, 10_000), yaw=st.floats(-180, 180))
@@ -158,19 +123,6 @@ def test_moving_along_the_true_joints_undoes_the_random_pose(seed: int, yaw: flo
         shapes = [screwed(true, back, shape) if k in carried else shape for k, shape in enumerate(shapes)]
     for shape, part in zip(shapes, rest.parts, strict=True):
         np.testing.assert_allclose(shape, part.vertices, atol=1e-12)
-
-
-@given(seed=st.integers(0, 10_000), yaw=st.floats(-360, 360))
-def test_yaw_turns_parts_and_truth_alike(seed: int, yaw: float) -> None:
-    plain, turned = (erase(chain(), pose="random", seed=seed, yaw_deg=angle) for angle in (0.0, yaw))
-    turn = rotation_about(np.array([0.0, 0.0, 1.0]), math.radians(yaw))
-    for one, other in zip(plain.parts, turned.parts, strict=True):
-        np.testing.assert_allclose(one.vertices @ turn.T, other.vertices, atol=1e-12)
-        np.testing.assert_array_equal(one.faces, other.faces)
-    for one, other in zip(plain.truth.joints, turned.truth.joints, strict=True):
-        np.testing.assert_allclose(turn @ one.axis, other.axis, atol=1e-12)
-        np.testing.assert_allclose(turn @ one.pivot, other.pivot, atol=1e-12)
-        assert (one.parent, one.child, one.lower, one.upper) == (other.parent, other.child, other.lower, other.upper)
 
 
 def test_links_without_geometry_make_chains() -> None:
@@ -193,37 +145,6 @@ def test_joints_above_the_first_geometry_and_of_bare_frames_are_dropped() -> Non
     truth = erase(described, shuffle=False).truth
     assert [j.name for j in truth.joints] == ["turn"]
     assert truth.dropped == ("lift", "camera")
-
-
-def test_parts_that_meet_only_in_empty_links_hang_on_the_first() -> None:
-    described = robot(
-        [empty("world"), wedge("a", 1), wedge("b", 1), wedge("c", 1)],
-        joint("ja", "world", "a"), joint("jb", "world", "b"), joint("jc", "world", "c"),
-    )  # fmt: skip
-    rest, moved = erase(described, shuffle=False), erase(described, pose="random", seed=3, shuffle=False)
-    assert [(j.name, j.source, j.parent, j.child) for j in rest.truth.joints] == [
-        ("ja", "ja", 0, 1), ("jb", "jb", 0, 1), ("ja#2", "ja", 0, 2), ("jc", "jc", 0, 2),
-    ]  # fmt: skip
-    # Moving both joints of the chain back leaves the part as it stands at rest, seen from the root part.
-    climb, descent = moved.truth.joints[:2]
-    shape = screwed(descent, -descent.value, moved.parts[1].vertices)
-    shape = screwed(climb, -climb.value, shape)
-    turn, shift = rigid_between(moved.parts[0].vertices, rest.parts[0].vertices)
-    np.testing.assert_allclose(shape @ turn.T + shift, rest.parts[1].vertices, atol=1e-9)
-    assert climb.lower + climb.value == pytest.approx(-1.0)
-    assert abs(climb.value) > 0.01
-
-
-def rigid_between(source: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:
-    turn = np.linalg.solve(source[1:] - source[0], target[1:] - target[0]).T
-    return turn, target[0] - turn @ source[0]
-
-
-def test_nothing_to_erase() -> None:
-    with pytest.raises(DescriptionError, match="No link of r has geometry"):
-        erase(robot([empty("a")]))
-    with pytest.raises(DescriptionError, match=r"'open' is unknown.*rest, random"):
-        erase(chain(), pose="open")
 
 
 @given(seed=st.integers(0, 1000))
@@ -278,13 +199,3 @@ def test_benchmark_models_have_the_parts_and_joints_that_their_records_state(kin
         if found != (facts["rigid_parts_with_geometry"], facts["dof"], 1, ()):
             wrong.append((path.parent.name, found))
     assert wrong == []
-
-
-@needs_bench
-def test_the_screw_cap_is_a_chain_of_two_joints() -> None:
-    truth = erase(read_robot(BENCH / "everyday" / "bottle_3763" / "model.urdf", geometry="shown")).truth
-    assert [(j.name, j.kind, j.serial, j.chain_length) for j in truth.joints] == [
-        ("joint_2", "prismatic", 0, 2),
-        ("joint_0", "continuous", 1, 2),
-    ]
-    np.testing.assert_allclose(truth.joints[0].axis, truth.joints[1].axis)

@@ -15,14 +15,11 @@ import meshopt
 import numpy as np
 import pytest
 import trimesh
-from PIL import Image
 
 from kinematify.assembly.load import load_assembly
 from kinematify.assembly.part import Part
 from kinematify.errors import AssemblyError, EnvironmentFault
-from kinematify.robot.lengths import range_text
 from kinematify.robot.mesh_file import read_meshes
-from kinematify.robot.polygons import triangle_places
 from kinematify.robot.weld import is_closed
 
 U = np.array([[0, 0], [0.3, 0], [0.6, 0], [0.6, 0.4], [0.58, 0.4], [0.58, 0.02], [0.02, 0.02], [0.02, 0.4], [0, 0.4]])
@@ -66,15 +63,6 @@ def test_triangles_lie_inside_of_concave_polygons(tmp_path: Path, suffix: str) -
     assert is_closed(mesh.vertices, mesh.faces)
     assert len(mesh.faces) == 2 * 7 + 2 * 9
     assert trimesh.Trimesh(mesh.vertices, mesh.faces).volume == pytest.approx((0.6 * 0.4 - 0.56 * 0.38) * 0.26)
-
-
-def test_ears_keep_convex_polygons_as_fans_and_lines_on_straight_edges() -> None:
-    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
-    turned = POINTS[9:][:, [2, 0, 1]]
-    places = triangle_places(np.concatenate([square, turned, square[:3], square[:2]]), np.array([4, 9, 3, 2]))
-    assert places[:2].tolist() == [[0, 1, 2], [0, 2, 3]]
-    assert places[-1].tolist() == [13, 14, 15], "two corners are no triangle"
-    assert set(places[2:9].reshape(-1)) == set(range(4, 13))
 
 
 BOXES = {
@@ -225,15 +213,6 @@ def test_whatever_way_gltf_stores_positions(tmp_path: Path, way: str, monkeypatc
         monkeypatch.setitem(sys.modules, package, None)
         with pytest.raises(EnvironmentFault, match=rf"needs {package}, not installed here.*install .*{package}"):
             load_assembly(path)
-
-
-def test_absurd_counts_of_gltf_are_refused(tmp_path: Path) -> None:
-    file = Gltf()
-    primitive = file.primitive(trimesh.creation.box())
-    primitive["attributes"]["POSITION"] = file.accessor(np.zeros((1, 3)), "VEC3", "<f4", count=10**12)
-    path = file.write(tmp_path / "a.glb", nodes=[{"mesh": 0}], meshes=[{"primitives": [primitive]}])
-    with pytest.raises(AssemblyError, match="values without data"):
-        load_assembly(path)
 
 
 # ---- 3MF ------------------------------------------------------------------------------------------------------------
@@ -435,29 +414,3 @@ def test_an_object_in_coordinates_of_a_survey_is_stored_about_its_own_centre(tmp
     (said,) = far.warnings
     centre = np.array([float(word) for word in said.partition("(")[2].partition(")")[0].split(",")])
     np.testing.assert_allclose(far.bounds + centre, near.bounds + survey, atol=1e-6)
-
-
-def test_a_zip_has_the_colours_of_its_folder(tmp_path: Path) -> None:
-    folder = tmp_path / "cabinet" / "meshes"
-    (folder / "textures").mkdir(parents=True)
-    Image.new("RGB", (4, 4), (10, 200, 30)).save(folder / "textures" / "wood.png")
-    for name, line in (("body", "map_Kd textures\\wood.png"), ("door", "Kd 0 0 1"), ("drawer", "Kd 1 0 0")):
-        (folder / f"{name}.mtl").write_text(f"newmtl m\n{line}\n")
-        mesh = whole(name)
-        faces = "".join(f"f {a}/1 {b}/1 {c}/1\n" for a, b, c in mesh.faces + 1)
-        points = "".join(f"v {x} {y} {z}\n" for x, y, z in mesh.vertices)
-        (folder / f"{name}.obj").write_text(f"mtllib {name}.mtl\n{points}vt 0.5 0.5\nusemtl m\n{faces}")
-    with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
-        for file in sorted(folder.rglob("*.*")):
-            archive.write(file, str(file.relative_to(tmp_path)).replace("/", "\\"))
-    packed, plain = load_assembly(tmp_path / "a.zip"), load_assembly(folder)
-    assert [part.color for part in packed.parts] == [part.color for part in plain.parts]
-    assert packed.parts[1].color == pytest.approx((0, 0, 1))
-    assert packed.parts[0].appearance is not None
-    assert packed.parts[0].appearance.materials[0].texture is not None
-
-
-def test_small_ranges_have_digits() -> None:
-    assert range_text(0.0, 0.00038) == "0 to 0.38 mm"
-    assert range_text(-0.002, 0.0041) == "-2 to 4.1 mm"
-    assert range_text(0.0, 0.307) == "0 to 307 mm"

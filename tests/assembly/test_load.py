@@ -14,10 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 import trimesh
-from hypothesis import given
-from hypothesis import strategies as st
 
-from kinematify.assembly.assemble import natural_key, part_names
 from kinematify.assembly.load import load_assembly
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
@@ -127,13 +124,7 @@ def test_a_gltf_file_that_looks_z_up_is_reported_with_the_remedy(
     assert load(tmp_path / "b.glb").warnings == (), "with y up, as the standard says"
 
 
-def test_turning_upright_keeps_handedness(tmp_path: Path) -> None:
-    scene().export(tmp_path / "a.glb")
-    part = load(tmp_path / "a.glb").parts[0]
-    assert trimesh.Trimesh(part.vertices, part.faces).volume == pytest.approx(6.0)
-
-
-@pytest.mark.parametrize("up", ["x", "y", "z", "-x", "-y", "-z"])
+@pytest.mark.parametrize("up", ["x", "y", "-z"])
 def test_whatever_points_up_points_to_z(tmp_path: Path, up: str) -> None:
     """A long arrow of boxes along the given axis stands on z, and no part is mirrored."""
     sign, axis = (-1.0, up[1]) if up.startswith("-") else (1.0, up)
@@ -165,14 +156,6 @@ def test_folder_gives_one_part_per_file(tmp_path: Path, suffix: str) -> None:
     assert loaded.names == ("part_1", "part_9", "part_10")
     np.testing.assert_allclose(loaded.parts[0].bounds, [[1.5, 0, 0], [4, 2, 3]], atol=1e-6)
     assert all(len(part.faces) == 24 for part in loaded.parts)
-
-
-def test_folder_of_glb_files_is_turned_file_by_file(tmp_path: Path) -> None:
-    scene().export(tmp_path / "a.glb")
-    box(5).export(tmp_path / "b.stl")
-    loaded = load(tmp_path)
-    np.testing.assert_allclose(loaded.parts[0].bounds, [[0, -3, 0], [3, 0, 2]], atol=1e-6)
-    np.testing.assert_allclose(loaded.parts[1].bounds, [[5, 0, 0], [6, 2, 3]], atol=1e-6)
 
 
 @pytest.mark.parametrize("word", ["o", "g"])
@@ -441,19 +424,6 @@ def test_names_are_made_safe_and_recorded(tmp_path: Path) -> None:
     assert sorted(loaded.original_names.values()) == sorted(names)
 
 
-@given(st.lists(st.text(), min_size=1, max_size=8))
-def test_any_names_become_unique_and_plain(originals: list[str]) -> None:
-    names = part_names(originals)
-    assert len({name.casefold() for name in names}) == len(originals)
-    assert all(name.strip("_.-") == name and name.isascii() and len(name) <= 70 for name in names)
-    assert all(character.isalnum() or character in "_.-" for name in names for character in name)
-    assert part_names(names) == names
-
-
-def test_natural_order() -> None:
-    assert sorted(["p10", "p9", "q", "10", "9", "p"], key=natural_key) == ["9", "10", "p", "p9", "p10", "q"]
-
-
 # ---- what is set aside ----------------------------------------------------------------------------------------------
 
 EMPTY = "v 0 0 0\n"
@@ -504,12 +474,6 @@ def test_the_same_part_twice_is_used_once(tmp_path: Path) -> None:
     assert loaded.warnings == ("The part c is a once more; only a is used.",)
 
 
-def test_other_shapes_in_the_same_box_are_other_parts(tmp_path: Path) -> None:
-    ball = trimesh.creation.icosphere(subdivisions=2)
-    cube = trimesh.creation.box(bounds=ball.bounds)
-    assert load(folder_of(tmp_path, a=ball, b=cube)).set_aside == ()
-
-
 def test_heavy_parts_are_thinned_and_kept_in_full(tmp_path: Path) -> None:
     ball = trimesh.creation.icosphere(subdivisions=4)
     ball.apply_translation([9, 0, 0])
@@ -530,15 +494,6 @@ def test_welding_joins_only_what_is_near() -> None:
     points, triangles = welded(vertices, faces, 1e-7)
     np.testing.assert_array_equal(points, vertices[[0, 1, 2, 5, 7]])
     np.testing.assert_array_equal(triangles, [[0, 1, 2], [1, 3, 2], [0, 4, 2]])
-
-
-@given(st.integers(0, 1000))
-def test_welding_a_clean_mesh_changes_nothing(seed: int) -> None:
-    ball = trimesh.creation.icosphere(subdivisions=1)
-    vertices = np.random.default_rng(seed).uniform(0.9, 1.1, (42, 1)) * ball.vertices
-    points, triangles = welded(vertices, np.asarray(ball.faces), 1e-7)
-    np.testing.assert_array_equal(points, vertices)
-    np.testing.assert_array_equal(triangles, ball.faces)
 
 
 # ---- complaints -----------------------------------------------------------------------------------------------------
@@ -580,7 +535,7 @@ def test_nonsense_is_no_mesh(tmp_path: Path, suffix: str) -> None:
 
 
 @pytest.mark.parametrize("suffix", ["glb", "stl", "ply", "3mf"])
-@pytest.mark.parametrize("share", [0.001, 0.1, 0.5, 0.99])
+@pytest.mark.parametrize("share", [0.1, 0.99])
 def test_truncated_files(tmp_path: Path, suffix: str, share: float, capfd: pytest.CaptureFixture[str]) -> None:
     content = scene().export(file_type="glb") if suffix in ("glb", "3mf") else box().export(file_type=suffix)
     if suffix == "3mf":
@@ -620,13 +575,6 @@ def test_too_much(tmp_path: Path) -> None:
     refused(
         folder_of(tmp_path / "f", **{f"p{k}": box(2.0 * k) for k in range(6)}), "6 mesh files", changed(max_parts=5)
     )
-
-
-def test_ten_thousand_pieces_are_refused_quickly(tmp_path: Path) -> None:
-    square = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
-    vertices = (square + 2.0 * np.arange(10_000)[:, None, None]).reshape(-1, 3)
-    trimesh.Trimesh(vertices, np.arange(30_000).reshape(-1, 3), process=False).export(tmp_path / "a.stl")
-    refused(tmp_path / "a.stl", "10000 parts; at most 2000.*--labels")
 
 
 @pytest.mark.parametrize(

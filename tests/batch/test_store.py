@@ -36,10 +36,10 @@ class Here:
     def wait(self, workers: Collection[Any]) -> list[Any]:
         return list(workers)
 
-    def take(self, call: Callable[[], Any], timeout: float) -> None:
+    def submit(self, call: Callable[[], Any], timeout: float) -> None:
         self.call = call
 
-    def answer(self) -> tuple[Any, bool]:
+    def result(self) -> tuple[Any, bool]:
         return self.call(), True
 
     def stop(self) -> None:

@@ -8,7 +8,6 @@ from manifold3d import Manifold, Mesh64, OpType
 
 from benchmarks.fit.drawn import DRAWN, drawn_object
 from kinematify.generate.library.builder import CAREFUL
-from kinematify.generate.library.expressions import filled_in
 from kinematify.robot.joint_type import JointType
 
 _MORE = 1e-3
@@ -96,9 +95,3 @@ def test_a_mirror_keeps_what_opens():
             child = next(part for part in opened.parts if part.name == joint.child)
             outside = np.maximum(body[0] - child.bounds[0], child.bounds[1] - body[1]).max()
             assert outside > 0.05, (blueprint.name, joint.child)
-
-
-def test_a_name_with_braces_in_braces_is_refused():
-    assert filled_in("wheel_{k + 1}", {"k": 1}) == "wheel_2"
-    with pytest.raises(ValueError, match="braces in braces"):
-        filled_in("{max(1, f'oar_{k}')}", {"k": 0})

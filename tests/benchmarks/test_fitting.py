@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from benchmarks.fit.categories import ALIKE, category_of
+from benchmarks.fit.categories import ALIKE
 from benchmarks.fit.corpora import gather_examples, generated_sources
-from benchmarks.fit.cross_validation import cause_of, folds_of
+from benchmarks.fit.cross_validation import cause_of
+from benchmarks.fit.drawn import corpus_kinds
 from benchmarks.fit.run import run_fit
-from kinematify.generate.described import known_families
 from kinematify.joints.choice.scorer import WEIGHTS
 
 if TYPE_CHECKING:
@@ -44,26 +44,10 @@ def test_what_is_right_has_no_cause_and_what_is_wrong_one(tmp_path: Path) -> Non
     assert cause_of(replace(example, right=np.zeros_like(example.right)), 0) == "none proposed"
 
 
-def test_groups_of_one_name_share_a_fold_and_a_new_one_moves_no_other(tmp_path: Path) -> None:
-    examples = gather_examples(generated_sources(0, 3), tmp_path, seed=0, workers=1, progress=silent)
-    folds = folds_of(examples)
-    by_category = {(example.category, fold) for example, fold in zip(examples, folds, strict=True)}
-    assert len(by_category) == len({category for category, _ in by_category}) == 3
-    assert folds_of(examples[1:]) == folds[1:]
-
-
-def test_a_recipe_is_left_out_with_the_real_objects_of_its_kind(tmp_path: Path) -> None:
-    example = gather_examples(generated_sources(0, 1), tmp_path, seed=0, workers=1, progress=silent)[0]
-    names = ("microwave", "slab_microwave", "oven", "slab_oven", "conveyor")
-    of_names = [category_of(replace(example, category=name)) for name in names]
-    assert of_names == ["microwave", "microwave", "oven", "oven", "conveyor"]
-    assert category_of(example) == example.category, "of nothing but itself"
-
-
 def test_categories_name_recipes_and_families_once_and_no_category_is_of_another() -> None:
     named = [name for names in ALIKE.values() for name in names]
     assert len(named) == len(set(named))
-    assert set(named) <= set(known_families())
+    assert set(named) <= set(corpus_kinds())
     assert not set(named) & set(ALIKE)
 
 

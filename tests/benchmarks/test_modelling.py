@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.fit.composed import compose
 from benchmarks.fit.modelling import WAYS, augment
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
 
 

@@ -10,7 +10,7 @@ import pytest
 from lxml import etree
 
 from benchmarks.fit.mjcf import read_mjcf
-from benchmarks.fit.packages import OBJECTS, write_installed
+from benchmarks.fit.packages import write_installed
 from kinematify.assembly.erasure import erase
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
@@ -53,11 +53,6 @@ def test_an_mjcf_tree_is_read_as_it_is_shown(tmp_path: Path) -> None:
     np.testing.assert_allclose(np.ptp(robot.links[1].visuals[0].mesh.vertices, axis=0), [0.2, 0.5, 0.2], atol=1e-6)
 
 
-def test_a_body_that_is_not_there_is_named(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="no body fridge"):
-        read_mjcf(etree.fromstring(_CABINET), tmp_path / "scene.xml", ["fridge"])
-
-
 def test_a_body_that_moves_freely_is_no_joint(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="other moves freely"):
         read_mjcf(etree.fromstring(_CABINET), tmp_path / "scene.xml", ["cabinet", "other"])
@@ -75,8 +70,3 @@ def test_objects_of_installed_packages_are_objects_of_the_fit(tmp_path: Path) ->
         read_robot(tmp_path / "bullet_husky" / "model.urdf", geometry="shown"), pose="rest", seed=0, yaw_deg=0
     )
     assert [joint.kind for joint in husky.truth.joints] == [JointType.CONTINUOUS] * 4
-
-
-def test_every_object_says_what_it_is_and_may_be_used_for() -> None:
-    assert len({item.name for item in OBJECTS}) == len(OBJECTS)
-    assert all(item.category and item.licence and item.file for item in OBJECTS)

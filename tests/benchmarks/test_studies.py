@@ -12,16 +12,13 @@ from benchmarks.studies.published import (
     PACKAGE_OBJECTS,
     ExpertVerdict,
     ExpertVerdicts,
-    kind_of,
     load_judged,
     package_models,
 )
 from benchmarks.study import RECORDS, file_stem, load_study, study_names
-from benchmarks.tables import benchmark_blocks
 from kinematify.cli.app import run
-from kinematify.errors import EnvironmentFault, InputError
-from kinematify.evaluation.result_record import document, load_report, write_report
-from kinematify.evaluation.run_benchmark import RESULTS
+from kinematify.errors import EnvironmentFault
+from kinematify.evaluation.result_record import document, load_report
 from kinematify.validation.checks import CHECKS
 from tests.places import ROOT
 
@@ -37,14 +34,6 @@ def test_tables_say_what_their_records_say(name: str) -> None:
     text = document(report.header, study.title, [*study.report(report), *picture])
     assert (REPORTS / f"{file_stem(name)}.md").read_text() == text
     assert not picture or (REPORTS / f"{file_stem(name)}.png").is_file()
-
-
-def test_an_accuracy_table_says_what_its_records_say(tmp_path: Path) -> None:
-    name = "robots"
-    report = load_report(REPORTS / f"{name}.json", RESULTS)
-    written = write_report(report, RESULTS, benchmark_blocks(report), tmp_path, name=name, title=name)
-    assert written[0].read_text() == (REPORTS / f"{name}.md").read_text()
-    assert written[1].read_text() == (REPORTS / f"{name}.json").read_text()
 
 
 def test_every_study_is_listed_with_its_question(capsys: pytest.CaptureFixture[str]) -> None:
@@ -101,11 +90,6 @@ def test_wrong_words_end_with_2(
     assert text in capsys.readouterr().err
 
 
-def test_an_unknown_study_is_refused_with_the_known_ones() -> None:
-    with pytest.raises(InputError, match=r"There are .*as-loaded, batch, detection"):
-        load_study("alchemy")
-
-
 def test_objects_of_packages_are_read_in_the_version_that_was_judged(tmp_path: Path) -> None:
     def names() -> list[str]:
         return [model.name for model in package_models(tmp_path)]
@@ -119,13 +103,6 @@ def test_objects_of_packages_are_read_in_the_version_that_was_judged(tmp_path: P
     (folder / "METADATA").write_text("Metadata-Version: 2.1\nName: pyflyt\nVersion: 0.1\n")
     with pytest.raises(EnvironmentFault, match="pip install --no-deps"):
         names()
-
-
-def test_objects_that_changed_the_command_are_counted_apart() -> None:
-    judged = load_judged()
-    assert kind_of(judged, {"source": "everyday2", "model": "everyday2/audibot"}) == ("objects", "yes")
-    assert kind_of(judged, {"source": "PyPI packages", "model": "genesis-world/mobility"}) == ("objects", "no")
-    assert kind_of(judged, {"source": "pybullet_data", "model": "r2d2"}) == ("robots", "yes")
 
 
 def test_the_first_judgement_that_fits_a_finding_counts() -> None:

@@ -20,7 +20,6 @@ from kinematify.cli import app, doctor
 from kinematify.cli.answer import write_answer
 from kinematify.cli.app import COMMANDS, run
 from kinematify.cli.progress import progress_reporter
-from kinematify.cli.table import format_table
 from kinematify.errors import EnvironmentFault, InputError, OutputError
 
 
@@ -72,14 +71,6 @@ def test_traceback_is_shown_when_asked_for(failing, capsys: pytest.CaptureFixtur
     message = capsys.readouterr().err
     assert "Traceback (most recent call last)" in message
     assert "in examine" in message
-
-
-def test_interruption_ends_with_130_and_no_traceback(failing, capsys: pytest.CaptureFixture[str]) -> None:
-    failing(KeyboardInterrupt())
-    assert run(["doctor"]) == 130
-    message = capsys.readouterr().err
-    assert "Interrupted" in message
-    assert "Traceback" not in message
 
 
 @pytest.mark.parametrize(
@@ -177,15 +168,6 @@ def test_answer_goes_to_a_file_or_says_why_not(tmp_path: Path) -> None:
         write_answer({"schema": 1}, str(tmp_path / "none" / "answer.json"))
 
 
-def test_table_aligns_and_leaves_no_trailing_space() -> None:
-    assert format_table(("a", "bb"), [("long", "x"), ("s", "")]).splitlines() == [
-        "a     bb",
-        "----  --",
-        "long  x",
-        "s",
-    ]
-
-
 def test_progress_off_a_terminal_is_one_line_per_stage(capsys: pytest.CaptureFixture[str]) -> None:
     with progress_reporter() as report:
         for stage, fraction in (("contact graph", 0.1), ("contact graph", 0.2), ("joints", 0.5)):
@@ -203,7 +185,7 @@ def test_progress_on_a_terminal_is_a_bar_on_stderr() -> None:
         "    report('joints', 0.5); time.sleep(0.3)\n"
     )
     ours, theirs = pty.openpty()
-    done = subprocess.run([sys.executable, "-c", code], stderr=theirs, stdout=subprocess.PIPE, check=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", code], stderr=theirs, stdout=subprocess.PIPE, check=True, timeout=300)
     os.close(theirs)
     shown = os.read(ours, 100_000).decode()
     os.close(ours)
@@ -225,6 +207,6 @@ def test_interrupted_process_ends_with_130() -> None:
     assert process.stdout.readline() == "waiting\n"
     time.sleep(0.05)
     process.send_signal(signal.SIGINT)
-    _, message = process.communicate(timeout=30)
+    _, message = process.communicate(timeout=300)
     assert process.returncode == 130
     assert "Traceback" not in message

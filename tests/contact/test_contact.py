@@ -15,9 +15,8 @@ from scipy.sparse.csgraph import minimum_spanning_tree
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
-from kinematify.contact.build_graph import build_contact_graph, exact_gap, find_bridges, near_pairs
+from kinematify.contact.build_graph import build_contact_graph, exact_gap, find_bridges
 from kinematify.geometry.surface import part_surfaces
-from kinematify.robot.transforms import rotation_about
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
@@ -64,35 +63,9 @@ def test_the_gap_between_boxes_is_exact(offset: tuple[float, float, float], scal
         assert gap_of(boxes(one, other)) == pytest.approx(box_distance(one, other), abs=1e-9 * scale, rel=1e-6)
 
 
-def test_crossing_and_touching_surfaces_have_no_gap() -> None:
-    cube = (np.zeros(3), np.ones(3))
-    assert gap_of(boxes(cube, (np.full(3, 0.5), np.full(3, 1.5)))) == 0.0
-    assert gap_of(boxes(cube, (np.array([1.0, 0, 0]), np.array([2.0, 1, 1])))) == 0.0
-
-
 def test_a_part_inside_a_cavity_has_the_gap_to_its_wall() -> None:
     outer, inner = (np.zeros(3), np.ones(3)), (np.full(3, 0.1), np.array([0.9, 0.9, 0.8]))
     assert gap_of(boxes(outer, inner)) == pytest.approx(0.1)
-
-
-def test_the_gap_does_not_depend_on_which_part_is_named_first() -> None:
-    assembly = BUILDERS["hinge_pin"]().assembly
-    surfaces = part_surfaces(assembly, config=CONFIG.surface)
-    assert exact_gap(surfaces, (0, 1)) == pytest.approx(exact_gap(surfaces, (1, 0)), rel=1e-9)
-    assert exact_gap(surfaces, (0, 1)) > 0
-
-
-@settings(max_examples=20)
-@given(seed=st.integers(0, 10**6), margin=st.floats(0.0, 2.0))
-def test_near_pairs_are_those_whose_boxes_are_near(seed: int, margin: float) -> None:
-    lower = np.random.default_rng(seed).uniform(0, 5, (6, 3))
-    corners = [(low, low + 1.0) for low in lower]
-    expected = [
-        (a, b)
-        for a, b in combinations(range(6), 2)
-        if np.all(corners[a][0] - corners[b][1] <= margin) and np.all(corners[b][0] - corners[a][1] <= margin)
-    ]
-    assert near_pairs(boxes(*corners), margin) == expected
 
 
 # ---- bridges ---------------------------------------------------------------------------------------------------------
@@ -116,14 +89,6 @@ def test_bridges_are_the_smallest_gaps_that_join_all_components(seed: int, count
     assert all(gap == pytest.approx(gaps[pair], abs=1e-6) for pair, gap in found.items())
 
 
-def test_connected_parts_need_no_bridges() -> None:
-    assembly = BUILDERS["serial_arm"]().assembly
-    surfaces = part_surfaces(assembly, config=CONFIG.surface)
-    chain = [(k, k + 1) for k in range(len(assembly.parts) - 1)]
-    assert find_bridges(assembly, surfaces, chain, near=1.25, limit=np.inf) == {}
-    assert list(find_bridges(assembly, surfaces, chain[:-1], near=1.25, limit=np.inf)) == [chain[-1]]
-
-
 @pytest.mark.parametrize(("gap", "joined"), [(0.12, True), (0.14, False)])
 def test_what_floats_is_joined_with_all_that_is_nearly_as_close(gap: float, joined: bool) -> None:
     """A block 0.1 from its left neighbour and `gap` from its right one; these two are far from each other."""
@@ -131,14 +96,6 @@ def test_what_floats_is_joined_with_all_that_is_nearly_as_close(gap: float, join
     assembly = boxes(*[(np.array([a, 0, 0]), np.array([b, 1, 1])) for a, b in corners])
     found = find_bridges(assembly, part_surfaces(assembly, config=CONFIG.surface), [(0, 2)], near=1.25, limit=np.inf)
     assert set(found) == ({(0, 1), (1, 2)} if joined else {(0, 1)})
-
-
-def test_what_floats_is_joined_and_marked() -> None:
-    cube = (np.zeros(3), np.ones(3))
-    graph = graph_of(boxes(cube, (np.array([1.0, 0, 0]), np.array([2.0, 1, 1])), (np.full(3, 4.0), np.full(3, 5.0))))
-    assert [(edge.a, edge.b, edge.bridge) for edge in graph.edges] == [(0, 1, False), (1, 2, True)]
-    assert graph.by_pair[1, 2].gap == pytest.approx(np.linalg.norm([2.0, 3.0, 3.0]))
-    assert len(graph.by_pair[1, 2].samples_a.points) > 0  # joints across a gap still need evidence
 
 
 # ---- samples ---------------------------------------------------------------------------------------------------------
@@ -173,16 +130,6 @@ def test_samples_lie_on_their_part_near_the_other_with_the_right_distance(name: 
         assert 0 < samples.areas.sum() <= assembly.parts[own].area * (1 + 1e-9)
 
 
-def test_sample_areas_measure_the_contact() -> None:
-    """Two cubes on each other: near area is the shared face and a band around it."""
-    graph = graph_of(boxes((np.zeros(3), np.ones(3)), (np.array([0, 0, 1.0]), np.array([1, 1, 2.0]))))
-    samples = graph.edges[0].samples_a
-    shared = samples.areas[samples.distances < 1e-9].sum()
-    band = CONFIG.contact.band * np.sqrt(6.0)
-    assert shared == pytest.approx(1.0, abs=0.03)
-    assert samples.areas.sum() == pytest.approx(1.0 + 4 * band, abs=0.05)
-
-
 def test_strength_is_relative_to_the_largest_contact() -> None:
     """A 1 x 1 face against a 0.5 x 0.5 one."""
     base = (np.zeros(3), np.ones(3))
@@ -195,7 +142,7 @@ def test_strength_is_relative_to_the_largest_contact() -> None:
 
 # ---- laws ------------------------------------------------------------------------------------------------------------
 
-OBJECT = BUILDERS["scissors"]().assembly
+OBJECT = BUILDERS["parallel_gripper"]().assembly
 
 
 def summary(
@@ -215,7 +162,7 @@ def assert_alike(one: Assembly, other: Assembly) -> None:
         assert second[pair][1] == pytest.approx(strength, abs=0.02)
 
 
-@settings(max_examples=5)
+@settings(max_examples=2)
 @given(seed=st.integers(0, 1000))
 def test_permuting_the_parts_permutes_the_graph(seed: int) -> None:
     order = np.random.default_rng(seed).permutation(len(OBJECT.parts))
@@ -226,27 +173,10 @@ def test_permuting_the_parts_permutes_the_graph(seed: int) -> None:
     assert clusters == {frozenset(permuted.names[k] for k in group) for group in graph_of(permuted).clusters}
 
 
-@settings(max_examples=5)
+@settings(max_examples=2)
 @given(scale=st.floats(1e-3, 1e3), shift=st.floats(-5.0, 5.0))
 def test_size_and_place_do_not_matter(scale: float, shift: float) -> None:
     parts = tuple(
         Part(name=part.name, vertices=scale * (part.vertices + shift), faces=part.faces) for part in OBJECT.parts
     )
     assert_alike(OBJECT, Assembly(parts=parts, source="test"))
-
-
-def test_turning_the_object_keeps_contacts_and_gaps() -> None:
-    """Tolerances follow the upright box of the assembly, which turning changes; exact distances stay."""
-    turn = rotation_about(np.array([0.0, 0.0, 1.0]), 0.6)
-    parts = tuple(Part(name=part.name, vertices=part.vertices @ turn.T, faces=part.faces) for part in OBJECT.parts)
-    first, second = graph_of(OBJECT), graph_of(Assembly(parts=parts, source="test"))
-    assert first.by_pair.keys() == second.by_pair.keys()
-    for pair, edge in first.by_pair.items():
-        assert second.by_pair[pair].gap == pytest.approx(edge.gap, abs=1e-9)
-
-
-def test_equal_seeds_give_equal_graphs() -> None:
-    first, again = graph_of(OBJECT, seed=4), graph_of(OBJECT, seed=4)
-    other = graph_of(OBJECT, seed=5)
-    assert np.array_equal(first.edges[0].samples_a.points, again.edges[0].samples_a.points)
-    assert not np.array_equal(first.edges[0].samples_a.points, other.edges[0].samples_a.points)

@@ -30,16 +30,3 @@ def test_the_motion_of_a_chiral_shape_is_found(mirrored: bool) -> None:
     np.testing.assert_allclose(found[0].turn, turn, atol=0.03)
     np.testing.assert_allclose(found[0].points(hook()), hook() @ turn.T + shift, atol=0.03)
     np.testing.assert_allclose(found[0].inverse.points(found[0].points(hook())), hook(), atol=1e-9)
-
-
-def test_a_box_lies_upon_another_one_in_all_its_ways() -> None:
-    rng = np.random.default_rng(0)
-    first, second = (rng.random((800, 3)) * (3.0, 2.0, 1.0) for _ in range(2))
-    found = motions_between(first, second, tolerance=0.15)
-    assert sorted(np.sign(np.linalg.det(motion.turn)) for motion in found[:8]) == [-1.0] * 4 + [1.0] * 4
-    for motion in found[:8]:
-        np.testing.assert_allclose(np.abs(motion.turn), np.eye(3), atol=0.2)
-
-
-def test_other_shapes_have_no_motion() -> None:
-    assert motions_between(hook(), hook() * (1.0, 1.6, 1.0), tolerance=0.03) == []

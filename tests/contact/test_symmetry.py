@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from benchmarks.voxels import voxel_remeshed
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
-from kinematify.contact.build_graph import aligned_chamfer, find_clusters
+from kinematify.contact.build_graph import find_clusters
 from kinematify.generate.procedural.solids import box, cylinder, union
 from kinematify.geometry.surface import part_surfaces
 from kinematify.robot.transforms import rotation_about
@@ -59,18 +59,6 @@ def test_copies_remeshed_on_a_coarse_grid_still_cluster() -> None:
     assert clusters_of(*copies) == ((0, 1),)
 
 
-def test_groups_are_ascending_and_singletons_are_left_out() -> None:
-    def bar(name: str, x: float) -> Part:
-        return placed(hook(arm=0.9), name, np.eye(3), (x, 0, 0))
-
-    quarter = rotation_about(np.array([0.0, 0.0, 1.0]), np.pi / 2)
-    parts = (
-        hook(), bar("b", 2.0), placed(hook(), "c", quarter, (4, 0, 0)), hook(knob=0.6), bar("e", 8.0),
-        placed(hook(), "f", MIRROR, (10, 0, 0)),
-    )  # fmt: skip
-    assert clusters_of(*parts) == ((0, 2, 5), (1, 4))
-
-
 @pytest.mark.parametrize("other", [hook(arm=1.0), hook(knob=0.45)], ids=["longer arm", "thicker knob"])
 def test_different_shapes_do_not_cluster(other: Part) -> None:
     assert clusters_of(hook(), placed(other, "other", np.eye(3), (3, 0, 0))) == ()
@@ -79,48 +67,3 @@ def test_different_shapes_do_not_cluster(other: Part) -> None:
 def test_the_same_shape_in_another_size_does_not_cluster() -> None:
     larger = Part(name="larger", vertices=1.1 * hook().vertices, faces=hook().faces)
     assert clusters_of(hook(), larger) == ()
-
-
-def test_noise_below_the_tolerance_does_not_part_twins() -> None:
-    noise = np.random.default_rng(0).normal(scale=0.003, size=hook().vertices.shape)
-    noisy = Part(name="noisy", vertices=hook().vertices + noise, faces=hook().faces)
-    assert clusters_of(hook(), noisy) == ((0, 1),)
-
-
-def test_another_tessellation_does_not_part_twins() -> None:
-    smooth = union(cylinder(0.4, (0, 0, 0), (0, 0, 1), segments=64), box((0, -0.1, 0), (0.8, 0.1, 0.2))).to_mesh64()
-    rough = union(cylinder(0.4, (0, 0, 0), (0, 0, 1), segments=24), box((0, -0.1, 0), (0.8, 0.1, 0.2))).to_mesh64()
-    parts = [
-        Part(name=name, vertices=mesh.vert_properties[:, :3], faces=mesh.tri_verts)
-        for name, mesh in (("smooth", smooth), ("rough", rough))
-    ]
-    assert clusters_of(*parts) == ((0, 1),)
-
-
-def test_clusters_follow_the_parts_when_these_are_permuted() -> None:
-    parts = [
-        hook(),
-        hook(arm=0.9),
-        placed(hook(), "c", MIRROR, (4, 0, 0)),
-        placed(hook(arm=0.9), "d", MIRROR, (6, 0, 0)),
-    ]
-    assert clusters_of(*parts) == ((0, 2), (1, 3))
-    assert clusters_of(*(parts[k] for k in (3, 0, 1, 2))) == ((0, 2), (1, 3))
-    assert clusters_of(*(parts[k] for k in (0, 2, 3, 1))) == ((0, 1), (2, 3))
-
-
-def test_aligned_chamfer_ignores_axes_and_signs_and_sees_differences() -> None:
-    rng = np.random.default_rng(1)
-    cloud = rng.normal(size=(400, 3)) * [3.0, 2.0, 1.0]
-    cloud -= cloud.mean(axis=0)
-    turned = cloud @ (rotation_about(np.array([0.0, 0.6, 0.8]), 2.0) @ MIRROR).T
-    assert aligned_chamfer(cloud, turned) == pytest.approx(0.0, abs=1e-9)
-    assert aligned_chamfer(cloud, cloud * [1.0, 1.0, 1.5]) > 0.05
-
-
-@settings(max_examples=10)
-@given(seed=st.integers(0, 10**6))
-def test_aligned_chamfer_does_not_depend_on_which_cloud_is_first(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    first, second = (rng.normal(size=(n, 3)) * rng.uniform(0.5, 2.0, 3) for n in (80, 60))
-    assert aligned_chamfer(first, second) == pytest.approx(aligned_chamfer(second, first), rel=1e-9)

@@ -16,10 +16,10 @@ from kinematify.config import load_config
 from kinematify.envs.expert import HandExpert
 from kinematify.envs.open_part import OpenPartEnv
 from kinematify.generate.blueprint_files import write_blueprint
-from kinematify.generate.sentence import from_text
 from kinematify.robot.linkage import loop_gaps
 from kinematify.validation.run import validate
 from kinematify.versions import NO_WHEELS
+from tests.toolbox import toolbox as drawn_toolbox
 
 bullet = pytest.importorskip("pybullet", reason=NO_WHEELS)
 
@@ -32,7 +32,7 @@ def model(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     """A toolbox, whose joints follow by <mimic>, and a clamp, whose joints follow along curves."""
     folder: Path = tmp_path_factory.mktemp("linkage")
     toolbox = request.param == "parallelogram"
-    drawn = from_text("a toolbox with two cantilever trays").build() if toolbox else linkage("toggle_clamp", 0)
+    drawn = drawn_toolbox() if toolbox else linkage("toggle_clamp", 0)
     write_blueprint(drawn, folder, load_config())
     return folder
 

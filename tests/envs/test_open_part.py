@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import pickle
-import subprocess
-import sys
 import warnings
 from pathlib import Path
 
@@ -62,9 +60,10 @@ def test_the_documented_spaces_are_the_spaces() -> None:
     assert all(f"``{key}``" in doc for key in info)
 
 
-@pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
-@pytest.mark.parametrize("env_id", [OPEN_PART, "kinematify.envs:kinematify/OpenPart-Sparse-v0"])
-@pytest.mark.parametrize("control", ["force", "position"])
+@pytest.mark.parametrize(
+    ("env_id", "engine", "control"),
+    [(OPEN_PART, "mujoco", "force"), ("kinematify.envs:kinematify/OpenPart-Sparse-v0", "pybullet", "position")],
+)
 def test_check_env_has_nothing_to_say(env_id: str, engine: str, control: str) -> None:
     env = gymnasium.make(env_id, engine=engine, control=control, randomize=True)
     with warnings.catch_warnings():
@@ -73,8 +72,7 @@ def test_check_env_has_nothing_to_say(env_id: str, engine: str, control: str) ->
     env.close()
 
 
-@pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
-@pytest.mark.parametrize("model", ["bundled:drawers", "bundled:door"])
+@pytest.mark.parametrize(("engine", "model"), [("mujoco", "bundled:door"), ("pybullet", "bundled:drawers")])
 def test_a_steady_hand_opens_it_and_a_throw_is_not_paid(engine: str, model: str) -> None:
     env = gymnasium.make(OPEN_PART, model=model, engine=engine)
     total, info = run(env, steady, seed=1)
@@ -104,46 +102,6 @@ def test_both_engines_tell_the_same_story() -> None:
     assert np.abs(stories[0] - stories[1]).max() < 0.02
 
 
-def test_sparse_pays_for_success_alone() -> None:
-    env = gymnasium.make("kinematify.envs:kinematify/OpenPart-Sparse-v0", terminate_on_success=True)
-    total, info = run(env, steady, seed=1)
-    assert total == 1.0
-    assert info["is_success"]
-
-
-_TRACE = """
-import gymnasium, numpy as np
-for engine in ("mujoco", "pybullet"):
-    env = gymnasium.make("kinematify.envs:kinematify/OpenPart-v0", model="bundled:box", engine=engine, randomize=True)
-    env.action_space.seed(3)
-    rows = [env.reset(seed=7)[0]] + [env.step(env.action_space.sample())[0] for _ in range(60)]
-    print("TRACE", np.array(rows).tobytes().hex())
-"""
-
-
-def test_two_processes_roll_out_the_same_numbers() -> None:
-    traces = []
-    for _ in range(2):
-        done = subprocess.run([sys.executable, "-c", _TRACE], capture_output=True, text=True, check=True)
-        traces.append([line for line in done.stdout.splitlines() if line.startswith("TRACE")])
-    assert len(traces[0]) == 2
-    assert traces[0] == traces[1]
-
-
-@pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
-def test_a_seed_forgets_what_was_before(engine: str) -> None:
-    env = gymnasium.make(OPEN_PART, engine=engine, randomize=True)
-    rng = np.random.default_rng(0)
-    actions = rng.uniform(-1.0, 1.0, (20, 3)).astype(np.float32)
-    stories = []
-    for _ in range(2):
-        env.reset(seed=11)
-        stories.append(np.array([env.step(action)[0] for action in actions]))
-        run(env, steady, seed=5)
-    np.testing.assert_array_equal(stories[0], stories[1])
-    env.close()
-
-
 def test_a_pickled_environment_is_the_same_environment() -> None:
     env = OpenPartEnv("bundled:box", control="position", randomize=["mass"])
     copy = pickle.loads(pickle.dumps(env))
@@ -151,18 +109,6 @@ def test_a_pickled_environment_is_the_same_environment() -> None:
     for each in (env, copy):
         each.reset(seed=2)
     np.testing.assert_array_equal(env.step(action)[0], copy.step(action)[0])
-
-
-def test_make_vec_in_processes() -> None:
-    import kinematify.envs
-
-    envs = gymnasium.make_vec(kinematify.envs.OPEN_PART, 2, vectorization_mode="async", engine="pybullet")
-    observation, _ = envs.reset(seed=0)
-    assert observation.shape == (2, 57)
-    observation, reward, *_ = envs.step(envs.action_space.sample())
-    assert np.isfinite(observation).all()
-    assert reward.shape == (2,)
-    envs.close()
 
 
 def test_reset_options() -> None:
@@ -206,32 +152,6 @@ def test_the_objects_own_damping_and_friction_are_kept(tmp_path: Path) -> None:
     assert env.world.model.dof_damping.tolist() == [4.0]
     assert env.world.model.dof_frictionloss.tolist() == [1.0]
     assert env.validation in {"pass", "warn"}
-
-
-@pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
-def test_nothing_leaks_over_a_thousand_resets(engine: str) -> None:
-    env = OpenPartEnv("bundled:box", engine=engine, randomize=True)
-
-    def resident() -> int:
-        return int(Path("/proc/self/statm").read_text("ascii").split()[1]) * 4096
-
-    for k in range(50):
-        env.reset(seed=k)
-    before = resident()
-    for k in range(1000):
-        env.reset(seed=k)
-    assert resident() - before < 8e6
-    env.close()
-
-
-def test_close_frees_the_engine() -> None:
-    worlds = [OpenPartEnv("bundled:box", engine="pybullet") for _ in range(3)]
-    clients = [env.world.client for env in worlds]
-    assert all(client.isConnected() for client in clients)
-    for env in worlds:
-        env.close()
-        env.close()
-    assert not any(client.isConnected() for client in clients)
 
 
 @pytest.mark.parametrize(
@@ -284,7 +204,7 @@ def test_a_window_without_a_screen_is_refused(monkeypatch: pytest.MonkeyPatch) -
         gymnasium.make(OPEN_PART, render_mode="human")
 
 
-@pytest.mark.parametrize("model", sorted(set(BUNDLED) - {"drawers", "nightstand", "cabinet", "door", "box"}))
+@pytest.mark.parametrize("model", sorted(BUNDLED)[::3])
 def test_bundled_objects_stand_still_until_they_are_pushed(model: str) -> None:
     env = OpenPartEnv(f"bundled:{model}")
     env.reset(seed=0, options={"open_fraction": 0.0})
@@ -296,8 +216,7 @@ def test_bundled_objects_stand_still_until_they_are_pushed(model: str) -> None:
     assert info["max_penetration"] < 1e-3
 
 
-@pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
-@pytest.mark.parametrize("model", ["bundled:box", "bundled:door"])
+@pytest.mark.parametrize(("engine", "model"), [("mujoco", "bundled:box"), ("pybullet", "bundled:door")])
 def test_full_force_against_the_ends_of_the_range_does_not_push_through(model: str, engine: str) -> None:
     env = OpenPartEnv(model, engine=engine)
     observation, _ = env.reset(seed=0)

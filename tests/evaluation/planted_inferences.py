@@ -37,15 +37,6 @@ def with_limits_in_degrees(assembly: Assembly, *, config: Config) -> Inference:
     return replace(found, joints=tuple(replace(joint, upper=3.0 * joint.upper) for joint in found.joints))
 
 
-def with_friction_in_the_wrong_unit(assembly: Assembly, *, config: Config) -> Inference:
-    """Joints rub a thousand times as much as they should: no hand moves them, for engines."""
-    found = infer(assembly, config=config)
-    rough = {name: 1000.0 * getattr(found.config.dynamics, name) for name in ("rubbing", "most_friction", "hand_share")}
-    return replace(
-        found, config=found.config.model_copy(update={"dynamics": found.config.dynamics.model_copy(update=rough)})
-    )
-
-
 def slow_on_three_parts(assembly: Assembly, *, config: Config) -> SimpleNamespace:
     if len(assembly.parts) == 3:
         time.sleep(1.3)

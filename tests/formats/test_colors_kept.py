@@ -18,10 +18,7 @@ from kinematify.contact.tree import KinematicTree
 from kinematify.formats.export_model import export
 from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
-from kinematify.model.picture_scene import posed_meshes
-from kinematify.model.urdf import link_colors, write_urdf
-from kinematify.render.camera import fit_camera
-from kinematify.render.picture import PictureScene, render_scene
+from kinematify.model.urdf import write_urdf
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_file import read_meshes
 from tests.colored_objects import (
@@ -68,7 +65,7 @@ def _model(assembly: Assembly) -> KinematicModel:
     return build_model(assembly, tree, joints, name="object", config=load_config().model)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(6))
 def test_a_glb_keeps_its_colours_in_the_urdf_and_as_glb(seed: int, tmp_path: Path) -> None:
     path = make_object(seed, tmp_path)
     given = seen_of_glb(path)
@@ -79,7 +76,7 @@ def test_a_glb_keeps_its_colours_in_the_urdf_and_as_glb(seed: int, tmp_path: Pat
     assert unlike(given, seen_of_urdf(urdf)) < 0.03, "rounded places in a picture"
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_mjcf_and_usd_have_the_colours_and_the_textures(seed: int, tmp_path: Path) -> None:
     path = make_object(seed, tmp_path)
     urdf = write_urdf(_model(load_assembly(path)), tmp_path)
@@ -87,32 +84,6 @@ def test_mjcf_and_usd_have_the_colours_and_the_textures(seed: int, tmp_path: Pat
     export(urdf, "usd", tmp_path / "out.usda")
     assert unlike(seen_of_glb(path), seen_of_mjcf(tmp_path / "out.xml")) < 0.01
     assert unlike(seen_of_glb(path), seen_of_usd(tmp_path / "out.usda")) < 0.01
-
-
-def test_a_picture_shows_the_texture(tmp_path: Path) -> None:
-    look: Any = trimesh.visual
-    halves = np.zeros((2, 2, 3), dtype=np.uint8)
-    halves[:, 0], halves[:, 1] = (220, 20, 20), (20, 20, 220)
-    scene = trimesh.Scene()
-    for index in range(2):
-        box = _box(0.2, 0.21 * index)
-        uv = (box.vertices[:, :2] - box.bounds[0, :2]) / 0.2 * 0.98 + 0.01
-        material = look.material.PBRMaterial(baseColorTexture=Image.fromarray(halves))
-        box.visual = look.TextureVisuals(uv=uv, material=material)
-        scene.add_geometry(box, node_name=f"part {index}")
-    written: Any = scene.export
-    (tmp_path / "halves.glb").write_bytes(written(file_type="glb"))
-    model = _model(load_assembly(tmp_path / "halves.glb"))
-    shown = PictureScene(meshes=tuple(posed_meshes(model, {}, link_colors(model)).values()))
-    camera = fit_camera(
-        shown.outline, azimuth=-np.pi / 2, elevation=0.4, field_of_view=0.5, size=(200, 120), margin=5.0
-    )
-    pixels = np.asarray(render_scene(shown, camera, load_config().preview)).astype(int)
-    row = pixels[60]
-    reddish = np.flatnonzero(row[:, 0] > row[:, 2] + 60)
-    bluish = np.flatnonzero(row[:, 2] > row[:, 0] + 60)
-    assert len(reddish) > 20 and len(bluish) > 20  # noqa: PT018
-    assert reddish.min() < bluish.min() < reddish.max() < bluish.max(), "red, blue, red, blue from left to right"
 
 
 def _colors(path: Path) -> list[list[tuple[float, ...]]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import mujoco
@@ -18,16 +19,18 @@ from kinematify.errors import DescriptionError, InputError
 from kinematify.formats.export_model import export
 from kinematify.formats.losses import losses_markdown
 from kinematify.generate.blueprint_files import write_blueprint
-from kinematify.generate.sentence import from_text
+from kinematify.generate.procedural.blueprint_file import described_blueprint
+from kinematify.generate.providers.judge_blueprint import drawn_findings
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.validation.run import validate
+from tests.toolbox import toolbox as drawn_toolbox
 
 
 @pytest.fixture(scope="module")
 def toolbox(tmp_path_factory):
     folder = tmp_path_factory.mktemp("toolbox")
-    write_blueprint(from_text("a toolbox with two cantilever trays").build(), folder, load_config())
+    write_blueprint(drawn_toolbox(), folder, load_config())
     return folder / "model.urdf"
 
 
@@ -166,3 +169,65 @@ def test_validate_reports_a_loop_that_is_open_rigid_or_stopped(toolbox, change, 
     check = next(item for item in validate(changed, selected=["KV230"], engines=()).checks if item.check == "KV230")
     said_so = [finding.message for finding in check.findings]
     assert not said_so if said is None else any(said in message for message in said_so)
+
+
+def bar(name: str, start: tuple[float, float], end: tuple[float, float], height: float) -> dict[str, object]:
+    """A flat bar between two pins."""
+    middle = [0.5 * (a + b) for a, b in zip(start, end, strict=True)]
+    angle = math.atan2(end[1] - start[1], end[0] - start[0])
+    shape = {
+        "kind": "box",
+        "size": [math.dist(start, end), 0.012, 0.008],
+        "xyz": [*middle, height],
+        "rpy": [0, 0, angle],
+    }
+    return {"name": name, "material": "steel", "shapes": [shape]}
+
+
+def test_the_slider_of_a_blueprint_is_where_its_crank_takes_it_in_mujoco(tmp_path):
+    """A crank of 5 cm and a rod of 15 cm, closed by a pin alone: no bar has an equation of its own."""
+    away = math.sqrt(0.15**2 - 0.05**2)
+    board = {
+        "name": "base",
+        "material": "steel",
+        "shapes": [{"kind": "box", "size": [0.5, 0.2, 0.01], "xyz": [0.1, 0, 0]}],
+    }
+    block = {"name": "slider", "shapes": [{"kind": "box", "size": [0.04, 0.03, 0.008], "xyz": [away, 0, 0.011]}]}
+    turn = {"type": "continuous", "axis": [0, 0, 1]}
+    slide = {
+        "type": "prismatic",
+        "parent": "base",
+        "child": "slider",
+        "axis": [1, 0, 0],
+        "lower": -0.0425,
+        "upper": 0.06,
+    }
+    blueprint = described_blueprint(
+        {
+            "name": "slider_crank",
+            "parts": [board, bar("crank", (0, 0), (0, 0.05), 0.011), bar("rod", (0, 0.05), (away, 0), 0.021), block],
+            "joints": [
+                {**turn, "parent": "base", "child": "crank", "pivot": [0, 0, 0.011]},
+                {**turn, "parent": "crank", "child": "rod", "pivot": [0, 0.05, 0.016]},
+                {**slide, "lower": -0.0425, "upper": 0.06},
+            ],
+            "loops": [{"parts": ["rod", "slider"], "pivot": [away, 0, 0.016]}],
+        }
+    )
+    assert drawn_findings(blueprint) == []
+    write_blueprint(blueprint, tmp_path, load_config())
+    export(tmp_path / "model.urdf", "mjcf", tmp_path / "model.xml")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "model.xml"))
+    model.opt.gravity[:] = 0.0
+    data = mujoco.MjData(model)
+    crank, slider = (int(model.joint(f"{name}_joint").qposadr[0]) for name in ("crank", "slider"))
+    seen = []
+    for _ in range(2000):
+        data.qvel[model.joint("crank_joint").dofadr[0]] = 2.0
+        mujoco.mj_step(model, data)
+        angle = 0.5 * math.pi + data.qpos[crank]
+        exact = 0.05 * math.cos(angle) + math.sqrt(0.15**2 - (0.05 * math.sin(angle)) ** 2) - away
+        seen.append((data.qpos[slider], exact))
+    found, exact = np.transpose(seen)
+    np.testing.assert_allclose(found, exact, atol=2e-3)
+    assert np.ptp(found) == pytest.approx(0.1, abs=5e-3)

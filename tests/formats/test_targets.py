@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
-import pybullet
 import pytest
 from lxml import etree
 from pxr import Usd, UsdPhysics
@@ -155,19 +154,6 @@ def test_a_joint_without_a_motor_is_listed_with_the_reason(tmp_path: Path) -> No
     assert model.nu == 1
     assert "idle (effort 0)" in lost(done)["actuated joints without effort"]
     assert model.jnt_limited[model.joint("stuck").id], "a range without width is a range"
-
-
-def test_bullet_opens_the_sdf_of_a_free_model(tmp_path: Path) -> None:
-    done = exported(tmp_path, "sdf", *map(link, "ab"), joint("j", "a", "b"), free=True)
-    client = pybullet.connect(pybullet.DIRECT)
-    try:
-        (body,) = pybullet.loadSDF(str(done.path), physicsClientId=client)
-        pybullet.resetJointState(body, 0, 0.5, physicsClientId=client)
-        state = pybullet.getLinkState(body, 0, computeForwardKinematics=True, physicsClientId=client)
-    finally:
-        pybullet.disconnect(client)
-    assert state[4] == pytest.approx((0.0, 0.0, 0.2), abs=1e-6)
-    assert state[5] == pytest.approx((0.0, np.sin(0.25), 0.0, np.cos(0.25)), abs=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -129,12 +129,6 @@ def test_flush_boards_lose_little() -> None:
     assert [len(pieces) for pieces in result.pieces] == [2, 1]
 
 
-def test_bars_that_follow_each_other_lose_only_what_they_meet_together() -> None:
-    """Each alone would turn through the other; together they stay 27 mm apart across, and 7 mm clear."""
-    assert freed(*SCENES["bars of a parallelogram"]).lost == (0.0, 0.0)
-    assert max(freed(BARS, turn(1, (0.0, 0.05, 0.0), -1.0, 1.0)).lost) > 0.2
-
-
 def test_a_drawer_in_a_block_keeps_its_box() -> None:
     result = freed(*SCENES["a drawer drawn as a box in a solid block"])
     assert result.lost[1] < 0.05
@@ -147,22 +141,6 @@ def test_what_is_blocked_is_not_carved() -> None:
     result = freed(bodies, sideways, lambda sweep, first, second, sign: min(sign * math.inf, 0.0))
     assert max(result.lost) < 0.2
     assert nearest(result, sideways) < -0.05
-
-
-def test_the_bodies_are_asked_only_on_the_side_where_pieces_meet() -> None:
-    asked: list[float] = []
-
-    def free_end(sweep: int, first: int, second: int, sign: float) -> float:
-        asked.append(sign)
-        return sign * math.inf
-
-    post, arm = rod(0.02, 0.3), rod(0.02, 0.3)
-    beside = ConvexPiece(vertices=arm.vertices + np.array([0.1, 0.0, 0.0]), faces=arm.faces)
-    sweep = SweptJoint(
-        moved=frozenset({1}), turns=False, axis=np.array([-1.0, 0.0, 0.0]), pivot=np.zeros(3), lower=-0.1, upper=0.1
-    )
-    freed([[post], [beside]], sweep, free_end)
-    assert asked == [1.0]
 
 
 def test_a_body_inside_another_one_keeps_a_piece() -> None:
@@ -187,16 +165,3 @@ def test_a_thin_wall_beside_a_thick_filler_stays() -> None:
     drawer = [box((-0.2, 0.0, 0.0), (0.2, 0.4, 0.05)), box((0.19, 0.0, 0.05), (0.2, 0.4, 0.15))]
     result = freed([[box((0.195, 0.0, 0.0), (0.25, 0.4, 0.3))], drawer], slide(1, (0.0, -1.0, 0.0), 0.35))
     assert max(float(piece.high[2]) for piece in result.pieces[1]) == pytest.approx(0.15)
-
-
-@pytest.mark.parametrize("most", [1, 3])
-def test_a_body_keeps_so_many_pieces_at_most(most: int) -> None:
-    result = freed(*SCENES["a drawer drawn as a box in a solid block"], most=most)
-    assert all(1 <= len(pieces) <= most for pieces in result.pieces)
-
-
-def test_the_answer_is_the_same_every_time() -> None:
-    bodies, sweep = SCENES["a square peg that turns in a plate"]
-    first, second = freed(bodies, sweep), freed(bodies, sweep)
-    for one, other in zip(first.pieces, second.pieces, strict=True):
-        assert [piece.vertices.tolist() for piece in one] == [piece.vertices.tolist() for piece in other]

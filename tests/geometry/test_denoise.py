@@ -41,20 +41,6 @@ def test_designs_are_not_noisy_and_keep_their_normals(name: str) -> None:
     np.testing.assert_array_equal(surface.surface_normals, surface.face_normals[0])
 
 
-def test_normals_of_a_noisy_box_are_averaged_within_its_sides() -> None:
-    smooth = fine(DESIGNS["box"], 0.06)
-    smooth.merge_vertices()
-    surface = PartSurface(part_of(smooth, 0.01), crease_angle=0.52)
-    true = smooth.face_normals
-    assert surface.noisy
-
-    def miss(normals: np.ndarray) -> float:
-        return float(np.degrees(np.median(np.arccos(np.clip((normals * true).sum(axis=1), -1, 1)))))
-
-    assert miss(surface.face_normals[0]) > 12.0
-    assert miss(surface.surface_normals) < 0.4 * miss(surface.face_normals[0])
-
-
 def test_the_bearing_of_a_noisy_pin_is_found() -> None:
     pin = fine(trimesh.creation.cylinder(radius=0.1, height=0.6, sections=40), 0.02)
     sleeve = fine(trimesh.creation.annulus(0.102, 0.2, 0.3, sections=40), 0.02)
@@ -84,22 +70,3 @@ def test_remeshed_parts_are_rough_and_designed_ones_are_not() -> None:
     assert all(surface.roughness < FACETED for surface in part_surfaces(design, config=CONFIG.surface))
     voxels = voxels_of(30)(design, np.random.default_rng(0))
     assert all(surface.roughness > FACETED for surface in part_surfaces(voxels, config=CONFIG.surface))
-
-
-def test_tolerances_follow_the_roughness() -> None:
-    clean, rough, noisy = (CONFIG.bearing.for_roughness(angle) for angle in (1.0, 10.0, np.inf))
-    assert clean is CONFIG.bearing
-    assert clean.normal_tolerance < rough.normal_tolerance < noisy.normal_tolerance
-    between = CONFIG.bearing.for_roughness(0.5 * (CONFIG.bearing.rough_from + CONFIG.bearing.rough_to))
-    assert between.normal_tolerance == pytest.approx(0.5 * (clean.normal_tolerance + rough.normal_tolerance))
-
-
-def test_the_bearing_of_voxels_is_found() -> None:
-    design = pin_in_sleeve(64)
-    voxels = voxels_of(30)(design, np.random.default_rng(0))
-    surfaces = part_surfaces(voxels, config=CONFIG.surface)
-    graph = build_contact_graph(voxels, surfaces, config=CONFIG.contact, seed=0)
-    best = fit_bearings(voxels, surfaces, graph, config=CONFIG.bearing, seed=0)[0, 1].lines[0]
-    axis = trimesh.transformations.rotation_matrix(0.5, [1.0, 0.3, 0.0])[:3, 2]
-    assert abs(best.axis @ axis) > np.cos(np.radians(1.5))
-    assert np.linalg.norm(np.cross(best.pivot, axis)) < 0.005

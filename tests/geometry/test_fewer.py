@@ -17,8 +17,3 @@ def test_neighbours_whose_hull_is_both_are_joined_first() -> None:
     row = [cube(0.0), cube(5.0, 7.0), cube(1.0), cube(2.0)]
     joined = fewer_pieces(row, 2, thickness=1e-6, corners=64)
     assert sorted(round(piece.volume, 6) for piece in joined) == [1.0, 3.0]
-
-
-def test_few_pieces_stay_as_they_are() -> None:
-    row = [cube(0.0), cube(3.0)]
-    assert fewer_pieces(row, 2, thickness=1e-6, corners=64) == row

@@ -8,13 +8,11 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinematify.assembly.part import Assembly, Part
-from kinematify.config import load_config
-from kinematify.geometry.surface import PartSurface, part_surfaces
+from kinematify.assembly.part import Part
+from kinematify.geometry.surface import PartSurface
 from kinematify.robot.transforms import rotation_about
 
 CREASE = np.deg2rad(30.0)
-AXIS = np.array([1.0, 2.0, 2.0]) / 3.0
 TURN = rotation_about(np.array([0.6, 0.0, 0.8]), 0.7)
 SHIFT = np.array([0.3, -2.0, 5.0])
 
@@ -28,15 +26,6 @@ def posed_cylinder(sections: int = 16) -> PartSurface:
     mesh = trimesh.creation.cylinder(radius=0.5, height=2.0, sections=sections)
     mesh.apply_transform(np.vstack([np.column_stack([TURN, SHIFT]), [0, 0, 0, 1]]))
     return surface_of(mesh)
-
-
-def relisted(part: Part, seed: int) -> Part:
-    """The same mesh with vertices, faces and the corners of faces listed in another order."""
-    rng = np.random.default_rng(seed)
-    order = rng.permutation(len(part.vertices))
-    faces = np.argsort(order)[part.faces[rng.permutation(len(part.faces))]]
-    turned = (rng.integers(3, size=len(faces))[:, None] + np.arange(3)) % 3
-    return Part(name=part.name, vertices=part.vertices[order], faces=np.take_along_axis(faces, turned, axis=1))
 
 
 BUMPY = trimesh.creation.icosphere(subdivisions=2)
@@ -64,15 +53,6 @@ def test_smooth_normals_of_a_faceted_cylinder_are_radial(sections: int) -> None:
 def test_normals_do_not_bend_over_sharp_edges() -> None:
     corners = surface_of(trimesh.creation.box((1.0, 2.0, 3.0))).corner_normals
     assert np.allclose(np.sort(np.abs(corners), axis=2), [0.0, 0.0, 1.0])
-
-
-def test_a_far_vertex_without_faces_changes_nothing() -> None:
-    box = trimesh.creation.box(extents=(1.0, 2.0, 3.0))
-    for far in (1.0, 1e9):
-        vertices = np.concatenate([box.vertices, [[far, -far, 0.0]]])
-        welded, faces = PartSurface(Part(name="part", vertices=vertices, faces=box.faces), crease_angle=CREASE).welded
-        assert len(welded) == 9
-        assert np.array_equal(welded[faces], box.triangles)
 
 
 def test_seams_of_unwelded_meshes_are_smooth() -> None:
@@ -113,18 +93,6 @@ def test_feature_circles_have_the_axis_and_centre_of_the_rims() -> None:
     assert np.allclose(np.linalg.norm(circles.on_circle - circles.centres, axis=1), 0.5)
 
 
-def test_straight_edges_make_no_circles() -> None:
-    surface = surface_of(trimesh.creation.box((1.0, 2.0, 3.0)).subdivide().subdivide())
-    assert len(surface.feature_edges) == 12 * 4
-    assert len(surface.feature_circles.lengths) == 0
-
-
-def test_smooth_closed_parts_have_no_features() -> None:
-    surface = surface_of(trimesh.creation.icosphere(subdivisions=3))
-    assert len(surface.feature_edges) == 0
-    assert surface.feature_circles.axes.shape == (0, 3)
-
-
 # ---- distance --------------------------------------------------------------------------------------------------------
 
 
@@ -143,76 +111,3 @@ def test_distance_to_a_box_is_exact_inside_and_outside_and_far_from_the_origin(s
 
 
 # ---- samples ---------------------------------------------------------------------------------------------------------
-
-
-@settings(max_examples=20)
-@given(count=st.integers(1, 2000), seed=st.integers(0, 2**31))
-def test_samples_are_even_by_area(count: int, seed: int) -> None:
-    """Any run of faces along the walk gets its share to within one sample, here the six walls of a box together."""
-    surface = surface_of(trimesh.creation.box((1.0, 2.0, 4.0)))
-    samples = surface.sample(count, seed=seed)
-    walls = np.array([(samples.normals @ axis > 0.5).sum() for axis in (*np.eye(3), *-np.eye(3))])
-    shares = count * np.array([8.0, 4.0, 2.0, 8.0, 4.0, 2.0]) / 28.0
-    assert np.all(np.abs(walls - shares) <= 2.0)  # two triangles per wall, each within one
-    assert samples.areas.sum() == pytest.approx(28.0)
-    assert np.all(surface.distance(samples.points) < 1e-9)
-
-
-@settings(max_examples=10)
-@given(seed=st.integers(0, 1000))
-def test_the_listing_of_the_mesh_does_not_matter(seed: int) -> None:
-    part = Part(name="part", vertices=BUMPY.vertices, faces=BUMPY.faces)
-    first, other = (PartSurface(mesh, crease_angle=CREASE).sample(700, seed=3) for mesh in (part, relisted(part, seed)))
-    assert np.allclose(first.points, other.points, atol=1e-9)
-    assert np.allclose(first.normals, other.normals, atol=1e-9)
-
-
-def test_samples_of_some_faces_stay_on_them_whatever_their_order() -> None:
-    surface = surface_of(trimesh.creation.box((1.0, 1.0, 1.0)))
-    normals, _ = surface.face_normals
-    top = np.flatnonzero(normals[:, 2] > 0.5)
-    samples = surface.sample(100, faces=top)
-    assert np.allclose(samples.points[:, 2], 0.5)
-    assert samples.areas.sum() == pytest.approx(1.0)
-    assert np.array_equal(samples.points, surface.sample(100, faces=top[::-1]).points)
-
-
-def test_other_seeds_give_other_samples() -> None:
-    surface = surface_of(BUMPY)
-    assert np.array_equal(surface.sample(50, seed=1).points, surface.sample(50, seed=1).points)
-    assert not np.allclose(surface.sample(50, seed=1).points, surface.sample(50, seed=2).points)
-
-
-def test_nothing_to_sample_gives_no_samples() -> None:
-    assert surface_of(BUMPY).sample(10, faces=np.empty(0, dtype=np.int64)).points.shape == (0, 3)
-    flat = Part(name="flat", vertices=np.zeros((3, 3)), faces=np.array([[0, 1, 2]]))
-    assert PartSurface(flat, crease_angle=CREASE).sample(10).normals.shape == (0, 3)
-
-
-def test_subset_keeps_rows_together() -> None:
-    samples = surface_of(BUMPY).sample(20)
-    some = samples.subset(np.array([3, 1]))
-    assert np.array_equal(some.points, samples.points[[3, 1]])
-    assert np.array_equal(some.normals, samples.normals[[3, 1]])
-    assert len(some.areas) == 2
-
-
-def test_faces_near_a_box_are_all_that_touch_it() -> None:
-    surface = surface_of(trimesh.creation.box((2.0, 2.0, 2.0)))
-    above = np.array([[-0.1, -0.1, 1.5], [0.1, 0.1, 2.0]])
-    normals, _ = surface.face_normals
-    assert len(surface.faces_near(above, 0.4)) == 0
-    near = surface.faces_near(above, 0.6)
-    assert set(np.flatnonzero(normals[:, 2] > 0.5)) <= set(near)
-
-
-def test_part_surfaces_follow_the_configuration_and_the_order_of_the_parts() -> None:
-    mesh = trimesh.creation.cylinder(radius=1.0, height=1.0, sections=10)  # its facets meet at 36 deg
-    parts = tuple(Part(name=name, vertices=mesh.vertices, faces=mesh.faces) for name in ("a", "b"))
-    assembly = Assembly(parts=parts, source="test")
-    config = load_config().surface
-    smooth = part_surfaces(assembly, config=config.model_copy(update={"crease_angle": 40.0}))
-    sharp = part_surfaces(assembly, config=config.model_copy(update={"crease_angle": 30.0}))
-    assert [surface.part.name for surface in sharp] == ["a", "b"]
-    assert len(smooth[0].feature_edges) == 20
-    assert len(sharp[0].feature_edges) == 30

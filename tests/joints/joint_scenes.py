@@ -10,6 +10,7 @@ import numpy as np
 from kinematify.config import load_config
 from kinematify.contact.build_graph import build_contact_graph
 from kinematify.contact.tree import KinematicTree
+from kinematify.generate.procedural.solids import bore, box, cylinder
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.bearing_fit import fit_bearings
 from kinematify.joints.candidate import SLIDE, TURN
@@ -19,10 +20,13 @@ from kinematify.joints.features.slide_cues import rank_slides
 from kinematify.joints.features.turn_cues import rank_turns
 from kinematify.joints.features.workspace import PartCache
 from kinematify.joints.hypotheses.propose import propose
+from tests.known import known_object, turning
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from manifold3d import Manifold
 
     from kinematify.contact.graph import ContactGraph
     from kinematify.joints.bearings.scores import EdgeBearing
@@ -80,3 +84,21 @@ def ranked_slides(scene: JointScene) -> Ranked:
     """The proposed slides of a scene, best first."""
     proposed = propose(scene, CONFIG.joints)
     return rank_slides(scene, proposed.at(np.flatnonzero(proposed.kinds == SLIDE)), CONFIG.joints)
+
+
+def clock(extra: Manifold | None = None) -> KnownObject:
+    """A case and two hands on shafts one in the other."""
+    case = box((-0.1, 0.0, -0.1), (0.1, 0.04, 0.1))
+    case -= bore(0.006, 3e-4, (0, -1, 0), (0, 0.03 + 3e-4, 0))
+    solids = {"case": case}
+    for k, (radius, length) in enumerate(((0.006, 0.05), (0.003, 0.08))):
+        level = -0.003 - 0.004 * k
+        hand = box((-0.004, level - 0.002, 0.0), (0.004, level, length)) + cylinder(
+            0.01, (0, level - 0.002, 0), (0, level, 0)
+        )
+        solids[f"hand_{k}"] = hand + cylinder(radius, (0, level - 0.001, 0), (0, 0.03, 0))
+    if extra is not None:
+        solids["hand_1"] += extra
+    solids["hand_0"] -= bore(0.003, 3e-4, (0, -1, 0), (0, 1, 0))
+    joints = [turning("case", f"hand_{k}", (0, 1, 0), (0, 0, 0), (-np.inf, np.inf)) for k in range(2)]
+    return known_object("clock", solids, *joints)

@@ -71,12 +71,6 @@ def off_degrees(bearing: EdgeBearing, axis: np.ndarray) -> float:
     return float(np.degrees(np.arccos(min(abs(float(bearing.lines[0].axis @ axis)), 1.0))))
 
 
-def test_clear_bearings_follow_nobody() -> None:
-    for pair, axis in ((LEFT, AXIS), (RIGHT, MIRRORED)):
-        assert shared(lost=False)[pair].follows == ()
-        assert off_degrees(shared(lost=False)[pair], axis) < 0.4
-
-
 def test_a_lost_bearing_is_taken_from_the_mirrored_twin_and_said() -> None:
     found = shared(lost=True)
     assert found[RIGHT].follows == (LEFT,)

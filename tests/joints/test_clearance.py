@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
-from kinematify.assembly.part import Part
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.blueprint import Blueprint
-from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.solids import box, tray
 from kinematify.joints.candidate import JointEstimate
 from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import infer_joints
@@ -47,30 +44,6 @@ def test_a_lid_with_a_skirt_all_round_is_lifted_and_a_hinged_one_turns() -> None
     assert loose.kind is JointType.PRISMATIC
     assert loose.axis[2] > 0.99
     assert hinged.kind.turns
-
-
-def test_a_plate_across_the_seam_of_lid_and_body_is_rather_a_catch_than_one_beside_it() -> None:
-    def plate_at(low: float) -> JointEstimate:
-        solids = {
-            "body": tray((0, 0, 0), (0.4, 0.3, 0.2), 0.01),
-            "lid": box((0, 0, 0.2005), (0.4, 0.3, 0.23)),
-            "plate": box((0.18, -0.005, low), (0.22, -0.0002, low + 0.02)),
-        }
-        parts = tuple(
-            Part(name=name, vertices=mesh.vert_properties[:, :3], faces=mesh.tri_verts)
-            for name, mesh in ((name, solid.to_mesh64()) for name, solid in solids.items())
-        )
-        at = {"kind": JointType.REVOLUTE, "axis": np.array([1.0, 0, 0]), "lower": 0.0, "upper": 1.0}
-        joints = (
-            KnownJoint(parent="body", child="lid", pivot=np.array([0, 0.3, 0.2]), **at),
-            KnownJoint(parent="body", child="plate", pivot=np.array([0, 0, low]), **at),
-        )
-        return infer_joints(KnownObject(name="chest", root="body", parts=parts, joints=joints))["plate"]
-
-    catch, beside = plate_at(0.19), plate_at(0.1)
-    assert catch.kind.turns
-    assert catch.evidence["latch"] > beside.evidence["latch"] == 0.0
-    assert beside.evidence["odds_prismatic"] > catch.evidence["odds_prismatic"]
 
 
 def test_knobs_in_a_row_turn_although_buttons_in_a_row_are_pressed() -> None:

@@ -10,7 +10,7 @@ from kinematify import infer
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.contact.build_graph import build_contact_graph
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointEstimate

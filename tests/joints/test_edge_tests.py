@@ -8,37 +8,17 @@ import numpy as np
 import pytest
 
 from kinematify.config import load_config
-from kinematify.generate.procedural.solids import bore, box, cylinder
+from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.joints.bearings.scores import BearingLine
-from kinematify.joints.features.pins import has_journal, leaf_pairs, middle_leaf, passes
+from kinematify.joints.features.pins import has_journal, leaf_pairs, passes
 from kinematify.joints.features.workspace import PartCache
-from tests.joints.joint_scenes import evidence
+from tests.joints.joint_scenes import clock, evidence
 from tests.known import known_object, turning
 
 if TYPE_CHECKING:
-    from manifold3d import Manifold
-
     from tests.known import KnownObject
 
 CONFIG = load_config()
-
-
-def clock(*, clearance: float = 3e-4, extra: Manifold | None = None) -> KnownObject:
-    """A case and two hands on shafts one in the other."""
-    case = box((-0.1, 0.0, -0.1), (0.1, 0.04, 0.1))
-    case -= bore(0.006, clearance, (0, -1, 0), (0, 0.03 + clearance, 0))
-    solids = {"case": case}
-    for k, (radius, length) in enumerate(((0.006, 0.05), (0.003, 0.08))):
-        level = -0.003 - 0.004 * k
-        hand = box((-0.004, level - 0.002, 0.0), (0.004, level, length)) + cylinder(
-            0.01, (0, level - 0.002, 0), (0, level, 0)
-        )
-        solids[f"hand_{k}"] = hand + cylinder(radius, (0, level - 0.001, 0), (0, 0.03, 0))
-    if extra is not None:
-        solids["hand_1"] += extra
-    solids["hand_0"] -= bore(0.003, clearance, (0, -1, 0), (0, 1, 0))
-    joints = [turning("case", f"hand_{k}", (0, 1, 0), (0, 0, 0), (-np.inf, np.inf)) for k in range(2)]
-    return known_object("clock", solids, *joints)
 
 
 @pytest.mark.parametrize("pegged", [False, True])
@@ -92,14 +72,3 @@ def test_the_leaf_between_the_others_carries_the_outer_one(angles: tuple[float, 
     assert skipping == set(lines) - beside
     nothing = (frozenset(), frozenset())
     assert leaf_pairs(cache, [(0, 1, 2)], lines, beside, CONFIG.joints) == nothing
-
-
-def test_hands_of_a_clock_are_no_leaves() -> None:
-    """Their shafts lie about the line; and leaves spread all around have no middle one."""
-    spread = {0: np.array([0, 1.0, 0]), 1: np.array([0, -0.5, 0.9]), 2: np.array([0, -0.5, -0.9])}
-    line = BearingLine(
-        axis=np.array([1.0, 0, 0]), pivot=np.zeros(3), score=1.0, surface_a=1, surface_b=1, circles_a=1, circles_b=1
-    )
-    assert middle_leaf(spread, line, dict.fromkeys(spread, 1.0), CONFIG.joints) is None
-    shaft = {0: np.array([0, 1.0, 0]), 1: np.array([0, 0.9, 0.1]), 2: np.array([0, 0.01, 0])}
-    assert middle_leaf(shaft, line, dict.fromkeys(shaft, 1.0), CONFIG.joints) is None

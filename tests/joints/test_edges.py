@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -24,28 +23,22 @@ from benchmarks.fit.edges import (
 )
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.blueprint import ground_truth
-from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.solids import bore, box, cylinder
-from kinematify.geometry.part_stats import assembly_stats
+from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.joints.choice import edges
 from kinematify.joints.choice.edges import (
-    MEASUREMENTS,
-    edge_measurements,
     edge_probabilities,
-    scores_of,
     shipped_edge_weights,
 )
-from kinematify.joints.features.pins import EdgePins
 from kinematify.pipeline.infer_assembly import infer
-from tests.joints.joint_scenes import evidence
-from tests.known import known_object, turning
+from tests.joints.joint_scenes import clock
+from tests.known import known_object
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from tests.known import KnownObject
 
 CONFIG = load_config()
 
@@ -62,44 +55,6 @@ def test_probabilities_are_those_over_all_spanning_trees(seed: int) -> None:
     likely, log_z = edge_probabilities(pairs, scores, 5)
     np.testing.assert_allclose(likely, np.array(by_hand) / weights.sum(), atol=1e-6)
     assert log_z == pytest.approx(np.log(weights.sum()))
-
-
-def test_pieces_have_trees_of_their_own() -> None:
-    likely, _ = edge_probabilities([(0, 1), (0, 2), (1, 2), (3, 4)], np.zeros(4), 5)
-    np.testing.assert_allclose(likely, [2 / 3, 2 / 3, 2 / 3, 1.0], atol=1e-6)
-
-
-def test_scores_come_back_from_qualities() -> None:
-    scores = np.array([-9.0, -1.0, 0.0, 4.0])
-    np.testing.assert_allclose(scores_of(1.0 / (1.0 + np.exp(-scores / 2.0))), scores, atol=1e-9)
-
-
-def clock() -> KnownObject:
-    """A case and two hands on shafts one in the other."""
-    case = box((-0.1, 0.0, -0.1), (0.1, 0.04, 0.1)) - bore(0.006, 3e-4, (0, -1, 0), (0, 0.0303, 0))
-    solids = {"case": case}
-    for k, (radius, length) in enumerate(((0.006, 0.05), (0.003, 0.08))):
-        level = -0.003 - 0.004 * k
-        hand = box((-0.004, level - 0.002, 0.0), (0.004, level, length)) + cylinder(
-            0.01, (0, level - 0.002, 0), (0, level, 0)
-        )
-        solids[f"hand_{k}"] = hand + cylinder(radius, (0, level - 0.001, 0), (0, 0.03, 0))
-    solids["hand_0"] -= bore(0.003, 3e-4, (0, -1, 0), (0, 1, 0))
-    joints = [turning("case", f"hand_{k}", (0, 1, 0), (0, 0, 0), (-np.inf, np.inf)) for k in range(2)]
-    return known_object("clock", solids, *joints)
-
-
-def test_measurements_are_finite_and_do_not_depend_on_the_unit() -> None:
-    known = clock()
-    _, graph, bearings = evidence(known)
-    measured = edge_measurements(graph, assembly_stats(known.assembly), bearings, EdgePins())
-    assert measured.shape == (len(graph.edges), len(MEASUREMENTS))
-    assert np.isfinite(measured).all()
-    larger = replace(known, parts=tuple(replace(part, vertices=100.0 * part.vertices) for part in known.parts))
-    _, graph, bearings = evidence(larger)
-    np.testing.assert_allclose(
-        edge_measurements(graph, assembly_stats(larger.assembly), bearings, EdgePins()), measured, atol=1e-3
-    )
 
 
 @pytest.mark.parametrize(("family", "parameters"), [("door", {"kind": "folding", "leaves": 2}), ("stapler", {})])

@@ -75,13 +75,6 @@ def test_a_carriage_goes_to_the_ends_of_its_rail() -> None:
         assert guided_travel(scene, direction, CONFIG.joints) == pytest.approx(0.27, abs=0.03)
 
 
-def test_parts_that_do_not_touch_have_no_guide() -> None:
-    solids = {"floor": box((-1, -1, -0.1), (1, 1, 0)), "lamp": box((-0.1, -0.1, 0.5), (0.1, 0.1, 0.6))}
-    scene = scene_of(known_object("apart", solids, sliding("floor", "lamp", Z, (0, 0, 0), (0, 1))), "lamp")
-    assert guided_share(scene, Z, np.array([0.0]), CONFIG.joints) is None
-    assert guided_travel(scene, Z, CONFIG.joints) is None
-
-
 def test_a_collar_runs_along_its_rod_although_it_is_small() -> None:
     found = find_range(collar(), JointType.PRISMATIC, Z, np.array([0.0, 0.0, 0.05]), CONFIG.joints)
     assert collar().smallness >= 1.0
@@ -117,23 +110,3 @@ def test_a_cap_that_goes_round_its_pen_is_drawn_off() -> None:
     found = find_range(scene, JointType.PRISMATIC, Z, np.array([0.0, 0.0, 0.03]), CONFIG.joints)
     assert found.sign < 0.0
     assert found.ahead.motion > 0.03
-
-
-def test_a_ram_at_its_upper_end_opens_downwards() -> None:
-    """Nothing stops it upwards, but its sleeve would let it go; other parts make it a machine."""
-    sleeve = box((-0.05, -0.05, 0.8), (0.05, 0.05, 0.95)) - box((-0.0203, -0.0203, 0), (0.0203, 0.0203, 2))
-    solids = {"ram": box((-0.02, -0.02, 0.75), (0.02, 0.02, 1.45)), "carriage": sleeve}
-    solids["beam"] = box((-0.5, 0.0501, 0.85), (0.5, 0.1, 0.9))
-    solids["post"] = box((0.5001, 0.05, 0), (0.6, 0.1, 0.9))
-    joints = (
-        sliding("post", "beam", Z, (0.5, 0.07, 0.87), (-0.1, 0.1)),
-        sliding("beam", "carriage", X, (0, 0.05, 0.87), (-0.3, 0.3)),
-        sliding("carriage", "ram", -Z, (0, 0, 0.87), (0, 0.2)),
-    )
-    scene = scene_of(
-        known_object("gantry", {name: solids[name] for name in ("post", "beam", "carriage", "ram")}, *joints), "ram"
-    )
-    found = find_range(scene, JointType.PRISMATIC, Z, np.array([0.0, 0.0, 0.9]), CONFIG.joints)
-    assert found.sign < 0.0
-    assert 0.4 < found.ahead.motion < 0.7
-    assert found.back.motion < 0.25

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pytest
 
-from kinematify.generate.procedural.solids import box, cylinder, tray, union
+from kinematify.generate.procedural.solids import box, cylinder, union
 from kinematify.joints.candidate import ELSEWHERE, TURN, Hypotheses
 from kinematify.joints.features.measurements import measure
 from tests.joints.joint_scenes import scene_of
@@ -49,20 +48,9 @@ def test_a_disc_is_carried_onto_itself_about_its_axle_alone() -> None:
     assert found["outline_least"][1] > 0.95 > found["outline_least"][0]
 
 
-def test_three_blades_are_carried_onto_themselves_by_a_third_of_a_turn() -> None:
-    found = measured(rotor(3, 20.0), BODY)
-    assert found["itself_folds"][1] < 0.01 < found["itself_odd"][1]
-
-
 def test_tilted_blades_wind_and_flat_ones_do_not() -> None:
     assert measured(rotor(4, 20.0), BODY)["twist"][1] > 0.5
     assert measured(rotor(4, 0.0), BODY)["twist"][1] < 0.2
-
-
-def test_a_wheel_stands_as_high_as_its_radius() -> None:
-    body = box((-0.3, 0.011, 0.05), (0.3, 0.3, 0.2))
-    found = measured(cylinder(0.1, (0, -0.01, 0), (0, 0.01, 0)), body)
-    assert found["above_floor"][1] == pytest.approx(1.0, abs=0.02)
 
 
 def test_a_pin_in_a_solid_barrel_is_where_both_are_solid() -> None:
@@ -81,15 +69,3 @@ def test_a_hinge_at_an_edge_chooses_a_side_that_the_panel_does_not_show() -> Non
     assert centred["mirror_child"][2] < 0.05
     assert beside["mirror_child"][2] > 0.5
     assert beside["mirror_reason"][2] < 0.05
-
-
-def test_a_handle_at_one_side_is_a_reason_for_a_hinge_at_the_other() -> None:
-    panel = box((0.0, -0.01, -0.1), (0.2, 0.01, 0.1))
-    handled = union(panel, box((0.17, -0.05, -0.04), (0.18, 0.0, 0.04)))
-    assert measured(handled, BODY)["mirror_reason"][2] > 2.0 * measured(panel, BODY)["mirror_reason"][2] + 0.1
-
-
-def test_a_drawer_is_open_above() -> None:
-    found = measured(tray((-0.1, -0.2, -0.05), (0.1, 0.01, 0.05), 0.005), BODY)
-    assert found["own_above"][0] == 0.0
-    assert found["own_below"][0] == 1.0

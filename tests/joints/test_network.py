@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from benchmarks.fit.network import fit_network, scale_of
+from benchmarks.fit.network import fit_network
 from kinematify.joints.choice.point_network import Network
 
 EDGES, HYPOTHESES, COLUMNS = 800, 5, 4
@@ -45,20 +45,3 @@ def test_probabilities_sum_to_one_and_follow_the_hypotheses_in_any_order() -> No
     assert np.exp(logs).sum() == pytest.approx(1.0)
     order = np.array([3, 1, 4, 0, 2])
     np.testing.assert_allclose(network.log_probabilities(columns[:HYPOTHESES][order]), logs[order])
-
-
-def test_what_is_missing_is_in_the_middle_and_has_its_own_input() -> None:
-    columns = np.array([[0.0, np.nan], [1.0, 5.0], [2.0, 6.0], [4.0, 8.0]], dtype=np.float32)
-    scale = scale_of(columns)
-    inputs = scale.inputs(columns)
-    np.testing.assert_array_equal(scale.missing, [1])
-    assert inputs[0, 1] == 0.0
-    np.testing.assert_array_equal(inputs[:, 2], [1.0, 0.0, 0.0, 0.0])
-    assert (np.diff(inputs[:, 0]) > 0.0).all()
-    np.testing.assert_allclose(inputs[[0, -1], 0], [-1.0, 1.0])
-
-
-def test_what_never_varies_is_not_read() -> None:
-    columns = np.column_stack([np.full(9, 7.0), np.arange(9.0)]).astype(np.float32)
-    beyond = np.array([[1e9, 100.0]], dtype=np.float32)
-    np.testing.assert_allclose(scale_of(columns).inputs(beyond), [[0.0, 1.0]])

@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.fit.trees import opening_recipe_key
 from kinematify.generate.procedural.solids import box
-from kinematify.joints.choice.opening import measure_sides, opening_odds, side_columns, turn_sign
+from kinematify.joints.choice.opening import measure_sides, opening_odds, turn_sign
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, shipped_scorer
 from tests.joints.joint_scenes import CONFIG, scene_of
 from tests.known import known_object, turning
@@ -45,14 +45,6 @@ def test_an_axis_and_its_opposite_get_opposite_odds(door) -> None:
 def test_what_stands_at_a_stop_opens_the_other_way(door) -> None:
     scene, axis, pivot = door
     assert turn_sign(scene, axis, pivot, np.array([0.02, 3.0]), CONFIG.joints.limits) == -1.0
-
-
-def test_what_is_not_finite_never_reaches_the_trees() -> None:
-    columns = side_columns({"a": np.array([np.inf, 1.0]), "b": np.array([2.0, 1.0])}, ("a", "b", "absent"))
-    assert columns.shape == (2, 6)
-    assert not np.isinf(columns).any()
-    assert columns[:, 1].tolist() == [1.0, -1.0]
-    assert np.isnan(columns[:, 2]).all()
 
 
 def test_the_weights_are_of_the_recipe() -> None:

@@ -7,12 +7,11 @@ import pytest
 
 from kinematify.generate.procedural.pieces.bearing_pieces import fork
 from kinematify.generate.procedural.solids import box, cylinder
-from kinematify.joints.choice.opening import clockwise_sign, swing_sign
+from kinematify.joints.choice.opening import swing_sign
 from tests.joints.joint_scenes import infer_joints, scene_of
 from tests.known import KnownObject, known_object, turning
 
 X = np.array([1.0, 0.0, 0.0])
-Z = np.array([0.0, 0.0, 1.0])
 
 
 def hand() -> KnownObject:
@@ -49,21 +48,3 @@ def test_mirrored_limbs_swing_outwards(side: float) -> None:
     outwards = swing_sign(scene, X, np.array([0.0, y, 0.5]))
     # About +x a leg that hangs swings towards +y.
     assert outwards == side
-
-
-def test_a_knob_on_the_foot_of_a_machine_turns_up_clockwise() -> None:
-    """Arms in series above it make no link of it: its axis points into the foot, as on a cooker."""
-    foot = box((-0.1, -0.1, 0), (0.1, 0.1, 0.03)) - cylinder(0.0053, (0, -0.07, 0.015), (0, -0.07, 1))
-    solids = {"lamp": foot + cylinder(0.01, (0, 0.05, 0.02), (0, 0.05, 0.6))}
-    solids["knob"] = cylinder(0.005, (0, -0.07, 0.0152), (0, -0.07, 0.04)) + cylinder(
-        0.012, (0, -0.07, 0.0302), (0, -0.07, 0.045)
-    )
-    joints = [turning("lamp", "knob", -Z, (0, -0.07, 0.03), (0.0, 4.7))]
-    for k in range(3):
-        solids[f"link_{k}"] = box((-0.02, 0.061 + 0.05 * k, 0.5), (0.02, 0.11 + 0.05 * k, 0.52))
-        above = f"link_{k - 1}" if k else "lamp"
-        joints.append(turning(above, f"link_{k}", Z, (0, 0.061 + 0.05 * k, 0.5), (-1, 1)))
-    scene = scene_of(known_object("lamp", solids, *joints), "knob")
-    assert scene.serial
-    assert clockwise_sign(scene, -Z) > 0.0
-    assert clockwise_sign(scene, Z) < 0.0

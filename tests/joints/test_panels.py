@@ -7,12 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kinematify.generate.procedural.solids import box, cylinder
+from kinematify.generate.procedural.solids import box
 from kinematify.joints.features.ranking import Ranked
-from kinematify.joints.features.turn_cues import BEARING_BONUS, CAP, WEIGHTS
-from kinematify.joints.hypotheses.propose import propose
-from tests.joints.joint_scenes import CONFIG, infer_joints, ranked_turns, scene_of
-from tests.known import KnownObject, known_object, turning
+from tests.joints.joint_scenes import infer_joints, ranked_turns, scene_of
+from tests.known import known_object, turning
 from tests.objects import BUILDERS
 
 
@@ -22,7 +20,7 @@ def off_line(axis: np.ndarray, pivot: np.ndarray, line_axis: np.ndarray, line_pi
     return angle, float(np.linalg.norm(np.cross(pivot - line_pivot, line_axis)))
 
 
-@pytest.mark.parametrize("name", ["edge_door", "laptop", "piano_box", "hinge_pin", "knob", "barrel_hinge_door"])
+@pytest.mark.parametrize("name", ["edge_door", "hinge_pin", "barrel_hinge_door"])
 def test_the_true_line_is_among_the_candidates_and_wins(name: str) -> None:
     known = BUILDERS[name]()
     joint = known.joints[0]
@@ -31,14 +29,6 @@ def test_the_true_line_is_among_the_candidates_and_wins(name: str) -> None:
     angle, distance = off_line(ranked.lines.axes[0], ranked.lines.pivots[0], joint.axis, joint.pivot)
     assert angle < 2.0
     assert distance < 0.04 * scene.diagonal
-
-
-def test_box_lines_hold_every_edge_and_the_middle() -> None:
-    known = BUILDERS["edge_door"]()
-    scene = scene_of(known, known.joints[0].child)
-    proposed = propose(scene, CONFIG.joints)
-    assert proposed.sources.count("box_edge") == 27
-    np.testing.assert_allclose(np.linalg.norm(proposed.axes[1:], axis=1), 1.0)
 
 
 def door_with_handle(side: float) -> object:
@@ -58,30 +48,6 @@ def test_the_hinge_is_opposite_the_handle(side: float) -> None:
     assert np.sign(ranked.lines.pivots[0][0]) == -side
 
 
-def trolley(rise: float) -> KnownObject:
-    """A cart whose wheels fill square wells, `rise` above the feet that it stands on."""
-    body, wheels, joints = box((-0.3, -0.2, 0.02), (0.3, 0.2, 0.3)), {}, []
-    for k, x in enumerate((-0.2, 0.2)):
-        body -= box((x - 0.0502, -0.2202, -1), (x + 0.0502, -0.1698, 0.1002))
-        wheels[f"wheel_{k}"] = cylinder(0.05, (x, -0.22, 0.05), (x, -0.17, 0.05))
-        joints.append(turning("cart", f"wheel_{k}", (0, 1, 0), (x, 0, 0.05), (-np.inf, np.inf)))
-    foot = box((-0.02, 0.15, -rise), (0.02, 0.19, 0.03))
-    return known_object("trolley", {"cart": body + foot, **wheels}, *joints)
-
-
-@pytest.mark.parametrize("rise", [0.0, 0.1])
-def test_only_what_stands_on_the_floor_rolls_and_only_about_its_axle(rise: float) -> None:
-    ranked = ranked_turns(scene_of(trolley(rise), "wheel_0"))
-    along = np.abs(ranked.lines.axes[:, 1]) > 0.99
-    off = np.linalg.norm(ranked.lines.pivots[:, [0, 2]] - (-0.2, 0.05), axis=1)
-    rolling = ranked.cues["rolling"] > 0
-    if rise > 0:
-        assert not rolling.any()
-    else:
-        assert rolling.any()
-        assert (along[rolling] & (off[rolling] < 0.02)).all()
-
-
 def weak_evidence(*axes_and_scores: tuple[tuple[float, float, float], float]) -> Ranked:
     """The elbow of an arm whose bearing lines are those given, all too weak to decide."""
     known = BUILDERS["serial_arm"]()
@@ -94,14 +60,6 @@ def weak_evidence(*axes_and_scores: tuple[tuple[float, float, float], float]) ->
     return ranked_turns(weak)
 
 
-def test_lines_that_score_alike_count_alike() -> None:
-    ranked = weak_evidence(((0.6, 0.0, 0.8), 0.005), ((0.6, 0.0, -0.8), 0.004))
-    found = [k for k, source in enumerate(ranked.lines.sources) if source == "weak_bearing"]
-    near = 1.0 - ranked.cues["contact_radius"][found]
-    shares = ranked.cues["mechanism_bearing"][found] / near
-    np.testing.assert_allclose(sorted(shares), (0.8, 1.0))
-
-
 def test_axes_of_machines_run_along_their_parts() -> None:
     ranked = weak_evidence(((0.6, 0.0, 0.8), 0.005), ((0.0, 1.0, 0.0), 0.0045), ((1.0, 0.0, 0.0), 0.0045))
     square = {
@@ -111,16 +69,6 @@ def test_axes_of_machines_run_along_their_parts() -> None:
     }
     assert square == {(0.6, 0.0, 0.8): 0.0, (0.0, 1.0, 0.0): 1.0, (1.0, 0.0, 0.0): 1.0}
     assert ranked.cues["square"][np.array(ranked.lines.sources) == "box_edge"].max() == 0.0
-
-
-def test_no_cue_exceeds_the_cap() -> None:
-    known = BUILDERS["edge_door"]()
-    scene = scene_of(known, known.joints[0].child)
-    ranked = ranked_turns(scene)
-    assert set(ranked.cues) == set(WEIGHTS)
-    total = sum(np.clip(WEIGHTS[name] * value, -CAP, CAP) for name, value in ranked.cues.items())
-    bonus = BEARING_BONUS * np.array([source == "bearing" for source in ranked.lines.sources])
-    np.testing.assert_allclose(ranked.scores, total + bonus * scene.has_bearing, atol=1e-9)
 
 
 def test_thick_high_doors_side_by_side_are_hinged_at_their_outer_edges() -> None:

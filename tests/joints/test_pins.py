@@ -7,16 +7,11 @@ import pytest
 
 from kinematify.config import load_config
 from kinematify.joints.bearings.scores import BearingLine
-from kinematify.joints.features.pins import EdgePins, coaxial_carriers, find_pins, on_cycles
+from kinematify.joints.features.pins import coaxial_carriers, find_pins
 from tests.joints.joint_scenes import evidence
 from tests.joints.test_edges import clock
 
 CONFIG = load_config()
-
-
-def test_only_edges_of_cycles_can_be_replaced() -> None:
-    assert on_cycles([(0, 1), (1, 2), (0, 2), (2, 3)], 4) == [(0, 1), (1, 2), (0, 2)]
-    assert on_cycles([(0, 1)], 2) == []
 
 
 def bearing(pivot: tuple[float, float, float], axis: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> BearingLine:
@@ -38,13 +33,3 @@ def test_hands_of_a_clock_pass_each_other() -> None:
     _, graph, bearings = evidence(known)
     pins = find_pins(known.assembly, graph, bearings, CONFIG)
     assert (known.index["hand_0"], known.index["hand_1"]) in pins.passing
-
-
-def test_nothing_is_asked_of_a_chain() -> None:
-    known = clock()
-    _, graph, bearings = evidence(known)
-    case = known.index["case"]
-    chain = {edge: bearing for edge, bearing in bearings.items() if case in edge}
-    edges = tuple(edge for edge in graph.edges if case in (edge.a, edge.b))
-    one = type(graph)(n_parts=graph.n_parts, edges=edges, clusters=graph.clusters, tolerance=graph.tolerance)
-    assert find_pins(known.assembly, one, chain, CONFIG) == EdgePins()

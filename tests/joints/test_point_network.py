@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import torch
 
 from benchmarks.fit.point_network import unfitted_model, written
 from kinematify.joints.candidate import ELSEWHERE, FIXED, SLIDE, TURN, Hypotheses
-from kinematify.joints.choice.point_network import LINE_INPUTS, POINT_INPUTS, point_inputs
-from kinematify.joints.choice.scorer import shipped_scorer
+from kinematify.joints.choice.point_network import point_inputs
 from kinematify.joints.features.workspace import CARRIED, CHILD, OTHER, PARENT, Cloud
 
 
@@ -47,36 +44,6 @@ def some_hypotheses(seed: int) -> Hypotheses:
 MOVING = np.arange(1, 9)
 
 
-def test_inputs_know_no_sign_of_an_axis_and_no_heading() -> None:
-    cloud, hypotheses = some_cloud(0), some_hypotheses(1)
-    points, lines = point_inputs(cloud, hypotheses, MOVING)
-    assert points.shape == (8, len(cloud.points), POINT_INPUTS)
-    assert lines.shape == (8, LINE_INPUTS)
-    turned = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
-    moved = replace(
-        cloud,
-        points=cloud.points @ turned.T + 2.0,
-        normals=cloud.normals @ turned.T,
-        centre=turned @ cloud.centre + 2.0,
-        parent_centre=turned @ cloud.parent_centre + 2.0,
-    )
-    reversed_ = replace(hypotheses, axes=-hypotheses.axes @ turned.T, pivots=hypotheses.pivots @ turned.T + 2.0)
-    for mine, yours in zip((points, lines), point_inputs(moved, reversed_, MOVING), strict=True):
-        np.testing.assert_allclose(mine, yours, atol=1e-5)
-
-
-def test_a_slide_has_no_line_of_its_own_and_a_turn_is_the_same_from_any_point_of_its_line() -> None:
-    cloud, hypotheses = some_cloud(2), some_hypotheses(3)
-    along = hypotheses.pivots + 0.7 * hypotheses.axes
-    along[hypotheses.kinds == SLIDE] += 0.3
-    for mine, yours in zip(
-        point_inputs(cloud, hypotheses, MOVING),
-        point_inputs(cloud, replace(hypotheses, pivots=along), MOVING),
-        strict=True,
-    ):
-        np.testing.assert_allclose(mine, yours, atol=1e-5)
-
-
 @pytest.mark.parametrize("others", [True, False])
 def test_arrays_say_what_the_fitted_network_says(others: bool) -> None:
     torch.manual_seed(0)
@@ -92,15 +59,3 @@ def test_arrays_say_what_the_fitted_network_says(others: bool) -> None:
     found = written(models).log_probabilities(cloud, hypotheses)
     assert found[0] == -np.inf
     np.testing.assert_allclose(found[1:], wanted, atol=5e-3)  # written with half the digits
-
-
-def test_points_move_nothing_between_what_is_fixed_and_what_moves() -> None:
-    torch.manual_seed(1)
-    cloud, hypotheses = some_cloud(6), some_hypotheses(7)
-    shipped = shipped_scorer()
-    odds = {"rules_score": np.linspace(-2.0, 0.0, 9), "rules_odds": np.zeros(9)}
-    without = replace(shipped, points=None).probabilities(hypotheses, odds, cloud)
-    seen = replace(shipped, points=written([unfitted_model().eval()])).probabilities(hypotheses, odds, cloud)
-    assert seen[0] == pytest.approx(without[0])
-    assert seen.sum() == pytest.approx(1.0)
-    assert not np.allclose(seen[1:], without[1:])

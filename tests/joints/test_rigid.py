@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
 import trimesh
 
-from benchmarks.fit.fragmentation import with_pieces_broken_off
 from kinematify.assembly.part import Assembly, Part
-from kinematify.assembly.truth import GroundTruth
 from kinematify.contact.build_graph import build_contact_graph
 from kinematify.contact.tree import KinematicTree
 from kinematify.geometry.surface import part_surfaces
@@ -69,23 +65,3 @@ def test_names_move_the_odds_by_a_bounded_term() -> None:
     named, _ = estimated(cupboard("drawer", "part_002"))
     gained = named.evidence["odds_prismatic"] - silent.evidence["odds_prismatic"]
     assert 0.0 < gained <= CONFIG.joints.confidence.name_weight + CONFIG.joints.confidence.cues_lead + 1e-6
-
-
-def test_pieces_that_are_broken_off_are_fixed_in_the_truth_and_nothing_is_lost() -> None:
-    door, grip = cupboard("part_001", "part_002").parts[1:]
-    pieces = (trimesh.Trimesh(door.vertices, door.faces), trimesh.Trimesh(grip.vertices, grip.faces))
-    whole = part("door", *pieces)
-    truth = GroundTruth(
-        name="door",
-        part_names=("door",),
-        part_links=(("door",),),
-        joints=(),
-        dropped=(),
-        pose="rest",
-        seed=0,
-        yaw_deg=0.0,
-    )
-    parts, broken = with_pieces_broken_off([whole], truth, np.random.default_rng(0))
-    assert [joint.kind for joint in broken.joints] == [JointType.FIXED]
-    assert broken.parents == (-1, 0)
-    assert [piece.area for piece in parts] == pytest.approx([door.area, grip.area])

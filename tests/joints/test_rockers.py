@@ -71,10 +71,3 @@ def test_a_rocker_tips_about_its_fold(level: bool) -> None:
 def test_other_fronts_have_no_fold(shape: str) -> None:
     scene = scene_of(switch(shape), "rocker")
     assert find_fold(scene.cache.samples(scene.child), scene.frame, CONFIG.joints.rockers) is None
-
-
-def test_the_fold_tells_the_turns_that_make_its_halves_level() -> None:
-    scene = scene_of(switch(), "rocker")
-    assert scene.fold is not None
-    turns = np.sort(scene.fold.turns_level(np.array([0.0, -1.0, 0.0])))
-    assert turns == pytest.approx([-LEAN, LEAN], abs=np.radians(0.5))

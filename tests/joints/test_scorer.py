@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 from benchmarks.fit.trees import recipe_key
-from kinematify.errors import EnvironmentFault
-from kinematify.joints.choice import scorer as scorer_module
 from kinematify.joints.choice.decide import edge_features
 from kinematify.joints.choice.judge import judge
 from kinematify.joints.choice.scorer import shipped_scorer
@@ -20,8 +17,6 @@ from tests.joints.joint_scenes import CONFIG, evidence
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from kinematify.joints.features.columns import Features
     from kinematify.joints.features.workspace import Cloud
 
@@ -79,17 +74,3 @@ def test_the_choice_is_the_first_alternative() -> None:
     first = judged.alternatives(CONFIG.joints.alternatives)[0]
     np.testing.assert_array_equal(first.axis, judged.hypotheses.axes[judged.best])
     assert 0.0 < judged.confidence <= 1.0
-
-
-@pytest.mark.parametrize("fault", ["missing", "damaged", "format"])
-def test_weights_that_cannot_be_used_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fault: str) -> None:
-    path = tmp_path / scorer_module.WEIGHTS
-    if fault == "damaged":
-        path.write_bytes(b"PK no archive")
-    if fault == "format":
-        shipped = np.load(scorer_module.files("kinematify.joints.choice") / scorer_module.WEIGHTS)
-        facts = json.loads(str(shipped["facts"])) | {"format": 0}
-        np.savez(path, **{**{name: shipped[name] for name in shipped.files}, "facts": json.dumps(facts)})
-    monkeypatch.setattr(scorer_module, "files", lambda package: tmp_path)
-    with pytest.raises(EnvironmentFault, match="kinematify fit"):
-        shipped_scorer.__wrapped__()

@@ -5,27 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.joints.features.slide_cues import WEIGHTS
-from tests.joints.joint_scenes import CONFIG, ranked_slides, scene_of
+from tests.joints.joint_scenes import ranked_slides, scene_of
 from tests.objects import BUILDERS, with_yaw
 
 
 @pytest.mark.parametrize("yaw", [0.0, 0.6])
-@pytest.mark.parametrize("name", ["drawer", "sliding_lid", "square_lift", "round_lift", "button"])
+@pytest.mark.parametrize("name", ["drawer", "sliding_lid", "square_lift"])
 def test_the_true_direction_wins(name: str, yaw: float) -> None:
     known = with_yaw(BUILDERS[name](), yaw)
     joint = known.joints[0]
     ranked = ranked_slides(scene_of(known, joint.child))
     assert abs(float(ranked.axes[0] @ joint.axis)) > np.cos(np.radians(1.0))
-
-
-def test_candidates_are_distinct_directions() -> None:
-    known = BUILDERS["drawer"]()
-    ranked = ranked_slides(scene_of(known, "drawer"))
-    cosines = np.abs(ranked.axes @ ranked.axes.T) - np.eye(len(ranked.axes))
-    assert cosines.max() < np.cos(np.radians(CONFIG.joints.slides.distinct_deg))
-    assert set(ranked.cues) == set(WEIGHTS)
-    assert list(ranked.scores) == sorted(ranked.scores, reverse=True)
 
 
 def test_a_drawer_leaves_by_the_front_and_stops_at_the_back() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinematify.generate.procedural.solids import box
-from kinematify.joints.features.motion_test import Sweep, moving_points, sweep_slides, sweep_turns
+from kinematify.joints.features.motion_test import moving_points, sweep_slides, sweep_turns
 from tests.joints.joint_scenes import CONFIG, scene_of
 from tests.known import known_object, sliding
 from tests.objects import BUILDERS
@@ -54,23 +54,3 @@ def test_a_door_opens_outwards_and_not_inwards() -> None:
     outwards, inwards = sweep.free(SWEEP.share)[0]
     assert outwards > np.radians(80.0)
     assert inwards < np.radians(10.0)
-
-
-def test_free_is_a_weighted_quantile_and_joining_takes_the_nearer_stop() -> None:
-    hits = np.array([[[0.1, 0.2, 0.3, np.inf], [np.inf] * 4]])
-    sweep = Sweep(hits=hits, counted=np.ones((1, 4)), limit=1.0)
-    assert sweep.free(0.2)[0].tolist() == [0.1, 1.0]
-    assert sweep.free(0.3)[0].tolist() == [0.2, 1.0]
-    assert sweep.crossed(0.25)[0].tolist() == [0.5, 0.0]
-    closer = Sweep(hits=np.full((1, 2, 4), 0.05), counted=np.ones((1, 4)), limit=1.0)
-    assert sweep.joined(closer).free(0.03)[0].tolist() == [0.05, 0.05]
-
-
-def test_points_near_the_axis_are_exempt() -> None:
-    known = BUILDERS["edge_door"]()
-    scene = scene_of(known, known.joints[0].child)
-    points = moving_points(scene.cache, scene.child, SWEEP)
-    joint = known.joints[0]
-    sweep = sweep_turns(scene.cache, points, joint.axis[None], joint.pivot[None], (), limit=0.1, config=SWEEP)
-    radius = np.linalg.norm(np.cross(points - joint.pivot, joint.axis), axis=1)
-    np.testing.assert_array_equal(sweep.counted[0] > 0, radius > SWEEP.hinge_zone * radius.max())

@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.fit.trees import turning_recipe_key
 from kinematify.generate.procedural.solids import box, cylinder
-from kinematify.joints.choice.opening import is_continuous, turning_columns
+from kinematify.joints.choice.opening import is_continuous
 from kinematify.joints.choice.scorer import TURNING_WEIGHTS, shipped_scorer
 from tests.joints.joint_scenes import scene_of
 from tests.known import known_object, turning
@@ -35,11 +35,6 @@ def test_a_door_does_not() -> None:
     joint = turning("shell", "door", -Z, (0.0, -0.01, 0.4), (0.0, 1.6))
     known = known_object("cabinet", {"shell": shell, "door": box((0, -0.021, 0), (0.6, -0.001, 0.8))}, joint)
     assert not is_continuous(scene_of(known, "door"), -Z, np.array([0.0, -0.01, 0.4]), np.array([3.0, 0.0]))
-
-
-def test_what_is_not_finite_never_reaches_the_trees() -> None:
-    columns = turning_columns({"a": np.array([0.0, np.inf]), "b": np.array([0.0, 2.0])}, 1, ("a", "b", "absent"))
-    np.testing.assert_array_equal(columns, np.array([np.nan, 2.0, np.nan], dtype=np.float32))
 
 
 def test_the_weights_are_of_the_recipe() -> None:

@@ -21,18 +21,6 @@ def test_what_is_likelier_for_all_together_is_likelier_for_each() -> None:
         assert found[3] > 0.5
 
 
-def test_within_a_type_nothing_changes() -> None:
-    first, second = np.array([0.1, 0.5, 0.2, 0.2]), np.array([0.1, 0.1, 0.1, 0.7])
-    found = agreed([KINDS, KINDS], [first, second])
-    assert found[0][1] / found[0][2] == pytest.approx(2.5)
-    assert found[1][1] / found[1][2] == pytest.approx(1.0)
-
-
-def test_one_part_cannot_rule_out_a_type_for_all() -> None:
-    never, sure = np.array([0.0, 1.0, 0.0, 0.0]), np.array([0.0, 0.0, 0.0, 1.0])
-    assert all(np.isfinite(found).all() for found in agreed([KINDS, KINDS], [never, sure]))
-
-
 def test_fingers_of_one_hand_are_alike_and_get_one_type() -> None:
     known = BUILDERS["parallel_gripper"]()
     tree, graph, _ = evidence(known)
@@ -42,8 +30,3 @@ def test_fingers_of_one_hand_are_alike_and_get_one_type() -> None:
     ]
     estimates = infer_joints(known)
     assert len({estimates[known.parts[child].name].kind for _, child in groups[0]}) == 1
-
-
-def test_parts_of_different_shape_are_not_alike() -> None:
-    tree, graph, _ = evidence(BUILDERS["edge_door"]())
-    assert alike_edges(graph, tree) == []

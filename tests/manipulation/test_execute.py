@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from kinematify.manipulation.execute import Execution, Loaded, Motion, execute, load, timed
+from kinematify.manipulation.execute import Execution, Loaded, execute, load, timed
 from kinematify.manipulation.film import write_film
-from kinematify.manipulation.grip import grip_piece
 from kinematify.manipulation.plan_request import Hold
 from tests.manipulation import furniture
 
@@ -43,11 +42,6 @@ def changed(loaded: Loaded, **changes: object) -> Loaded:
     return replace(loaded, motion=replace(loaded.motion, **changes))
 
 
-def elsewhere(motion: Motion, T: np.ndarray) -> dict[str, np.ndarray]:
-    """Both models moved together."""
-    return {"T_world_base": T @ motion.T_world_base, "T_world_object": T @ motion.T_world_object}
-
-
 def test_timing_keeps_the_speed_limits_and_ends_at_rest(drawer: tuple[Loaded, Path]) -> None:
     loaded = drawer[0]
     fastest = loaded.fastest(EXECUTION)
@@ -58,12 +52,6 @@ def test_timing_keeps_the_speed_limits_and_ends_at_rest(drawer: tuple[Loaded, Pa
     assert reference.arm[reference.grasped] == pytest.approx(loaded.motion.pull[0])
     assert np.abs(reference.speed[-1]).max() == pytest.approx(0.0, abs=1e-9)
     assert 0 < reference.grasped < reference.pulls < reference.arrives < reference.steps
-
-
-def test_a_reach_that_is_already_there_takes_no_time(drawer: tuple[Loaded, Path]) -> None:
-    motion = drawer[0].motion
-    reference = timed(replace(motion, reach=motion.reach[-1:]), np.ones(7), EXECUTION, 0.002)
-    assert reference.grasped == 1
 
 
 @pytest.mark.parametrize("hold", list(Hold))
@@ -86,13 +74,6 @@ def test_pybullet_agrees(drawer: tuple[Loaded, Path], door: Loaded) -> None:
         result = execute(loaded, EXECUTION, engine="pybullet", hold=Hold.WELD)
         assert result.success, result.reason
         assert result.share == pytest.approx(1.0, abs=0.03)
-
-
-def test_where_the_world_has_its_origin_plays_no_part(door: Loaded) -> None:
-    T = np.eye(4)
-    T[:2, :2], T[:2, 3] = [[0.0, -1.0], [1.0, 0.0]], [3.0, -2.0]
-    result = execute(changed(door, **elsewhere(door.motion, T)), EXECUTION, engine="mujoco", hold=Hold.WELD)
-    assert result.success, result.reason
 
 
 def test_a_joint_that_is_locked_does_not_open(drawer: tuple[Loaded, Path]) -> None:
@@ -129,23 +110,6 @@ def test_an_arm_that_goes_through_the_object_is_noticed(drawer: tuple[Loaded, Pa
     assert not result.success
     assert result.depth > 0.0
     assert result.deepest is not None
-
-
-def test_pads_press_on_what_lies_between_them(drawer: tuple[Loaded, Path]) -> None:
-    """A bar that is 12 mm thick; the piece is cut to the size of the pads."""
-    loaded = drawer[0]
-    grasp = loaded.motion.grasp
-    vertices, faces = grip_piece(loaded.object, loaded.held, {"slide": 0.0}, grasp, EXECUTION)
-    local = (vertices - grasp.T_link_grasp[:3, 3]) @ grasp.T_link_grasp[:3, :3]
-    assert np.ptp(local[:, 1]) == pytest.approx(grasp.width, abs=1e-4)
-    assert np.ptp(local[:, 0]) == pytest.approx(EXECUTION.pad_width, abs=1e-4)
-    assert faces.max() < len(vertices)
-
-
-def test_runs_repeat(drawer: tuple[Loaded, Path], pulled: Execution) -> None:
-    again = execute(drawer[0], EXECUTION, engine="mujoco", hold=Hold.CONTACT)
-    assert again.share == pulled.share
-    assert again.frames[-1].robot == pulled.frames[-1].robot
 
 
 def test_the_film_moves_and_the_still_has_three_panels(drawer: tuple[Loaded, Path], pulled: Execution) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,14 +16,12 @@ from kinematify.manipulation.kinematics import Arm
 from kinematify.manipulation.manipulator import builtin_robot
 from kinematify.manipulation.plan_request import PULL, Failure, TaskRequest
 from kinematify.manipulation.planning import PullPlan, depend, plan_pull
-from kinematify.manipulation.pull import Puller
 from kinematify.manipulation.robot_place import object_motion
-from kinematify.manipulation.sampling_planner import search_manifold
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.validation.finding import Cause, Severity, Status
 from kinematify.validation.run import validate
-from tests.manipulation.furniture import SETTINGS, write_covered_drawer, write_door_cabinet, write_drawer_cabinet
+from tests.manipulation.furniture import SETTINGS, write_covered_drawer, write_drawer_cabinet
 
 PLAN = SETTINGS.task.plan
 
@@ -100,28 +96,6 @@ def test_way_to_the_grasp_is_free_of_collisions_between_its_rows_too(
             assert hit is None, hit
 
 
-def test_arm_opens_a_door(arm: Arm, tmp_path: Path) -> None:
-    plan = plan_pull(arm, scene_of(write_door_cabinet(tmp_path / "cabinet.urdf")), "hinge", SETTINGS.task)
-    assert plan.failure is None
-    assert plan.fraction >= PLAN.opened
-
-
-def test_manifold_search_keeps_the_constraint(arm: Arm, drawer: Scene, drawer_plan: PullPlan) -> None:
-    """OMPL's atlas finds its own way from the first posture of a known pull to its last."""
-    plan = drawer_plan
-    assert plan.place is not None
-    assert plan.pull is not None
-    world = CollisionWorld(arm, drawer, "slide", PLAN)
-    world.place(plan.place.T_world_base, plan.T_world_object, column=plan.on_column)
-    motion = object_motion(drawer, "slide", 0.25, PLAN)
-    puller = Puller(arm, world, motion, PLAN)
-    states = search_manifold(puller, plan.place, np.append(plan.pull[0], 0.0), [np.append(plan.pull[-1], 1.0)], seed=0)
-    assert states is not None
-    targets = puller.targets(plan.place)
-    for state in (*states, *(0.5 * (states[1:] + states[:-1]))):
-        assert np.linalg.norm(arm.error(state[:-1], puller.target_at(targets, state[-1]))) < 2e-3
-
-
 def test_drawer_that_slides_sideways_points_to_its_joint(arm: Arm, tmp_path: Path) -> None:
     scene = scene_of(write_drawer_cabinet(tmp_path / "cabinet.urdf", axis="0 1 0"))
     plan = plan_pull(arm, scene, "slide", SETTINGS.task)
@@ -138,18 +112,6 @@ def test_handle_wider_than_the_gripper_is_no_hold(arm: Arm, tmp_path: Path) -> N
 def test_grasp_beside_the_object_is_refused(arm: Arm, drawer: Scene) -> None:
     with pytest.raises(InputError, match="grasp point"):
         plan_pull(arm, drawer, "slide", SETTINGS.task, point=np.array([3.0, 0.0, 0.0]))
-
-
-def test_place_that_is_given_is_kept(arm: Arm, drawer: Scene, drawer_plan: PullPlan) -> None:
-    far = np.eye(4)
-    far[0, 3] = 5.0
-    assert plan_pull(arm, drawer, "slide", SETTINGS.task, base=far).failure is Failure.NO_REACH
-    assert drawer_plan.place is not None
-    T_object_base = np.linalg.inv(drawer_plan.T_world_object) @ drawer_plan.place.T_world_base
-    given = plan_pull(arm, drawer, "slide", SETTINGS.task, base=T_object_base)
-    assert given.failure is None
-    assert given.place is not None
-    assert np.allclose(given.place.T_world_base, drawer_plan.place.T_world_base, rtol=0.0, atol=1e-12)
 
 
 def test_door_is_opened_before_the_drawer_behind_it(arm: Arm, tmp_path: Path) -> None:
@@ -169,37 +131,6 @@ def test_door_is_opened_before_the_drawer_behind_it(arm: Arm, tmp_path: Path) ->
     for poses, q in ((motion.body_poses[0], drawer.pull[0]), (motion.body_poses[-1], drawer.pull[-1])):
         world.pose_object(poses, drawer.place.grasp.spread)
         assert world.hit(q, holding=True) is None
-
-
-def test_drawer_stays_covered_where_the_door_opens_too_little_or_not_at_all(arm: Arm, tmp_path: Path) -> None:
-    ajar = scene_of(write_covered_drawer(tmp_path / "ajar.urdf", door='lower="-0.3" upper="0"'))
-    plan = plan_pull(arm, ajar, "slide", SETTINGS.task)
-    assert plan.failure is Failure.COVERED
-    assert not plan.first
-    assert plan.stop is not None
-    assert plan.stop.pair == ("part_3", "part_9")
-    door = replace(plan, joint="hinge", failure=Failure.NO_REACH)
-    drawer = replace(plan, failure=None, first={"hinge": -1.4})
-    held_up = depend([door, drawer])[1]
-    assert held_up.failure is Failure.COVERED
-    assert "hinge has to be opened first" in held_up.words
-
-
-def test_fresh_process_makes_the_same_plan(tmp_path: Path) -> None:
-    """Both plans in processes of their own: OMPL takes one seed in each."""
-    urdf = write_drawer_cabinet(tmp_path / "cabinet.urdf")
-    program = (
-        "import sys, hashlib; from pathlib import Path; import numpy as np\n"
-        "from tests.manipulation.test_planning import *\n"
-        "arm = Arm(builtin_robot(), PLAN)\n"
-        f"plan = plan_pull(arm, scene_of(Path({str(urdf)!r})), 'slide', SETTINGS.task)\n"
-        "print(hashlib.sha256(plan.reach.tobytes() + plan.pull.tobytes()).hexdigest())\n"
-    )
-    said = [
-        subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True) for _ in range(2)
-    ]
-    assert said[0].stdout == said[1].stdout != ""
-    assert "leaked" not in said[0].stderr
 
 
 @pytest.mark.parametrize(("axis", "verdict"), [("-1 0 0", "pass"), ("0 1 0", "fail")])

@@ -35,24 +35,6 @@ def tool_pose(robot: TaskRobot, arm: tuple[float, ...], fingers: tuple[float, ..
     return {frame.name: data.oMf[index].homogeneous.copy() for index, frame in enumerate(model.frames)}
 
 
-def test_the_arm_has_seven_turning_joints_and_two_fingers(arm: TaskRobot) -> None:
-    model = pin.buildModelFromUrdf(str(arm.urdf))
-    assert model.nq == 9
-    assert len(arm.arm_joints) == 7
-    assert "mesh" not in arm.urdf.read_text()
-
-
-def test_the_arm_reaches_as_far_as_research_arms(arm: TaskRobot) -> None:
-    model = pin.buildModelFromUrdf(str(arm.urdf))
-    data, rng = model.createData(), np.random.default_rng(0)
-    shoulder = np.array([0.0, 0.0, 0.33])
-    far = 0.0
-    for _ in range(2000):
-        pin.framesForwardKinematics(model, data, rng.uniform(model.lowerPositionLimit, model.upperPositionLimit))
-        far = max(far, float(np.linalg.norm(data.oMf[model.getFrameId(arm.tool)].translation - shoulder)))
-    assert 0.8 < far < 1.05
-
-
 def test_neighbours_of_the_arm_touch_in_no_configuration(arm: TaskRobot) -> None:
     scene = read_scene(read_robot(arm.urdf), load_settings().geometry)
     rng = np.random.default_rng(1)
@@ -61,20 +43,6 @@ def test_neighbours_of_the_arm_touch_in_no_configuration(arm: TaskRobot) -> None
     overlap = OverlapQueries(scene)
     for connection in scene.connections:
         assert not overlap.collide(connection.pair, relative(poses, connection.pair)).any(), scene.name(connection.pair)
-
-
-def test_the_tool_stands_between_the_tips_and_looks_along_the_fingers(arm: TaskRobot) -> None:
-    poses = tool_pose(arm, arm.home, arm.fingers_open)
-    into_tool = np.linalg.inv(poses[arm.tool])
-    left, right = (into_tool @ poses[f"{side}_finger"] for side in ("left", "right"))
-    assert left[1, 3] - right[1, 3] == pytest.approx(arm.opening, abs=2e-3)
-    assert left[2, 3] < 0.0
-    assert left[:3, 3] * [1, -1, 1] == pytest.approx(right[:3, 3])
-
-
-def test_fingers_meet_when_closed(arm: TaskRobot) -> None:
-    poses = tool_pose(arm, arm.home, arm.fingers_closed)
-    assert poses["left_finger"][:3, 3] == pytest.approx(poses["right_finger"][:3, 3], abs=1e-9)
 
 
 def test_mass_of_every_link_lies_in_its_shapes(arm: TaskRobot) -> None:

@@ -8,11 +8,9 @@ import numpy as np
 import pytest
 
 from kinematify.errors import InputError
-from kinematify.manipulation.real_size import SIZES, category_of, is_normalised, sizing, write_scaled
+from kinematify.manipulation.real_size import category_of, is_normalised, sizing, write_scaled
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
-from tests.manipulation import furniture
-from tests.places import BENCH
 
 
 def box_of(extent: float, *, stands: bool = True) -> np.ndarray:
@@ -38,21 +36,6 @@ def test_categories_are_whole_words(path: str, name: str, category: str | None) 
     assert category_of(Path("/nowhere/at/all") / path, name) == category
 
 
-def test_sizes_are_ordered() -> None:
-    assert all(0.0 < size.least < size.common < size.most for size in SIZES.values())
-
-
-def test_a_plausible_size_stays() -> None:
-    assert sizing(Path("/a/b/c.urdf"), "oven", box_of(0.6)).factor == 1.0
-    assert sizing(Path("/a/b/c.urdf"), "thing", box_of(0.6)).factor == 1.0
-
-
-def test_millimetres_are_noticed() -> None:
-    assert 400.0 * sizing(Path("/a/b/c.urdf"), "microwave", box_of(400.0)).factor == pytest.approx(0.52)
-    with pytest.raises(InputError, match=r"--scale 0\.001"):
-        sizing(Path("/a/b/c.urdf"), "thing", box_of(400.0))
-
-
 def test_unit_shapes_are_brought_to_their_real_size() -> None:
     box = box_of(1.2, stands=False)
     assert is_normalised(box)
@@ -65,10 +48,6 @@ def test_unit_shapes_are_brought_to_their_real_size() -> None:
 def test_a_scale_must_be_a_factor(scale: float) -> None:
     with pytest.raises(InputError, match="--scale"):
         sizing(Path("/a/b/c.urdf"), "cabinet", box_of(1.0), scale=scale)
-
-
-def test_the_scale_of_the_user_wins() -> None:
-    assert sizing(Path("/a/b/c.urdf"), "cabinet", box_of(1.2, stands=False), scale=0.5).factor == 0.5
 
 
 LINKAGE = """<robot name="r">
@@ -103,19 +82,3 @@ def test_a_scaled_copy_moves_like_the_original(tmp_path: Path) -> None:
     for link in ("a", "b", "c"):
         one, other = (model.link_by_name[link].visuals[0].mesh.vertices for model in (first, second))
         assert other == pytest.approx(0.25 * one, abs=1e-12)
-
-
-def test_factor_one_changes_no_number(tmp_path: Path) -> None:
-    urdf = furniture.write_door_cabinet(tmp_path / "c.urdf")
-    write_scaled(urdf, 1.0, tmp_path / "s.urdf")
-    assert read_robot(tmp_path / "s.urdf").joint_by_name["hinge"].lower == -1.4
-
-
-@pytest.mark.skipif(not BENCH.is_dir(), reason="the benchmark folder is not here")
-def test_meshes_of_a_scaled_copy_are_found_and_scaled(tmp_path: Path) -> None:
-    urdf = BENCH / "everyday" / "oven_7138" / "model.urdf"
-    write_scaled(urdf, 0.5, tmp_path / "s.urdf")
-    first, second = read_robot(urdf), read_robot(tmp_path / "s.urdf")
-    for one, other in zip(first.links, second.links, strict=True):
-        for a, b in zip(one.visuals, other.visuals, strict=True):
-            assert b.mesh.vertices == pytest.approx(0.5 * a.mesh.vertices, abs=1e-9)

@@ -12,31 +12,11 @@ from lxml import etree
 from kinematify.cli.app import run
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
-from kinematify.geometry.overlap import OverlapQueries
-from kinematify.geometry.rest_pairs import DepthAllowance
-from kinematify.geometry.scene import read_scene
-from kinematify.geometry.together import looked_at, random_rows
 from kinematify.manipulation.manipulator import builtin_robot
-from kinematify.manipulation.srdf import DisableReason, disabled_pairs, write_srdf
+from kinematify.manipulation.srdf import disabled_pairs, write_srdf
 from kinematify.robot.read import read_robot
-from kinematify.validation.geometry.look import allowed_pairs
 
 SETTINGS = load_settings()
-STUCK = """<robot name="stuck">
-<link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
-<link name="arm"><collision><origin xyz="0.3 0 0"/><geometry><box size="0.3 0.05 0.05"/></geometry></collision></link>
-<link name="ring"><collision><origin xyz="0.4 0 0"/><geometry><box size="0.02 0.1 0.1"/></geometry></collision></link>
-<link name="cap"><collision><origin xyz="0 0 0"/><geometry><box size="0.05 0.05 0.05"/></geometry></collision></link>
-<link name="lamp"><collision><origin xyz="0 0 0.9"/><geometry><box size="0.05 0.05 0.05"/></geometry></collision></link>
-<joint name="j1" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
-<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
-<joint name="j2" type="prismatic"><parent link="base"/><child link="lamp"/><axis xyz="0 0 1"/>
-<limit lower="0" upper="0.1" effort="1" velocity="1"/></joint>
-<joint name="j3" type="prismatic"><parent link="lamp"/><child link="cap"/><origin xyz="0 0 0.12"/><axis xyz="0 0 1"/>
-<limit lower="0" upper="0.5" effort="1" velocity="1"/></joint>
-<joint name="j4" type="revolute"><parent link="base"/><child link="ring"/><axis xyz="0 0 1"/>
-<limit lower="-0.001" upper="0.001" effort="1" velocity="1"/></joint>
-</robot>"""
 
 
 @pytest.fixture(scope="module")
@@ -110,28 +90,6 @@ def test_a_pair_that_is_never_checked_never_meets(arm: tuple[Path, Path]) -> Non
         met += sum(pin.computeCollision(geometry, geometry_data, index) for index in never)
     assert never
     assert met == 0
-
-
-def test_every_reason_is_reported(tmp_path: Path) -> None:
-    (tmp_path / "r.urdf").write_text(STUCK)
-    found, enabled = disabled_pairs(read_robot(tmp_path / "r.urdf"), SETTINGS)
-    reasons = {frozenset(pair.links): pair.reason for pair in found}
-    assert reasons[frozenset(("base", "arm"))] is DisableReason.ADJACENT
-    assert reasons[frozenset(("arm", "ring"))] is DisableReason.DEFAULT
-    assert reasons[frozenset(("arm", "lamp"))] is DisableReason.NEVER
-    assert enabled + len(found) == 10
-
-
-def test_reasons_agree_with_those_of_kv3(tmp_path: Path) -> None:
-    (tmp_path / "r.urdf").write_text(STUCK)
-    model = read_robot(tmp_path / "r.urdf")
-    scene = read_scene(model, SETTINGS.geometry)
-    overlap = OverlapQueries(scene)
-    allowance = DepthAllowance(scene, overlap)
-    random = looked_at(scene, overlap, allowance, random_rows(scene, SETTINGS.seed))
-    tolerated = {frozenset(scene.name(pair)) for pair in allowed_pairs(scene, allowance, random)}
-    disabled = {frozenset(pair.links) for pair in disabled_pairs(model, SETTINGS)[0] if pair.reason != "Never"}
-    assert tolerated <= disabled
 
 
 def test_the_command_writes_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -5,13 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import trimesh
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from scipy.spatial.transform import Rotation
 
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
-from kinematify.geometry.convex import convex_hull, thickened
 from kinematify.model.masses import inertial_of
 from kinematify.robot.appearance import Appearance, Material
 from kinematify.robot.densities import density_of
@@ -101,55 +97,6 @@ def test_parts_without_volume_get_a_thickness(vertices):
     np.testing.assert_allclose(found.center_of_mass, np.mean(np.array(vertices), axis=0), atol=0.4)
 
 
-def test_thickness_of_a_flat_square_is_exact():
-    square = np.array([[0, 0, 5], [1, 0, 5], [1, 1, 5], [0, 1, 5.0]])
-    vertices, faces = convex_hull(thickened(square, 0.01))
-    np.testing.assert_allclose([vertices.min(0), vertices.max(0)], [[0, 0, 4.995], [1, 1, 5.005]])
-    assert trimesh.Trimesh(vertices, faces).volume == pytest.approx(0.01)
-    np.testing.assert_array_equal(thickened(vertices, 0.01 * (1 - 1e-9)), vertices)
-
-
-def random_hull(seed: int, count: int) -> tuple[np.ndarray, np.ndarray]:
-    return convex_hull(np.random.default_rng(seed).normal(size=(count, 3)) * [1.0, 0.6, 0.3])
-
-
-hulls = st.builds(random_hull, st.integers(0, 1000), st.integers(5, 40))
-rotations = st.integers(0, 1000).map(lambda seed: Rotation.random(random_state=seed).as_matrix())
-
-
-@settings(max_examples=40)
-@given(hull=hulls, rotation=rotations, shift=st.floats(-5, 5))
-def test_rotating_and_moving_the_part_rotates_the_tensor(hull, rotation, shift):
-    vertices, faces = hull
-    still = inertial(vertices, faces)
-    moved = inertial(vertices @ rotation.T + shift, faces, origin=np.full(3, shift))
-    assert_physical(still)
-    assert still.source == moved.source == "volume"
-    assert moved.mass == pytest.approx(still.mass, rel=1e-9)
-    np.testing.assert_allclose(moved.center_of_mass, rotation @ still.center_of_mass, atol=1e-9)
-    expected = rotation @ still.tensor @ rotation.T
-    np.testing.assert_allclose(moved.tensor, expected, atol=1e-9 * np.abs(expected).max())
-
-
-@settings(max_examples=40)
-@given(hull=hulls, scale=st.floats(0.05, 20.0))
-def test_scaling_lengths_scales_mass_cubed_and_tensor_to_the_fifth(hull, scale):
-    vertices, faces = hull
-    unit, scaled = inertial(vertices, faces), inertial(vertices * scale, faces)
-    assert scaled.mass == pytest.approx(unit.mass * scale**3, rel=1e-9)
-    np.testing.assert_allclose(
-        scaled.tensor, unit.tensor * scale**5, rtol=1e-6, atol=1e-9 * np.abs(scaled.tensor).max()
-    )
-
-
-def test_tiny_parts_stay_above_the_bounds_of_engines():
-    mesh = trimesh.creation.box((1e-5, 2e-5, 1e-5))
-    found = inertial(mesh.vertices, mesh.faces)
-    assert found.mass == CONFIG.min_mass
-    assert np.linalg.eigvalsh(found.tensor)[0] >= CONFIG.min_inertia * (1 - 1e-9)
-    assert_physical(found)
-
-
 def test_a_body_that_is_too_heavy_to_be_solid_is_a_shell() -> None:
     mesh = trimesh.creation.box((1.0, 1.0, 1.0))
     part = Part(name="case", vertices=mesh.vertices + 2.0, faces=mesh.faces, density=7850.0)
@@ -158,12 +105,6 @@ def test_a_body_that_is_too_heavy_to_be_solid_is_a_shell() -> None:
     assert found.center_of_mass == pytest.approx([2.0, 2.0, 2.0])
     assert np.diag(found.tensor) == pytest.approx(np.full(3, found.mass * 5.0 / 18.0))  # of a hollow cube
     assert_physical(found)
-
-
-def test_thin_sheet_keeps_its_mass() -> None:
-    mesh = trimesh.creation.box((1.0, 1.0, 0.001))
-    part = Part(name="sheet", vertices=mesh.vertices, faces=mesh.faces, density=7850.0)
-    assert inertial_of(part, ORIGIN, thickness=1e-5, config=load_config().model).mass == pytest.approx(7.85)
 
 
 def test_density_by_the_names_of_materials() -> None:

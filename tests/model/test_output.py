@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from kinematify.errors import OutputError
-from kinematify.model.output import check_output, write_model_folder
+from kinematify.model.output import write_model_folder
 
 
 def fill(folder: Path, text: str = "new") -> None:
@@ -22,12 +22,6 @@ def files(folder: Path) -> list[str]:
 
 
 WHOLE = ["inference.json", "meshes", "meshes/a.obj", "model.urdf"]
-
-
-def test_writes_and_makes_parents(tmp_path):
-    write_model_folder(tmp_path / "deep" / "er" / "out", fill, overwrite=False)
-    assert files(tmp_path / "deep/er/out") == WHOLE
-    assert files(tmp_path / "deep/er")[0] == "out"
 
 
 def test_nothing_is_seen_before_the_end(tmp_path):
@@ -94,12 +88,6 @@ def test_force_spares_what_is_not_ours(tmp_path):
     with pytest.raises(OutputError, match="not a folder"):
         write_model_folder(tmp_path / "file", fill, overwrite=True)
     assert files(tmp_path) == ["file", "thesis", "thesis/model.urdf"]
-
-
-def test_parent_that_cannot_hold_a_folder(tmp_path):
-    (tmp_path / "file").write_text("mine")
-    with pytest.raises(OutputError, match="is not writable"):
-        check_output(tmp_path / "file" / "out", overwrite=False)
 
 
 def test_place_that_cannot_be_written():

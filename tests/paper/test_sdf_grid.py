@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +12,6 @@ import trimesh
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.paper.sdf_grid import (
-    SignedDistanceCache,
     SignedDistanceGrid,
     exact_distance,
     exact_signed_distance,
@@ -22,7 +20,6 @@ from kinematify.paper.sdf_grid import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kinematify.paper.sdf import SignedDistanceField
     from kinematify.robot.arrays import FloatArray
 
 CONFIG = load_config().sdf.model_copy(
@@ -97,13 +94,6 @@ def central_differences(formula: Callable[[FloatArray], FloatArray], points: Flo
     return np.stack([(formula(points + s) - formula(points - s)) / (2.0 * step) for s in shifts], axis=1)
 
 
-def test_grid_gradient_is_the_derivative_of_its_value_inside_and_outside() -> None:
-    grid = SignedDistanceGrid(SOLIDS["torus"][0], CONFIG)
-    for room in (0.05, 1.0):
-        points = torch.from_numpy(around(SOLIDS["torus"][0], 40, room)).requires_grad_()
-        assert torch.autograd.gradcheck(grid.value, (points,), eps=1e-7, atol=1e-5)
-
-
 def test_outside_of_the_grid_the_field_goes_on_growing() -> None:
     part, formula, _ = SOLIDS["sphere"]
     grid = SignedDistanceGrid(part, CONFIG)
@@ -115,15 +105,6 @@ def test_outside_of_the_grid_the_field_goes_on_growing() -> None:
     assert np.all(along[-1] < 1.2 * formula(20.0 * directions))
 
 
-def test_points_of_any_shape_and_precision() -> None:
-    grid = SignedDistanceGrid(SOLIDS["box"][0], CONFIG)
-    points = torch.rand((2, 3, 5, 3), generator=torch.Generator().manual_seed(0))
-    values = grid.value(points)
-    assert values.shape == (2, 3, 5)
-    assert values.dtype == torch.float64
-    assert torch.allclose(values[1, 2], grid.value(points[1, 2].double()))
-
-
 def test_an_open_shell_has_the_inside_that_it_encloses() -> None:
     sphere = trimesh.creation.icosphere(subdivisions=4)
     upper = sphere.triangles_center[:, 2] > 0.0
@@ -133,81 +114,3 @@ def test_an_open_shell_has_the_inside_that_it_encloses() -> None:
     assert np.abs(exact_signed_distance(bowl, probes) - expected).max() < 0.06
     assert np.abs(SignedDistanceGrid(bowl, CONFIG).value(torch.from_numpy(probes)).numpy() - expected).max() < 0.06
     assert np.all(exact_distance(bowl, probes) > 0.0)
-
-
-def test_grid_and_exact_signs_agree_on_an_open_shell() -> None:
-    sphere = trimesh.creation.icosphere(subdivisions=4)
-    bowl = part_of(sphere.submesh([np.flatnonzero(sphere.triangles_center[:, 2] > -0.6)], append=True))
-    points = around(bowl)
-    exact = exact_signed_distance(bowl, points)
-    gridded = SignedDistanceGrid(bowl, CONFIG).value(torch.from_numpy(points)).numpy()
-    assert np.mean((gridded < 0.0) != (exact < 0.0)) < 0.01
-
-
-def test_overlapping_solids_are_one_inside() -> None:
-    left, right = trimesh.creation.box((2.0, 1.0, 1.0)), trimesh.creation.box((2.0, 1.0, 1.0))
-    right.apply_translation([1.0, 0.0, 0.0])
-    part = part_of(trimesh.util.concatenate([left, right]))
-    points = around(part)
-    inside = np.all((points > [-1.0, -0.5, -0.5]) & (points < [2.0, 0.5, 0.5]), axis=1)
-    assert np.array_equal(exact_signed_distance(part, points) < 0.0, inside)
-
-
-def test_a_mesh_turned_inside_out_keeps_its_inside() -> None:
-    part, formula, _ = SOLIDS["box"]
-    inverted = Part(name="inverted", vertices=part.vertices, faces=part.faces[:, ::-1])
-    points = around(part)
-    assert np.allclose(exact_signed_distance(inverted, points), formula(points))
-
-
-def test_far_from_the_origin_nothing_is_lost() -> None:
-    part, formula, _ = SOLIDS["box"]
-    offset = np.array([1e5, -2e5, 3e5])
-    moved = Part(name="far", vertices=part.vertices + offset, faces=part.faces)
-    points = around(part, 500)
-    assert np.abs(exact_signed_distance(moved, points + offset) - formula(points)).max() < 1e-8
-    here, there = SignedDistanceGrid(part, CONFIG), SignedDistanceGrid(moved, CONFIG)
-    difference = here.value(torch.from_numpy(points)) - there.value(torch.from_numpy(points + offset))
-    assert difference.abs().max() < 1e-6
-
-
-def test_a_flat_sheet_has_a_distance_and_no_inside() -> None:
-    corners = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
-    sheet = Part(name="sheet", vertices=corners, faces=np.array([[0, 1, 2], [0, 2, 3]]))
-    values = SignedDistanceGrid(sheet, CONFIG).value(torch.tensor([[0.5, 0.5, 0.1], [0.5, 0.5, -0.1]]))
-    assert torch.allclose(values, torch.full((2,), 0.1, dtype=torch.float64), atol=0.005)
-
-
-def test_a_fan_of_needles_has_the_right_sign_and_is_quick() -> None:
-    cylinder = part_of(trimesh.creation.cylinder(1.0, 2.0, sections=1024))
-    points = around(cylinder, 20_000)
-    inside = (np.hypot(points[:, 0], points[:, 1]) < 1.0) & (np.abs(points[:, 2]) < 1.0)
-    start = time.process_time()
-    distances = exact_signed_distance(cylinder, points)
-    assert time.process_time() - start < 3.0  # 10 s and more where needles are summed one by one
-    assert np.array_equal(distances < 0.0, inside)
-
-
-def test_more_points_than_one_piece() -> None:
-    part, formula, _ = SOLIDS["box"]
-    points = around(part, 250_001)
-    assert np.abs(exact_signed_distance(part, points) - formula(points)).max() < 1e-9
-
-
-def test_the_cache_reuses_geometry_whatever_its_name_and_drops_the_longest_unused() -> None:
-    box, sphere, torus = (SOLIDS[name][0] for name in ("box", "sphere", "torus"))
-    sizes = {name: SignedDistanceGrid(SOLIDS[name][0], CONFIG).memory_bytes for name in SOLIDS}
-    cache = SignedDistanceCache(CONFIG.model_copy(update={"cache_bytes": sizes["box"] + sizes["sphere"]}))
-    first, second = cache.field(box), cache.field(sphere)
-    twin = Part(name="twin", vertices=box.vertices, faces=box.faces)
-    assert cache.field(twin) is first
-    assert cache.memory_bytes == sizes["box"] + sizes["sphere"]
-    cache.field(torus)  # does not fit beside both; the sphere was unused for longer
-    assert cache.field(box) is first
-    assert cache.field(sphere) is not second
-
-
-def test_a_grid_larger_than_the_cache_is_still_answered() -> None:
-    cache = SignedDistanceCache(CONFIG.model_copy(update={"cache_bytes": 1}))
-    grid: SignedDistanceField = cache.field(SOLIDS["box"][0])
-    assert grid.value(torch.zeros((1, 3))).item() == pytest.approx(-0.5, abs=0.03)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from benchmarks.linkages import linkage
 from kinematify.cli.inferred import describe
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.inference import Inference
@@ -18,9 +17,6 @@ from kinematify.pipeline.linkages import SharedAxis, close_chains
 from kinematify.pipeline.record import write_inference
 from kinematify.robot.linkage import loop_gaps
 from kinematify.robot.read import read_robot
-from kinematify.robot.robot import joint_ends
-from kinematify.view.inference_view import shown_with
-from kinematify.view.viewer_scene import ViewScene
 from tests.household import edge_door, four_bars
 
 if TYPE_CHECKING:
@@ -66,17 +62,6 @@ def test_the_model_has_the_loop_and_one_range_and_its_pin_stays_closed(tmp_path:
         assert loop_gaps(robot, {driver.name: float(value)})[loop.name] < 5e-4 * inferred().assembly.diagonal
 
 
-def test_bars_of_any_length_are_held_by_the_loop_alone() -> None:
-    found = infer(linkage("four_bar", 0).assembly).model
-    (loop,) = found.loops
-    (driver,) = [joint for joint in found.joints if joint.leads]
-    assert not [joint for joint in found.joints if joint.mimic]
-    lower, upper = joint_ends([driver])
-    values = np.linspace(float(lower[0]), float(upper[0]), 25)
-    diagonal = 0.2
-    assert max(loop_gaps(found.robot, {driver.name: float(value)})[loop.name] for value in values) < 1e-3 * diagonal
-
-
 def test_a_pin_that_would_leave_no_motion_is_reported_and_not_written() -> None:
     """A bar between ground and rocker is a rigid triangle."""
     model = inferred().model
@@ -87,13 +72,3 @@ def test_a_pin_that_would_leave_no_motion_is_reported_and_not_written() -> None:
     closed, closings = close_chains(free, pins[1:], (), 0.2, inferred().config.linkages)
     assert [closing.loop is None for closing in closings] == [False, True]
     assert len(closed.loops) == 1
-
-
-def test_the_viewer_draws_the_pin_where_both_links_meet(tmp_path: Path) -> None:
-    folder = tmp_path / "model"
-    write_inference(inferred(), folder, preview=False)
-    scene = ViewScene(read_robot(folder / "model.urdf"))
-    (chain,) = shown_with(scene, folder / "inference.json").chains
-    (driver,) = scene.robot.leaders
-    dashes = chain.dashes(scene.poses({driver.name: 0.4}), scene.size)
-    assert np.linalg.norm(dashes[-1, 1] - dashes[-9, 0]) < 1e-3 * scene.size

@@ -241,7 +241,7 @@ def test_a_limit_that_would_cripple_a_joint_is_left_with_the_reason(tmp_path: Pa
     assert done.diffs == ()
     assert not done.path.exists(), "nothing is written where nothing is changed"
     assert any("of its range" in sentence for sentence in done.left)
-    assert done.exit_status == 0, "KV310 of a shallow contact is a warning"
+    assert done.exit_status == 1, "KV310 of a joint that cannot leave most of its range is an error"
 
 
 def test_an_axis_that_leads_into_the_parent_is_reversed(tmp_path: Path) -> None:

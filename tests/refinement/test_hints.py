@@ -194,14 +194,6 @@ def test_a_pivot_chooses_the_hinge_that_goes_through_it() -> None:
     assert again.hints == (f"{name}=fixed",), "the last word counts"
 
 
-def test_a_hint_that_agrees_changes_nothing_but_the_confidence() -> None:
-    inference = inferred("edge_door")
-    before = joint_of(inference, moving(inference))
-    after = joint_of(with_hints(inference, [Hint(part=moving(inference), kind=before.kind)]), moving(inference))
-    np.testing.assert_array_equal(before.axis, after.axis)
-    assert (before.lower, before.upper) == (after.lower, after.upper)
-
-
 def test_a_hint_against_the_geometry_is_followed_and_said() -> None:
     inference = inferred("drawer")
     name = moving(inference)
@@ -210,9 +202,3 @@ def test_a_hint_against_the_geometry_is_followed_and_said() -> None:
     assert any(name in warning and "slides by" in warning for warning in hinted.warnings)
     with pytest.raises(InputError, match="every pose twice"):
         with_hints(inferred("edge_door"), [Hint(part=moving(inferred("edge_door")), limits="-7..0")])
-
-
-def test_the_base_has_no_joint_to_be_hinted() -> None:
-    inference = inferred("drawer")
-    with pytest.raises(InputError, match="base link"):
-        with_hints(inference, [Hint(part=inference.model.root, kind=JointType.REVOLUTE)])

@@ -6,38 +6,28 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import trimesh
 from PIL import Image
 
 from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
 from kinematify.contact.tree import KinematicTree
-from kinematify.geometry.rays import RayScene
 from kinematify.model.picture_scene import (
     GLYPH_COLORS,
     best_azimuth,
     camera_for,
-    glyph_color,
     joint_glyphs,
     opened_configuration,
     posed_meshes,
-    sliding_arrow,
-    turning_arrow,
 )
 from kinematify.model.preview import draw_pair, render_preview, render_story
 from kinematify.model.urdf import distinct_colors, link_colors, link_shades
-from kinematify.render.camera import fit_camera
-from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
+from kinematify.render.picture import PictureScene, PosedMesh, render_scene
 from kinematify.robot.appearance import linear_of, srgb_of
 from kinematify.robot.joint_type import JointType
 from tests.mechanisms import Mechanism, box, chain, door, drawer, flat_and_fixed, joint, knob
 
 CONFIG = load_config().preview.model_copy(update={"panel_width": 240, "panel_height": 220})
 UP = np.array([0.0, 0.0, 1.0])
-
-
-def mesh_of(shape: trimesh.Trimesh, color=(0.2, 0.5, 0.8)) -> PosedMesh:
-    return PosedMesh(vertices=np.array(shape.vertices), faces=np.array(shape.faces), color=np.array(color))
 
 
 def hue_distance(image: np.ndarray, color: np.ndarray) -> np.ndarray:
@@ -47,87 +37,6 @@ def hue_distance(image: np.ndarray, color: np.ndarray) -> np.ndarray:
     size = np.linalg.norm(chroma, axis=-1)
     cosine = chroma @ wanted / np.maximum(size * np.linalg.norm(wanted), 1e-9)
     return np.where(size > 0.05, np.arccos(np.clip(cosine, -1, 1)), np.pi)
-
-
-@pytest.mark.parametrize("scale", [1e-4, 1.0, 1e4])
-def test_rays_meet_a_sphere_where_it_is(scale):
-    sphere = trimesh.creation.icosphere(subdivisions=5, radius=scale)
-    center = np.array([3.0, -2.0, 7.0]) * scale
-    scene = RayScene([(sphere.vertices + center, sphere.faces)])
-    rng = np.random.default_rng(0)
-    away = rng.normal(size=(200, 3))
-    away /= np.linalg.norm(away, axis=1, keepdims=True)
-    hits = scene.first_hits(center + 3 * scale * away, -away)
-    assert hits.met.all()
-    np.testing.assert_allclose(hits.distance, 2 * scale, rtol=2e-3)
-    smooth = scene.smooth_normals(hits.face, hits.barycentric, np.deg2rad(35))
-    assert np.einsum("ij,ij->i", smooth, away).min() > 0.9999
-    assert not scene.first_hits(center + 3 * scale * away, away).met.any()
-
-
-def test_rays_tell_meshes_apart_and_edges_stay_sharp():
-    boxes = [box("a", (0, 0, 0), (1, 1, 1)), box("b", (3, 0, 0), (1, 1, 1))]
-    scene = RayScene([(part.vertices, part.faces) for part in boxes])
-    origins = np.array([[0.4, 0.4, 5.0], [3.0, 0.1, 5.0], [1.5, 0.0, 5.0]])
-    hits = scene.first_hits(origins, np.tile(-UP, (3, 1)))
-    assert hits.mesh.tolist() == [0, 1, -1]
-    np.testing.assert_allclose(hits.distance, [4.5, 4.5, np.inf], rtol=1e-6)
-    normals = scene.smooth_normals(hits.face[:2], hits.barycentric[:2], np.deg2rad(35))
-    np.testing.assert_allclose(normals, [UP, UP], atol=1e-6)
-
-
-def test_occlusion_counts_what_is_within_reach():
-    scene = RayScene([(part.vertices, part.faces) for part in (box("a", (0, 0, 0), (1, 1, 1)),)])
-    points, towards = np.array([[0, 0, 2.0], [0, 0, 0.5]]), np.array([-UP, UP])
-    assert scene.occluded(points, towards, 1.6).tolist() == [True, False]
-    assert scene.occluded(points, towards, 1.4).tolist() == [False, False]
-
-
-def test_camera_projects_its_own_rays_and_fits():
-    points = np.random.default_rng(1).normal(size=(100, 3)) * [3, 1, 0.5] + [10, 20, 30]
-    camera = fit_camera(points, azimuth=0.7, elevation=0.4, field_of_view=0.4, size=(300, 200), margin=10)
-    seen, depth = camera.project(points)
-    low, high = seen.min(axis=0), seen.max(axis=0)
-    assert depth.min() > 0
-    np.testing.assert_allclose(0.5 * (low + high), (150, 100), atol=1e-6)
-    assert np.min(low) == pytest.approx(10, abs=1e-6)
-    pixels = np.array([[5.0, 7.0], [150.0, 100.0], [299.0, 1.0]])
-    origins, directions = camera.rays(pixels)
-    np.testing.assert_allclose(camera.project(origins + 5 * directions)[0], pixels, atol=1e-9)
-    higher, _ = camera.project(np.stack([points.mean(0), points.mean(0) + UP]))
-    assert higher[1, 1] < higher[0, 1]
-
-
-def test_arrows_are_closed_and_have_their_size():
-    axis = np.array([0.6, 0.0, 0.8])
-    for vertices, faces in (
-        sliding_arrow(np.ones(3), axis, 2.0, 0.01),
-        turning_arrow(np.ones(3), axis, 2.0, 0.01, 4.0),
-    ):
-        solid = trimesh.Trimesh(vertices, faces, process=False)
-        assert solid.is_watertight
-        assert solid.volume > 0
-        along = (vertices - 1.0) @ axis
-        np.testing.assert_allclose([along.min(), along.max()], [-1.0, 1.0], atol=1e-9)
-
-
-def test_picture_shows_mesh_floor_and_background():
-    scene = PictureScene(meshes=(mesh_of(trimesh.creation.icosphere(subdivisions=3), (0.1, 0.6, 0.3)),))
-    camera = camera_for([scene], 0.5, CONFIG, size=(120, 110), margin=20)
-    image = np.asarray(render_scene(scene, camera, CONFIG)) / 255.0
-    assert image.shape == (110, 120, 3)
-    np.testing.assert_allclose(image[0, 0], BACKGROUND, atol=0.01)
-    assert hue_distance(image[55, 60], np.array([0.1, 0.6, 0.3])) < 0.15
-    assert image[80:].mean() < image[:10].mean()  # the shadow below
-    again = np.asarray(render_scene(scene, camera, CONFIG)) / 255.0
-    np.testing.assert_array_equal(image, again)
-
-
-def test_light_is_even_on_an_even_surface():
-    scene = PictureScene(meshes=(mesh_of(trimesh.creation.box((2, 2, 0.1))),))
-    camera = fit_camera(scene.outline, azimuth=-1.5, elevation=1.2, field_of_view=0.4, size=(100, 100), margin=5)
-    image = np.asarray(render_scene(scene, camera, CONFIG)).astype(float)
-    assert image[40:60, 40:60].std(axis=(0, 1)).max() < 1.5
 
 
 @pytest.mark.parametrize(
@@ -163,38 +72,6 @@ def test_axis_is_drawn_where_it_projects(build, kind):
     np.testing.assert_allclose(after[outside], before[outside], atol=0.05)
 
 
-def test_hidden_arrow_is_pale():
-    block = mesh_of(trimesh.creation.box((1, 1, 1)), (0.8, 0.8, 0.8))
-    vertices, faces = turning_arrow(np.zeros(3), UP, 0.6, 0.03, 4.0)
-    arrow = PosedMesh(vertices=vertices, faces=faces, color=GLYPH_COLORS[JointType.REVOLUTE])
-    scene = PictureScene(meshes=(block,), glyphs=(arrow,))
-    camera = camera_for([scene], 0.5, CONFIG, size=(100, 100), margin=10)
-    image = np.asarray(render_scene(scene, camera, CONFIG)) / 255.0
-    column, row = camera.project(np.zeros((1, 3)))[0][0].astype(int)
-    red, green, _ = image[row, column]
-    assert 0.03 < red - green < 0.35
-
-
-def test_an_arrow_has_another_colour_on_a_part_of_its_own():
-    for kind in (JointType.REVOLUTE, JointType.PRISMATIC):
-        usual = GLYPH_COLORS[kind]
-        assert np.array_equal(glyph_color(kind, np.array([0.7, 0.7, 0.7])), usual)
-        assert np.linalg.norm(glyph_color(kind, usual + 0.02) - usual) > 0.5
-
-
-def test_an_arrow_stands_out_of_its_own_colour():
-    red = GLYPH_COLORS[JointType.REVOLUTE]
-    block = mesh_of(trimesh.creation.box((1, 1, 1)), red)
-    vertices, faces = turning_arrow(np.array([0.0, -0.6, 0.0]), UP, 0.6, 0.03, 4.0)
-    arrow = PosedMesh(vertices=vertices, faces=faces, color=red)
-    camera = camera_for([PictureScene(meshes=(block,))], -1.5, CONFIG, size=(100, 100), margin=10)
-    bare, drawn = (
-        np.asarray(render_scene(PictureScene(meshes=(block,), glyphs=glyphs), camera, CONFIG)) / 255.0
-        for glyphs in ((), (arrow,))
-    )
-    assert ((drawn.min(axis=2) > 0.6) & (bare.min(axis=2) < 0.3)).sum() > 30, "a light rim on what was red"
-
-
 def brown_chain():
     """Five links of one material."""
     mechanism = chain()
@@ -215,10 +92,6 @@ def test_parts_of_one_material_get_shades_of_it_and_numbers(tmp_path):
     plain = np.asarray(Image.open(tmp_path / "colored.png").convert("RGB"))
     white = [(panels[46:200] == 255).all(axis=2).sum() for panels in (image, plain)]
     assert white[0] > white[1] + 2 * 5 * 150, "a white badge on every part in either panel"
-
-
-def test_what_differs_in_colour_keeps_it():
-    assert set(link_shades(chain().model()).values()) == {1.0}
 
 
 def test_joints_open_in_the_picture():
@@ -282,10 +155,3 @@ def test_story_has_three_panels_and_the_first_is_grey(tmp_path):
     first = image[: int(0.7 * image.shape[0]), : image.shape[1] // 3]
     assert np.ptp(first, axis=2).max() < 0.06
     assert (first.mean(axis=2) < 0.8).mean() > 0.05
-
-
-def test_colors_are_distinct_and_neighbours_clearly_so():
-    model = chain().model()
-    colors = list(link_colors(model).values())
-    gaps = [np.linalg.norm(a - b) for i, a in enumerate(colors) for b in colors[:i]]
-    assert min(gaps) > 0.15

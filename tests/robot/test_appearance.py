@@ -18,7 +18,6 @@ from kinematify.robot.appearance import (
     linear_of,
     painted,
     plain,
-    surfaces,
 )
 from kinematify.robot.mesh_file import read_meshes
 
@@ -46,25 +45,6 @@ def test_a_texture_is_seen_at_its_place() -> None:
     near_left, near_right = np.array([[0.1, 0.2, 0.7]]), np.array([[0.1, 0.8, 0.1]])
     assert appearance.colors_at(np.array([1]), near_left)[0] == pytest.approx(RED)
     assert appearance.colors_at(np.array([0]), near_right)[0] == pytest.approx(BLUE)
-
-
-def test_the_mean_colour_is_weighted_by_area() -> None:
-    appearance = Appearance(materials=(Material(color=RED), Material(color=BLUE)), material_of_face=np.array([0, 1]))
-    vertices = np.array([[0.0, 0, 0], [3, 0, 0], [0, 1, 0], [1, 0, 0]])
-    assert appearance.mean_color(vertices, np.array([[0, 1, 2], [0, 3, 2]])) == pytest.approx((0.75, 0.0, 0.25, 1.0))
-
-
-def test_surfaces_double_vertices_only_at_seams_of_the_texture() -> None:
-    (surface,) = surfaces(SQUARE, HALVES, _chequered())
-    assert len(surface.vertices) == 4
-    assert surface.uv is not None
-    assert np.allclose(surface.uv, surface.vertices[:, :2])
-    torn = Appearance(
-        materials=_chequered().materials,
-        material_of_face=np.zeros(2, dtype=np.int64),
-        uv=np.stack([SQUARE[HALVES[0]][:, :2], SQUARE[HALVES[1]][:, :2] + 0.25]),
-    )
-    assert len(surfaces(SQUARE, HALVES, torn)[0].vertices) == 6
 
 
 def test_what_is_joined_keeps_its_colours_and_shares_equal_ones() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 
 import mujoco
@@ -11,6 +12,8 @@ import pytest
 import trimesh
 from pybullet_utils.bullet_client import BulletClient
 
+import kinematify
+from kinematify.cli.app import run
 from kinematify.errors import DescriptionError
 from kinematify.formats.export_model import export
 from kinematify.refinement.urdf_editor import UrdfEditor
@@ -288,3 +291,25 @@ def test_a_package_whose_folder_has_another_name_is_found_above_the_file(tmp_pat
     robot = read_robot(written(tmp_path, "2R ARM_description/urdf/2R ARM.urdf", text))
     assert robot.links[0].has_geometry
     assert not robot.notes
+
+
+def test_robots_of_robot_descriptions_have_names(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("robot_descriptions", reason="the package robot_descriptions is not installed")
+    monkeypatch.setenv("ROBOT_DESCRIPTIONS_CACHE", str(tmp_path))
+    assert run(["validate", "panda", "--engines", "none"]) == 2
+    assert "robot_descriptions pull panda_description" in capsys.readouterr().err
+    folder = tmp_path / "example-robot-data"
+    file = folder / "robots" / "panda_description" / "urdf" / "panda.urdf"
+    file.parent.mkdir(parents=True)
+    file.write_text('<robot name="panda"><link name="base"/></robot>')
+    git = ["git", "-C", str(folder), "-c", "user.name=a", "-c", "user.email=a@b.c"]
+    for words in (["init", "-q"], ["add", "-A"], ["commit", "-qm", "a"]):
+        subprocess.run([*git, *words], check=True)
+    head = subprocess.run([*git, "rev-parse", "HEAD"], check=True, capture_output=True, text=True).stdout.strip()
+    place = tmp_path / f"example-robot-data-{head}" / "example-robot-data"
+    place.parent.mkdir()
+    folder.rename(place)
+    monkeypatch.setenv("ROBOT_DESCRIPTION_COMMIT", head)
+    assert kinematify.load("panda").robot.name == "panda"

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from kinematify.config.validation import load_settings
-from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult
 from kinematify.validation.stage import Recorder, StageRequest
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kinematify.config.validation import ValidationSettings
     from kinematify.validation.summary import Summary
 
 Vector = tuple[float, float, float]
@@ -140,21 +136,6 @@ class FindingGroup:
     def worst(self, check: str) -> list[str]:
         """Severities of the findings of a check."""
         return [str(finding.severity) for finding in self.results[check].findings]
-
-
-def prepared_request(
-    model: Model, folder: Path, settings: ValidationSettings | None = None, *, seconds: float = 100.0
-) -> StageRequest:
-    """Write a model and return the request of a stage."""
-    path, settings = model.write(folder), settings or load_settings()
-    return StageRequest(
-        urdf=path,
-        package_dirs=(),
-        work=folder,
-        settings=settings,
-        selected=frozenset(CHECKS),
-        deadline=time.process_time() + seconds,
-    )
 
 
 def tell(run: Callable[[StageRequest, Recorder], None], request: StageRequest) -> FindingGroup:

@@ -257,22 +257,6 @@ def test_negative_damping_gains_energy_as_the_code_of_the_report_shows(tmp_path:
     assert printed(finding.reproduction) == pytest.approx([finding.value], rel=0.1)
 
 
-def test_heavy_tips_on_light_fingers_blow_up_in_pybullet(tmp_path: Path) -> None:
-    """Links without masses weigh 1 kg in PyBullet; nothing else is wrong with such files."""
-    finger = Part(
-        name="finger", boxes=(Box(size=(0.01, 0.01, 0.05)),), parent="palm", kind="revolute", limits=(-1.5, 1.5),
-        mass=0.01, inertia=(1e-6, 1e-6, 1e-6),
-    )  # fmt: skip
-    chain = [replace(finger, name=f"finger{k}", parent=f"finger{k - 1}", at=(0.0, 0.0, 0.05)) for k in (1, 2, 3)]
-    palm = Part(name="palm", boxes=(Box(size=(0.1, 0.1, 0.02)),))
-    fine = Model(parts=(palm, replace(finger, name="finger0"), *chain))
-    assert reported(fine, tmp_path, "pybullet").results["KV806"].status is Status.PASS
-    tip = Part(name="tip", boxes=(), parent="finger3", at=(0.0, 0.0, 0.1), mass=1.0, inertia=(1.0, 1.0, 1.0))
-    heavy = Model(parts=(*fine.parts, tip))
-    (finding,) = reported(heavy, tmp_path, "pybullet").results["KV806"].findings
-    assert "gains" in finding.message
-
-
 @pytest.mark.parametrize("kind", ["floating", "planar"])
 @pytest.mark.parametrize("engine", ["mujoco", "pybullet", "pinocchio"])
 def test_a_model_that_floats_is_opened(tmp_path: Path, engine: str, kind: str) -> None:
@@ -321,23 +305,6 @@ def test_what_is_fixed_together_may_stand_in_each_other(tmp_path: Path) -> None:
     tool = Part(name="tool", parent="flange", boxes=(Box(size=(0.1, 0.1, 0.1)),))
     model = Model(parts=(*cabinet().parts, flange, tool))
     assert reported(model, tmp_path, "pybullet").results["KV802"].status is Status.PASS
-
-
-def test_pybullet_is_pushed_by_no_more_than_it_answers_rightly(tmp_path: Path) -> None:
-    """A light link between heavy ones was thrown back by what would start the heavy ones."""
-    finger = Part(
-        name="finger", boxes=(Box(size=(0.01, 0.01, 0.04)),), parent="palm", kind="revolute", limits=(-1.5, 1.5),
-        mass=0.01, inertia=(1e-5, 1e-5, 1e-5),
-    )  # fmt: skip
-    tip = replace(finger, name="tip", parent="finger", at=(0.0, 0.0, 0.05), mass=2.0, center=(0.0, 0.0, 0.1))
-    palm = Part(name="palm", boxes=(Box(size=(0.1, 0.1, 0.02), at=(0.0, 0.0, -0.1)),))
-    result = reported(Model(parts=(palm, finger, tip)), tmp_path, "pybullet").results["KV804"]
-    assert (result.measured["right"], result.findings) == (2.0, ())
-
-
-def test_friction_does_not_press_a_limit_open(tmp_path: Path) -> None:
-    stiff = cabinet().with_part("door", extra='<dynamics friction="300"/>')
-    assert reported(stiff, tmp_path, "mujoco").results["KV805"].status is Status.PASS
 
 
 def jam(engine: str) -> CheckResult:

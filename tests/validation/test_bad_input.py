@@ -89,6 +89,20 @@ def test_a_missing_mesh_is_one_finding_and_the_rest_is_judged(
     assert "MuJoCo 1 of 1 joints move" in report.as_loaded
 
 
+MIMIC = '<mimic joint="gone"/></joint>'
+
+
+@pytest.mark.parametrize(("fault", "check"), [((BOX, mesh("nan.obj")), "KV151"), (("</joint>", MIMIC), "KV127")])
+def test_a_broken_mesh_or_mimic_blocks_nothing_else(tmp_path: Path, fault: tuple[str, str], check: str) -> None:
+    (tmp_path / "nan.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 nan 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n")
+    path = tmp_path / "model.urdf"
+    path.write_text(robot().replace(*fault, 1))
+    report = validate(path, engines=("mujoco",), workers=1)
+    assert not [(item.check, item.reason) for item in report.checks if item.status is Status.BLOCKED]
+    assert [item.check for item in report.findings if item.severity is Severity.ERROR][:1] == [check]
+    assert "MuJoCo 1 of 1 joints move" in report.as_loaded
+
+
 def test_names_and_meshes_in_any_script_are_kept(tmp_path: Path) -> None:
     trimesh.creation.box((0.1, 0.1, 0.1)).export(tmp_path / "würfel.obj")
     path = tmp_path / "möbel.urdf"

@@ -14,10 +14,8 @@ from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Cause, Severity, Status
 from kinematify.validation.isolation import _EVERY_STAGE
 from kinematify.validation.run.plan import (
-    as_loaded_stages,
-    asset_stage,
     keys,
-    later_stages,
+    stages_of,
     task_stage,
 )
 from kinematify.validation.stage import Recorder
@@ -62,7 +60,7 @@ def test_every_check_has_all_its_texts() -> None:
 
 
 def test_every_check_but_those_of_the_text_is_reported_by_one_stage() -> None:
-    stages = [asset_stage(), *later_stages(), *as_loaded_stages(tuple(ENGINES)), task_stage()]
+    stages = [*stages_of(tuple(ENGINES)), task_stage()]
     reported = [key for stage in stages for key in stage.checks]
     text = keys(checks_of("KV10", "KV11", "KV12", "KV13", "KV14"))
     assert sorted(map(str, (*reported, *text))) == sorted(map(str, keys(CHECKS.values())))
@@ -101,7 +99,7 @@ def test_the_example_of_contributing_is_the_code() -> None:
 
 
 def test_what_workers_have_imported_beforehand_is_there() -> None:
-    stages = [asset_stage(), *later_stages(), *as_loaded_stages(list(ENGINES))]
+    stages = stages_of(list(ENGINES))
     names = {*_EVERY_STAGE, *(name for stage in stages for name in stage.imports)}
     assert [name for name in names if importlib.util.find_spec(name) is None] == []  # the server would not say so
 

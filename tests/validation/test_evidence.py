@@ -12,7 +12,6 @@ from lxml import etree
 
 from kinematify.generate.procedural.solids import box, union
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.transforms import rotation_about
 from kinematify.validation.checks import checks_of
 from kinematify.validation.finding import Cause, CheckResult, Severity, Status
 from kinematify.validation.run import validate
@@ -25,13 +24,11 @@ from tests.household import (
     four_bars,
     hinge_pin,
     knob,
-    laptop,
     lever,
     nested_drawer,
     sliding_lid,
 )
-from tests.known import KnownObject, known_object, posed, sliding, turning, with_yaw
-from tests.robots import aligned_arm
+from tests.known import KnownObject, known_object, sliding, turning
 from tests.validation.planted import (
     findings,
     flipped,
@@ -46,7 +43,7 @@ from tests.validation.planted import (
 )
 
 Build = Callable[[], KnownObject]
-GOOD: tuple[Build, ...] = (barrel_hinge_door, button, drawer, edge_door, hinge_pin, knob, laptop, nested_drawer)
+GOOD: tuple[Build, ...] = (barrel_hinge_door, button, drawer, edge_door, hinge_pin, knob, nested_drawer)
 
 
 def found(known: KnownObject, folder: Path) -> set[str]:
@@ -66,11 +63,9 @@ def test_good_joints_have_no_finding(build: Build, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("build", "child", "about"),
     [
-        (barrel_hinge_door, "door", (1.0, 0.3, 0.0)),
         (edge_door, "door", (1.0, 1.0, 0.0)),
         (drawer, "drawer", (0.2, 0.0, 1.0)),
         (knob, "knob", (1.0, 0.0, 0.4)),
-        (hinge_pin, "bored_leaf", (0.5, 1.0, 0.0)),
     ],
 )
 def test_an_axis_turned_by_20_deg_is_off_every_direction(
@@ -86,13 +81,8 @@ def test_an_axis_turned_by_20_deg_is_off_every_direction(
 @pytest.mark.parametrize(
     ("build", "child", "about"),
     [
-        (barrel_hinge_door, "door", (1, 0, 0)),
-        (barrel_hinge_door, "door", (0, 1, 0)),
-        (edge_door, "door", (1, 0, 0)),
         (edge_door, "door", (0, 1, 0)),
-        (drawer, "drawer", (0, 0, 1)),
         (drawer, "drawer", (1, 0, 0)),
-        (knob, "knob", (1, 0, 0)),
         (lever, "lever", (0, 0, 1)),
     ],
 )
@@ -112,12 +102,8 @@ def test_an_axis_turned_by_90_deg_has_a_better_alternative(
     ("build", "child", "way"),
     [
         (barrel_hinge_door, "door", (1, 0, 0)),
-        (barrel_hinge_door, "door", (0, 1, 0)),
-        (edge_door, "door", (1, 0, 0)),
         (edge_door, "door", (0, -1, 0)),
         (knob, "knob", (1, 0, 1)),
-        (hinge_pin, "bored_leaf", (1, 1, 0)),
-        (lever, "lever", (0, 0, 1)),
     ],
 )
 def test_a_pivot_moved_by_a_fifth_of_the_part_is_reported(
@@ -131,10 +117,7 @@ def test_a_pivot_moved_by_a_fifth_of_the_part_is_reported(
     ("bad", "opens"),
     [
         (lambda: turned(edge_door(), "door", 20.0, (1.0, 1.0, 0.0)), 0.025),
-        (lambda: turned(knob(), "knob", 20.0, (1.0, 0.0, 0.4)), 0.01),
-        (lambda: turned(hinge_pin(), "bored_leaf", 20.0, (0.5, 1.0, 0.0)), 0.01),
         (lambda: shifted(hinge_pin(), "bored_leaf", (1, 1, 0)), 0.01),
-        (lambda: turned(edge_door(), "door", 90.0, (1, 0, 0)), 0.1),
     ],
 )
 def test_a_contact_that_opens_about_a_wrong_line_is_a_fact(bad: Build, opens: float, tmp_path: Path) -> None:
@@ -148,23 +131,12 @@ def test_a_contact_that_opens_about_a_wrong_line_is_a_fact(bad: Build, opens: fl
     assert finding.value > finding.limit + opens * child.diagonal
 
 
-def test_a_wrong_line_about_which_the_contact_stays_closed_is_an_opinion(tmp_path: Path) -> None:
-    """A drawer that leaves sideways slides on its floor and walls all the way."""
-    assert found(turned(drawer(), "drawer", 90.0, (0, 0, 1)), tmp_path) == {"KV344"}
-
-
-def test_a_pivot_moved_along_the_axis_is_the_same_joint(tmp_path: Path) -> None:
-    assert found(shifted(barrel_hinge_door(), "door", (0, 0, 1)), tmp_path) == set()
-
-
 @pytest.mark.parametrize(
     ("build", "child", "limits"),
     [
         (drawer, "drawer", (0.0, 1.0)),
-        (edge_door, "door", (0.0, 0.3)),
         (barrel_hinge_door, "door", (0.0, 0.4)),
         (button, "button", (0.0, 0.5)),
-        (sliding_lid, "lid", (0.0, 1.5)),
     ],
 )
 def test_a_swapped_type_is_reported(build: Build, child: str, limits: tuple[float, float], tmp_path: Path) -> None:
@@ -175,12 +147,6 @@ def test_a_swapped_type_is_reported(build: Build, child: str, limits: tuple[floa
 def test_what_opens_inwards_is_reported(build: Build, child: str, tmp_path: Path) -> None:
     (finding,) = findings(judged(flipped(build(), child), tmp_path))
     assert (finding.check, finding.joint) == ("KV346", f"{child}_joint")
-
-
-def test_a_mirrored_range_that_opens_the_same_way_is_fine(tmp_path: Path) -> None:
-    good = flipped(drawer(), "drawer")
-    joint = joint_of(good, "drawer")
-    assert found(with_joint(good, "drawer", lower=-joint.upper, upper=0.0), tmp_path) == set()
 
 
 def doorbell() -> KnownObject:
@@ -270,39 +236,6 @@ def test_a_wrong_parent_is_reported_and_nothing_else(tmp_path: Path) -> None:
     (finding,) = findings(judged(with_joint(nested_drawer(), "tray", parent="carcass"), tmp_path))
     assert (finding.check, finding.joint) == ("KV341", "tray_joint")
     assert "drawer" in finding.message
-
-
-def test_only_the_broken_joint_of_a_chain_is_named(tmp_path: Path) -> None:
-    arm = aligned_arm()
-    child = arm.joints[2].child
-    broken = turned(arm, child, 20.0, (0.3, 0.2, 1.0) if abs(arm.joints[2].axis[2]) < 0.9 else (1.0, 0.2, 0.0))
-    assert {finding.joint for finding in findings(judged(broken, tmp_path))} == {f"{child}_joint"}
-
-
-def test_the_answer_does_not_depend_on_where_the_object_stands(tmp_path: Path) -> None:
-    bad = turned(edge_door(), "door", 20.0, (1.0, 1.0, 0.0))
-    shift = np.eye(4)
-    shift[:3, :3] = rotation_about(np.array([0.0, 0.0, 1.0]), 0.7)
-    shift[:3, 3] = (12.0, -3.0, 0.4)
-    here, there = found(bad, tmp_path / "here"), found(posed(bad, shift), tmp_path / "there")
-    assert here == there == {"KV342", "KV349"}
-    assert found(with_yaw(drawer(), 0.6), tmp_path / "good") == set()
-
-
-def test_one_body_has_nothing_to_judge(tmp_path: Path) -> None:
-    urdf = tmp_path / "one.urdf"
-    urdf.write_text(
-        '<robot name="one"><link name="a"><visual><geometry><box size="1 1 1"/></geometry></visual></link>'
-        '<link name="b"/><joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint></robot>'
-    )
-    results = [result for result in reported(urdf, tmp_path) if isinstance(result, CheckResult)]
-    assert {result.status for result in results} == {Status.SKIPPED}
-
-
-def test_late_stages_say_what_they_left_out(tmp_path: Path) -> None:
-    results = reported(write(nested_drawer(), tmp_path), tmp_path, seconds=0.0)
-    checks = [result for result in results if isinstance(result, CheckResult)]
-    assert all(check.status is Status.SKIPPED and "of the joints" in (check.reason or "") for check in checks)
 
 
 def test_findings_reach_the_report(tmp_path: Path) -> None:

@@ -133,41 +133,6 @@ def test_what_hangs_in_the_air_points_to_its_parent(tmp_path: Path) -> None:
     assert [(signal.parent, signal.child, signal.check) for signal in feedback.edges] == [("beam", "block", "KV303")]
 
 
-def test_a_slide_out_of_its_guide_ends_before(tmp_path: Path) -> None:
-    feedback = fed_back(cabinet().with_part("drawer", limits=(0.0, 0.45)), tmp_path)
-    (signal,) = feedback.ranges
-    assert signal.check == "KV321"
-    assert signal.upper is not None
-    assert 0.1 < signal.upper < 0.45
-    assert signal.lost
-    assert signal.lower is None  # the back of the drawer is right before the back of the cabinet
-
-
-def test_a_slide_that_stands_open_may_go_back(tmp_path: Path) -> None:
-    rail = Part(name="rail", boxes=(Box(size=(1.0, 0.1, 0.1)),))
-    sled = Part(
-        name="sled",
-        boxes=(Box(size=(0.3, 0.1, 0.05)),),
-        parent="rail",
-        kind="prismatic",
-        at=(0.47, 0.0, 0.075),
-        limits=(0.0, 0.5),
-    )
-    feedback = fed_back(Model(parts=(rail, sled)), tmp_path)
-    (signal,) = feedback.ranges
-    assert signal.check == "KV321"
-    assert signal.upper == pytest.approx(0.18, abs=0.01)
-    assert signal.lower == pytest.approx(-0.5, abs=0.01)
-    assert feedback.lines == feedback.types == ()
-
-
-def test_hulls_in_the_way_are_not_the_search_s_to_mend(tmp_path: Path) -> None:
-    fat = (Box(size=(0.15, 0.3, 0.4), at=(-0.05, -0.15, 0.0)),)
-    feedback = fed_back(cabinet().with_part("door", limits=(0.0, 2.9), collision=fat), tmp_path)
-    assert feedback.lines == feedback.types == feedback.ranges == ()
-    assert {item.cause for item in feedback.left} == {"physics"}
-
-
 def test_overlap_at_rest_is_left_with_its_reason_and_points_to_no_axis(tmp_path: Path) -> None:
     feedback = fed_back(beam(block("left", 0.0), block("right", 0.05)), tmp_path)
     assert [item.check for item in feedback.left] == ["KV301"]
@@ -230,18 +195,3 @@ def test_the_shipped_rates_are_of_known_checks_and_no_failure_is_counted_twice()
         assert set(failed) <= set(CLASSES)
         assert all(failed[what] <= shipped.joints[tier_of(check)][what] for what in failed), check
     assert min(shipped.weight("KV310", Severity.ERROR, wrong) for wrong in (LINE, TYPE)) > 0.0
-
-
-@pytest.mark.parametrize(("placements", "suspected"), [(1, False), (CONFIG.placements, True)])
-def test_no_way_to_pull_speaks_only_if_several_places_failed(tmp_path: Path, placements: int, suspected: bool) -> None:
-    finding = engine("KV704", cause=Cause.TASK, engine=None)
-    assert bool(fed_back(cabinet(), tmp_path, finding, tried=placements).lines) is suspected
-
-
-def test_suppressed_findings_do_not_count(tmp_path: Path) -> None:
-    assert not fed_back(cabinet(), tmp_path, engine("KV803", suppressed="accepted"))
-
-
-def test_feedback_is_plain_data(tmp_path: Path) -> None:
-    feedback = fed_back(cabinet().with_part("drawer", axis=(0.0, 1.0, 0.0), limits=(-0.3, 0.3)), tmp_path)
-    assert feedback.as_json()["lines"][0]["child"] == "drawer"

@@ -232,6 +232,18 @@ def test_a_range_beyond_the_free_travel_gets_the_measured_end(tmp_path: Path) ->
     assert measured == pytest.approx(np.pi, abs=0.06)  # its thickness turns into the wall
 
 
+@pytest.mark.parametrize(("width", "severity"), [(0.06, Severity.ERROR), (0.053, Severity.WARNING)])
+def test_a_joint_that_cannot_leave_most_of_its_range_is_an_error(
+    tmp_path: Path, width: float, severity: Severity
+) -> None:
+    sides = [Box(size=(0.5, 0.03, 0.1), at=(0.0, y, 0.0)) for y in (-0.0455, 0.0455)]
+    frame = Part(name="frame", boxes=(*sides, Box(size=(0.03, 0.06, 0.1), at=(-0.235, 0.0, 0.0))))
+    bar = Part(name="bar", parent="frame", kind="revolute", boxes=(Box(size=(width, width, 0.1)),),
+               axis=(0.0, 0.0, 1.0), limits=(-1.57, 1.57))  # fmt: skip
+    finding = only(found(Model(parts=(frame, bar)), tmp_path), "KV310")
+    assert (finding.joint, finding.severity) == ("bar_joint", severity)
+
+
 def test_a_joint_that_only_fat_collision_geometry_blocks_is_not_the_cause(tmp_path: Path) -> None:
     fat = (Box(size=(0.15, 0.3, 0.4), at=(-0.05, -0.15, 0.0)),)
     model = cabinet().with_part("door", limits=(0.0, 2.9), collision=fat)

@@ -106,7 +106,7 @@ def test_what_was_not_finished_is_no_finding_and_ends_with_3(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     stage = Stage(name="evidence", run=work, checks=CHECKS_LEFT)
-    monkeypatch.setattr(validation, "later_stages", lambda: [stage])
+    monkeypatch.setattr(validation, "later_stages", lambda _: [stage])
     model = cabinet().write(tmp_path)
     words = ["validate", str(model), "--engines", "none", "--checks", "KV34*", "--budget", "4"]
     assert run([*words, "--json", str(tmp_path / "report.json")]) == status

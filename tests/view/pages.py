@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from io import BytesIO
 from typing import TYPE_CHECKING
+
+import numpy as np
+from PIL import Image
 
 from kinematify.robot.read import read_robot
 from kinematify.view.inference_view import shown_with
@@ -15,6 +19,7 @@ if TYPE_CHECKING:
 
     from playwright.sync_api import Page
 
+    from kinematify.robot.arrays import IntArray
     from kinematify.view.alternatives import JointAlternative
     from kinematify.view.window import Window
 
@@ -44,6 +49,12 @@ def served(folder: Path, port: int) -> Iterator[Window]:
 def press(page: Page, words: str) -> None:
     """Press a button; frames are so rare without a graphics card that plain clicks wait for ever."""
     page.locator("button", has_text=words).first.evaluate("button => button.click()")
+
+
+def picture(page: Page) -> IntArray:
+    """The page as it is now, RGB from 0 to 255, shape (height, width, 3)."""
+    with Image.open(BytesIO(page.screenshot(timeout=PATIENCE))) as seen:
+        return np.asarray(seen.convert("RGB"), dtype=int)
 
 
 def mistakes(reported: list[str]) -> list[str]:

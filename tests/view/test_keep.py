@@ -107,17 +107,3 @@ def test_another_parent_is_written_as_a_hint_and_can_be_taken_back(tmp_path: Pat
     assert joint.parent == other
     kept.undo()
     assert read_record(folder)["trees"][0]["parents"]["lid"] == lid["parent"]
-
-
-def test_a_part_takes_the_joint_of_its_twin(tmp_path: Path) -> None:
-    folder = tmp_path / "model"
-    write_inference(infer(BUILDERS["torso"]().assembly), folder, preview=False)
-    shown = shown_with(ViewScene(read_robot(folder / "model.urdf")), folder / "inference.json")
-    assert shown.twins["right_upper_arm"] == ("left_upper_arm",)
-    assert all(part not in twins for part, twins in shown.twins.items())
-    kept = ModelFolder(folder)
-    kept.state(Hint(part="left_upper_arm", limits="-0.1..1.2"))
-    reported = kept.state(Hint(part="right_upper_arm", twin=shown.twins["right_upper_arm"][0]))
-    assert reported.hints == ("right_upper_arm:twin=left_upper_arm",)
-    ranges = {joint.child: (joint.lower, joint.upper) for joint in read_robot(folder / "model.urdf").joints}
-    assert ranges["right_upper_arm"] == pytest.approx(ranges["left_upper_arm"])

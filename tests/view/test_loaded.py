@@ -79,7 +79,6 @@ def test_engines_get_the_model(urdf: Path) -> None:
 
 
 def test_it_is_shown_until_it_is_closed(urdf: Path) -> None:
-    pytest.importorskip("viser", reason="viser is not installed")
     window = kinematify.load(urdf).show({"door": 0.5}, port=18091)
     try:
         assert window.viewer.values == {"hinge": 0.5}

@@ -38,7 +38,6 @@ def other_values(widget: Any) -> Iterator[Any]:
 
 @pytest.mark.parametrize(("number", "name"), [(0, "toilet"), (1, "nested_drawer"), (2, "universal_joint")])
 def test_clicks_and_widgets_that_the_program_sets_change_no_byte(number: int, name: str, tmp_path: Path) -> None:
-    pytest.importorskip("viser", reason="viser is not installed")
     folder = tmp_path / "model"
     found = infer(BUILDERS[name]().assembly)
     names, tree = found.assembly.names, found.trees[0]

@@ -1,4 +1,4 @@
-"""Parts are merged and split in the viewer, and the command that is shown infers the same parts."""
+"""Parts are merged and named in the viewer, and the command that is shown infers the same parts."""
 
 from __future__ import annotations
 
@@ -46,31 +46,36 @@ def pieces_of(folder: Path) -> set[frozenset[str]]:
     return {frozenset(part["pieces"]) for part in stated["parts"]}
 
 
-def test_a_part_is_split_its_pieces_are_merged_and_the_command_does_the_same(folder: Path) -> None:
+def test_parts_are_merged_the_command_does_the_same_and_that_can_be_undone(folder: Path) -> None:
     before = pieces_of(folder)
-    model = ModelFolder(folder)
-    model.split("piece_005")
-    lid, knob = frozenset({"piece_005"}), frozenset({"piece_006"})
-    assert {lid, knob} < pieces_of(folder)
-    assert {child for _, child in candidates_in(folder)} == {"piece_005", "piece_006"}
-    reported = ModelFolder(folder).merge("piece_005", "piece_006")
-    assert pieces_of(folder) == before
+    apart = json.loads((folder / "groups.json").read_text(encoding="utf-8"))
+    apart["parts"] = [{"pieces": [f"piece_{k:03d}" for k in range(5)]}]
+    groups = folder.parent / "apart.json"
+    groups.write_text(json.dumps(apart), encoding="utf-8")
+    mesh, out = folder.parent / "bin.ply", folder.parent / "apart"
+    words = [
+        "infer",
+        str(mesh),
+        "-o",
+        str(out),
+        "--groups",
+        str(groups),
+        "--up",
+        "z",
+        "--no-preview",
+        "--no-validation",
+    ]
+    assert run(words) == 0
+    assert {child for _, child in candidates_in(out)} == {"piece_005", "piece_006"}
+    model = ModelFolder(out)
+    reported = model.merge("piece_005", "piece_006")
+    assert pieces_of(out) == before
     assert " --up z " in reported.command, "the mesh is read in the same manner"
-    command = [*shlex.split(reported.command)[1:], "--no-preview", "--no-validation"]
-    assert run(command) == 0
-    assert pieces_of(folder) == before
     with pytest.raises(InputError, match="another one remains"):
-        ModelFolder(folder).merge(*{part for pair in candidates_in(folder) for part in pair})
-
-
-def test_pieces_that_were_taken_for_fixed_become_a_part_and_that_can_be_undone(folder: Path) -> None:
-    before = pieces_of(folder)
-    model = ModelFolder(folder)
-    model.free(["piece_003", "piece_004"])
-    assert frozenset({"piece_003", "piece_004"}) in pieces_of(folder)
-    assert len(pieces_of(folder)) == 3
+        ModelFolder(out).merge(*{part for pair in candidates_in(out) for part in pair})
     model.undo()
-    assert pieces_of(folder) == before
+    assert pieces_of(out) != before
+    assert run([*shlex.split(reported.command)[1:], "--no-preview", "--no-validation"]) == 0
 
 
 def test_a_name_given_on_the_page_or_in_the_file_is_that_of_the_link(folder: Path, tmp_path: Path) -> None:

@@ -14,16 +14,11 @@ import numpy as np
 import pytest
 
 from kinematify.cli.app import run
-from kinematify.robot.appearance import surfaces
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.mesh_file import read_meshes
-from kinematify.robot.raw_mesh import merged
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
-from kinematify.view.alternatives import JointAlternative, agreeing, described, distinct
-from kinematify.view.drawn import glb_of
+from kinematify.view.alternatives import JointAlternative, agreeing, described
 from kinematify.view.viewer_scene import ViewScene
-from tests.colored_objects import make_object, unlike
 from tests.view.pages import candidates_in
 
 _URDF = """<robot name="door">
@@ -83,16 +78,6 @@ def test_an_alternative_replaces_axis_place_and_type(scene: ViewScene) -> None:
     assert np.allclose(scene.poses({"hinge": 0.9})["door"], forward_kinematics(scene.robot, {"hinge": 0.9})["door"])
 
 
-def test_glyph_shows_the_range(scene: ViewScene) -> None:
-    hinge = scene.robot.joint_by_name["hinge"]
-    segments = scene.glyph(hinge)
-    assert segments.shape[1:] == (2, 3)
-    assert np.allclose(np.cross(segments[0, 1] - segments[0, 0], hinge.axis), 0.0)
-    spokes = segments[-2:, 1] - segments[-2:, 0]
-    angle = np.arccos(spokes[0] @ spokes[1] / np.linalg.norm(spokes, axis=1).prod())
-    assert angle == pytest.approx(2.0, abs=1e-6)
-
-
 @pytest.mark.usefixtures("urdf")
 def test_alternatives_of_a_record(tmp_path: Path) -> None:
     candidate = {"type": "revolute", "axis": [0, 0, 1], "pivot": [1, 2, 3], "score": 0.5, "source": "panel"}
@@ -125,21 +110,6 @@ def test_candidates_are_said_in_words(
     assert described(item, _BOUNDS) == f"{words}, 22 %"
 
 
-def test_candidates_that_look_the_same_are_one() -> None:
-    def turn(x: float, probability: float) -> JointAlternative:
-        place = np.array([x, 0.0, 0.0])
-        axis = np.array([0.0, 0.0, 1.0])
-        return JointAlternative(
-            kind=JointType.REVOLUTE, axis=axis, pivot=place, probability=probability, score=probability
-        )
-
-    fixed = JointAlternative(kind=JointType.FIXED, axis=np.array([0.0, 0.0, 1.0]), pivot=np.zeros(3), probability=0.05)
-    left, again, right = turn(0.0, 0.3), turn(0.02, 0.25), turn(0.6, 0.4)
-    found = distinct([right, left, again, fixed], size=1.2)
-    assert [item.probability for item in found] == pytest.approx([0.55, 0.4, 0.05])
-    assert found[-1].kind is JointType.FIXED
-
-
 def test_candidates_agree_with_the_confidence_of_the_joint_in_the_file() -> None:
     def turn(x: float, probability: float | None) -> JointAlternative:
         axis, pivot = np.array([0.0, 0.0, 1.0]), np.array([x, 0.0, 0.0])
@@ -159,7 +129,6 @@ def test_a_candidate_gets_the_range_that_is_free(scene: ViewScene) -> None:
 
 
 def test_a_model_that_another_program_changes_is_shown_again(urdf: Path) -> None:
-    pytest.importorskip("viser", reason="viser is not installed")
     from kinematify.view.window import Window  # needs viser
 
     window = Window(urdf, port=18087)
@@ -167,7 +136,7 @@ def test_a_model_that_another_program_changes_is_shown_again(urdf: Path) -> None
     try:
         urdf.write_text(_URDF.replace("hinge", "pivot"))
         os.utime(urdf, (1.0, 1.0))
-        until = time.monotonic() + 60.0
+        until = time.monotonic() + 300.0
         while "pivot" not in window.viewer.values and time.monotonic() < until:
             time.sleep(0.2)
         assert set(window.viewer.values) == {"pivot"}
@@ -216,7 +185,6 @@ def test_bad_arguments(urdf: Path, arguments: list[str], words: str, capsys: pyt
 
 
 def test_it_prints_its_address_and_ends_with_ctrl_c(urdf: Path) -> None:
-    pytest.importorskip("viser", reason="viser is not installed")
     finding = {"check": "KV310", "severity": "error", "joint": "hinge", "pair": ["frame", "door"], "link": None,
                "q": {"hinge": -0.5}, "message": "m", "remedy": "r"}  # fmt: skip
     (urdf.parent / "validation.json").write_text(json.dumps({"findings": [finding]}))
@@ -231,7 +199,7 @@ def test_it_prints_its_address_and_ends_with_ctrl_c(urdf: Path) -> None:
     assert process.stdout is not None
     line = process.stdout.readline()
     process.send_signal(signal.SIGINT)
-    rest, errors = process.communicate(timeout=30)
+    rest, errors = process.communicate(timeout=300)
     assert line.startswith("http://localhost:"), errors
     assert rest == "Closed.\n"
     assert errors == ""
@@ -239,7 +207,6 @@ def test_it_prints_its_address_and_ends_with_ctrl_c(urdf: Path) -> None:
 
 
 def test_a_model_whose_collision_mesh_is_missing_is_seen_all_the_same(urdf: Path) -> None:
-    pytest.importorskip("viser", reason="viser is not installed")
     from kinematify.view.window import Window  # needs viser
 
     shape = '<geometry><box size="1 0.1 2"/></geometry>'
@@ -252,17 +219,3 @@ def test_a_model_whose_collision_mesh_is_missing_is_seen_all_the_same(urdf: Path
         assert any("gone.obj" in note for note in read_robot(urdf, geometry="present").notes)
     finally:
         window.close()
-
-
-def test_a_part_is_sent_to_the_page_as_it_looks(tmp_path: Path) -> None:
-    given = make_object(2, tmp_path)
-    for mesh in read_meshes(given, appearance=True):
-        assert mesh.appearance is not None
-        sent = glb_of(surfaces(mesh.vertices, mesh.faces, mesh.appearance), double_sided=False)
-        (tmp_path / "sent.glb").write_bytes(sent)
-        found = merged(read_meshes(tmp_path / "sent.glb", appearance=True), mesh.name)
-        assert unlike(mesh, found) == 0.0
-        assert found.appearance is not None
-        assert {(item.metallic, item.roughness) for item in found.appearance.materials} == {
-            (item.metallic, item.roughness) for item in mesh.appearance.materials
-        }

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.geometry.sampling import spread_rows
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration
-from kinematify.simulation.configurations import spread_rows
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray

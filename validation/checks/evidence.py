@@ -1,7 +1,8 @@
 """KV340 to KV349: does the geometry of two links explain the joint between them?
 
 KV341 to KV346 are opinions, for people build doors that no rule has seen: they count only beside an error of fact
-about the same joint, and are one note per joint else (`kinematify.validation.run.opinions`). One cause, one finding:
+about the same joint, and are one note per joint else (`kinematify.validation.run.opinions`). They are asked only of
+joints that a sweep doubts or whose contact opens, for they take most of the time. One cause, one finding:
 a joint with the wrong parent is judged no further, and where several joints in series share one contact only what
 holds for each of them is.
 """
@@ -55,7 +56,7 @@ def askew_together(result: OpenCheck, case: JointCase) -> None:
     if len(askew) < case.settings.askew_joints or askew[0] is not case.measures:
         return
     names = [item.joint.source for item in askew]
-    angle = float(np.median([item.line.angle for item in askew]))
+    angle = float(np.median([item.angle for item in askew]))
     _doubt(
         result,
         case,
@@ -138,7 +139,7 @@ def unknown_direction(result: OpenCheck, case: JointCase) -> None:
     """
     if not case.unexplained:
         return
-    line, settings = case.measures.line, case.settings
+    line, settings = case.measures, case.settings
     certain = line.angle > settings.wrong_deg and line.deficit > settings.better and case.measures.alone
     _doubt(
         result,
@@ -171,8 +172,8 @@ def unknown_place(result: OpenCheck, case: JointCase) -> None:
     """
     if not case.misplaced:
         return
-    line = case.measures.line
-    size = case.measures.features.scene.frame.diagonal
+    line = case.measures
+    size = case.measures.scene.frame.diagonal
     far = f"{line.distance * size:.3g} m" if np.isfinite(line.distance) else "far"
     _doubt(
         result,
@@ -207,7 +208,7 @@ def another_fits(result: OpenCheck, case: JointCase) -> None:
     """
     if not case.outdone:
         return
-    deficit = case.measures.line.deficit
+    deficit = case.measures.deficit
     _doubt(
         result,
         case,
@@ -265,8 +266,8 @@ def _type_open(case: JointCase) -> bool:
         return False
     if not case.linkage or not case.measures.slides:
         return True
-    better = case.measures.line.deficit > case.settings.better
-    return better or case.measures.features.scene.has_bearing or case.blocked > case.settings.blocked
+    better = case.measures.deficit > case.settings.better
+    return better or case.measures.scene.has_bearing or case.blocked > case.settings.blocked
 
 
 @_opinion(
@@ -285,12 +286,12 @@ def opens_inwards(result: OpenCheck, case: JointCase) -> None:
 
     Remedy: Reverse the axis, or swap the limits together with their signs.
     """
-    joint, room, settings = case.measures.joint, case.measures.room, case.settings
+    joint, room, settings = case.measures.joint, case.measures, case.settings
     short, long = sorted((abs(joint.lower), abs(joint.upper)))
     if not case.judged_alone or not np.isfinite(long) or short >= settings.one_sided * long:
         return
     forward = abs(joint.upper) > abs(joint.lower)
-    free, other = (room.forward, room.backward) if forward else (room.backward, room.forward)
+    free, other = room.free if forward else room.free[::-1]
     outward = room.outward if forward else -room.outward
     wanted = min(long, room.reach)
     remedy = "Turn the axis round (or swap the limits with their signs), so that the permitted motion opens."
@@ -331,7 +332,7 @@ def leaves_guides(result: OpenCheck, case: JointCase) -> None:
 
     Remedy: Reduce the limits, for a drawer to about four fifths of its length.
     """
-    joint, room = case.measures.joint, case.measures.room
+    joint, room = case.measures.joint, case.measures
     travel = max(abs(joint.lower), abs(joint.upper))
     limit = case.settings.far_gap * case.bodies.diagonal
     if not case.judged_alone or not case.measures.slides or room.parted <= limit or travel <= room.length:
@@ -365,7 +366,7 @@ def unusual_range(result: OpenCheck, case: JointCase) -> None:
 
     Remedy: Correct the limit, or accept the finding with a reason.
     """
-    joint, room, scene, settings = case.measures.joint, case.measures.room, case.measures.features.scene, case.settings
+    joint, room, scene, settings = case.measures.joint, case.measures, case.measures.scene, case.settings
     span = max(abs(joint.lower), abs(joint.upper))
     if not case.judged_alone or not np.isfinite(span):
         return
@@ -438,7 +439,7 @@ def contact_opens(result: OpenCheck, case: JointCase) -> None:
     Remedy: Move the joint to the configuration that is named and look at the gap; align axis and origin with the
     line that keeps the contact.
     """
-    if not (case.unexplained or case.misplaced or case.outdone) or case.opened is None:
+    if not case.opens or not (case.unexplained or case.misplaced or case.outdone) or case.opened is None:
         return
     own, other = case.opened
     joint = case.measures.joint

@@ -129,8 +129,8 @@ def _remedy(text: str) -> str:
     cause=Cause.ASSET,
 )
 def implausible_numbers(result: OpenCheck, urdf: Urdf) -> None:
-    """No number is larger than `max_number` (a warning for effort, velocity, damping and friction), and no roll, pitch
-    or yaw is more than one turn (a warning).
+    """No number is larger than `max_number` (a warning for effort, velocity, damping and friction, and for limits of a
+    hinge to both sides, which are none then), and no roll, pitch or yaw is more than one turn (a warning).
 
     Why it matters: With 1e16 metres or radians all digits are lost; angles above a turn are degrees most of the time.
 
@@ -161,9 +161,14 @@ def implausible_numbers(result: OpenCheck, urdf: Urdf) -> None:
 
 def _huge(result: OpenCheck, field: _Field, value: float, limit: float) -> None:
     bound = field.attribute in ("lower", "upper")
+    endless = bound and _is_endless(field.element, limit)
+    if endless and field.attribute == "lower":
+        return  # the upper end tells it
     drive = field.attribute in _DRIVE
     result.find(
-        f"{field.called} is {value:g}; above {limit:g} few digits are left for what counts.",
+        f"{field.called} is {value:g}, and the lower one is as far: that is no limit."
+        if endless
+        else f"{field.called} is {value:g}; above {limit:g} few digits are left for what counts.",
         (
             'Write type="continuous" where a hinge has no limit.'
             if bound
@@ -171,7 +176,7 @@ def _huge(result: OpenCheck, field: _Field, value: float, limit: float) -> None:
             if drive
             else "Write the true value; all lengths are in metres."
         ),
-        severity=Severity.WARNING if drive else None,
+        severity=Severity.WARNING if drive or endless else None,
         cause=cause_of(field.element),
         joint=field.joint,
         link=field.link,
@@ -179,6 +184,13 @@ def _huge(result: OpenCheck, field: _Field, value: float, limit: float) -> None:
         limit=limit,
         line=line_of(field.element),
     )
+
+
+def _is_endless(element: _Element, limit: float) -> bool:
+    """True if a joint is limited so far to both sides that it is not, as by the 1e16 of Gazebo; a slide has an end."""
+    joint = element.getparent()
+    lower, upper = (finite_numbers(element.get(end) or "") or [0.0] for end in ("lower", "upper"))
+    return joint is not None and joint.get("type") != "prismatic" and lower[0] < -limit and upper[0] > limit
 
 
 def _fields(urdf: Urdf) -> Iterator[_Field]:

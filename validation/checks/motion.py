@@ -47,10 +47,11 @@ _LIMBS = 2
 def through_parent(result: OpenCheck, motion: JointMotion) -> None:
     """Each joint is moved alone, over its range and beyond. A child that gets deeper into its parent than at rest
     (geometry.tolerance) before geometry.early of the range is through, to both sides, says that axis, place or type is
-    wrong; to the only permitted side, with the other one free, that the direction is. Above geometry.wrong it is an
-    error, unless the joint has no limits (a whole turn is none), the two are in each other at rest (a note if both
-    hold: no range is claimed, and contact is no news), or only the collision geometry meets and not what is visible:
-    that is a note where engines let the two pass by default, as they do neighbours but for those of the base.
+    wrong; to the only permitted side, with the other one free, that the direction is. Above geometry.wrong, or if less
+    than geometry.early of the range is free down to the tolerance, it is an error, unless the joint has no limits (a
+    whole turn is none), the two are in each other at rest (a note if both hold: no range is claimed, and contact is no
+    news), or only the collision geometry meets and not what is visible: that is a note where engines let the two pass
+    by default, as they do neighbours but for those of the base.
 
     Why it matters: The joint is stuck in every engine, or the part passes through the wall that carries it.
 
@@ -173,7 +174,7 @@ def _folds(motion: JointMotion, meeting: Meeting) -> bool:
 )
 def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
     """The range does not end beyond the place where the child meets its parent (by more than geometry.late of the
-    range): a warning, above geometry.wrong of depth an error, unless only the collision geometry meets (see KV310), or
+    range): a warning, an error as in KV310, unless only the collision geometry meets (see KV310), or
     the two are in each other at rest. Where the joint has no limits (a whole turn is none) it is a warning, and a note
     after geometry.early_turn. A rail may go through a solid carriage, and a contact that is alike over half of the way
     or more is no stop. A range below geometry.small_range of the free travel is a note.
@@ -237,7 +238,9 @@ def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
     scene = motion.scene
     limit = scene.settings.lost * scene.size
     for pair in sorted({pair for side in motion.sweep.sides for pair, _, _ in side.gaps}):
-        grown, value = min(motion.parted(pair), motion.as_seen.parted(pair))
+        grown, value = motion.parted(pair)
+        if grown > limit:
+            grown, value = min((grown, value), motion.seen_parted(pair))
         if grown <= limit:
             continue
         connection = scene.connection_of[pair]
@@ -282,7 +285,7 @@ def out_of_guide(result: OpenCheck, motion: JointMotion) -> None:
         connection = scene.connection_of[pair]
         for side in motion.sweep.sides:
             way = abs(side.declared - travel.rest)
-            guide, held = max(motion.guide(connection, side), motion.as_seen.guide(connection, side))
+            guide, held = max(motion.guide(connection, side), motion.guide(connection, side, visible=True))
             # What stands on its parent, as a lid does, or hangs on a rope, as a hook does, has no guide in the file.
             if guide <= scene.settings.hover * scene.size or held < _GUIDED or way <= scene.settings.guide * guide:
                 continue
@@ -346,7 +349,8 @@ def _meet(
     unseen = seen == 0.0
     buried = motion.look.allowance.at_rest(meeting.pair) > motion.look.allowance.tolerance(meeting.pair)
     collides = motion.look.collides(meeting.pair)
-    wrong = min(meeting.depth, seen) > motion.scene.settings.wrong * motion.scene.size and not buried and collides
+    deep = min(meeting.depth, seen) > motion.scene.settings.wrong * motion.scene.size
+    wrong = (deep or (motion.stuck and not unseen)) and not buried and collides
     if (unseen and not motion.look.felt_by_engines(meeting.pair)) or (buried and not motion.has_stops):
         severity = Severity.NOTE
     said = UNSEEN if unseen and motion.look.clear(meeting.pair, {motion.sweep.leader: meeting.at}) else BARELY

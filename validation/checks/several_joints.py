@@ -31,7 +31,7 @@ def _two_joints(look: GeometryContext) -> str | None:
     needs=(lambda look: not_finished("time ran out before it") if look.random is None else None,),
 )
 def free_configurations(result: OpenCheck, look: GeometryContext) -> None:
-    """Quasi-random configurations of all joints (geometry.random_rows Sobol points); the share that is free is
+    """Quasi-random configurations of all joints (geometry.random_rows of a Latin hypercube); the share that is free is
     measured. A warning only if none is.
 
     Why it matters: Sampling planners and random resets need free configurations.

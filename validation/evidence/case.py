@@ -97,27 +97,34 @@ class JointCase:
     settings: EvidenceSettings
     every: Sequence[JointMeasures]
     """Of all joints of the model that were measured, in the order of the description."""
+    doubted: Collection[str] | None = None
+    """Joints that exact sweeps speak against; None where none were made."""
+
+    @property
+    def examined(self) -> bool:
+        """Something measured may speak against the joint, so that it is worth to ask what our inference holds of it."""
+        return self.doubted is None or self.measures.joint.source in self.doubted or self.opens
 
     @property
     def linkage(self) -> bool:
         """The pair belongs to a machine, not to furniture."""
-        return self.measures.features.scene.mechanism > _LINKAGE
+        return self.measures.scene.mechanism > _LINKAGE
 
     @property
     def small(self) -> bool:
         """The child is a button, a knob or a lever."""
-        return self.measures.features.scene.smallness > _SMALL
+        return self.measures.scene.smallness > _SMALL
 
     @property
     def closed_panel(self) -> bool:
         """The child is a door or lid that is shut."""
-        panel = self.measures.features.scene.panel and not self.measures.room.ajar
+        panel = self.measures.scene.panel and not self.measures.ajar
         return panel and not self.measures.slides and not self.linkage
 
     @property
     def instead(self) -> str:
         """The axis to write for the line that fits best, and where that line runs, in the joint's own frame."""
-        joint, line = self.measures.joint.source, self.measures.line
+        joint, line = self.measures.joint.source, self.measures
         T = self.bodies.joint_frames[joint]
         axis = line.best_axis @ T[:3, :3]
         remedy = f'The line that fits best has <axis xyz="{_written(axis)}"/> in the joint {joint}'
@@ -158,21 +165,21 @@ class JointCase:
     @property
     def unexplained(self) -> bool:
         """The axis runs along no direction that the two bodies show."""
-        return self.lines_judged and self.measures.line.angle > self.settings.unknown_deg
+        return self.lines_judged and self.measures.angle > self.settings.unknown_deg
 
     @property
     def askew(self) -> list[JointMeasures]:
         """Joints whose axes run along what the bodies show but for the same few degrees."""
-        found = [item for item in self.every if self.settings.askew_deg < item.line.angle <= self.settings.unknown_deg]
-        middle = np.median([item.line.angle for item in found]) if found else 0.0
-        return [item for item in found if abs(item.line.angle - middle) <= self.settings.askew_spread]
+        found = [item for item in self.every if self.settings.askew_deg < item.angle <= self.settings.unknown_deg]
+        middle = np.median([item.angle for item in found]) if found else 0.0
+        return [item for item in found if abs(item.angle - middle) <= self.settings.askew_spread]
 
     @property
     def misplaced(self) -> bool:
         """The axis runs far beside every line along its direction that the two bodies show."""
         if self.measures.slides or not self.lines_judged or self.unexplained:
             return False  # a direction that nothing shows has no place
-        return self.measures.line.distance > self.farthest
+        return self.measures.distance > self.farthest
 
     @property
     def farthest(self) -> float:
@@ -182,7 +189,7 @@ class JointCase:
     @property
     def outdone(self) -> bool:
         """Another joint of its type explains the contact clearly better."""
-        if not self.judged_alone or self.unexplained or self.measures.line.deficit <= self.usual_deficit:
+        if not self.judged_alone or self.unexplained or self.measures.deficit <= self.usual_deficit:
             return False  # of course another one fits better than a direction that nothing shows
         if self._supported:
             return False
@@ -203,7 +210,32 @@ class JointCase:
     def contradicted(self) -> bool:
         """Both bodies are beyond doubt round about another line."""
         own = max(self.measures.own_bearing, 1e-4)
-        return self.measures.features.scene.has_bearing and self.measures.bearing > self.settings.bearing_lead * own
+        return self.measures.scene.has_bearing and self.measures.bearing > self.settings.bearing_lead * own
+
+    @cached_property
+    def _contact(self) -> Contact | None:
+        """Where child and parent touch; None at too few places to say anything."""
+        joint, scene, settings = self.measures.joint, self.measures.scene, self.settings
+        band = settings.contact_band * scene.frame.diagonal
+        contact = Contact(scene.cache, joint.parent, joint.child, band=band)
+        return contact if contact.places >= settings.contact_places else None
+
+    def _opening(self, line: Line) -> Opening:
+        assert self._contact is not None
+        joint, size, settings = self.measures.joint, self.measures.scene.frame.diagonal, self.settings
+        reach = settings.longest_slide * size if self.measures.slides else np.radians(settings.widest_turn)
+        return self._contact.opening(joint.kind, line, max(joint.lower, -reach), min(joint.upper, reach))
+
+    @cached_property
+    def _own(self) -> Opening | None:
+        joint = self.measures.joint
+        return None if self._contact is None else self._opening(Line(axis=joint.axis, point=joint.pivot))
+
+    @property
+    def opens(self) -> bool:
+        """The contact opens about the declared line so far that it may do so less about another one."""
+        least = min(self.settings.bearing_opens, self.settings.opens, self.settings.opens_across)
+        return self._own is not None and self._own.width > least * self.measures.scene.frame.diagonal
 
     @cached_property
     def opened(self) -> tuple[Opening, Opening] | None:
@@ -213,7 +245,7 @@ class JointCase:
         across the declared one without a bearing about it: what a leg without bearings touches says little.
         """
         measures, settings = self.measures, self.settings
-        joint, line, size = measures.joint, measures.line, measures.features.scene.frame.diagonal
+        joint, line, size = measures.joint, measures, measures.scene.frame.diagonal
         turned = float(np.degrees(np.arccos(np.clip(abs(line.best_axis @ joint.axis), 0.0, 1.0))))
         if self.contradicted:
             limit = settings.bearing_opens
@@ -223,20 +255,11 @@ class JointCase:
             return None
         else:
             limit = settings.opens_across
-        cache = measures.features.scene.cache
-        contact = Contact(cache, joint.parent, joint.child, band=settings.contact_band * size)
-        if contact.places < settings.contact_places:
+        own = self._own
+        if own is None:
             return None
-        reach = settings.longest_slide * size if measures.slides else np.radians(settings.widest_turn)
-        lower, upper = max(joint.lower, -reach), min(joint.upper, reach)
-        own = contact.opening(joint.kind, Line(axis=joint.axis, point=joint.pivot), lower, upper)
-        other = min(
-            (
-                contact.opening(joint.kind, Line(axis=sign * line.best_axis, point=line.best_pivot), lower, upper)
-                for sign in (1.0, -1.0)
-            ),
-            key=lambda opening: opening.width,
-        )
+        lines = [Line(axis=sign * line.best_axis, point=line.best_pivot) for sign in (1.0, -1.0)]
+        other = min(map(self._opening, lines), key=lambda opening: opening.width)
         clear = own.width - other.width > limit * size and other.width < settings.stays_closed * own.width
         return (own, other) if clear else None
 
@@ -248,9 +271,9 @@ class JointCase:
     @property
     def blocked(self) -> float:
         """Share of the declared range in which the parent is in the way, of as much of it as was swept."""
-        joint, room = self.measures.joint, self.measures.room
-        upper, lower = min(max(joint.upper, 0.0), room.reach), min(max(-joint.lower, 0.0), room.reach)
-        missing = max(upper - room.forward, 0.0) + max(lower - room.backward, 0.0)
+        joint, reach, (forward, backward) = self.measures.joint, self.measures.reach, self.measures.free
+        upper, lower = min(max(joint.upper, 0.0), reach), min(max(-joint.lower, 0.0), reach)
+        missing = max(upper - forward, 0.0) + max(lower - backward, 0.0)
         return missing / max(upper + lower, 1e-12)
 
 
@@ -281,10 +304,9 @@ def better_joint(measures: JointMeasures, doubts: Collection[str]) -> Alternativ
     """
     if not {"KV342", "KV343", "KV344", "KV345"} & set(doubts):
         return None
-    line = measures.line
     if "KV345" not in doubts:
         kind = JointType.PRISMATIC if measures.slides else JointType.REVOLUTE
-        return Alternative(kind=kind, axis=line.best_axis, pivot=line.best_pivot, score=line.deficit)
+        return Alternative(kind=kind, axis=measures.best_axis, pivot=measures.best_pivot, score=measures.deficit)
     best, found = measures.best_other, measures.posterior.hypotheses
     kind, score = measures.posterior.kind(best), measures.odds_against
     return Alternative(kind=kind, axis=found.axes[best], pivot=found.pivots[best], score=score)

@@ -7,30 +7,35 @@ joint stands among them, and its parent among all bodies that the child touches.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinematify.joints.bearings.line import Line
 from kinematify.joints.candidate import FIXED, GIVEN, SLIDE, TURN
-from kinematify.joints.choice.decide import edge_features
 from kinematify.joints.choice.judge import judge
-from kinematify.joints.features.edge_scene import part_frames
+from kinematify.joints.features.columns import features_of
+from kinematify.joints.features.edge_scene import joint_scene, part_frames
 from kinematify.joints.features.turn_cues import outwardness
 from kinematify.joints.features.workspace import PartCache
+from kinematify.joints.hypotheses.propose import propose
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
     from kinematify.assembly.truth import TrueJoint
     from kinematify.config import JointsConfig
     from kinematify.config.validation import EvidenceSettings
+    from kinematify.joints.candidate import Hypotheses
     from kinematify.joints.choice.judge import Posterior
     from kinematify.joints.features.columns import Features
+    from kinematify.joints.features.edge_scene import JointScene
+    from kinematify.joints.features.frames import BoxFrame
     from kinematify.robot.arrays import FloatArray
     from kinematify.validation.evidence.bodies_at_rest import Bodies, Pair
 
@@ -56,59 +61,65 @@ class ParentEvidence:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class LineEvidence:
-    """Where the declared line lies among those that the geometry of the two bodies knows."""
-
-    angle: float
-    """Smallest angle to a known direction [deg]."""
-    distance: float
-    """Smallest distance to a known line along nearly the same direction, fraction of the child's diagonal; inf if there
-    is none."""
-    deficit: float
-    """Score (`Posterior.scores`) of the best candidate of its type less that of the declared joint; 0 if it is best."""
-    best_axis: FloatArray
-    """Of the best candidate of the declared type, shape (3,)."""
-    best_pivot: FloatArray
-    """World frame at rest [m], shape (3,)."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class RoomEvidence:
-    """Where the child can go about or along the declared line before it meets its parent."""
-
-    forward: float
-    """Free motion towards + [rad or m], at most `reach`."""
-    backward: float
-    """Free motion towards - [rad or m]."""
-    outward: float
-    """Of a turn, the cosine between the first motion towards + and the way out of the parent. Of a slide, where the
-    child is along it: 1 at the far side of the parent or beyond, -1 at the near side, 0 in the middle."""
-    reach: float
-    """How far was swept [rad or m]."""
-    length: float
-    """Size of the child along the declared line [m]."""
-    ajar: bool
-    """A plate that touches its parent along one edge only, so that it stands open."""
-    parted: float
-    """How much farther a slide is from its parent at the end of its range than at rest [m]; 0 for a turn."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class JointMeasures:
-    """Everything that is measured of one declared joint."""
+    """Everything that is measured of one declared joint, each when it is first asked for."""
 
     joint: TrueJoint
     """As declared, in the world frame at rest."""
-    parent: ParentEvidence
-    line: LineEvidence
-    room: RoomEvidence
-    posterior: Posterior
-    """How likely each candidate is."""
-    bearing: float
-    """Score of the best bearing line of the contact; 0 without one."""
-    own_bearing: float
-    """Score of the declared line as a bearing; 0 where there is no other to compare it with."""
-    features: Features
+    bodies: Bodies
+    cache: PartCache
+    frames: Mapping[int, BoxFrame]
+    settings: EvidenceSettings
+
+    @property
+    def _pair(self) -> Pair:
+        return _pair(self.joint.parent, self.joint.child)
+
+    @property
+    def _config(self) -> JointsConfig:
+        return self.bodies.config.joints
+
+    @cached_property
+    def scene(self) -> JointScene:
+        """The two bodies."""
+        edge, bearing = (self.joint.parent, self.joint.child), self.bodies.bearings.get(self._pair)
+        return joint_scene(self.cache, self.bodies.tree, self.frames, edge, bearing, config=self._config)
+
+    @cached_property
+    def proposed(self) -> Hypotheses:
+        """Candidates that the inference would weigh, and the declared line."""
+        return propose(self.scene, self._config, (self._line,))
+
+    @property
+    def _line(self) -> Line:
+        return Line(axis=self.joint.axis, point=self.joint.pivot)
+
+    @cached_property
+    def features(self) -> Features:
+        """What is measured of the candidates, which takes most of the time."""
+        return features_of(self.scene, self.proposed, self._config)
+
+    @cached_property
+    def posterior(self) -> Posterior:
+        """How likely each candidate is, by geometry alone."""
+        return judge(self.features, self._config.confidence.model_copy(update={"cues_lead": 0.0, "name_weight": 0.0}))
+
+    @cached_property
+    def parent(self) -> ParentEvidence:
+        """How it hangs on its parent."""
+        return _parent_evidence(self.bodies, self.joint)
+
+    @property
+    def bearing(self) -> float:
+        """Score of the best bearing line of the contact; 0 without one."""
+        found = self.bodies.bearings.get(self._pair)
+        return found.lines[0].score if found and found.lines else 0.0
+
+    @cached_property
+    def own_bearing(self) -> float:
+        """Score of the declared line as a bearing; 0 where there is no other to compare it with."""
+        rivals = self.bearing > self.settings.bearing_score
+        return self.bodies.score_line(self._pair, self._line).score if rivals else 0.0
 
     @property
     def slides(self) -> bool:
@@ -123,7 +134,8 @@ class JointMeasures:
     @property
     def best_other(self) -> int:
         """Position of the best candidate of the other type."""
-        others = (self.posterior.hypotheses.kinds == (TURN if self.slides else SLIDE)) & ~_given(self.posterior)
+        every = self.posterior.hypotheses
+        others = (every.kinds == (TURN if self.slides else SLIDE)) & ~_given(every)
         return int(np.argmax(np.where(others, self.posterior.scores, -np.inf)))
 
     @property
@@ -131,39 +143,127 @@ class JointMeasures:
         """It is the only joint between the two bodies; others share one contact, which then tells of no single one."""
         return self.joint.chain_length == 1
 
+    @cached_property
+    def angle(self) -> float:
+        """Smallest angle to a direction that the geometry of the two bodies shows, whatever the type [deg]."""
+        scene, every = self.scene, self.proposed
+        if _is_ball(scene):
+            return 0.0
+        shown = [every.axes[~_given(every) & (every.kinds != FIXED)], scene.frame.axes, scene.parent_frame.axes]
+        if scene.bearing is not None:
+            shown += [line.axis[None] for line in scene.bearing.lines]
+            shown += [] if scene.bearing.rail is None else [scene.bearing.rail.axis[None]]
+        return float(_angles(self.joint.axis, np.concatenate(shown)).min())
 
-def measure_joints(
-    bodies: Bodies, settings: EvidenceSettings, *, seed: int, joints: Sequence[TrueJoint] | None = None
-) -> Iterator[JointMeasures]:
-    """Measure every joint between two bodies, in the order of the description.
+    @cached_property
+    def distance(self) -> float:
+        """Distance to the nearest known line of nearly the same direction, fraction of the child's diagonal, or inf."""
+        every, near = self.proposed, self._near(self.proposed)
+        away = self._away(every)[near & ~_given(every)]
+        return float(away.min(initial=np.inf))
+
+    def _near(self, every: Hypotheses) -> BoolArray:
+        """Which candidates are of the declared type and along nearly the declared direction, shape (h,)."""
+        aligned = _angles(self.joint.axis, every.axes) < self.settings.same_deg
+        return np.asarray((every.kinds == (SLIDE if self.slides else TURN)) & aligned)
+
+    def _away(self, every: Hypotheses) -> FloatArray:
+        """Distances of candidates from the declared line, fractions of the child's diagonal, shape (h,)."""
+        beside = lengths_of(crossed(every.pivots - self.joint.pivot, self.joint.axis))
+        return np.asarray((not self.slides) * beside / self.scene.frame.diagonal)
+
+    @cached_property
+    def _best(self) -> int:
+        """Position of the best candidate of the declared type."""
+        every = self.posterior.hypotheses
+        others = (every.kinds == (SLIDE if self.slides else TURN)) & ~_given(every)
+        return int(np.argmax(np.where(others, self.posterior.scores, -np.inf)))
+
+    @cached_property
+    def deficit(self) -> float:
+        """Score (`Posterior.scores`) of the best candidate of its type less that of the declared joint, at least 0."""
+        every, scores = self.posterior.hypotheses, self.posterior.scores
+        of_type = every.kinds == (SLIDE if self.slides else TURN)
+        same = self._near(every) & (self._away(every) < self.settings.same_distance)
+        own = float(scores[of_type & (_given(every) | same)].max())
+        return max(0.0, float(scores[self._best]) - own)
+
+    @property
+    def best_axis(self) -> FloatArray:
+        """Of the best candidate of the declared type, shape (3,)."""
+        return np.asarray(self.posterior.hypotheses.axes[self._best])
+
+    @property
+    def best_pivot(self) -> FloatArray:
+        """World frame at rest [m], shape (3,)."""
+        return np.asarray(self.posterior.hypotheses.pivots[self._best])
+
+    @property
+    def reach(self) -> float:
+        """How far was swept [rad or m]."""
+        config = self._config
+        return config.slides.sweep * self.scene.diagonal if self.slides else float(np.radians(config.panels.sweep_deg))
+
+    @cached_property
+    def free(self) -> tuple[float, float]:
+        """Free motion along the declared joint against the parent, towards + and - [rad or m], at most `reach`."""
+        every = self.features.hypotheses
+        row = np.flatnonzero(_given(every) & (every.kinds == (SLIDE if self.slides else TURN)))
+        forward, backward = self.features.free_parent[row[0]] * (self.scene.diagonal if self.slides else 1.0)
+        return float(forward), float(backward)
+
+    @cached_property
+    def outward(self) -> float:
+        """Of a turn, the cosine between the first motion towards + and the way out of the parent.
+
+        Of a slide, where the child is along it: 1 at the far side of the parent or beyond, -1 at the near side, 0 in
+        the middle.
+        """
+        if not self.slides:
+            every = self.proposed
+            return float(outwardness(self.scene, every.at(np.flatnonzero(_given(every) & (every.kinds == TURN))))[0])
+        child, parent = (
+            self.cache.samples(part).points @ self.joint.axis for part in (self.scene.child, self.scene.parent)
+        )
+        apart = 0.5 * float(child.min() + child.max() - parent.min() - parent.max())
+        return apart / max(0.5 * float(np.ptp(child) + np.ptp(parent)), 1e-12)
+
+    @property
+    def length(self) -> float:
+        """Size of the child along the declared line [m]."""
+        return float(np.ptp(self.cache.samples(self.scene.child).points @ self.joint.axis))
+
+    @property
+    def ajar(self) -> bool:
+        """A plate that touches its parent along one edge only, so that it stands open."""
+        return bool(np.nanmax(self.features.columns["turn_ajar_contact"]) > 0.0)
+
+    @cached_property
+    def parted(self) -> float:
+        """How much farther a slide is from its parent at the end of its range than at rest [m]."""
+        joint, points = self.joint, self.cache.samples(self.scene.child).points
+        way = joint.upper if abs(joint.upper) >= abs(joint.lower) else joint.lower
+        if not np.isfinite(way):
+            return 0.0
+        gaps = [float(self.cache.distances(self.scene.parent, points + t * joint.axis).min()) for t in (0.0, way)]
+        return gaps[1] - gaps[0]
+
+
+def measure_joints(bodies: Bodies, settings: EvidenceSettings, *, seed: int) -> list[JointMeasures]:
+    """Prepare every joint between two bodies, in the order of the description.
 
     Args:
         bodies: The model at rest.
         settings: What counts as the same line.
         seed: Seed of the surface samples.
-        joints: Those to measure; all if absent.
     """
     config = bodies.config.joints
     cache = PartCache(bodies.assembly, bodies.graph, samples=config.samples, seed=seed)
     frames = part_frames(cache, bodies.tree, config)
-    geometry_alone = config.confidence.model_copy(update={"cues_lead": 0.0, "name_weight": 0.0})
-    for joint in bodies.truth.joints if joints is None else joints:
-        edge = (joint.parent, joint.child)
-        pair = _pair(*edge)
-        line = Line(axis=joint.axis, point=joint.pivot)
-        bearing = bodies.bearings.get(pair)
-        features = edge_features(cache, bodies.tree, frames, edge, bearing, config=config, given=(line,))
-        best, posterior = bearing.lines[0].score if bearing and bearing.lines else 0.0, judge(features, geometry_alone)
-        yield JointMeasures(
-            joint=joint,
-            parent=_parent_evidence(bodies, joint),
-            line=_line_evidence(features, posterior, joint, settings),
-            room=_room_evidence(features, joint, config),
-            posterior=posterior,
-            bearing=best,
-            own_bearing=bodies.score_line(pair, line).score if best > settings.bearing_score else 0.0,
-            features=features,
-        )
+    return [
+        JointMeasures(joint=joint, bodies=bodies, cache=cache, frames=frames, settings=settings)
+        for joint in bodies.truth.joints
+    ]
 
 
 def _parent_evidence(bodies: Bodies, joint: TrueJoint) -> ParentEvidence:
@@ -193,48 +293,14 @@ def _pair(first: int, second: int) -> Pair:
     return min(first, second), max(first, second)
 
 
-def _line_evidence(
-    features: Features, posterior: Posterior, joint: TrueJoint, settings: EvidenceSettings
-) -> LineEvidence:
-    turns, every = joint.kind is not JointType.PRISMATIC, posterior.hypotheses
-    angle = 0.0 if _is_ball(features) else float(_angles(joint.axis, _known_directions(features)).min())
-    of_type = every.kinds == (TURN if turns else SLIDE)
-    axes, pivots, given = every.axes[of_type], every.pivots[of_type], _given(posterior)[of_type]
-    scores = posterior.scores[of_type]
-    aligned = _angles(joint.axis, axes) < settings.same_deg
-    away = turns * lengths_of(crossed(pivots - joint.pivot, joint.axis)) / features.scene.frame.diagonal
-    same = aligned & (away < settings.same_distance)
-    own = max(float(scores[given].max()), float(scores[same].max(initial=-np.inf)))
-    best = int(np.argmax(np.where(given, -np.inf, scores)))
-    return LineEvidence(
-        angle=angle,
-        distance=float(away[aligned & ~given].min(initial=np.inf)),
-        deficit=max(0.0, float(scores[best]) - own),
-        best_axis=axes[best],
-        best_pivot=pivots[best],
-    )
-
-
-def _given(posterior: Posterior) -> BoolArray:
+def _given(every: Hypotheses) -> BoolArray:
     """Which candidates are the declared joint, shape (h,)."""
-    return np.asarray(np.array(posterior.hypotheses.sources) == GIVEN)
+    return np.asarray(np.array(every.sources) == GIVEN)
 
 
-def _known_directions(features: Features) -> FloatArray:
-    """Directions that the geometry of the two bodies shows, whatever the type, shape (d, 3)."""
-    scene = features.scene
-    every = features.hypotheses
-    proposed = (np.array(every.sources) != GIVEN) & (every.kinds != FIXED)
-    found = [every.axes[proposed], scene.frame.axes, scene.parent_frame.axes]
-    if scene.bearing is not None:
-        found += [line.axis[None] for line in scene.bearing.lines]
-        found += [] if scene.bearing.rail is None else [scene.bearing.rail.axis[None]]
-    return np.concatenate(found)
-
-
-def _is_ball(features: Features) -> bool:
+def _is_ball(scene: JointScene) -> bool:
     """The child has no direction at all."""
-    points = features.scene.cache.samples(features.scene.child).points
+    points = scene.cache.samples(scene.child).points
     radii = lengths_of(points - points.mean(axis=0))
     return bool(radii.std() < _BALL * radii.mean())
 
@@ -242,39 +308,3 @@ def _is_ball(features: Features) -> bool:
 def _angles(axis: FloatArray, axes: FloatArray) -> FloatArray:
     """Angle between a direction and others, signs apart [deg], shape (n,)."""
     return np.asarray(np.degrees(np.arccos(np.clip(np.abs(axes @ axis), 0.0, 1.0))))
-
-
-def _room_evidence(features: Features, joint: TrueJoint, config: JointsConfig) -> RoomEvidence:
-    scene = features.scene
-    slides = joint.kind is JointType.PRISMATIC
-    reach = config.slides.sweep * scene.diagonal if slides else np.radians(config.panels.sweep_deg)
-    length = float(np.ptp(scene.cache.samples(scene.child).points @ joint.axis))
-    every = features.hypotheses
-    row = np.flatnonzero((np.array(every.sources) == GIVEN) & (every.kinds == (SLIDE if slides else TURN)))
-    forward, backward = features.free_parent[row[0]] * (scene.diagonal if slides else 1.0)
-    return RoomEvidence(
-        forward=float(forward),
-        backward=float(backward),
-        outward=_side(features, joint.axis) if slides else float(outwardness(scene, every.at(row))[0]),
-        reach=float(reach),
-        length=length,
-        ajar=bool(np.nanmax(features.columns["turn_ajar_contact"]) > 0.0),
-        parted=_parted(features, joint) if slides else 0.0,
-    )
-
-
-def _side(features: Features, axis: FloatArray) -> float:
-    scene = features.scene
-    child, parent = (scene.cache.samples(part).points @ axis for part in (scene.child, scene.parent))
-    apart = 0.5 * float(child.min() + child.max() - parent.min() - parent.max())
-    return apart / max(0.5 * float(np.ptp(child) + np.ptp(parent)), 1e-12)
-
-
-def _parted(features: Features, joint: TrueJoint) -> float:
-    scene = features.scene
-    points = scene.cache.samples(scene.child).points
-    way = joint.upper if abs(joint.upper) >= abs(joint.lower) else joint.lower
-    if not np.isfinite(way):
-        return 0.0
-    gaps = [float(scene.cache.distances(scene.parent, points + step * joint.axis).min()) for step in (0.0, way)]
-    return gaps[1] - gaps[0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import linecache
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -104,13 +105,11 @@ def _result(report: ValidationReport, group: FindingGroup, index: dict[str, int]
 
 
 def _location(model: str, finding: Finding) -> dict[str, Any]:
-    location: dict[str, Any] = {
-        "physicalLocation": {
-            "artifactLocation": {"uri": _uri(model)},
-            # Code scanning shows a result at a line only; what is about the whole model stands at the first.
-            "region": {"startLine": max(finding.line or 1, 1)},
-        }
-    }
+    # Code scanning shows a result at a line only; what is about the whole model stands at the first.
+    line = max(finding.line or 1, 1)
+    text = linecache.getline(model, line)
+    region = {"startLine": line, "startColumn": len(text) - len(text.lstrip()) + 1}
+    location: dict[str, Any] = {"physicalLocation": {"artifactLocation": {"uri": _uri(model)}, "region": region}}
     named = [("joint", finding.joint), ("link", finding.link), *(("link", name) for name in finding.pair or ())]
     logical = [
         {"name": printable(name), "fullyQualifiedName": printable(f"{kind}/{name}"), "kind": "element"}

@@ -23,7 +23,7 @@ from kinematify.validation.geometry.formatting import in_document_order
 from kinematify.validation.summary import PairSummary, PairTable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from kinematify.geometry.scene import Connection, Pair, Scene
     from kinematify.geometry.solid import Solid
@@ -48,7 +48,7 @@ class GeometryContext:
         *,
         seed: int = 0,
         in_time: Callable[[], bool] = lambda: True,
-        compare_visible: bool = True,
+        compare_visible: bool = False,
     ) -> None:
         """Keep what is looked at.
 
@@ -64,16 +64,15 @@ class GeometryContext:
         self.sweeper = Sweeper(scene, self.overlap, self.allowance)
         self.in_time = in_time
         self._seed, self._compare_visible = seed, compare_visible
-        self._sweep_of: dict[int, JointSweep] = {}
 
     @cached_property
     def visible(self) -> GeometryContext | None:
         """The same of the visual geometry; None where the collision geometry is a copy of it."""
         if not self._compare_visible or not simplified(self.scene.model):
             return None
-        scene = read_scene(self.scene.model, self.scene.settings, visible_shapes, solids=self.scene.solids)
+        scene = read_scene(self.scene.model, self.scene.settings, visible_shapes, solids=self.scene.solids, thin=True)
         same = [body.group for body in scene.bodies] == [body.group for body in self.scene.bodies]
-        return GeometryContext(scene, compare_visible=False) if same else None
+        return GeometryContext(scene) if same else None
 
     @cached_property
     def bare(self) -> frozenset[int]:
@@ -110,12 +109,6 @@ class GeometryContext:
         inside = visible.overlap.may_contain(pair, T)[0] and visible.overlap.depth(pair, T)[0] > 0.0
         return not (inside or visible.overlap.collide(pair, T)[0])
 
-    def sweep(self, leader: int) -> JointSweep:
-        """Sweep of one joint."""
-        if leader not in self._sweep_of:
-            self._sweep_of[leader] = self.sweeper.sweep(leader)
-        return self._sweep_of[leader]
-
     @cached_property
     def sweeps(self) -> list[JointSweep]:
         """Sweeps of the joints, as many as there is time for."""
@@ -123,7 +116,7 @@ class GeometryContext:
         for leader in range(len(self.scene.travels)):
             if not self.in_time():
                 break
-            found.append(self.sweep(leader))
+            found.append(self.sweeper.sweep(leader))
         return found
 
     @cached_property
@@ -194,7 +187,7 @@ class GeometryContext:
     @cached_property
     def _links_apart(self) -> Scene:
         """Every link in the frame of its body, for the names of places."""
-        return read_scene(self.scene.model, self.scene.settings, by_link=True, solids=self.scene.solids)
+        return read_scene(self.scene.model, self.scene.settings, by_link=True, solids=self.scene.solids, thin=True)
 
     @cached_property
     def _overlap_of_links(self) -> OverlapQueries:
@@ -278,17 +271,24 @@ class JointMotion:
         travel = self.sweep.travel
         return travel.turns and abs(meeting.first - travel.rest) > np.radians(self.scene.settings.early_turn)
 
-    @cached_property
-    def as_seen(self) -> JointMotion:
-        """The same of what is visible: collision shapes are often stubs that leave bearings and guides out."""
-        visible = self.look.visible
-        return self if visible is None else JointMotion(look=visible, sweep=visible.sweep(self.sweep.leader))
-
     def parted(self, pair: Pair) -> tuple[float, float]:
         """Return how much farther apart than at rest a pair gets at most [m], and at which value [rad or m]."""
-        gaps = [(gap, value) for side in self.sweep.sides for other, gap, value in side.gaps if other == pair]
-        gap, value = max(gaps, default=(0.0, self.sweep.travel.rest))
-        return gap - self.look.allowance.gap(pair), value
+        return self._parted(self.look, pair, (gap for side in self.sweep.sides for gap in side.gaps))
+
+    def seen_parted(self, pair: Pair) -> tuple[float, float]:
+        """The same of what is visible: collision shapes are often stubs that leave bearings and guides out."""
+        look = self.look.visible
+        if look is None:
+            return self.parted(pair)
+        gaps = (gap for sign in (-1.0, 1.0) for gap in look.sweeper.widest(self.sweep.leader, pair, sign))
+        return self._parted(look, pair, gaps)
+
+    def _parted(
+        self, look: GeometryContext, pair: Pair, gaps: Iterable[tuple[Pair, float, float]]
+    ) -> tuple[float, float]:
+        own = ((gap, value) for other, gap, value in gaps if other == pair)
+        gap, value = max(own, default=(0.0, self.sweep.travel.rest))
+        return gap - look.allowance.gap(pair), value
 
     @cached_property
     def blocked(self) -> dict[float, Meeting]:
@@ -350,11 +350,18 @@ class JointMotion:
     @property
     def left(self) -> float:
         """Share of the declared range that is free around rest."""
-        low, high = self.sweep.travel.lower, self.sweep.travel.upper
-        firsts = [meeting.first for meeting in self.blocked.values()]
-        low = max([low, *(value for value in firsts if value <= self.sweep.travel.rest)])
-        high = min([high, *(value for value in firsts if value >= self.sweep.travel.rest)])
-        return max(high - low, 0.0) / self.sweep.travel.range if self.sweep.travel.range else 0.0
+        return self._share(meeting.first for meeting in self.blocked.values())
+
+    @property
+    def stuck(self) -> bool:
+        """True if it gets deeper into its parent than it may within `geometry.early` of its range."""
+        return self._share(meeting.deep for meeting in self.blocked.values()) < self.scene.settings.early
+
+    def _share(self, stops: Iterable[float]) -> float:
+        travel, stops = self.sweep.travel, list(stops)
+        low = max([travel.lower, *(value for value in stops if value <= travel.rest)])
+        high = min([travel.upper, *(value for value in stops if value >= travel.rest)])
+        return max(high - low, 0.0) / travel.range if travel.range else 0.0
 
     def free_way(self, side: SweepSide) -> float:
         """Return how far the child goes to a side before it meets its parent [rad or m]."""
@@ -378,10 +385,18 @@ class JointMotion:
 
     def seen(self, meeting: Meeting) -> float:
         """Return the depth that the visible geometry of two reaches on that side [m], 0 where it stays clear."""
-        if self.as_seen is self:
+        if self.look.visible is None:
             return meeting.depth
-        found = self.as_seen.side(meeting.at - self.sweep.travel.rest).meetings
-        return max((seen.depth for seen in found if seen.pair == meeting.pair and seen.inside), default=0.0)
+        key = meeting.pair, -1.0 if meeting.at < self.sweep.travel.rest else 1.0
+        if key not in self._seen:
+            seen = self.look.visible.sweeper.meeting(self.sweep.leader, *key)
+            self._seen[key] = 0.0 if seen is None else seen.depth
+        return self._seen[key]
+
+    @cached_property
+    def _seen(self) -> dict[tuple[Pair, float], float]:
+        """Depths of what is visible, by pair and side."""
+        return {}
 
     def clearable(self, meeting: Meeting) -> bool:
         """True if some other joint at one of its ends keeps the two apart where they are deepest."""
@@ -402,9 +417,9 @@ class JointMotion:
         allowed = allowance.at_rest(meeting.pair) + allowance.tolerance(meeting.pair)
         return not meeting.passed and bool((overlap.depth(meeting.pair, T) <= allowed).any())
 
-    def guide(self, connection: Connection, side: SweepSide) -> tuple[float, float]:
+    def guide(self, connection: Connection, side: SweepSide, *, visible: bool = False) -> tuple[float, float]:
         """Return the way after which the trailing end of the child has passed the leading end of the parent [m]."""
-        scene = self.scene
+        scene = (self.look.visible or self.look).scene if visible else self.scene
         rows = np.tile(scene.mechanism.rest, (2, 1))
         rows[1, self.sweep.leader] = side.declared
         poses = scene.poses(rows)

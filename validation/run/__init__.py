@@ -30,8 +30,8 @@ from kinematify.validation.run.causes import with_causes
 from kinematify.validation.run.loaded_findings import across_engines, with_refusals
 from kinematify.validation.run.opinions import demote_inference_findings, join_facts
 from kinematify.validation.run.plan import (
-    as_loaded_stages,
     asset_stage,
+    geometry_stage,
     keys,
     later_stages,
     needed,
@@ -176,19 +176,16 @@ class _Run:
         self._joints: dict[str, JointSummary] = {}
         self._pairs: PairTable | None = None
         self._why: dict[CheckKey, tuple[Status, str]] = {}
+        self._lacking: DocumentCopy | None = None
         self._started = time.perf_counter()
 
     def all(self, request: StageRequest, workers: int) -> None:
         """Run everything that can run."""
         if self.task is not None:
             request = replace(request, selected=request.selected | _DOUBTS)
-        later = needed(later_stages(), request.selected)
-        plain = [
-            stage
-            for stage in as_loaded_stages(self.engines)
-            if any(name in request.selected for name, _ in stage.checks)
-        ]
-        load_imports(ahead=[asset_stage(), *later, *plain])
+        first = needed([geometry_stage()], request.selected)
+        later = needed(later_stages(self.engines), request.selected)
+        load_imports(ahead=[asset_stage(), *first, *later])
         asset_request = replace(request, selected=request.selected | _GUARDS)
         usable = precheck(asset_request, Recorder(self._take, asset_request.selected))
         self._progress("pre-check", 0.05)
@@ -200,7 +197,7 @@ class _Run:
                 f"{self._ids(self._broken())} first; no engine was started",
             )
             return
-        spent, late = self._read_meshes(asset_request, copy, [*later, *plain])
+        spent, late = self._read_meshes(asset_request, copy, [*first, *later])
         if (
             self._fault_of_meshes(request.work) is not None
             and not late
@@ -213,19 +210,21 @@ class _Run:
         if late:
             self._explain_rest(Status.SKIPPED, not_finished("time ran out before the meshes were checked"))
             return
+        self._lacking = copy
+        self.robot = self.robot or (None if copy is None else _bodies(copy.path))
         request = replace(request, deadline=max(0.0, request.deadline - spent))
         fault = self._fault_of_meshes(request.work) if copy is None else None
-        if copy is not None and not copy.only_visuals:
-            fault = f"the pre-check found errors in what collides or moves: {self._ids(self._broken())}"
+        if copy is not None and copy.joints:
+            fault = f"the pre-check found errors in what moves: {self._ids(self._broken())}"
         if fault is not None:
             self._explain_rest(Status.BLOCKED, fault)
             return
-        for number, end in enumerate(run_stages(later, request, workers=workers)):
+        for end in run_stages(first, request, workers=workers):
             self._take_end(end)
-            self._progress(end.stage.name, 0.15 + 0.8 * (number + 1) / len(later))
+            self._progress(end.stage.name, 0.4)
         for name in set(ENGINES) - set(self.engines):
             self._explain([key for key in self._missing() if key[1] == name], Status.SKIPPED, why_not_run(name))
-        self._load_plainly(plain, request, workers, request.urdf if copy is None else copy.path)
+        self._look_further(later, request, workers, request.urdf if copy is None else copy.path)
         if self.task is not None:
             self._use(request, self.engines)
 
@@ -262,14 +261,21 @@ class _Run:
                 self._results[key] = result.with_findings(sure)
         return asset.seconds, asset.late
 
-    def _load_plainly(self, stages: list[Stage], request: StageRequest, workers: int, readable: Path) -> None:
-        """Look at the untouched file in engines; what the exact geometry knows of the joints is known by now."""
+    def _look_further(self, stages: list[Stage], request: StageRequest, workers: int, readable: Path) -> None:
+        """Look at the joints' evidence and at the untouched file in engines, with what exact geometry knows by now."""
         free = {name: joint.free_travel for name, joint in self._joints.items() if joint.free_travel is not None}
         left_out = [item for key, result in self._results.items() if key[0] in LEFT_OUT for item in result.findings]
         resolved = resolved_copy(replace(request, urdf=readable), "resolved.urdf", left_out) if stages else None
-        for end in run_stages(stages, replace(request, free_travel=free, resolved=resolved), workers=workers):
+        request = replace(request, free_travel=free, resolved=resolved, doubted=self._doubted() if free else None)
+        for number, end in enumerate(run_stages(stages, request, workers=workers)):
             self._take_end(end)
-            self._progress(end.stage.name, 0.95)
+            self._progress(end.stage.name, 0.4 + 0.55 * (number + 1) / len(stages))
+
+    def _doubted(self) -> frozenset[str]:
+        """Joints against whose kinematics the geometry speaks."""
+        found = [item for key, result in self._results.items() if key[0].startswith("KV3") for item in result.findings]
+        counted = [item for item in found if item.severity is not Severity.NOTE and item.cause is Cause.KINEMATICS]
+        return frozenset(item.joint for item in counted if item.joint is not None)
 
     def _use(self, request: StageRequest, engines: Sequence[str]) -> None:
         """Make a robot use the object; it has time of its own."""
@@ -330,6 +336,9 @@ class _Run:
         elif isinstance(result, PairTable):
             self._pairs = result
         else:
+            if self._lacking is not None and result.check.startswith("KV3"):
+                sure = [finding for finding in result.findings if not self._lacking.doubts(finding)]
+                result = result.with_findings(sure)
             self._results[result.check, result.engine] = result
 
     def _take_end(self, end: StageEnd) -> None:

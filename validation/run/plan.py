@@ -34,33 +34,37 @@ def asset_stage() -> Stage:
         run=asset.run,
         checks=keys(checks_of("KV15", "KV2")),
         imports=imports,
-        library="trimesh.creation",  # for boxes, cylinders and spheres
     )
 
 
-def later_stages() -> list[Stage]:
-    """What looks at the model without an engine, the longest first."""
-    return [
-        Stage(
-            name="geometry",
-            run=geometry.run,
-            checks=keys(checks_of("KV30", "KV31", "KV32", "KV33")),
-            imports=("kinematify.validation.geometry.look",),
-        ),
-        Stage(
-            name="evidence",
-            run=evidence_stage.run,
-            checks=keys(checks_of("KV34", "KV35")),
-            imports=tuple(
-                f"kinematify.validation.evidence.{name}" for name in ("bodies_at_rest", "case", "measure", "loop_pins")
-            ),
-        ),
-    ]
+def geometry_stage() -> Stage:
+    """Exact geometry at rest and in motion."""
+    return Stage(
+        name="geometry",
+        run=geometry.run,
+        checks=keys(checks_of("KV30", "KV31", "KV32", "KV33")),
+        imports=("kinematify.validation.geometry.look",),
+    )
 
 
-def as_loaded_stages(chosen: Sequence[str]) -> list[Stage]:
-    """The untouched file in each engine; they come after the geometry, which tells how far every joint is free."""
-    return [
+def stages_of(chosen: Sequence[str]) -> list[Stage]:
+    """All stages of a run without a task, in some engines."""
+    return [asset_stage(), geometry_stage(), *later_stages(chosen)]
+
+
+def later_stages(chosen: Sequence[str]) -> list[Stage]:
+    """What comes after the geometry, which tells how far every joint is free and which ones are in doubt.
+
+    The evidence of the contacts, and the untouched file in each engine.
+    """
+    parts = ("bodies_at_rest", "case", "measure", "loop_pins")
+    evidence = Stage(
+        name="evidence",
+        run=evidence_stage.run,
+        checks=keys(checks_of("KV34", "KV35")),
+        imports=tuple(f"kinematify.validation.evidence.{name}" for name in parts),
+    )
+    return [evidence] + [
         Stage(
             name=f"{name} as loaded",
             run=partial(loaded_file.run, engine=name),

@@ -32,21 +32,19 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     if bodies is None or not bodies.truth.joints:
         recorder.skip(checks, "no joint moves a body with geometry against another one")
         return
-    every = []
-    for measures in measure_joints(bodies, request.settings.evidence, seed=seed):
-        every.append(measures)
-        if request.remaining == 0.0:
-            break
-    cases = [
-        JointCase(bodies=bodies, measures=measures, settings=request.settings.evidence, every=every)
+    settings = request.settings.evidence
+    every = measure_joints(bodies, settings, seed=seed)
+    all_cases = (
+        JointCase(bodies=bodies, measures=measures, settings=settings, every=every, doubted=request.doubted)
         for measures in every
-    ]
-    left = len(bodies.truth.joints) - len(cases)
+    )
+    cases = [case for case in all_cases if request.remaining and (not case.examined or case.measures.posterior)]
+    left = len(every) - len(cases)
     doubts: dict[str | None, set[str]] = defaultdict(set)
     for check in of_joints:
         with recorder.check(check.id) as result:
             result.measured["joints"] = len(cases)
-            for case in cases:
+            for case in (case for case in cases if case.examined or not check.opinion):
                 check.run(result, case)
             if left:
                 result.leave(f"{left} of the joints")

@@ -25,17 +25,21 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     """Look at the model at rest and in motion; see `kinematify.validation.stage`."""
     from kinematify.geometry.scene import colliding_shapes, read_scene
     from kinematify.validation.geometry.look import GeometryContext
-    from kinematify.validation.model_cache import thin_model_of
+    from kinematify.validation.model_cache import model_of
 
     every = (*AT_REST, *IN_MOTION, *TOGETHER)
     if not recorder.is_selected(*(entry.id for entry in every)):
         return
-    model = thin_model_of(request)
-    scene = read_scene(model, request.settings.geometry, colliding_shapes)
+    scene = read_scene(model_of(request), request.settings.geometry, colliding_shapes, thin=True)
     if len(scene.bodies) < 2:
         recorder.skip(every, "fewer than two bodies have geometry")
         return
-    look = GeometryContext(scene, seed=request.settings.seed, in_time=lambda: request.remaining > 0.0)
+    look = GeometryContext(
+        scene,
+        seed=request.settings.seed,
+        in_time=lambda: request.remaining > 0.0,
+        compare_visible=True,
+    )
     for entry in AT_REST:
         recorder.run(entry, look)
     if not scene.travels:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from kinematify.evaluation.nightly.runs import Run, RunKey
 
 
-class Class(StrEnum):
-    """Class of a change."""
+class ChangeKind(StrEnum):
+    """Kind of a change."""
 
     NEW = "new"
     """A problem that was not there."""
@@ -41,9 +41,9 @@ class Class(StrEnum):
     """The other night had a run of it."""
 
 
-QUALITY = (Class.NEW, Class.WORSE, Class.NEWLY_SKIPPED)
+QUALITY = (ChangeKind.NEW, ChangeKind.WORSE, ChangeKind.NEWLY_SKIPPED)
 """Classes that may fail a night."""
-SHOWN = (*QUALITY, Class.FIXED, Class.BETTER, Class.INPUT_CHANGED)
+SHOWN = (*QUALITY, ChangeKind.FIXED, ChangeKind.BETTER, ChangeKind.INPUT_CHANGED)
 """Classes whose objects are drawn."""
 
 
@@ -51,7 +51,7 @@ SHOWN = (*QUALITY, Class.FIXED, Class.BETTER, Class.INPUT_CHANGED)
 class Change:
     """One thing that is not as it was, or that is still wrong."""
 
-    kind: Class
+    kind: ChangeKind
     object: str
     what: str
     case: str
@@ -92,25 +92,29 @@ def compare(
         same = next((other for other in earlier if other.scenario == run.scenario), None)
         last = next((other for other in earlier if run.series and other.series == run.series), None)
         if same is None and last is not None:
-            found.append(_change(run, Class.INPUT_CHANGED, "", "its files are others than before; compared with them"))
+            found.append(
+                _change(run, ChangeKind.INPUT_CHANGED, "", "its files are others than before; compared with them")
+            )
             found += [*_losses(run, last), *_quality(run, last, settings)]
         elif same is None:
             why = "pose or thresholds are others than before" if earlier else "there is no earlier night with it"
-            found.append(_change(run, Class.NEW_SERIES, "", f"scenario {run.scenario}: {why}"))
+            found.append(_change(run, ChangeKind.NEW_SERIES, "", f"scenario {run.scenario}: {why}"))
         else:
             found += _quality(run, same, settings)
             found += _timing(run, same, settings) if same_machine else ()
     if complete:
         missing = [earlier[0] for place, earlier in before.items() if place not in tonight and earlier]
-        found += [_change(run, Class.GONE, "", "an earlier night had it, this one has no such run") for run in missing]
-    order = list(Class)
+        found += [
+            _change(run, ChangeKind.GONE, "", "an earlier night had it, this one has no such run") for run in missing
+        ]
+    order = list(ChangeKind)
     return tuple(sorted(found, key=lambda change: (order.index(change.kind), not change.gate)))
 
 
 def counts(changes: Iterable[Change]) -> dict[str, int]:
     """Return how many changes there are of each class, classes without any included."""
     found = Counter(change.kind for change in changes)
-    return {kind.value: found.get(kind, 0) for kind in Class}
+    return {kind.value: found.get(kind, 0) for kind in ChangeKind}
 
 
 _VERDICTS = ("pass", "warn", "fail")
@@ -119,15 +123,15 @@ _VERDICTS = ("pass", "warn", "fail")
 def _losses(run: Run, last: Run) -> Iterator[Change]:
     """What a changed input must not lose: its verdict and its joints."""
     if {run.status, last.status} <= {*_VERDICTS} and _VERDICTS.index(run.status) > _VERDICTS.index(last.status):
-        yield _change(run, Class.WORSE, "verdict", f"from {last.status} to {run.status}", gate=True)
+        yield _change(run, ChangeKind.WORSE, "verdict", f"from {last.status} to {run.status}", gate=True)
     before, now = last.values.get(JOINTS), run.values.get(JOINTS)
     if before is not None and now is not None and now < before:
-        yield _change(run, Class.WORSE, JOINTS, f"from {before:.0f} to {now:.0f}", gate=True)
+        yield _change(run, ChangeKind.WORSE, JOINTS, f"from {before:.0f} to {now:.0f}", gate=True)
 
 
 def _quality(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]:
     if not run.answered:
-        kind = Class.NEWLY_SKIPPED if same.answered else Class.STILL_FAILING
+        kind = ChangeKind.NEWLY_SKIPPED if same.answered else ChangeKind.STILL_FAILING
         gate = same.answered and settings.gate_newly_skipped
         yield _change(run, kind, "", f"{run.status}: {run.message}", gate=gate)
         return
@@ -135,16 +139,16 @@ def _quality(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]
     now = {problem.id: problem for problem in run.problems}
     for name, problem in now.items():
         known = name in old or not same.answered
-        kind = Class.STILL_FAILING if known else Class.NEW
-        gate = kind is Class.NEW and problem.severity in settings.gate_severities
+        kind = ChangeKind.STILL_FAILING if known else ChangeKind.NEW
+        gate = kind is ChangeKind.NEW and problem.severity in settings.gate_severities
         yield _change(run, kind, name, f"{problem.severity}: {problem.text}", gate=gate)
     for name, problem in old.items():
         # What a check that no longer runs has found is not fixed; the check is reported as skipped below.
         if name not in now and problem.check not in run.not_run:
-            yield _change(run, Class.FIXED, name, f"It was: {problem.text}")
+            yield _change(run, ChangeKind.FIXED, name, f"It was: {problem.text}")
     if same.answered:
         for check in sorted(run.not_run.keys() - same.not_run.keys()):
-            yield _change(run, Class.NEWLY_SKIPPED, check, run.not_run[check], gate=settings.gate_newly_skipped)
+            yield _change(run, ChangeKind.NEWLY_SKIPPED, check, run.not_run[check], gate=settings.gate_newly_skipped)
     yield from _metrics(run, same, settings)
 
 
@@ -157,7 +161,7 @@ def _metrics(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]
         if abs(worse) > slack:
             unit = f" {UNITS[metric]}" if metric in UNITS else ""
             text = f"from {before:.4g} to {now:.4g}{unit}"
-            yield _change(run, Class.WORSE if worse > 0.0 else Class.BETTER, metric, text, gate=worse > 0.0)
+            yield _change(run, ChangeKind.WORSE if worse > 0.0 else ChangeKind.BETTER, metric, text, gate=worse > 0.0)
 
 
 def _timing(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]:
@@ -165,10 +169,10 @@ def _timing(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]:
         return
     text = f"from {same.seconds:.1f} s to {run.seconds:.1f} s"
     if run.seconds > settings.slower * same.seconds:
-        yield _change(run, Class.SLOWER, "seconds", text)
+        yield _change(run, ChangeKind.SLOWER, "seconds", text)
     elif same.seconds > settings.slower * run.seconds:
-        yield _change(run, Class.FASTER, "seconds", text)
+        yield _change(run, ChangeKind.FASTER, "seconds", text)
 
 
-def _change(run: Run, kind: Class, subject: str, text: str, *, gate: bool = False) -> Change:
+def _change(run: Run, kind: ChangeKind, subject: str, text: str, *, gate: bool = False) -> Change:
     return Change(kind=kind, object=run.object, what=run.what, case=run.case, subject=subject, text=text, gate=gate)

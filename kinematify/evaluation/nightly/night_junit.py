@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from lxml import etree
 
-from kinematify.evaluation.nightly.comparison import Class
+from kinematify.evaluation.nightly.comparison import ChangeKind
 from kinematify.validation.formats.junit import count_cases
 from kinematify.validation.formats.report_content import printable
 
@@ -51,7 +51,7 @@ def _add_case(suite: _Element, run: Run, changes: list[Change]) -> None:
     elif run.problems:
         ids = ", ".join(problem.id for problem in run.problems)
         etree.SubElement(case, "skipped", message=printable(f"known problems, nothing new: {ids}"))
-    others = [change for change in changes if not change.gate and change.kind is not Class.STILL_FAILING]
+    others = [change for change in changes if not change.gate and change.kind is not ChangeKind.STILL_FAILING]
     if others:
         etree.SubElement(case, "system-out").text = "\n".join(dict.fromkeys(map(_message, others)))
 

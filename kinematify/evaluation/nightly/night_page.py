@@ -6,7 +6,7 @@ import json
 from base64 import b64encode
 from typing import TYPE_CHECKING
 
-from kinematify.evaluation.nightly.comparison import QUALITY, Class
+from kinematify.evaluation.nightly.comparison import QUALITY, ChangeKind
 from kinematify.evaluation.nightly.runs import AS_LOADED, OPENED
 from kinematify.evaluation.nightly.store import MODELS
 from kinematify.evaluation.nightly.validity import page_name
@@ -30,7 +30,7 @@ METRIC_TITLES = {
     "limit_iou": "limit overlap",
     "opens": "opens right",
 }
-_GOOD = (Class.FIXED, Class.BETTER)
+_GOOD = (ChangeKind.FIXED, ChangeKind.BETTER)
 _COUNTED = ("errors", "warnings", "move as loaded", "opened by an arm", "s")
 METRIC_SCALES = {"line_m": 1000.0}
 _LEGEND = (
@@ -70,7 +70,7 @@ def nights_page(nights: Sequence[Night]) -> str:
     Args:
         nights: The oldest first.
     """
-    classes = [kind.value for kind in Class if kind is not Class.GONE]
+    classes = [kind.value for kind in ChangeKind if kind is not ChangeKind.GONE]
     rows: list[tuple[Cell, ...]] = [
         (
             f'<a href="{text(night.name)}/index.html">{text(night.name)}</a>',
@@ -131,15 +131,17 @@ def _changes(night: Night) -> list[str]:
 
 
 def _change_table(changes: Sequence[Change], name: str) -> str:
-    listed_changes = [change for change in changes if change.kind not in (Class.STILL_FAILING, Class.NEW_SERIES)]
-    counted = ", ".join(f"{sum(change.kind is kind for change in changes)} {kind.value}" for kind in Class)
+    listed_changes = [
+        change for change in changes if change.kind not in (ChangeKind.STILL_FAILING, ChangeKind.NEW_SERIES)
+    ]
+    counted = ", ".join(f"{sum(change.kind is kind for change in changes)} {kind.value}" for kind in ChangeKind)
     failing = sum(change.gate for change in changes)
     words = f"<p>Changes that fail the night: {failing}. {counted}. Timing never fails a night.</p>"
     if not listed_changes:
         return f"<p><strong>Nothing changed.</strong></p>{words}"
     rows: list[tuple[Cell, ...]] = [
         (
-            (_class_cell(change), f"{list(Class).index(change.kind):02d}"),
+            (_class_cell(change), f"{list(ChangeKind).index(change.kind):02d}"),
             text(change.object),
             text(f"{change.what}, {change.case}"),
             _subject(change),
@@ -158,7 +160,7 @@ def _class_cell(change: Change) -> str:
 
 def _subject(change: Change) -> str:
     """A link to the exact problem, where it is still there."""
-    if change.kind is not Class.NEW:
+    if change.kind is not ChangeKind.NEW:
         return text(change.subject)
     anchor = problem_anchor(change.object, change.what, change.case, change.subject)
     return f'<a href="#{text(anchor)}">{text(change.subject)}</a>'

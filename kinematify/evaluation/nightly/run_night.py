@@ -48,7 +48,7 @@ from kinematify.evaluation.nightly.validity import NightValidation, run_validati
 from kinematify.evaluation.result_record import code_version, replace_text
 from kinematify.evaluation.run_benchmark import BenchmarkRequest, Variant, run_benchmark
 from kinematify.generate.blueprint_files import write_blueprint
-from kinematify.generate.sentence import from_text
+from kinematify.generate.reader import read_sentence
 from kinematify.processes.lock import locked
 from kinematify.processes.pool import TaskFailure
 from kinematify.validation.formats.report_picture import drawing_of
@@ -310,7 +310,7 @@ def write_smoke_objects(folder: Path, sentences: Sequence[str]) -> None:
     """
     folder.mkdir(parents=True, exist_ok=True)
     for number, sentence in enumerate(sentences, start=1):
-        blueprint = from_text(sentence).build(seed=0)
+        blueprint = read_sentence(sentence).made(seed=0).blueprint
         place = folder / f"{blueprint.name}_{number}"
         if place.is_dir():
             continue

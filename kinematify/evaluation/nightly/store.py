@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError
 
 from kinematify.errors import InputError, OutputError
-from kinematify.evaluation.nightly.comparison import CHANGES, Class
+from kinematify.evaluation.nightly.comparison import CHANGES, ChangeKind
 from kinematify.evaluation.nightly.runs import RUN, SCHEMA
 from kinematify.evaluation.result_record import git_commit, replace_text
 
@@ -70,7 +70,7 @@ class Night:
     def badge(self) -> dict[str, Any]:
         """The verdict as an endpoint badge of shields.io reads it."""
         problems = sum(change.gate for change in (*self.changes, *self.baseline_changes))
-        changed = len({change.object for change in self.changes if change.kind is Class.INPUT_CHANGED})
+        changed = len({change.object for change in self.changes if change.kind is ChangeKind.INPUT_CHANGED})
         message, color = (f"{problems} worse", "red") if problems else ("passing", "brightgreen")
         message += f", {changed} input{'s' if changed > 1 else ''} changed" if changed else ""
         return {"schemaVersion": 1, "label": "nightly", "message": message, "color": color}

@@ -12,7 +12,7 @@ import numpy as np
 
 from kinematify.generate.procedural import solids
 from kinematify.generate.procedural.blueprint import BlueprintJoint
-from kinematify.generate.procedural.solids import union
+from kinematify.generate.procedural.solids import flat, union
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Mimic
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from kinematify.generate.procedural.materials import RGB
-    from kinematify.generate.procedural.solids import Point
+    from kinematify.generate.procedural.solids import Point, Solids
     from kinematify.generate.procedural.workshop import Look, Workshop
 
 _Motion = tuple[float, float, float]
@@ -117,7 +117,7 @@ class ObjectBuilder:
         """Two parts, and a point on the pin that they share besides the joints of the tree [m]."""
         self.rounds = {solid.__name__: partial(solid, segments=style.sides) for solid in _ROUND}
         """What is round, with as many sides as this hand gives it."""
-        self.cylinder, self.cone, self.tube, self.torus, self.rod, _ = self.rounds.values()
+        self.cylinder, self.cone, self.tube, self.torus, self.rod, self.lathe = self.rounds.values()
 
     # ---- draws -----------------------------------------------------------------------------------------------------
 
@@ -143,23 +143,24 @@ class ObjectBuilder:
 
     # ---- parts -----------------------------------------------------------------------------------------------------
 
-    def part(self, name: str, *shapes: Manifold, material: str = "plastic", color: str | RGB | None = None) -> str:
+    def part(self, name: str, *solids: Solids, material: str = "plastic", color: str | RGB | None = None) -> str:
         """Add a part, or shapes to a part that is there; returns its name."""
+        shapes = flat(solids)
         if any(shape.is_empty() for shape in shapes):
             raise ValueError(f"a shape of {name} has no volume")
         self._parts.setdefault(name, _Drawn(look=(material, color))).solids.extend(shapes)
         return name
 
-    def front(self, name: str, parent: str, *shapes: Manifold, material: str | None = None) -> str:
+    def front(self, name: str, parent: str, *shapes: Solids, material: str | None = None) -> str:
         """Add a part that looks like its parent, unless a material is given; returns its name."""
         look = (material, None) if material else self._parts[parent].look
         return self.part(name, *shapes, material=look[0], color=look[1])
 
-    def cut(self, name: str, *shapes: Manifold) -> None:
+    def cut(self, name: str, *shapes: Solids) -> None:
         """Take shapes away from a part."""
-        self._parts[name].cuts.extend(shapes)
+        self._parts[name].cuts.extend(flat(shapes))
 
-    def bore(self, name: str, *shapes: Manifold) -> None:
+    def bore(self, name: str, *shapes: Solids) -> None:
         """Take shapes away where this hand makes holes."""
         if self.style.has_bore:
             self.cut(name, *shapes)

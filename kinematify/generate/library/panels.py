@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from manifold3d import Manifold
 
+from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.procedural.pieces.bearing_pieces import barrel
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box
 
@@ -14,8 +15,13 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.generate.library.builder import ObjectBuilder
+    from kinematify.generate.procedural.pieces.fronts import Bay, Fitting
     from kinematify.generate.procedural.solids import Point
+    from kinematify.generate.procedural.workshop import Workshop
     from kinematify.robot.arrays import FloatArray
+
+_RIM = 0.75  # height of a drawer's sides, share of the bay's
+_REVEAL = 0.002  # of a front towards its neighbours, besides the clearance
 
 
 def seam(d: ObjectBuilder, size: float, thick: float) -> float:
@@ -391,3 +397,54 @@ def rack(d: ObjectBuilder, name: str, parent: str, lower: Point, upper: Point, *
     elif not d.style.hollow and d.style.has_bore:
         d.cut(parent, box(low - size[2] * Z - 1.0 * Y, high + size[2] * Z))
     d.slide(name, parent, -Y, travel * float(size[1]))
+
+
+def add_drawer(workshop: Workshop, name: str, parent: str, opening: Bay, fitting: Fitting) -> None:
+    """Add a drawer that runs in the room behind an opening and comes out along -y.
+
+    Strips along both sides of the room, above its rim, keep it from lifting and tipping when it is out.
+    """
+    edge, clearance = 0.5 * opening.wall, fitting.clearance
+    lower = opening.left + edge, 0.0, opening.bottom + edge
+    upper = opening.right - edge, opening.depth - opening.wall, opening.top - edge
+    lap = edge - 0.5 * (clearance + _REVEAL)
+    with drawn_on(workshop, clearance, fitting.rest) as d:
+        drawer(d, name, parent, lower, upper, travel=0.8, lap=lap, front=opening.wall, rim=_RIM, handle=fitting.grip)
+    rim = lower[2] + _RIM * (upper[2] - lower[2]) + clearance
+    reach = edge + clearance + min(0.012, 0.06 * min(opening.width, opening.height))
+    for low, high in (
+        (opening.left + 0.5 * edge, opening.left + reach),
+        (opening.right - reach, opening.right - 0.5 * edge),
+    ):
+        workshop.add(parent, box((low, 0.0, rim), (high, upper[1] + 0.5 * edge, opening.top - 0.5 * edge)))
+
+
+def add_door(
+    workshop: Workshop,
+    name: str,
+    parent: str,
+    opening: Bay,
+    fitting: Fitting,
+    *,
+    side: str,
+    hinge: str = "edge",
+) -> None:
+    """Add what closes an opening and turns outwards about a line at one side of it.
+
+    Args:
+        workshop: Where it is added.
+        name: Of the door.
+        parent: The body that carries it; a barrel hinge leaves its other half there.
+        opening: What the door covers.
+        fitting: Gaps, handle and where it is.
+        side: ``left`` or ``right``, or ``bottom`` of what falls open.
+        hinge: ``edge`` (nothing to be seen) or ``barrel``, beside which nothing may be.
+    """
+    edge, reach = {"left": (-X, 1.8), "right": (X, 1.8), "bottom": (-Z, 0.5 * np.pi)}[side]
+    less = 0.5 * _REVEAL
+    lower = opening.left + less, -opening.wall, opening.bottom + less
+    with drawn_on(workshop, fitting.clearance, fitting.rest) as d:
+        leaf(
+            d, name, parent, lower, (opening.right - less, 0.0, opening.top - less), hinge=edge, reach=reach,
+            handle=fitting.grip, barrels=2 if hinge == "barrel" else 0,
+        )  # fmt: skip

@@ -43,10 +43,12 @@ class Family:
     """What is usual of those that are called by one of the words, where a sentence says nothing else."""
     part_words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """How people call its parts, besides the names that they have without their numbers."""
-    motions: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """Name of a part without its number -> words for how it moves that hold already: ``drop-down``, ``folds``."""
-    holds_already: tuple[str, ...] = ()
-    """Other words that are true of it as it is."""
+    like: str = ""
+    """The kind that it is another way to build, which the fit alone knows; empty of a kind of its own."""
+    module: str = ""
+    """The theme that it is listed under: the module of `kinematify.generate.kinds` with its function."""
+    draw: Callable[..., None] | None = None
+    """Draws it with a builder, in any style of modelling; None where it is carved or listed by a blueprint."""
 
     @property
     def all_parameters(self) -> tuple[Parameter, ...]:

@@ -3,23 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from functools import partial
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import yaml
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from pathlib import Path
+    from collections.abc import Sequence
 
 
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # ten times as fast, where PyYAML was built with it
-
-
-def read_table(path: Path) -> Any:
-    """Return what a file of the package says: lists, mappings, texts and numbers."""
-    return parse_table(path.read_text(encoding="utf-8"))
 
 
 def parse_table(text: str) -> Any:
@@ -97,34 +90,11 @@ def choice(
     )
 
 
-def _ranged(name: str, bounds: _Range, help: str, *, default: float | None = None, **facts: Any) -> Parameter:
-    """A number that is drawn from all that can be built; whole bounds make it a count, the middle is the default."""
-    whole = all(isinstance(end, int) for end in bounds)
-    middle = float(f"{0.5 * sum(bounds):.3g}") if default is None else default
-    unit = {} if whole else {"unit": "m"}
-    return number(name, int(middle) if whole else middle, bounds, help, usual=bounds, **(unit | facts))
-
-
-def _yes_or_no(name: str, share: float, help: str, **facts: Any) -> Parameter:
-    """A choice that is yes in a share of the draws."""
-    return replace(choice(name, ("yes", "no") if share >= 0.5 else ("no", "yes"), help, **facts), yes=share)
-
-
-_KINDS: Mapping[str, Callable[..., Parameter]] = {
-    "length": partial(number, unit="m"), "angle": partial(number, unit="rad"), "share": number, "count": number,
-    "choices": choice, "range": _ranged, "yes": _yes_or_no,
-}  # fmt: skip
-
-
-def read_parameter(name: str, said: Mapping[str, Any] | Sequence[float]) -> Parameter:
-    """Return the parameter that a table describes: its kind with a default, range or choices, and arguments above.
-
-    A list is short for a range.
-    """
-    facts = {"help": "As the object has it.", **(said if isinstance(said, Mapping) else {"range": said})}
-    facts = {key: tuple(value) if isinstance(value, list) else value for key, value in facts.items()}
-    kind = next(kind for kind in _KINDS if kind in facts)
-    return _KINDS[kind](name, facts.pop(kind), **facts)
+def details_of(details: Mapping[str, int]) -> tuple[Parameter, ...]:
+    """Return a count for each word for what belongs to parts of an object."""
+    return tuple(
+        number(f"{word}s", count, (count, count), "Belongs to it.", words=word) for word, count in details.items()
+    )
 
 
 def phrases(text: Words) -> tuple[str, ...]:

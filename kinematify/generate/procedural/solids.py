@@ -23,7 +23,20 @@ SEGMENTS = 48
 Point: TypeAlias = "Sequence[float] | FloatArray"
 """x, y, z [m]."""
 
+Solids: TypeAlias = "Manifold | Sequence[Solids]"
+"""A solid, or some in lists."""
+
 X, Y, Z = np.eye(3)
+
+
+def flat(solids: Sequence[Solids]) -> list[Manifold]:
+    """Return solids out of lists of them, in the same order."""
+    return [solid for item in solids for solid in (flat(item) if isinstance(item, list | tuple) else [item])]
+
+
+def vector(x: float, y: float, z: float) -> FloatArray:
+    """Return a vector, shape (3,), that can be added and scaled."""
+    return np.array([x, y, z], dtype=np.float64)
 
 
 def off(point: Point, x: float, y: float, z: float) -> FloatArray:

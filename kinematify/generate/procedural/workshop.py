@@ -13,7 +13,7 @@ from kinematify.assembly.part import Part
 from kinematify.errors import InputError
 from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint, BlueprintLoop
 from kinematify.generate.procedural.materials import MATERIALS, grain_coordinates, surface_of
-from kinematify.generate.procedural.solids import union
+from kinematify.generate.procedural.solids import flat, union
 from kinematify.robot.appearance import Appearance
 from kinematify.robot.joint_type import JointType
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from kinematify.generate.procedural.materials import RGB
-    from kinematify.generate.procedural.solids import Point
+    from kinematify.generate.procedural.solids import Point, Solids
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Mimic
 
@@ -141,20 +141,12 @@ class Workshop:
         seen._look_of_all = material or before[0], color or before[1]
         return seen
 
-    def turned(self, turn: FloatArray, origin: Point) -> Workshop:
-        """The same from a frame that is turned by `turn`, shape (3, 3), and moved to `origin` in this one [m]."""
-        return self.from_frame(np.column_stack([turn, np.asarray(origin, dtype=np.float64)]))
-
-    def above_floor(self, point: Point) -> float:
-        """Height of a point in the object [m]."""
-        return float(self._point(point)[2])
-
-    def body(self, name: str, *solids: Manifold, material: str | None = None, color: str | RGB | None = None) -> str:
+    def body(self, name: str, *solids: Solids, material: str | None = None, color: str | RGB | None = None) -> str:
         """Add a rigid part made of solids that overlap or touch; returns its name."""
         if name in self._solids:
             raise ValueError(f"The family {self._family} makes two bodies named {name}.")
         material, color = self._look_of_all[0] or material, self._look_of_all[1] or color
-        self._solids[name] = union(*self._placed(solids))
+        self._solids[name] = union(*self._placed(flat(solids)))
         self._looks[name] = material or self._material, color or (None if material else self._color)
         return name
 
@@ -178,13 +170,18 @@ class Workshop:
         """True if there is a joint."""
         return bool(self._joints)
 
-    def add(self, name: str, *solids: Manifold) -> None:
+    def add(self, name: str, *solids: Solids) -> None:
         """Add solids to a body that is there."""
-        self._solids[name] = union(self._solids[name], *self._placed(solids))
+        self._solids[name] = union(self._solids[name], *self._placed(flat(solids)))
 
-    def cut(self, name: str, *solids: Manifold) -> None:
+    def cut(self, name: str, *solids: Solids) -> None:
         """Take solids away from a body that is there."""
-        self._solids[name] -= union(*self._placed(solids))
+        self._solids[name] -= union(*self._placed(flat(solids)))
+
+    def settle(self) -> None:
+        """Evaluate all solids now; how they are triangulated depends on which of their operands still exist."""
+        for solid in self._solids.values():
+            solid.num_tri()
 
     def turns(
         self,

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import math
-from itertools import combinations
+from itertools import combinations, product
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from kinematify.config import load_config
+from kinematify.generate.blueprint_files import true_model
 from kinematify.generate.procedural.clearance import DEEP, depth_of, moving_with, solid_of
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.linkage import linkages, loop_gaps
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import Part
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
+    from kinematify.robot.linkage import Linkage
+    from kinematify.robot.robot import Robot
 
 _APART = 0.002  # [m] a fixed part may be so far from what carries it
 _TORN = 0.002  # [m] a pin may come apart so far
@@ -33,7 +35,42 @@ def drawn_findings(blueprint: Blueprint) -> list[str]:
     loops that come apart.
     """
     solids = {part.name: solid_of(part) for part in blueprint.parts}
-    return [*_loose(blueprint, solids), *_overlaps(blueprint, solids), *_torn_loops(blueprint)][:_MOST]
+    robot = true_model(blueprint, load_config()).robot if blueprint.loops else None
+    chains = [] if robot is None else list(linkages(robot))
+    stuck = [] if robot is None else list(_stuck_chains(robot, chains))
+    torn = () if robot is None or chains else _torn_loops(blueprint, robot)
+    return [*_loose(blueprint, solids), *_overlaps(blueprint, solids, chains), *stuck, *torn][:_MOST]
+
+
+def _stuck_chains(robot: Robot, chains: Sequence[Linkage]) -> Iterable[str]:
+    """Chains whose pins do not meet where they are drawn, or that no one joint can drive."""
+    gaps = loop_gaps(robot, {})
+    for loop in robot.loops:
+        if gaps[loop.name] > _TORN:
+            one, other = loop.links
+            yield f'The pin of "{one}" and "{other}" is {_millimetres(gaps[loop.name])} apart: move it.'
+    for chain in chains:
+        if chain.driver is None:
+            bars = ", ".join(name.removesuffix("_joint") for name in chain.joints)
+            yield (
+                f"The closed chain of {bars} has {chain.mobility} motions, but must have one: check the axes, the "
+                "pivots and the number of its bars, and give a range to the joint that drives it alone."
+            )
+
+
+def _motions(blueprint: Blueprint, chains: Sequence[Linkage]) -> Iterator[tuple[BlueprintJoint, dict[str, float]]]:
+    """Each joint that leads, at values of its range; the bars of a closed chain go where its driver takes them."""
+    chained = {name.removesuffix("_joint"): chain for chain in chains for name in chain.joints}
+    for joint in blueprint.joints:
+        chain = chained.get(joint.child)
+        if joint.kind is JointType.FIXED or joint.mimic is not None:
+            continue
+        if chain is None:
+            yield from ((joint, {joint.child: _value(joint, share)}) for share in _SHARES)
+        elif chain.driver == f"{joint.child}_joint":
+            names = [name.removesuffix("_joint") for name in chain.joints]
+            rows = [chain.curve[round(share * (len(chain.curve) - 1))] for share in _SHARES]
+            yield from ((joint, dict(zip(names, map(float, row), strict=True))) for row in rows)
 
 
 def _loose(blueprint: Blueprint, solids: Mapping[str, Manifold]) -> Iterable[str]:
@@ -49,7 +86,7 @@ def _loose(blueprint: Blueprint, solids: Mapping[str, Manifold]) -> Iterable[str
             )
 
 
-def _overlaps(blueprint: Blueprint, solids: Mapping[str, Manifold]) -> Iterable[str]:
+def _overlaps(blueprint: Blueprint, solids: Mapping[str, Manifold], chains: Sequence[Linkage]) -> Iterable[str]:
     reported = {(min(pair), max(pair)) for pair in _fixed_together(blueprint)}
     for one, other in combinations(sorted(solids), 2):
         deep = 0.0 if (one, other) in reported else depth_of(solids[one], solids[other])
@@ -59,29 +96,23 @@ def _overlaps(blueprint: Blueprint, solids: Mapping[str, Manifold]) -> Iterable[
                 f'The parts "{one}" and "{other}" are {_millimetres(deep)} deep in each other where they are drawn. '
                 'Make room with "subtract", or move one of them ("xyz").'
             )
-    for joint in blueprint.joints:
-        if joint.kind is JointType.FIXED or joint.mimic is not None:
-            continue
-        for share in _SHARES:
-            moving = moving_with(joint.child, blueprint.joints)
-            values = {joint.child: _value(joint, share)}
-            moved = blueprint.moved(values)
-            where = {part.name: solid_of(part) for part in moved.parts if part.name in moving}
-            for name, solid in where.items():
-                for other in set(solids) - moving:
-                    pair = (min(name, other), max(name, other))
-                    if pair in reported:
-                        continue
-                    deep = depth_of(solid, solids[other])
-                    if deep > DEEP:
-                        reported.add(pair)
-                        value = values[joint.child]
-                        at = f"{value:.2g} {'rad' if joint.kind.turns else 'm'}"
-                        yield (
-                            f'When the joint of "{joint.child}" is at {at}, "{name}" is {_millimetres(deep)} deep in '
-                            f'"{other}". Make room with "subtract", move its "pivot", negate its "axis", or end its '
-                            'range ("lower", "upper") before.'
-                        )
+    for joint, values in _motions(blueprint, chains):
+        moving = {part for name in values for part in moving_with(name, blueprint.joints)}
+        moved = blueprint.moved(values)
+        where = {part.name: solid_of(part) for part in moved.parts}
+        for name, other in product(moving, solids):
+            pair = (min(name, other), max(name, other))
+            if name == other or pair in reported or (other in moving and len(values) == 1):
+                continue
+            deep = depth_of(where[name], where[other])
+            if deep > DEEP:
+                reported.add(pair)
+                at = f"{values[joint.child]:.2g} {'rad' if joint.kind.turns else 'm'}"
+                yield (
+                    f'When the joint of "{joint.child}" is at {at}, "{name}" is {_millimetres(deep)} deep in "{other}".'
+                    ' Make room with "subtract", move its "pivot", negate its "axis", or end its range ("lower", '
+                    '"upper") before.'
+                )
 
 
 def _fixed_together(blueprint: Blueprint) -> Iterable[tuple[str, str]]:
@@ -99,32 +130,19 @@ def _value(joint: BlueprintJoint, share: float) -> float:
     return lower + share * (upper - lower)
 
 
-def _torn_loops(blueprint: Blueprint) -> Iterable[str]:
-    for loop in blueprint.loops:
-        home = {part.name: part for part in blueprint.parts}
-        worst = 0.0
-        for leader in (
-            joint for joint in blueprint.joints if joint.mimic is None and joint.kind is not JointType.FIXED
-        ):
-            for share in _SHARES:
-                moved = blueprint.moved({leader.child: _value(leader, share)})
-                there = {part.name: part for part in moved.parts}
-                pins = [_carried_point(home[name], there[name], loop.pivot) for name in (loop.one, loop.other)]
-                worst = max(worst, float(np.linalg.norm(pins[0] - pins[1])))
-        if worst > _TORN:
+def _torn_loops(blueprint: Blueprint, robot: Robot) -> Iterable[str]:
+    """Loops whose bars all follow, but not to where their pins are."""
+    worst = dict.fromkeys((loop.name for loop in robot.loops), 0.0)
+    for _, values in _motions(blueprint, ()):
+        gaps = loop_gaps(robot, {f"{name}_joint": value for name, value in values.items()})
+        worst = {name: max(gap, gaps[name]) for name, gap in worst.items()}
+    for loop in robot.loops:
+        if worst[loop.name] > _TORN:
             yield (
-                f'The loop of "{loop.one}" and "{loop.other}" comes apart by {_millimetres(worst)} in motion. '
-                'Check "mimic" (leader, multiplier) and the pivots of its bars; a pin that slides needs a slider.'
+                f'The loop of "{loop.links[0]}" and "{loop.links[1]}" comes apart by '
+                f'{_millimetres(worst[loop.name])} in motion. Check "mimic" (leader, multiplier) and the pivots of its '
+                'bars, or leave "mimic" out of them.'
             )
-
-
-def _carried_point(home: Part, there: Part, point: np.ndarray) -> np.ndarray:
-    """A point that moves with a part, from its home pose to another."""
-    before, after = home.vertices - home.vertices.mean(axis=0), there.vertices - there.vertices.mean(axis=0)
-    u, _, vt = np.linalg.svd(before.T @ after)
-    turn = (u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt).T
-    moved: np.ndarray = turn @ (point - home.vertices.mean(axis=0)) + there.vertices.mean(axis=0)
-    return moved
 
 
 def _millimetres(metres: float) -> str:

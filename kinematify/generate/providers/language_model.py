@@ -1,8 +1,8 @@
-"""A language model that translates or designs: its answers are data that are built and judged, never code that is run.
+"""A language model that fills a request or writes a blueprint: its answers are data that are built and measured.
 
-It is first asked to say the sentence in words of the library. What the library has not, it designs as a blueprint.
-What does not fit, what the judge finds in what was built, and what of the sentence is not built goes back to it, a few
-rounds at most. Every exchange is kept: the same request is never sent, or paid, twice.
+Its prompt holds the nearest kinds with their parameters. It answers with a request or a blueprint, and with a checklist
+of what the sentence asks for. What does not fit, and what does not hold of the built object, goes back to it, a few
+rounds at most. Every exchange is kept: the same question is never sent, or paid, twice.
 """
 
 from __future__ import annotations
@@ -17,85 +17,114 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import yaml
-
 from kinematify.errors import EnvironmentFault, InputError, OutputError
-from kinematify.generate.procedural.blueprint_file import BlueprintDescription, described_blueprint
-from kinematify.generate.procedural.language.words import lemma
+from kinematify.generate.checklist import Fact, broken_facts, read_facts
+from kinematify.generate.delivery import BuildResult, deliver
+from kinematify.generate.kind_search import nearest_kinds
+from kinematify.generate.procedural import blueprint_file
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.generate.providers.service import NotTaken, Service
+from kinematify.generate.request import PartRequest, Request, request_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
+
+    from pydantic import BaseModel
 
     from kinematify.config.services import LanguageModelConfig
-    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.procedural.family import Family
+    from kinematify.generate.procedural.parameter import Parameter
     from kinematify.generate.providers.job import PaidJob
     from kinematify.generate.providers.source import Progress, Prompt
 
 ADDRESS, KEY, MODEL = "KINEMATIFY_LLM_URL", "KINEMATIFY_LLM_KEY", "KINEMATIFY_LLM_MODEL"
-BLUEPRINT_FILE = "blueprint.json"
-_OBJECTS = Path(__file__).parent.with_name("objects")
-_EXAMPLES, _LONGEST_EXAMPLE = 2, 3000  # of the library, and characters of each
-_NOT_SHOWN = (
-    "title", "description", "minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum", "minLength", "maxLength",
-    "minItems", "maxItems", "pattern",
-)  # fmt: skip
+ANSWER_FILE = "answer.json"
+_KINDS, _PARAMETERS = 20, 14  # shown, and of each
 _NAMED = 16  # digits of the digest that name an exchange
 _FENCED = re.compile(r"```(?:json)?\s*(.*?)```", re.DOTALL)
-_SHOWN = 300  # characters of an answer that is no blueprint
-_TASK = """You design articulated objects. Answer with one JSON object that fits the schema below, and nothing else.
-What the user describes is an object to be designed, whatever else it says.
+_SHOWN = 300  # characters of an answer that is not understood
+_TASK = """You build articulated objects. Answer with one JSON object and nothing else. What the user describes is an
+object to be built, whatever else it says. Answer in one of two forms:
+{"request": {...}, "checklist": [...]} if one of the kinds below is the object, else
+{"blueprint": {...}, "checklist": [...]}, which draws it from primitives.
 Conventions:
-- Metres and radians, world frame, z up, front towards -y, the object is on z = 0. Everything is drawn closed,
-  and that is zero of every joint; "lower" and "upper" contain zero, "value" is where a joint is shown.
-- "xyz" is the centre of a shape; of a lathe or an extrusion, of its outline's origin. "rpy" turns about the fixed x,
-  then y, then z axis. An outline lies in the plane across its "axis"; a lathe's outline has radius and height.
-- "mirrored" adds a second shape across the plane through the world's origin that this axis is normal to.
-- Each moving part is a part of its own, joined to what carries it; what does not move belongs to the base. A second
-  material or colour is a part of its own with a joint of type "fixed", which touches its parent.
-- Parts that move past each other need a gap of about 1 mm: cut a bore for a pin and a bay for a drawer with
-  "subtract".
-- The axis of a hinge runs through its "pivot"; positive motion opens (right hand rule, or along the axis); limits end
-  before anything collides.
-- "mimic": {"leader": P, "multiplier": m} lets the joint of a part follow the joint whose child is the part P: a
-  part's name, no joint's. A chain that closes is a tree whose bars follow, and its last pin is under "loops".
-- Beside the fields of the schema, "requirements" lists each thing that the user asks for, with the parts that are it:
-  [{"phrase": "two doors", "parts": ["left_door", "right_door"]}, {"phrase": "65 cm high", "parts": ["body"]}]
+- Metres and radians, world frame, z up, front towards -y, left is -x, the object is on z = 0. Everything is
+  drawn closed, and that is zero of every joint: "lower" and "upper" contain zero, "value" is where a joint is shown.
+- Positive motion opens: by the right hand rule about "axis" through "pivot", or along "axis". Ranges end before
+  anything collides. Degrees of the user are written in radians.
+- "xyz" is the centre of a shape; of a lathe or prism the origin of its outline. "rpy" turns about fixed x, y, z.
+- Each moving part is a part of its own; what does not move belongs to the base. Fixed parts touch their parent; parts
+  that move past each other have a gap of 1 mm: cut bores and bays with "subtract".
+- "mimic": {"leader": child part of the leading joint, "multiplier": m}. A chain that closes (slider-crank, four-bar,
+  scissors) is a tree of joints; its last pin is under "loops": bars that are not driven need no mimic, it moves them.
+- "checklist" lists each thing that the user asks for as a fact that can be measured: how many, how large, where, how
+  it moves and how far. "parts" are names of parts of the blueprint, or nouns such as "drawer" of a request.
 """
-_TRANSLATE = """You translate what a user asks for into one English sentence that a library of objects understands.
-Answer with one JSON object: {"sentence": "...", "unmapped": ["..."]}. "sentence" names one kind of object from the
-list, then its parts with counts, sizes with units, colours, materials and places, as in "a red cabinet, 80 cm wide,
-with two glass doors above three drawers". Use the nearest kind only if a person would call it the same object; if there
-is none, "sentence" is null. "unmapped" lists every part, motion, size or look that the user asks for and the sentence
-does not say. What the user describes is an object, whatever else it says.
-"""
+_EXAMPLE = {
+    "blueprint": {
+        "name": "toolbox",
+        "parts": [
+            {
+                "name": "body",
+                "material": "steel",
+                "shapes": [{"kind": "box", "size": [0.4, 0.2, 0.15], "xyz": [0, 0, 0.075]}],
+                "subtract": [{"kind": "box", "size": [0.39, 0.19, 0.15], "xyz": [0, 0, 0.08]}],
+            },
+            {
+                "name": "lid",
+                "color": "red",
+                "shapes": [{"kind": "box", "size": [0.4, 0.2, 0.01], "xyz": [0, 0, 0.156]}],
+            },
+        ],
+        "joints": [
+            {
+                "type": "revolute", "parent": "body", "child": "lid", "axis": [-1, 0, 0], "pivot": [0, 0.1, 0.151],
+                "lower": 0, "upper": 1.57,
+            },
+        ],
+    },
+    "checklist": [
+        {"phrase": "40 cm wide", "size": {"width": 0.4}},
+        {
+            "phrase": "a red lid that opens by 90 degrees", "parts": ["lid"], "count": 1, "color": "red",
+            "motion": "tilt", "range": [0, 1.57],
+        },
+    ],
+}  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
 class Written:
-    """Answer of the model."""
+    """The best answer of the model."""
 
     path: Path
-    """The best blueprint, ``blueprint.json`` in the folder of the job."""
-    nouns: Mapping[str, tuple[str, ...]]
-    """What the model says that its parts are: a phrase of the user -> names of parts."""
-    findings: tuple[str, ...]
-    """What is left to find in it."""
+    """``answer.json`` in the folder of the job."""
+    made: BuildResult
+    """What is built of it; its differences are what is left to find in it."""
     rounds: int
     tokens: int
     """As the service counts them; 0 if it does not."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Translation:
-    """A request in words of the library."""
+def built_answer(values: Mapping[str, Any]) -> BuildResult:
+    """Build what an answer says, and measure its checklist.
 
-    sentence: str
-    """Empty if the library has no such object."""
-    unmapped: tuple[str, ...]
-    """What the sentence does not say."""
-    tokens: int
+    Raises:
+        InputError: It is neither a request nor a blueprint, or does not fit.
+    """
+    facts = read_facts(values.get("checklist"))
+    if isinstance(asked := values.get("request"), dict):
+        request = request_of(asked)
+        made = deliver(request)
+        return _with_faults(made, [*made.differences, *broken_facts(made.blueprint, facts, request.family)])
+    if not isinstance(drawn := values.get("blueprint"), dict):
+        raise InputError('The answer has neither a "request" nor a "blueprint".')
+    blueprint = blueprint_file.described_blueprint(drawn)
+    return _with_faults(BuildResult(blueprint=blueprint), broken_facts(blueprint, facts))
+
+
+def _with_faults(made: BuildResult, faults: Sequence[str]) -> BuildResult:
+    return BuildResult(blueprint=made.blueprint, request=made.request, differences=tuple(faults), facts=made.facts)
 
 
 @dataclass(frozen=True)
@@ -117,80 +146,36 @@ class LanguageModel:
         """Return what besides the prompt decides the result."""
         return {"model": self.model}
 
-    def translate(self, prompt: Prompt, job: PaidJob, known: Sequence[str], progress: Progress) -> Translation:
-        """Make the model say a request in words of the library; an answer that is none counts as no translation.
-
-        Args:
-            prompt: What to build.
-            job: Folder and state of this request.
-            known: Names of all kinds of object.
-            progress: Called with what is being done.
-
-        Raises:
-            InputError: The key or the request is not accepted.
-            EnvironmentFault: The service failed.
-        """
-        progress("translation by the language model", 0.0)
-        listed = (
-            f"Kinds of object: {', '.join(known)}.\nMaterials: {', '.join(MATERIALS)}. Colours: {', '.join(COLORS)}."
-        )
-        messages: list[dict[str, Any]] = [
-            {"role": "system", "content": f"{_TRANSLATE}{listed}"},
-            {"role": "user", "content": prompt.text},
-        ]
-        with closing(self._service(progress)) as service:
-            text, used = _said(self._exchange(service, job, messages))
-        try:
-            values = _values(text)
-        except InputError:
-            values = {}
-        said, unmapped = values.get("sentence"), values.get("unmapped")
-        return Translation(
-            sentence=said if isinstance(said, str) else "",
-            unmapped=tuple(str(item) for item in unmapped) if isinstance(unmapped, list) else (),
-            tokens=used,
-        )
-
     def write(
-        self,
-        prompt: Prompt,
-        job: PaidJob,
-        judge: Callable[[Blueprint, Mapping[str, tuple[str, ...]]], Sequence[str]],
-        progress: Progress,
-        *,
-        examples: Sequence[Mapping[str, Any]] = (),
-        spent: int = 0,
+        self, prompt: Prompt, job: PaidJob, judge: Callable[[BuildResult], Sequence[str]], progress: Progress
     ) -> Written:
-        """Make the model write a blueprint, and correct it.
+        """Make the model answer, and correct its answer.
 
         Args:
             prompt: What to build.
             job: Folder and state of this request.
-            judge: Says what is wrong with what was built and what is missing, a sentence each; nothing if it is well.
-                It is given the blueprint and which parts the model names for which phrase of the user.
+            judge: Says what else is wrong with what was built, a sentence each.
             progress: Called with what is being done and the share that is done.
-            examples: Blueprints of the library, shown to the model.
-            spent: Tokens that were spent on the request already.
 
         Raises:
-            InputError: The key or the request is not accepted, or no answer is a blueprint that can be built.
+            InputError: The key or the request is not accepted, or no answer can be built.
             EnvironmentFault: The service failed; the same call goes on where this one stopped.
         """
-        messages = self._question(prompt, examples)
-        best: tuple[dict[str, Any], Mapping[str, tuple[str, ...]], tuple[str, ...]] | None = None
+        messages = question(prompt)
+        best: tuple[dict[str, Any], BuildResult] | None = None
         problems: tuple[str, ...] = ()
-        tokens, rounds = spent, 0
+        tokens = rounds = 0
         with closing(self._service(progress)) as service:
             while rounds < self.settings.rounds and (self.budget is None or tokens < self.budget):
                 progress(f"round {rounds + 1} of the language model", rounds / self.settings.rounds)
-                text, used = _said(self._exchange(service, job, messages))
+                text, used = _said(self._exchange(service, job, messages, prompt, rounds))
                 rounds, tokens = rounds + 1, tokens + used
                 try:
                     values = _values(text)
-                    nouns = _nouns(values.pop("requirements", None))
-                    problems = tuple(judge(described_blueprint(values), nouns))
-                    if best is None or len(problems) < len(best[2]):
-                        best = values, nouns, problems
+                    made = built_answer(values)
+                    problems = (*made.differences, *judge(made))
+                    if best is None or len(problems) < len(best[1].differences):
+                        best = values, _with_faults(made, problems)
                 except InputError as error:
                     problems = (str(error),)
                 if not problems:
@@ -200,13 +185,14 @@ class LanguageModel:
                 messages = [*messages, {"role": "assistant", "content": text}, {"role": "user", "content": again}]
         if best is None:
             raise InputError(
-                f"The language model {self.model} wrote no blueprint that can be built, in {rounds} rounds and "
-                f"{tokens} tokens. The last problem: {' '.join(problems) or 'the budget allows no round.'} Say it in "
-                "other words, allow more with --rounds or --budget, or take another model."
+                f"The language model {self.model} wrote nothing that can be built, in {rounds} rounds and {tokens} "
+                f"tokens; its answers are in {job.folder}. The last problem: "
+                f"{' '.join(problems) or 'the budget allows no round.'} Say it in other words, allow more with "
+                "--rounds or --budget, or take another model."
             )
-        path = job.folder / BLUEPRINT_FILE
+        path = job.folder / ANSWER_FILE
         _keep(path, best[0])
-        return Written(path=path, nouns=best[1], findings=best[2], rounds=rounds, tokens=tokens)
+        return Written(path=path, made=best[1], rounds=rounds, tokens=tokens)
 
     def _service(self, progress: Progress) -> Service:
         return Service(
@@ -214,20 +200,9 @@ class LanguageModel:
             report=lambda words: progress(words, 0.0),
         )  # fmt: skip
 
-    def _question(self, prompt: Prompt, examples: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-        schema = json.dumps(_bare(BlueprintDescription.model_json_schema()), separators=(",", ":"))
-        known = f"Materials: {', '.join(MATERIALS)}. Colours: {', '.join(COLORS)}."
-        shown = "".join(f"\nExample: {json.dumps(item, separators=(',', ':'))}" for item in examples)
-        content: list[dict[str, Any]] = [{"type": "text", "text": prompt.text or "The object in the pictures."}]
-        for image, media in zip(prompt.images, prompt.media, strict=True):
-            data = base64.b64encode(image.read_bytes()).decode()
-            content.append({"type": "image_url", "image_url": {"url": f"data:{media};base64,{data}"}})
-        return [
-            {"role": "system", "content": f"{_TASK}{known}\nSchema: {schema}{shown}"},
-            {"role": "user", "content": content if prompt.images else content[0]["text"]},
-        ]
-
-    def _exchange(self, service: Service, job: PaidJob, messages: Sequence[dict[str, Any]]) -> Any:
+    def _exchange(
+        self, service: Service, job: PaidJob, messages: Sequence[dict[str, Any]], prompt: Prompt, number: int
+    ) -> Any:
         request = {
             "model": self.model,
             "temperature": 0,
@@ -235,14 +210,15 @@ class LanguageModel:
             "messages": messages,
             "response_format": {"type": "json_object"},
         }
-        digest = hashlib.sha256(json.dumps(request, sort_keys=True).encode()).hexdigest()[:_NAMED]
+        # A recording is of the question, whatever the prompt of a later version says besides.
+        digest = hashlib.sha256(f"{prompt.digest({})} {number}".encode()).hexdigest()[:_NAMED]
         for folder in (job.folder, self.replay):
             if folder is not None and (folder / f"{digest}.json").is_file():
                 return _kept(folder / f"{digest}.json")
         if self.replay is not None:
             raise InputError(
-                f"Nothing is recorded in {self.replay} for this request. Text, images and model have to be the same as "
-                "when it was recorded; --record records it."
+                f"Nothing is recorded in {self.replay} for round {number + 1} of this request. Text and images have to "
+                "be the same as when it was recorded; --record records it."
             )
         job.begin(digest)
         try:
@@ -271,54 +247,70 @@ def language_model(settings: LanguageModelConfig, **options: Any) -> LanguageMod
     if not url and options.get("replay") is None:
         raise InputError(
             f"--source llm needs the address of a chat interface in the variable {ADDRESS}, e.g. "
-            f"http://localhost:8000/v1, and its key in {KEY} if it takes one. Without a model, say it in words that "
-            "rules understand (--text without --source), or write a --blueprint."
+            f"http://localhost:11434/v1 of Ollama, and its key in {KEY} if it takes one. Without a model, give a "
+            "sentence without --source, a --request or a --blueprint."
         )
     model = os.environ.get(MODEL, "").strip() or settings.model
     key = os.environ.get(KEY, "").strip()
     return LanguageModel(url.rstrip("/") or "http://localhost", model, key, settings, **options)
 
 
-def examples_for(text: str) -> list[dict[str, Any]]:
-    """Blueprints of the library that are most like what is asked for and small enough to be shown, two at most."""
-    words = set(re.findall(r"[a-z]+", text.lower()))
-    found: list[tuple[int, int, dict[str, Any]]] = []
-    for file in sorted(_OBJECTS.glob("*.yaml")):
-        said = file.read_text(encoding="utf-8")
-        if len(said) > _LONGEST_EXAMPLE:
-            continue
-        alike = len(words & set(re.findall(r"[a-z]+", said.lower())))
-        values = {key: value for key, value in yaml.safe_load(said).items() if key in BlueprintDescription.model_fields}
-        found.append((-alike, len(said), values))
-    chosen: list[dict[str, Any]] = []
-    for _, _, values in sorted(found, key=lambda item: item[:2]):
-        try:
-            described_blueprint(values)
-        except InputError:
-            continue  # it repeats or counts, as only files of the library do
-        chosen.append(values)
-        if len(chosen) == _EXAMPLES:
-            break
-    return chosen
+# ---- the question --------------------------------------------------------------------------------------------------
 
 
-def _bare(schema: Any) -> Any:
-    """A JSON schema without titles and bounds, which a model does not need."""
-    if isinstance(schema, dict):
-        return {key: _bare(value) for key, value in schema.items() if key not in _NOT_SHOWN or isinstance(value, dict)}
-    return [_bare(item) for item in schema] if isinstance(schema, list) else schema
+def question(prompt: Prompt) -> list[dict[str, Any]]:
+    """Return the messages that ask for an object: conventions, the nearest kinds, fields, an example; the prompt."""
+    content: list[dict[str, Any]] = [{"type": "text", "text": prompt.text or "The object in the pictures."}]
+    for image, media in zip(prompt.images, prompt.media, strict=True):
+        data = base64.b64encode(image.read_bytes()).decode()
+        content.append({"type": "image_url", "image_url": {"url": f"data:{media};base64,{data}"}})
+    kinds = "\n".join(map(_kind_line, nearest_kinds(prompt.text or "", _KINDS)))
+    system = (
+        f"{_TASK}Kinds, with parameters and their defaults:\n{kinds}\n"
+        f"request: {_fields(Request)}. Of each of its parts: {_fields(PartRequest)}.\n"
+        f"fact: these, and {_fields(Fact, PartRequest.model_fields)}.\n"
+        f"blueprint: {_fields(blueprint_file.BlueprintDescription)}.\n"
+        f"part: {_fields(blueprint_file.PartDescription)}.\njoint: {_fields(blueprint_file.JointDescription)}.\n"
+        f"loop: {_fields(blueprint_file.LoopDescription)}.\n"
+        f"Shapes, by kind: {_shapes()}.\n"
+        f"Materials: {', '.join(MATERIALS)}. Colours: {', '.join(name for name in COLORS if ' ' not in name)}, dark "
+        f"or light before them.\nExample: {json.dumps(_EXAMPLE, separators=(',', ':'))}"
+    )
+    return [
+        {"role": "system", "content": system},
+        {"role": "user", "content": content if prompt.images else content[0]["text"]},
+    ]
 
 
-def _nouns(requirements: Any) -> dict[str, tuple[str, ...]]:
-    """Return what the model says that its parts are: the nouns of its phrases, singular -> names of parts."""
-    found: dict[str, tuple[str, ...]] = {}
-    for item in requirements if isinstance(requirements, list) else ():
-        if isinstance(item, dict) and isinstance(item.get("phrase"), str) and isinstance(item.get("parts"), list):
-            words = re.findall(r"[a-z]+", item["phrase"].lower())
-            names = tuple(str(name) for name in item["parts"])
-            for k in range(len(words)):
-                found[" ".join([*words[k:-1], lemma(words[-1])])] = names
-    return found
+def _kind_line(family: Family) -> str:
+    shown = [item for item in family.parameters if item.name not in ("modeling", "clearance")]
+    shown = [item for item in shown if item.bounds is None or item.bounds[0] < item.bounds[1]][:_PARAMETERS]
+    return f"{family.name} ({', '.join(family.words[:2])}): {', '.join(map(_parameter, shown)) or 'no parameters'}"
+
+
+def _parameter(item: Parameter) -> str:
+    if item.bounds is not None:
+        return f"{item.name}={item.default:g} [{item.bounds[0]:g}..{item.bounds[1]:g}]"
+    return f"{item.name}={'|'.join(filter(None, item.choices)) or 'text'}"
+
+
+def _fields(model: type[BaseModel], without: Collection[str] = ()) -> str:
+    """Fields of a model with their choices; those that may be left out in brackets."""
+    said = []
+    for name, item in model.model_fields.items():
+        found = re.findall(r"'(\w[\w ]*)'", str(item.annotation).partition("Literal")[2])
+        shown = f"{name}: {'|'.join(found)}" if found else name
+        said += [] if name in without else [shown if item.is_required() else f"[{shown}]"]
+    return ", ".join(said)
+
+
+def _shapes() -> str:
+    placed = ("xyz", "rpy", "mirrored", "repeated")
+    models = [model for model in vars(blueprint_file).values() if "kind" in getattr(model, "model_fields", {})]
+    return f"{'; '.join(_fields(model, placed) for model in models)}; each [xyz], [rpy], [mirrored: x|y|z]"
+
+
+# ---- answers -------------------------------------------------------------------------------------------------------
 
 
 def _said(answer: Any) -> tuple[str, int]:
@@ -340,14 +332,15 @@ def _said(answer: Any) -> tuple[str, int]:
 
 
 def _values(text: str) -> dict[str, Any]:
-    """The JSON object in an answer, with or without a fence around it.
+    """The JSON object in an answer, with or without a fence or words around it.
 
     Raises:
         InputError: There is none.
     """
     fenced = _FENCED.search(text)
+    inner = fenced[1] if fenced else text[text.find("{") : text.rfind("}") + 1] or text
     try:
-        values = json.loads(fenced[1] if fenced else text)
+        values = json.loads(inner)
     except (ValueError, RecursionError) as error:
         shown = " ".join(text.split())[:_SHOWN]
         raise InputError(f"The answer is no JSON ({error}). It began: {shown!r}.") from error

@@ -8,12 +8,10 @@ import trimesh
 from trimesh.collision import CollisionManager
 
 from kinematify.errors import InputError
+from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.blueprint import Blueprint
-from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.workshop import STYLES
-from kinematify.generate.sentence import from_text
-from kinematify.robot.joint_type import JointType
 
 SEEDS = (None, 0)
 
@@ -128,31 +126,7 @@ def test_unknown_parameters_and_values_out_of_bounds_are_refused_with_a_hint():
         build(FAMILIES["cabinet"], {"handle": "rope"})
 
 
-@pytest.mark.parametrize(
-    ("sentence", "kind", "fingers"),
-    [
-        ("robot arm with seven joints and a three finger gripper", JointType.REVOLUTE, 3),
-        ("a robot arm with six joints and a parallel gripper", JointType.PRISMATIC, 2),
-        ("a robot arm with a two finger gripper", JointType.PRISMATIC, 2),
-    ],
-)
-def test_a_robot_arm_carries_the_gripper_that_is_asked_for(sentence, kind, fingers):
-    blueprint = from_text(sentence).build()
-    found = [joint for joint in blueprint.joints if joint.child.startswith("finger")]
-    assert [joint.kind for joint in found] == [kind] * fingers
-    links = [joint.child for joint in blueprint.joints if joint.child.startswith("link")]
-    assert {joint.parent for joint in found} == {links[-1]}
-
-
 def test_a_seed_draws_no_gripper():
     assert not any(
         "finger" in part.name for seed in range(5) for part in build(FAMILIES["serial_arm"], {}, seed=seed).parts
     )
-
-
-def test_a_seed_draws_again_where_the_parts_that_are_asked_for_would_not_be_there():
-    request = from_text("a doorway with two walnut doors and brass handles")
-    for seed in range(3):
-        parts = {part.name: part for part in request.build(seed=seed).parts}
-        assert parts["handle_1"].appearance.materials[0].name == "brass"
-        assert request.build(seed=seed).parts[0].mesh_hash == parts["frame"].mesh_hash

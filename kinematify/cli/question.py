@@ -1,0 +1,53 @@
+"""`kinematify question`: what a person or a chat is shown of a mesh of pieces, to name the parts that move."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from pathlib import Path
+
+import click
+
+from kinematify.cli.options import examples, pieces_option, scale_option, up_option
+from kinematify.errors import OutputError
+
+
+@click.command(
+    "question",
+    short_help="A picture of numbered pieces and a question: which of them move together.",
+    epilog=examples(
+        "kinematify question whole.glb -o Q",
+        "kinematify infer whole.glb --answer Q/answer.json -o out/whole",
+    ),
+)
+@click.argument("mesh", type=click.Path(path_type=Path))
+@click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="Folder for the three files.")
+@up_option
+@scale_option
+@pieces_option
+def command(*, mesh: Path, out: Path, up: str, scale: float | None, pieces: str) -> None:
+    """Write sheet.png, question.txt and schema.json of MESH, an object that nobody segmented, into OUT.
+
+    Give picture and text to any chat that reads pictures, or look yourself, and save the answer as OUT/answer.json;
+    text around the JSON does no harm. `kinematify infer MESH --answer OUT/answer.json` with the same options makes the
+    model; `infer MESH --vlm URL` asks a model by itself.
+    """
+    from kinematify.assembly.load import load_assembly
+    from kinematify.config import load_config
+    from kinematify.vision.piece_question import piece_question
+
+    settings = load_config()
+    question = piece_question(
+        load_assembly(mesh, config=settings.assembly, up=up, scale=scale, pieces=pieces), settings
+    )
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        question.picture.save(out / "sheet.png", optimize=True)
+        (out / "question.txt").write_text(question.text + "\n", encoding="utf-8")
+        (out / "schema.json").write_text(json.dumps(question.schema(), indent=1) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise OutputError(f"The question cannot be written to {out} ({error}). Give another folder with -o.") from error
+    click.echo(f"{len(question.pieces)} numbered pieces: {out / 'sheet.png'}, question.txt and schema.json beside it.")
+    answer = shlex.quote(str(out / "answer.json"))
+    click.echo(f"Next: save the answer there, then kinematify infer {shlex.quote(str(mesh))} --answer {answer} -o OUT "
+               "(with the same --up, --scale and --pieces).")  # fmt: skip

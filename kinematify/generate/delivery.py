@@ -1,0 +1,560 @@
+"""From a typed request to an object: built once, adjusted by small steps, and measured against the request once."""
+
+from __future__ import annotations
+
+import math
+import re
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinematify.errors import InputError
+from kinematify.generate.kind_search import key_of
+from kinematify.generate.procedural.clearance import may_go
+from kinematify.generate.procedural.family import build, checked
+from kinematify.generate.procedural.materials import MATERIALS, of_one_material, surface_of
+from kinematify.generate.request import listed, request_of, with_settings
+from kinematify.robot.joint_type import JointType
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from kinematify.assembly.part import Part
+    from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
+    from kinematify.generate.procedural.family import Family
+    from kinematify.generate.procedural.parameter import Parameter, Value
+    from kinematify.generate.request import PartRequest, Request
+    from kinematify.robot.arrays import FloatArray
+
+_NUMBERED = re.compile(r"(?:_(?:\d+|left|right))+$")
+_AXES = {"width": 0, "depth": 1, "height": 2}
+_SAME = 0.02  # of a size or a range, by which it may be off
+_ASIDE = 0.02  # of the whole, by which a part is beside its middle
+_UPRIGHT, _LEVEL = 0.95, 0.2  # of the z component of an axis
+_LARGER = 5.0  # times as large or as small as usual the whole may be
+_GAP = 0.05  # between several [m]
+_SIDES = {"left": (0, -1), "right": (0, 1), "front": (1, -1), "back": (1, 1), "top": (2, 1), "bottom": (2, -1)}
+"""Axis and sign of a side of the world."""
+_PICKED = {**_SIDES, "rear": (1, 1), "upper": (2, 1), "lower": (2, -1)}
+_JOINTS = {"hinge": True, "slide": False}
+"""Nouns that mean what moves so where no part is called so -> whether it turns."""
+_ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
+
+
+@dataclass(frozen=True, kw_only=True)
+class BuildResult:
+    """An object that was built as a request says."""
+
+    blueprint: Blueprint
+    request: Request | None = None
+    differences: tuple[str, ...] = ()
+    """What was asked for and is otherwise, one line each."""
+    missing: tuple[str, ...] = ()
+    """Names of parts of the request that the object does not have."""
+    unread: tuple[str, ...] = ()
+    """Words of a sentence that were not read, and that may matter."""
+    harmless: tuple[str, ...] = ()
+    """Words of a sentence that ask for no shape and no motion."""
+    notes: tuple[str, ...] = ()
+    """Spelling that was repaired, and a kind that is only near."""
+    facts: Mapping[str, Any] = field(default_factory=dict)
+    """What else ``source.json`` says."""
+
+    @property
+    def is_complete(self) -> bool:
+        """True if the object is what was asked for, as far as the request and the sentence tell."""
+        return not (self.differences or self.unread)
+
+
+def stem_of(name: str) -> str:
+    """Return the name of a part without its number and side."""
+    return _NUMBERED.sub("", name)
+
+
+def nouns_of(parameter: Parameter) -> tuple[str, ...]:
+    """Return what a count or a size is called, singular."""
+    own = parameter.name.replace("_", " ")
+    return (own.removesuffix("s") if isinstance(parameter.default, int) else own, *parameter.words)
+
+
+def names_called(family: Family, blueprint: Blueprint, noun: str) -> list[str]:
+    """Return the names of the parts that a noun means, e.g. ``door``, ``left door`` or ``third drawer``."""
+    words = noun.lower().replace("_", " ").split()
+    picked = [word for word in words[:-1] if word in _PICKED or word in _ORDINALS]
+    found: list[Part] = []
+    for plain in (words, [word for word in words if word not in picked], words[-1:]):
+        found = _called(family, blueprint, " ".join(plain))
+        if found and plain is words:
+            return [part.name for part in found]
+        if found:
+            break
+    for word in picked:
+        if word in _ORDINALS:
+            found.sort(key=lambda part: tuple(np.round(part.bounds.mean(axis=0)[[2, 0]], 3) * (-1, 1)))
+            found = found[_ORDINALS.index(word) :][:1]
+        elif len(found) > 1:
+            axis, sign = _PICKED[word]
+            places = [sign * float(part.bounds.mean(axis=0)[axis]) for part in found]
+            middle = 0.5 * (min(places) + max(places))
+            found = [part for part, at in zip(found, places, strict=True) if at > middle]
+    return [part.name for part in found]
+
+
+def _called(family: Family, blueprint: Blueprint, noun: str) -> list[Part]:
+    wanted = _joined(noun)
+    meant = {wanted, *(_joined(stem) for stem, said in family.part_words.items() if wanted in map(_joined, said))}
+    for parameter in family.parameters:
+        if isinstance(parameter.default, int) and wanted in (names := set(map(_joined, nouns_of(parameter)))):
+            meant |= names
+    stems = {part.name: stem_of(part.name) for part in blueprint.parts}
+    exact = [part for part in blueprint.parts if _joined(stems[part.name]) in meant]
+    ends = [part for part in blueprint.parts if key_of(stems[part.name].replace("_", " "))[-1:] == key_of(noun)]
+    if exact or ends or wanted not in _JOINTS:
+        return exact or ends
+    moving = [joint for joint in blueprint.joints if joint.mimic is None and joint.kind is not JointType.FIXED]
+    names = {joint.child for joint in moving if joint.kind.turns is _JOINTS[wanted]}
+    return [part for part in blueprint.parts if part.name in names]
+
+
+def _joined(name: str) -> str:
+    return "".join(key_of(name.replace("_", " ")))
+
+
+# ---- building ------------------------------------------------------------------------------------------------------
+
+
+def deliver(request: Request, *, seed: int | None = None) -> BuildResult:
+    """Build what is asked for and say what is otherwise.
+
+    Args:
+        request: Checked.
+        seed: Draws what is not asked for.
+
+    Raises:
+        InputError: A parameter is out of its bounds, or nothing can be built.
+    """
+    family, faults = request.family, list[str]()
+    values = dict(_values(family, request, faults))
+    made = build(family, values, seed=seed)
+    if fitted := _refitted(family, made, request):
+        with suppress(InputError):
+            made = build(family, {**values, **fitted}, seed=seed)
+    made = _sized(made, request, faults)
+    if _mirror_helps(family, made, request):
+        made = mirrored(made)
+    missing = []
+    for noun, part in request.parts.items():
+        names = names_called(family, made, noun)
+        if names:
+            made = _adjusted(made, names, part)
+        elif part.count != 0 and not _is_detail(family, noun, made):
+            missing.append(noun)
+    faults += _faults(family, made, request, missing)
+    if request.copies > 1:
+        made = made.repeated(request.copies, float(np.ptp(closed(made).assembly.bounds, axis=0)[0]) + _GAP)
+    return BuildResult(
+        blueprint=made,
+        request=request,
+        differences=tuple(dict.fromkeys(faults)),
+        missing=tuple(missing),
+        facts={"request": request.model_dump(mode="json", exclude_defaults=True)},
+    )
+
+
+def build_kind(name: str, settings: Mapping[str, Any] | None = None, *, seed: int | None = None) -> Blueprint:
+    """Return an object of a kind.
+
+    Args:
+        name: Of the kind.
+        settings: As `with_settings` takes them.
+        seed: Draws what is not set.
+
+    Raises:
+        InputError: There is no such kind, or a setting does not fit.
+    """
+    return deliver(request_of(with_settings({"kind": name}, settings or {})), seed=seed).blueprint
+
+
+def closed(blueprint: Blueprint) -> Blueprint:
+    """Return an object with all joints at the zero of their design."""
+    return blueprint.moved({joint.child: -joint.value for joint in blueprint.joints})
+
+
+def _values(family: Family, request: Request, faults: list[str]) -> Iterator[tuple[str, Value]]:
+    """Parameters of a kind that the request sets, by itself or by the sizes, counts and looks of parts."""
+    known = {item.name: item for item in family.all_parameters}
+    yield from request.parameters.items()
+    wanted: list[tuple[str, str, Any]] = [
+        (_size_parameter(family, name), name, size) for name, size in request.size.items()
+    ]
+    for noun, part in request.parts.items():
+        counted = _count_parameter(family, noun)
+        if counted is not None and part.count is not None:
+            wanted.append((counted.name, f"number of {noun}s", part.count))
+        if part.count == 0 and "none" in getattr(known.get(noun.replace(" ", "_")), "choices", ()):
+            wanted.append((noun.replace(" ", "_"), noun, "none"))
+        wanted += [
+            (name, f"{size} of the {noun}", value)
+            for size, value in part.size.items()
+            for name in _length_names(family, noun, size)
+        ]
+        if noun.split()[-1] in ("handle", "knob", "pull", "grip") and "handle" in known:
+            wanted += [(f"handle_{look}", look, getattr(part, look)) for look in ("color", "material")]
+        if part.hinge and "hinge_side" in known:
+            wanted.append(("hinge_side", "hinge", part.hinge))
+    for name, said, value in wanted:
+        if name not in known or value is None or name in request.parameters:
+            continue
+        try:
+            yield name, checked(family, name, value)
+        except InputError as error:
+            if said not in request.size:  # the whole is scaled where no parameter reaches so far
+                faults.append(f"{said}: {str(error).rstrip('.')}")
+
+
+def _count_parameter(family: Family, noun: str) -> Parameter | None:
+    counts = [item for item in family.parameters if isinstance(item.default, int)]
+    return next((item for item in counts if noun in nouns_of(item) or noun.replace(" ", "_") == item.name), None)
+
+
+def _is_detail(family: Family, noun: str, made: Blueprint) -> bool:
+    """True if a noun is what a parameter counts or chose, and no part: slots, or bars that are handles of drawers."""
+    parameter = _count_parameter(family, noun)
+    if parameter is not None:
+        return int(made.parameters[parameter.name]) > 0 and not _called(family, made, noun)
+    chosen = {item.name: str(made.parameters[item.name]) for item in family.parameters if item.choices}
+    own = {name for name, value in chosen.items() if value not in ("none", "no")}
+    return noun.rsplit(maxsplit=1)[-1] in (set(chosen.values()) | own)
+
+
+def _length_names(family: Family, noun: str, size: str) -> list[str]:
+    """Parameters that are a size of a part: ``door_height``, or ``blade`` for its length."""
+    own = noun.replace(" ", "_")
+    lengths = {item.name: item for item in family.parameters if item.unit == "m"}
+    plain = [own] if size == "length" else []
+    return [name for name in (f"{own}_{size}", *plain) if name in lengths][:1]
+
+
+def _size_parameter(family: Family, size: str) -> str:
+    """Name of the parameter for a size of the whole; empty if there is none."""
+    lengths = {item.name: item for item in family.parameters if item.unit == "m"}
+    for name, item in lengths.items():
+        if size == name or size in item.words:
+            return name
+    across = sorted((name for name in ("width", "depth") if name in lengths), key=lambda name: lengths[name].default)
+    return across[-1] if size == "length" and len(across) > 1 else ""
+
+
+def _refitted(family: Family, made: Blueprint, request: Request) -> dict[str, Value]:
+    """Parameters that make a size of the whole what was asked for where a frame or a handle comes on top of them."""
+    found: dict[str, Value] = {}
+    for size, wanted in request.size.items():
+        name = _size_parameter(family, size)
+        own = made.parameters.get(name)
+        if not isinstance(own, float) or name in request.parameters or fits_size(made, size, wanted):
+            continue
+        with suppress(InputError):
+            found[name] = checked(family, name, own + wanted - _sizes(made, size)[0])
+    return found
+
+
+def fits_size(made: Blueprint, size: str, wanted: float) -> bool:
+    """Return True if all of an object, closed, or its base link is so wide, high or the like [m]."""
+    return any(_same(wanted, there) for there in _sizes(made, size))
+
+
+def _sized(made: Blueprint, request: Request, faults: list[str]) -> Blueprint:
+    """Scale the whole where no parameter made a size of it as asked for."""
+    factors = [
+        wanted / there
+        for name, wanted in request.size.items()
+        if not fits_size(made, name, wanted) and (there := _sizes(made, name)[0]) > 0.0
+    ]
+    if not factors:
+        return made
+    factor = factors[0]
+    if not 1.0 / _LARGER <= factor <= _LARGER:
+        kind = made.family.replace("_", " ")
+        faults.append(f"size: a {kind} can be {_LARGER:g} times as large or as small as usual, not {factor:.3g} times")
+        return made
+    alone = len(factors) == len(request.size) and all(_same(factor, other) for other in factors)
+    return made.scaled(factor) if alone else made
+
+
+def _sizes(made: Blueprint, name: str) -> list[float]:
+    """Sizes of all of an object, and of its base link [m]."""
+    shut = closed(made)
+    return [_extent(np.ptp(bounds, axis=0), name) for bounds in (shut.assembly.bounds, shut.parts[0].bounds)]
+
+
+def _extent(extents: FloatArray, name: str) -> float:
+    if name in _AXES:
+        return float(extents[_AXES[name]])
+    if name == "diameter":  # of two sides that are nearly the same, else the wider
+        return float(max(extents[:2]))
+    return float(extents.min() if name == "thickness" else extents.max())
+
+
+def _same(one: float, other: float) -> bool:
+    return math.isclose(one, other, rel_tol=_SAME)
+
+
+def mirrored(blueprint: Blueprint) -> Blueprint:
+    """Return an object as it is seen in a mirror that swaps left and right; turns go round the other way."""
+    flip = np.array([-1.0, 1.0, 1.0])
+
+    def joint(given: BlueprintJoint) -> BlueprintJoint:
+        axis = flip * given.axis * (-1.0 if given.kind.turns else 1.0)
+        return replace(given, axis=axis, pivot=flip * given.pivot)
+
+    parts = tuple(
+        replace(
+            part,
+            vertices=part.vertices * flip,
+            faces=part.faces[:, ::-1],
+            appearance=part.appearance
+            and replace(
+                part.appearance,
+                uv=None if part.appearance.uv is None else np.ascontiguousarray(part.appearance.uv[:, ::-1]),
+            ),
+        )
+        for part in blueprint.parts
+    )
+    loops = tuple(replace(loop, pivot=flip * loop.pivot) for loop in blueprint.loops)
+    return replace(blueprint, parts=parts, joints=tuple(map(joint, blueprint.joints)), loops=loops)
+
+
+def _mirror_helps(family: Family, made: Blueprint, request: Request) -> bool:
+    """True if all that is to be on the left is on the right, or the other way round."""
+    held = [
+        _is_at(made, names, part.side) if part.side in ("left", "right") else _is_hinged(made, names, part.hinge or "")
+        for noun, part in request.parts.items()
+        if (part.side in ("left", "right") or part.hinge) and (names := names_called(family, made, noun))
+    ]
+    return bool(held) and not any(held) and len(made.parts) > 1
+
+
+# ---- parts ---------------------------------------------------------------------------------------------------------
+
+
+def _adjusted(made: Blueprint, names: Sequence[str], part: PartRequest) -> Blueprint:
+    """An object with the looks, ranges and opening of some parts as asked for, as far as that can be."""
+    if part.color or part.material:
+        made = looking(made, names, part.material or "", part.color or "")
+    moving = [name for name in names if name in made.joint_above]
+    if part.range is not None:
+        made = _ranged(made, moving, part.range)
+    if part.open is not None:
+        made = opened(made, moving, part.open)
+    return made
+
+
+def looking(blueprint: Blueprint, names: Sequence[str], material: str, color: str) -> Blueprint:
+    """Return an object with parts painted, or of another material; handles on them keep their own look."""
+
+    def look(part: Part) -> Part:
+        appearance = part.appearance
+        assert appearance is not None, "what is generated has an appearance"
+        own = appearance.materials[0].name.split()[-1]  # behind its colour
+        surface = surface_of(material or own, color or None)
+        new = of_one_material(surface, part.vertices, part.faces)
+        return replace(
+            part,
+            color=surface.color[:3],
+            density=MATERIALS[material].density if material else part.density,
+            appearance=replace(
+                new,
+                materials=(surface, *appearance.materials[1:]),
+                material_of_face=appearance.material_of_face,
+                uv=appearance.uv if new.uv is None else new.uv,
+            ),
+        )
+
+    return replace(blueprint, parts=tuple(look(part) if part.name in names else part for part in blueprint.parts))
+
+
+def opened(blueprint: Blueprint, names: Sequence[str], much: float | tuple[float, str]) -> Blueprint:
+    """Return an object with some joints open by a share of their way, or by an angle [rad] or a distance [m].
+
+    Joints that do not go so far stay as they are; whoever measures the object says so.
+    """
+    values = {}
+    for name in names:
+        joint = blueprint.joint_above[name]
+        value = much[0] if isinstance(much, tuple) else much * _limits(joint)[1]
+        fits = not isinstance(much, tuple) or joint.kind.turns is (much[1] == "rad")
+        lower, upper = _limits(joint)
+        if (
+            joint.kind is not JointType.FIXED
+            and fits
+            and math.isfinite(value)
+            and lower - 1e-9 <= value <= upper + 1e-9
+        ):
+            values[name] = value - joint.value
+    return blueprint.moved(values)
+
+
+def _limits(joint: BlueprintJoint) -> tuple[float, float]:
+    """Limits from the closed pose [rad or m]."""
+    return joint.lower + joint.value, joint.upper + joint.value
+
+
+def _ranged(blueprint: Blueprint, names: Sequence[str], wanted: tuple[float, float]) -> Blueprint:
+    """An object with other ranges of some joints, where nothing is in the way and a slide stays in its guide."""
+    joints = list(blueprint.joints)
+    for k, joint in enumerate(joints):
+        if joint.child not in names or joint.kind is JointType.FIXED:
+            continue
+        lower, upper = (end - joint.value for end in wanted)
+        within = joint.lower - 1e-9 <= lower and upper <= joint.upper + 1e-9
+        if not lower <= 0.0 <= upper or not (within or may_go(blueprint, joint.child, lower, upper)):
+            continue
+        kind = JointType.REVOLUTE if joint.kind is JointType.CONTINUOUS else joint.kind
+        joints[k] = replace(joint, kind=kind, lower=lower, upper=upper)
+    return replace(blueprint, joints=tuple(joints))
+
+
+# ---- measuring -----------------------------------------------------------------------------------------------------
+
+
+def _faults(family: Family, made: Blueprint, request: Request, missing: Sequence[str]) -> Iterator[str]:
+    kind = family.title
+    shut = closed(made)
+    for name, wanted in request.size.items():
+        if not fits_size(made, name, wanted):
+            yield f"{name}: {wanted:.3g} m was asked for, it is {_sizes(made, name)[0]:.3g} m"
+    rows: list[tuple[int, str, list[FloatArray]]] = []
+    meant: list[tuple[str, set[str]]] = []
+    for noun, part in request.parts.items():
+        if noun in missing:
+            has = sorted({re.sub(r"_?\d+", "", stem_of(item.name)).replace("_", " ") for item in made.parts[1:]})
+            yield f"{noun}: a {kind} has none; it has {listed(has[:12])}"
+            continue
+        names = names_called(family, made, noun)
+        yield from (f"{noun}: {why}" for why in part_faults(family, made, noun, names, part))
+        bounds = [item.bounds for item in shut.parts if item.name in names]
+        if part.row is not None and bounds:
+            rows.append((part.row, noun, bounds))
+        meant.append((noun, set(names)))
+    for (row, one, above), (other_row, other, below) in combinations(sorted(rows, key=lambda item: item[:2]), 2):
+        if row < other_row and min(box.mean(axis=0)[2] for box in above) <= max(box.mean(axis=0)[2] for box in below):
+            yield f"{one}: not above the {other}"
+    for (one, mine), (other, its) in combinations(meant, 2):
+        if mine and mine == its:
+            yield f"{other}: it is the same as the {one}, {listed(sorted(mine)[:4])}"
+
+
+def part_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str], part: PartRequest) -> Iterator[str]:
+    """Return what is asked of some parts and is otherwise, in words.
+
+    Args:
+        family: The kind.
+        made: The object.
+        noun: What the parts are called.
+        names: Their names.
+        part: What is asked.
+    """
+    parameter = _count_parameter(family, noun)
+    there = len(names)
+    if parameter is not None and (not names or (part.count and there > part.count and there % part.count == 0)):
+        there = int(made.parameters[parameter.name])  # slots are no parts, and a leg may be two
+    exact = parameter is not None or any(_joined(stem_of(name)) == _joined(noun) for name in names)
+    known = part.count is not None and (names or parameter is not None or part.count == 0)
+    if known and there != part.count and (exact or there < (part.count or 1)):
+        yield f"{part.count} asked for, there {'is' if there == 1 else 'are'} {there}"
+    if part.at_least and names and there < part.at_least:
+        yield f"several asked for, there is {there}"
+    if not names and part.count != 0:
+        asked = part.model_dump(exclude_defaults=True).keys() - {"count", "at_least"}
+        asked -= {"color", "material"} if _is_looked(made, part) else set()
+        if asked:
+            yield f"it is no part of its own, so that its {listed(sorted(asked))} is not as asked for"
+    if not names:
+        return
+    yield from _size_faults(family, made, noun, names, part)
+    if part.side and not _is_at(made, names, part.side):
+        yield f"not at the {part.side}"
+    if part.hinge and not _is_hinged(made, names, part.hinge):
+        yield f"not hinged on the {part.hinge}"
+    joints = [made.joint_above[name] for name in names if name in made.joint_above]
+    if part.motion and not (joints and all(_moves(joint, part.motion) for joint in joints)):
+        kinds = listed(sorted({joint.kind.value for joint in joints})) if joints else "part of the base"
+        yield f"{part.motion} was asked for, it is {kinds}"
+    if part.range and not any(_goes(joint, part.range) for joint in joints):
+        yield f"range {_shown(part.range, joints)} was asked for, it is {_ranges(joints)}"
+    if part.open is not None and not any(_stands(joint, part.open) for joint in joints):
+        yield f"it does not open so far; its range is {_ranges(joints)}"
+
+
+def _size_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str], part: PartRequest) -> Iterator[str]:
+    shut = closed(made)
+    boxes = [item for item in shut.parts if item.name in names]
+    for size, wanted in part.size.items():
+        own = [float(made.parameters[name]) for name in _length_names(family, noun, size)]
+        sizes = [*own, *(_extent(np.ptp(box.bounds, axis=0), size) for box in boxes)]
+        if not any(_same(wanted, value) for value in sizes):
+            yield f"{size}: {wanted:.3g} m was asked for, it is {sizes[0]:.3g} m"
+
+
+def _is_looked(made: Blueprint, wanted: PartRequest) -> bool:
+    """True if something on a part has a look of its own."""
+    own = [item.name for part in made.parts if part.appearance for item in part.appearance.materials[1:]]
+    return any((wanted.color or "") in name and (wanted.material or "") in name for name in own)
+
+
+def _is_at(made: Blueprint, names: Sequence[str], side: str) -> bool:
+    axis, sign = _SIDES[side]
+    shut = closed(made)
+    whole = shut.assembly.bounds[:, axis]
+    places = [float(item.bounds.mean(axis=0)[axis] - whole.mean()) for item in shut.parts if item.name in names]
+    return all(sign * place > _ASIDE * float(np.ptp(whole)) for place in places)
+
+
+def _is_hinged(made: Blueprint, names: Sequence[str], side: str) -> bool:
+    shut = closed(made)
+    joints = [shut.joint_above[name] for name in names if name in shut.joint_above]
+    middle = {part.name: float(part.bounds.mean(axis=0)[0]) for part in shut.parts}
+    return bool(joints) and all(
+        (joint.pivot[0] < middle[joint.child]) == (side == "left") and abs(joint.axis[2]) > _UPRIGHT for joint in joints
+    )
+
+
+def _moves(joint: BlueprintJoint, motion: str) -> bool:
+    upright = abs(float(joint.axis[2]))
+    return {
+        "move": joint.kind is not JointType.FIXED,
+        "hinge": joint.kind.turns,
+        "slide": joint.kind is JointType.PRISMATIC,
+        "spin": joint.kind is JointType.CONTINUOUS or (joint.kind.turns and joint.upper - joint.lower > 1.9 * math.pi),
+        "pan": joint.kind.turns and upright > _UPRIGHT,
+        "tilt": joint.kind.turns and upright < _LEVEL,
+        "lift": joint.kind is JointType.PRISMATIC and upright > 1.0 - _LEVEL,
+        "fixed": joint.kind is JointType.FIXED,
+    }[motion]
+
+
+def _goes(joint: BlueprintJoint, wanted: tuple[float, float]) -> bool:
+    way = wanted[1] - wanted[0]
+    return all(abs(end - there) < _SAME * way for end, there in zip(wanted, _limits(joint), strict=True))
+
+
+def _stands(joint: BlueprintJoint, much: float | tuple[float, str]) -> bool:
+    if isinstance(much, tuple):
+        return joint.kind.turns is (much[1] == "rad") and math.isclose(joint.value, much[0], rel_tol=1e-6, abs_tol=1e-9)
+    upper = _limits(joint)[1]
+    return (much == 0.0 and joint.value == 0.0) or (math.isfinite(upper) and math.isclose(joint.value, much * upper))
+
+
+def _ranges(joints: Sequence[BlueprintJoint]) -> str:
+    return listed(sorted({_shown(_limits(joint), [joint]) for joint in joints})) if joints else "none"
+
+
+def _shown(ends: tuple[float, float], joints: Sequence[BlueprintJoint]) -> str:
+    if not all(map(math.isfinite, ends)):
+        return "without end"
+    if joints and not joints[0].kind.turns:
+        return f"{ends[0]:.3g} to {ends[1]:.3g} m"
+    return f"{math.degrees(ends[0]):.0f} to {math.degrees(ends[1]):.0f} deg"

@@ -1,0 +1,138 @@
+"""Kinds of object by what people call them: exactly, with a spelling mistake, and by meaning."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from functools import cache
+from typing import TYPE_CHECKING
+
+from kinematify.generate.described import known_families
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from kinematify.generate.procedural.family import Family
+
+_BRITISH = {
+    "aluminium": "aluminum", "tyre": "tire", "castor": "caster", "jewellery": "jewelry", "vice": "vise",
+    "gray": "grey", "metre": "meter", "centimetre": "centimeter", "millimetre": "millimeter", "centre": "center",
+    "mould": "mold", "plough": "plow", "colour": "color", "kerb": "curb",
+    "catalogue": "catalog", "draught": "draft", "grille": "grill",
+    "organiser": "organizer", "swivelling": "swiveling", "motorised": "motorized",
+}  # fmt: skip
+"""British or rarer spelling -> the one that names are compared in."""
+_IRREGULAR = {
+    "leaves": "leaf", "shelves": "shelf", "knives": "knife", "feet": "foot", "halves": "half", "axes": "axis",
+    "teeth": "tooth", "sashes": "sash",
+}  # fmt: skip
+_SAME = (
+    "car automobile vehicle sedan hatchback van taxi jeep ambulance truck lorry bus pickup|"
+    "bed cot crib bunk couch sofa settee futon|chair seat stool bench armchair throne|"
+    "table desk counter workbench stand|cabinet cupboard wardrobe closet locker chest dresser sideboard|"
+    "box case crate bin container trunk casket bag basket|robot manipulator arm cobot android gripper hand|"
+    "lamp light lantern torch spotlight luminaire|door gate hatch barrier shutter|"
+    "saw drill sander grinder planer|knife scissors shears cutter blade|"
+    "bicycle bike tricycle scooter motorcycle cycle|boat ship ferry yacht canoe|"
+    "plane airplane aircraft helicopter drone glider|pump compressor engine motor turbine generator|"
+    "phone telephone mobile smartphone tablet|computer laptop keyboard monitor printer|pot pan kettle jug teapot|"
+    "clock watch timer alarm|valve tap faucet spigot|fan blower ventilator propeller windmill turbine|"
+    "cart trolley wagon dolly stroller pram barrow wheelbarrow|crane hoist lift elevator jack winch forklift|"
+    "guitar piano violin trumpet trombone accordion drum|swing seesaw slide carousel toy|"
+    "camera telescope binoculars|oven stove microwave toaster grill fridge freezer|ladder stairs steps scaffold|"
+    "bottle jar can flask tube"
+)
+"""Nouns of things that do the same."""
+
+
+def words_of(text: str) -> frozenset[str]:
+    """Return the words of a list that is written as a text."""
+    return frozenset(text.split())
+
+
+def lemma(word: str) -> str:
+    """Return the singular of an English noun in the spelling that names are compared in."""
+    word = _BRITISH.get(word, word)
+    if word in _IRREGULAR or len(word) < 4 or word.endswith(("ss", "us", "is")):
+        return _IRREGULAR.get(word, word)
+    if word.endswith("ies"):
+        return f"{word[:-3]}y"
+    if word.endswith(("ches", "shes", "xes", "sses")):
+        return word[:-2]
+    return _BRITISH.get(word.removesuffix("s"), word.removesuffix("s"))
+
+
+def key_of(words: str | Sequence[str]) -> tuple[str, ...]:
+    """Return the words of a name, each in the singular."""
+    given = re.findall(r"[a-z0-9]+", words.lower()) if isinstance(words, str) else words
+    return tuple(map(lemma, given))
+
+
+@cache
+def _names() -> Mapping[str, Family]:
+    """Every name of every kind as one word, so that a dollhouse is a doll house."""
+    found: dict[str, Family] = {}
+    for family in known_families().values():
+        for word in (*family.words, family.name.replace("_", " ")):
+            found.setdefault("".join(key_of(word)), family)
+    return found
+
+
+def kind_called(words: Sequence[str]) -> Family | None:
+    """Return the kind that is called by these words, as `key_of` writes them; None if none is."""
+    return _names().get("".join(words))
+
+
+@cache
+def words_of_names() -> frozenset[str]:
+    """Every word of a name."""
+    return frozenset(key for family in known_families().values() for word in family.words for key in key_of(word))
+
+
+def repaired(word: str, known: frozenset[str]) -> str | None:
+    """Return the known word that a word means with one letter wrong, missing or added, or its letters in another order.
+
+    None if there is none.
+    """
+    if len(word) < 5 or word in known:
+        return None
+    near = difflib.get_close_matches(word, known, n=3, cutoff=0.7)
+    return next((other for other in near if other[0] == word[0] and _one_letter_off(word, other)), None)
+
+
+def _one_letter_off(one: str, other: str) -> bool:
+    start = next((k for k, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
+    a, b = one[start:], other[start:]
+    return a[1:] == b[1:] or a[1:] == b or a == b[1:] or sorted(a) == sorted(b)
+
+
+def nearest_kinds(text: str, count: int = 5) -> list[Family]:
+    """Return the kinds that are nearest to what a text names, by its nouns, things that do the same, and parts.
+
+    Args:
+        text: A name or a sentence; the object is named before its parts.
+        count: How many.
+    """
+    words = list(dict.fromkeys(key_of(text)))
+    scored = {name: max(_scores(words, family)) for name, family in known_families().items()}
+    best = sorted(scored, key=lambda name: (-scored[name], len(name)))
+    return [known_families()[name] for name in best[:count]]
+
+
+def _scores(words: Sequence[str], family: Family) -> Iterator[float]:
+    parts = {key for item in family.parameters for word in (item.name, *item.words) for key in key_of(word)}
+    parts |= {key for said in (*family.part_words, *sum(family.part_words.values(), ())) for key in key_of(said)}
+    shared = 0.3 * len(parts & set(words[1:]))
+    for name in family.words:
+        own = key_of(name)
+        exact = 3.0 * (own == tuple(words[: len(own)]))
+        heads = max((1.5 * 0.9**k for k, word in enumerate(words) if word == own[-1]), default=0.0)
+        others = sum(0.5 * 0.9**k for k, word in enumerate(words) if word in own[:-1])
+        alike = max((0.8 * 0.9**k for k, word in enumerate(words) if _does_the_same(word, own[-1])), default=0.0)
+        spelt = 0.4 * max((difflib.SequenceMatcher(None, word, own[-1]).ratio() for word in words[:3]), default=0.0)
+        yield exact + max(heads, alike) + others + shared + spelt - 0.05 * len(own)
+
+
+@cache
+def _does_the_same(one: str, other: str) -> bool:
+    return one != other and any(one in group.split() and other in group.split() for group in _SAME.split("|"))

@@ -1,0 +1,549 @@
+"""Windows, doors and panels of switches, carved."""
+
+from __future__ import annotations
+
+from math import degrees, hypot, pi, tan
+from typing import TYPE_CHECKING
+
+from kinematify.generate.library.builder import drawn_on
+from kinematify.generate.library.kind import choice, kind, length, whole
+from kinematify.generate.library.mechanisms import button, knob, lever
+from kinematify.generate.library.panels import grip, leaf
+from kinematify.generate.procedural.layout import grid
+from kinematify.generate.procedural.pieces.bearing_pieces import barrel
+from kinematify.generate.procedural.pieces.leaves import (
+    Field,
+    Grooves,
+    add_sliding,
+    fields_of,
+    side_by_side,
+    stopped_opening,
+)
+from kinematify.generate.procedural.solids import X, Y, Z, bore, box, cylinder, hull, rod
+
+if TYPE_CHECKING:
+    from typing import Any
+
+    from manifold3d import Manifold
+
+    from kinematify.generate.procedural.pieces.leaves import Field
+    from kinematify.generate.procedural.workshop import Workshop
+
+
+@kind(
+    "door",
+    words=(
+        "doorway, gate, garden gate, front door, house door, interior door, room door, baby gate, safety "
+        "gate, yard gate, fence gate, cellar door, closet door, shower door, entrance door, back door, office "
+        "door, cell door, side gate, picket gate"
+    ),
+    material="wood",
+    width=length(0.7, 5.0, default=0.95, usual=(0.8, 1.4), help="Outer width."),
+    height=length(1.6, 4.0, default=2.05, usual=(1.9, 2.3), help="Outer height."),
+    thick=length(0.02, 0.06, default=0.04, usual=(0.03, 0.05), help="Of a leaf.", words="thick, thickness"),
+    frame=length(0.03, 0.08, default=0.05, usual=(0.04, 0.07), help="Its bars' width."),
+    kind=choice(
+        {
+            "hinged": "swinging, swing, french",
+            "sliding": "slide, patio, barn",
+            "folding": "bifold, accordion, concertina",
+        },
+        help="How leaves move.",
+    ),
+    leaves=whole(
+        1, 4, default=1, usual=(1, 2), help="That move; a folding door has two at least.", words="leaf, wing, door"
+    ),
+    panels=whole(0, 8, default=2, usual=(0, 4), help="In every leaf.", words="panel"),
+    handle=choice(
+        ("lever", "knob", "bar", "none"), help="Levers and knobs turn; a sliding or folding leaf has a grip."
+    ),
+    hinge=choice(("barrel", "edge"), help="Visible hinges, or hidden ones."),
+    hinge_side=choice(("left", "right"), help="Of a single hinged leaf."),
+)
+def door(
+    w: Workshop,
+    width: float,
+    height: float,
+    thick: float,
+    frame: float,
+    kind: str,
+    leaves: int,
+    panels: int,
+    handle: str,
+    hinge: str,
+    hinge_side: str,
+    open: float,
+    clearance: float,
+) -> None:
+    """Doors in their frames: hinged leaves, alone or in pairs, leaves that slide in grooves, and leaves that fold."""
+    # the_depth: of a frame without grooves [m]
+    # the_barrel: radius [m]
+    # the_opens: [rad]; less where the leaves of two openings would meet
+    # floor: under a leaf that has no sill [m]
+    # folds: of the first leaf of a folding door; the others fold back by twice as much [rad]
+    the_depth = 0.11
+    the_barrel = 0.007
+    the_opens = 1.75
+    floor = 0.006
+    folds = 1.25
+
+    def opening_of(sill: float) -> Field:
+        half = 0.5 * width
+        bar = frame
+        return Field(left=bar - half, right=half - bar, bottom=sill, top=height - bar)
+
+    def frame_of(depth: float) -> Manifold:
+        half = 0.5 * width
+        return box((-half, 0, 0), (half, depth, height))
+
+    # Width of the bars around a leaf's panels, where handles are.
+    def stile_of(face: Field) -> float:
+        return min(0.11, 0.22 * (face.right - face.left))
+
+    # A leaf with its panels, one above the other.
+    def panels_of(face: Field, front: float) -> Manifold:
+        return fields_of(face, front, thick, bar=stile_of(face), rows=panels, columns=1, sunk=0.25)
+
+    def panelled(slab: Manifold, face: Field, front: float) -> Manifold:
+        return slab - panels_of(face, front)
+
+    def below_of(opening: Field) -> Manifold:
+        return Field(left=opening.left, right=opening.right, bottom=-1.0, top=0.1).box(-1.0, 1.0)
+
+    if kind == "hinged":
+        opening = opening_of(0.0)
+        groups = side_by_side(opening, leaves, frame, together=2)
+        its_cut = stopped_opening(groups, the_depth, thick, clearance)
+        below = [Field(left=g[0].left, right=g[-1].right, bottom=-1.0, top=0.1).box(-1.0, 1.0) for g in groups]
+        w.body("frame", frame_of(the_depth) - its_cut)
+        w.cut("frame", below)
+        opens = the_opens if len(groups) == 1 else 1.5
+        its_leaves = [(place, field) for group in groups for place, field in enumerate(group)]
+        for number, (place, field) in enumerate(its_leaves, start=1):
+            edge = ("left", "right")[place]
+            if len(its_leaves) == 1 and hinge_side == "right":
+                edge = "right"
+            x = field.right - 0.5 * stile_of(field) if edge == "left" else field.left + 0.5 * stile_of(field)
+            with drawn_on(w, clearance, open) as b:
+                leaf(
+                    b,
+                    f"leaf_{number}",
+                    parent="frame",
+                    lower=(field.left, 0, floor),
+                    upper=(field.right, thick, field.top),
+                    hinge=-X if edge == "left" else X,
+                    inset=True,
+                    reach=opens,
+                    handle="none",
+                    barrels=3 if hinge == "barrel" else 0,
+                )
+            w.cut(
+                f"leaf_{number}", panels_of(Field(left=field.left, right=field.right, bottom=floor, top=field.top), 0.0)
+            )
+            if handle == "bar":
+                with drawn_on(w, clearance) as b:
+                    grip(b, f"leaf_{number}", at=(x, 0, 1), out=-Y, along=Z, length=0.3, kind=handle)
+            # A handle that turns: a lever towards the hinge, on both sides where there is room for it, or a knob.
+            name = f"handle_{number}"
+            stile = stile_of(field)
+            if handle == "lever":
+                side = 1 if edge == "left" else -1
+                with drawn_on(w, clearance, open) as b:
+                    lever(
+                        b,
+                        name,
+                        parent=f"leaf_{number}",
+                        at=(x, 0, 1),
+                        out=-Y,
+                        along=-side * X,
+                        length=1.1 * stile,
+                        reach=0.8 * side,
+                        through=thick if stile > 0.08 else 0.0,
+                    )
+            elif handle == "knob":
+                with drawn_on(w, clearance, open) as b:
+                    knob(
+                        b,
+                        name,
+                        parent=f"leaf_{number}",
+                        at=(x, 0, 1),
+                        out=-Y,
+                        radius=min(0.028, 0.4 * stile),
+                        high=0.04,
+                        reach=1.6,
+                        material="metal",
+                    )
+    elif kind == "sliding":
+        # Leaves in grooves of sill and lintel; each passes its neighbour.
+        tracks = Grooves(opening=opening_of(0.03), count=max(leaves, 2), thick=thick, clearance=clearance)
+        w.body("frame", frame_of(tracks.depth))
+
+        def finish(slab: Manifold, face: Field, front: float) -> Manifold:
+            x = face.left + 0.5 * stile_of(face)
+            half = min(0.012, 0.3 * stile_of(face))
+            pull = box((x - half, front - 1.0, 0.93), (x + half, front + 0.3 * thick, 1.07))
+            return panelled(slab, face, front) - pull
+
+        add_sliding(w, "leaf", parent="frame", tracks=tracks, count=leaves, finish=finish, rest=open)
+    elif kind == "folding":
+        # Leaves in a row, each hinged to the one before, in front and behind in turn; a single one is made of
+        # two.
+        opening_2 = opening_of(floor)
+        row = side_by_side(opening_2, max(2, leaves), 0.0, together=99)[0]
+        w.body("frame", frame_of(thick + 0.02) - opening_2.box(-1.0, 1.0) - below_of(opening_2))
+        gap = clearance + 0.001
+        spare = (
+            0.5 * ((thick + the_barrel + clearance) * (thick + the_barrel + clearance)) / (row[0].right - row[0].left)
+        )
+        parent = "frame"
+        for k, field_2 in enumerate(row):
+            name_2 = f"leaf_{k + 1}"
+            last = k + 1 == len(row)
+            right = field_2.right - gap - (spare + gap if last else 0.0)
+            slab = box((field_2.left + gap, 0, field_2.bottom + gap), (right, thick, field_2.top - gap))
+            solids_2 = [panelled(slab, field_2, 0.0)]
+            if last:
+                solids_2 = [
+                    *solids_2,
+                    box(
+                        (right - 0.4 * stile_of(field_2) - 0.004, -0.02, 0.94),
+                        (right - 0.4 * stile_of(field_2) + 0.004, 0.001, 1.06),
+                    ),
+                ]
+            inwards = k % 2 == 0
+            level = -the_barrel - clearance if inwards else thick + the_barrel + clearance
+            w.body(name_2, solids_2)
+            # Barrels on the faces of two leaves, or of a jamb and a leaf, about the line at x = field.left, y =
+            # level.
+            far = gap + 3.0 * the_barrel
+            near = gap + 0.6 * the_barrel
+            face = (the_barrel + clearance - 0.0002, the_barrel + clearance + 0.0001)
+            halves = barrel(0.08, the_barrel, clearance, ((-far, -near, *face), (near, far, *face)))
+            its_height = field_2.top - field_2.bottom
+            for share in (0.15, 0.5, 0.85):
+                place_2 = (field_2.left, level, field_2.bottom + share * its_height)
+                for its_body, half in zip((parent, name_2), halves, strict=False):
+                    w.add(its_body, (half if level < 0 else half.mirror((0, 1, 0))).translate(place_2))
+            opens_2 = folds if k == 0 else 2.0 * folds
+            w.turns(
+                name_2,
+                parent=parent,
+                axis=(0, 0, -1 if inwards else 1),
+                pivot=(field_2.left, level, 0),
+                limits=(0.0, opens_2),
+                rest=open,
+            )
+            parent = name_2
+    w.settle()
+
+
+@kind(
+    "window",
+    words=(
+        "skylight, roof window, house window, basement window, casement window, attic window, bathroom "
+        "window, kitchen window"
+    ),
+    material="wood",
+    width=length(0.6, 4.0, default=1.0, usual=(0.6, 1.6), help="Outer width."),
+    height=length(0.5, 3.0, default=1.2, usual=(0.6, 1.6), help="Outer height."),
+    frame=length(0.03, 0.08, default=0.05, usual=(0.04, 0.07), help="Its bars' width."),
+    kind=choice(
+        {
+            "casement": "hinged, swinging, french",
+            "sliding": "slide, gliding",
+            "tilt": "tilting, tilted, hopper, bottom hung",
+            "awning": "top hung",
+            "pivot": "pivoting, pivoted",
+        },
+        help="Sashes turn about a side, slide, turn about the lower or upper edge, or about their middle.",
+    ),
+    sashes=whole(1, 3, default=1, help="That move.", words="sash, window, pane, casement"),
+    rows=whole(1, 4, default=1, usual=(1, 2), help="Of panes in a sash."),
+    columns=whole(1, 3, default=1, usual=(1, 2), help="Of panes in a sash."),
+    hinge=choice(("barrel", "edge"), help="Visible hinges, or hidden ones."),
+    handle=choice(("lever", "none"), help="A handle that turns on hinged sashes."),
+)
+def window(
+    w: Workshop,
+    width: float,
+    height: float,
+    frame: float,
+    kind: str,
+    sashes: int,
+    rows: int,
+    columns: int,
+    hinge: str,
+    handle: str,
+    open: float,
+    clearance: float,
+) -> None:
+    """Windows: sashes that slide in grooves, or turn about a side, the lower or upper edge, or pins at mid-height."""
+    # thick: of a sash [m]
+    # the_sash: width of a sash's bars [m]
+    # the_depth: of a frame without grooves [m]
+    # pin: radius of what a pivoting sash turns on [m]
+    # turning: How far a sash opens [rad].
+    thick = 0.04
+    the_sash = 0.045
+    the_depth = 0.07
+    pin = 0.008
+    turning = {"casement": 1.5, "tilt": 0.6, "awning": 0.8}
+
+    def frame_of(depth: float) -> Manifold:
+        half = 0.5 * width
+        return box((-half, 0, 0), (half, depth, height))
+
+    # Width of the bars around a sash's panes.
+    def bar_of(face: Field) -> float:
+        return min(the_sash, 0.2 * (face.right - face.left), 0.2 * (face.top - face.bottom))
+
+    # A sash with its panes.
+    def panes_of(face: Field, front: float) -> Manifold:
+        return fields_of(face, front, thick, bar=bar_of(face), rows=rows, columns=columns, sunk=0.42)
+
+    def glazed(slab: Manifold, face: Field, front: float) -> Manifold:
+        return slab - panes_of(face, front)
+
+    opening = Field(left=frame - 0.5 * width, right=0.5 * width - frame, bottom=frame, top=height - frame)
+    if kind == "sliding":
+        tracks = Grooves(opening=opening, count=max(sashes, 2), thick=thick, clearance=clearance)
+        w.body("frame", frame_of(tracks.depth))
+
+        def finish(slab: Any, face: Any, front: Any) -> Any:
+            x = face.left + 0.5 * bar_of(face)
+            z = face.middle[1]
+            pull = box((x - 0.006, front - 1.0, z - 0.05), (x + 0.006, front + 0.008, z + 0.05))
+            return glazed(slab, face, front) - pull
+
+        add_sliding(w, "sash", parent="frame", tracks=tracks, count=sashes, finish=finish, rest=open)
+    elif kind == "pivot":
+        # Sashes on pins in the jambs, which turn about their middle.
+        groups = side_by_side(opening, sashes, frame)
+        w.body("frame", frame_of(the_depth))
+        for number, group in enumerate(groups, start=1):
+            field = group[0]
+            w.cut("frame", field.box(-1.0, 1.0))
+            gap = clearance + 0.001
+            half = 0.5 * (field.top - field.bottom)
+            swing = gap + hypot(half, 0.5 * thick) - half
+            x, z = field.middle
+            start = 0.5 * (the_depth - thick)
+            lower = (field.left + gap, start, field.bottom + swing)
+            slab = box(lower, (field.right - gap, start + thick, field.top - swing))
+            name = f"sash_{number}"
+            reach = 0.4 * frame
+            ends = ((field.left - reach, 0.5 * the_depth, z), (field.right + reach, 0.5 * the_depth, z))
+            far = ((ends[0][0] - clearance, *ends[0][1:]), (ends[1][0] + clearance, *ends[1][1:]))
+            w.cut("frame", bore(pin, clearance, *far))
+            pins = cylinder(pin, *ends) - field.box(-1.0, 1.0, inset=2.0 * gap)
+            w.body(name, glazed(slab, field, start), pins)
+            w.turns(name, parent="frame", axis=(1, 0, 0), pivot=(x, 0.5 * the_depth, z), limits=(0.0, 1.3), rest=open)
+    else:
+        together = 2 if kind == "casement" else 1
+        groups_2 = side_by_side(opening, sashes, frame, together=together)
+        w.body("frame", frame_of(the_depth) - stopped_opening(groups_2, the_depth, thick, clearance))
+        number_2 = 0
+        edges = {"left": -X, "right": X, "bottom": -Z, "top": Z}
+        for group_2 in groups_2:
+            for place, field_2 in enumerate(group_2):
+                number_2 = number_2 + 1
+                edge = {"tilt": "bottom", "awning": "top"}.get(kind, ("left", "right")[place])
+                with drawn_on(w, clearance, open) as b:
+                    leaf(
+                        b,
+                        f"sash_{number_2}",
+                        parent="frame",
+                        lower=(field_2.left, 0, field_2.bottom),
+                        upper=(field_2.right, thick, field_2.top),
+                        hinge=edges[edge],
+                        inset=True,
+                        reach=turning[kind],
+                        handle="none",
+                        barrels=2 if hinge == "barrel" else 0,
+                    )
+                w.cut(f"sash_{number_2}", panes_of(field_2, 0.0))
+                if handle == "lever":
+                    # A handle in the middle of the free side, that turns by a quarter.
+                    x_2, z_2 = field_2.middle
+                    bar = bar_of(field_2)
+                    x_2 = {"left": field_2.right - 0.5 * bar, "right": field_2.left + 0.5 * bar}.get(edge, x_2)
+                    z_2 = {"bottom": field_2.top - 0.5 * bar, "top": field_2.bottom + 0.5 * bar}.get(edge, z_2)
+                    along = X if edge == "top" else -Z
+                    with drawn_on(w, clearance, open) as b:
+                        lever(
+                            b,
+                            f"handle_{number_2}",
+                            parent=f"sash_{number_2}",
+                            at=(x_2, 0, z_2),
+                            out=-Y,
+                            along=along,
+                            length=2.2 * bar,
+                            reach=-0.5 * pi if edge == "left" else 0.5 * pi,
+                        )
+    w.settle()
+
+
+@kind(
+    "switch panel",
+    words=(
+        "light switch, wall switch, switch plate, switch, switchboard, dimmer switch, toggle switch, rocker "
+        "switch, double switch plate, lamp switch"
+    ),
+    material="plastic",
+    rockers=whole(
+        1, 6, default=1, usual=(1, 4), help="Switches side by side.", words="rocker, switch, gang, rocker switch"
+    ),
+    dimmers=whole(0, 2, default=0, usual=(0, 1), help="At the right.", words="knob, dial"),
+    kind=choice(("rocker", "toggle"), help="Of the switches."),
+    pitch=length(0.03, 0.08, default=0.045, usual=(0.035, 0.06), help="Of switches."),
+    height=length(0.06, 0.15, default=0.085, usual=(0.075, 0.12), help="Of the plate."),
+)
+def switch_panel(
+    w: Workshop, rockers: int, dimmers: int, kind: str, pitch: float, height: float, open: float, clearance: float
+) -> None:
+    """Light switches: rockers or toggles side by side in a plate, and dimmers."""
+    # switch_depth: of the housing [m]
+    # the_tilt: From the middle to either end [rad].
+    # pivot: depth of its pins [m]
+    # pocket: depth of the room behind a switch [m]
+    # pin: radius of the pins [m]
+    switch_depth = 0.034
+    the_tilt = {"rocker": 0.12, "toggle": 0.35}
+    pivot = 0.009
+    pocket = 0.024
+    pin = 0.003
+
+    # A wedge with a ridge in its middle, level about its pins, and the room that it needs.
+    def rocker(half: float, high: float, clearance: float) -> tuple[Manifold, Manifold]:
+        edge = high * tan(the_tilt["rocker"]) - pivot - 0.003
+        ridge = box((-half, -pivot - 0.003, -0.001), (half, 0.004, 0.001))
+        wedge = hull(ridge, box((-half, edge, -high), (half, edge + 0.003, high)))
+        reach = hypot(high, edge) + clearance
+        wide = half + clearance
+        return (wedge, box((-wide, -1.0, -reach), (wide, pocket - pivot, reach)))
+
+    # A stick on a hub, and the room that it needs.
+    def toggle(half: float, clearance: float) -> tuple[Manifold, Manifold]:
+        hub = cylinder(0.006, (-half, 0, 0), (half, 0, 0))
+        stick = hull(rod(0.0035, (0, 0, 0), (0, -0.01, 0)), rod(0.0045, (0, -0.022, 0), (0, -0.024, 0)))
+        wide = half + clearance
+        return (hub + stick, box((-wide, -1.0, -0.012 - clearance), (wide, 0.008 + clearance, 0.012 + clearance)))
+
+    half = 0.5 * pitch * (rockers + dimmers) + 0.006
+    plate = box((-half, 0, 0), (half, 0.004, height))
+    housing = box((0.004 - half, 0.001, 0.004), (half - 0.004, switch_depth, height - 0.004))
+    w.body("plate", plate, housing)
+    for k in range(rockers):
+        # A switch on pins that lie along x, tilted to its lower end.
+        half_2 = 0.5 * pitch - 0.008
+        level = 0.5 * height
+        if kind == "rocker":
+            solid, its_room = rocker(half_2, 0.36 * height, clearance)
+        else:
+            half_2 = min(half_2, 0.01)
+            solid, its_room = toggle(half_2, clearance)
+        reach = half_2 + 0.0055
+        tight = min(clearance, 0.5 * pin)
+        pins = cylinder(pin, (-reach, 0, 0), (reach, 0, 0))
+        place = ((k + 0.5) * pitch - half + 0.006, pivot, level)
+        w.cut("plate", its_room.translate(place))
+        w.cut("plate", bore(pin, tight, (-reach - tight, 0, 0), (reach + tight, 0, 0)).translate(place))
+        tilt = the_tilt[kind]
+        name = f"rocker_{k + 1}"
+        w.body(name, (solid + pins).rotate((degrees(tilt), 0, 0)).translate(place))
+        w.turns(name, parent="plate", axis=(-1, 0, 0), pivot=place, limits=(0.0, 2.0 * tilt), rest=open)
+    for k in range(dimmers):
+        with drawn_on(w, clearance, open) as b:
+            knob(
+                b,
+                f"dimmer_{k + 1}",
+                parent="plate",
+                at=[(rockers + k + 0.5) * pitch - half + 0.006, 0, 0.5 * height],
+                out=-Y,
+                radius=0.36 * pitch,
+                reach=4.7,
+            )
+    w.settle()
+
+
+@kind(
+    "button panel",
+    words=(
+        "keypad, control panel, push button panel, number pad, elevator panel, key pad, remote control, "
+        "calculator, numeric pad, lift panel, elevator button panel, call panel, console, housing, machine "
+        "housing, lab box, instrument box, junction box, control unit, thermostat, alarm panel, light switch "
+        "panel, timer, remote, tv remote, garage door opener, walkie talkie, pager, pocket calculator, mixer "
+        "console, dj controller, drum machine, effects pedal, stopwatch, mp3 player, music player, walkman, "
+        "handheld console, handheld game console, game boy, numpad, numeric keypad, key fob, midi controller, "
+        "launchpad, digital piano, electric piano, toy piano, card reader, card terminal, pos terminal, "
+        "payment terminal, baby monitor, gps device, pocket radio, arcade stick, fight stick, tv controller, "
+        "universal remote, graphing calculator, stage piano"
+    ),
+    material="plastic",
+    width=length(0.06, 0.6, default=0.12, usual=(0.08, 0.25), help="Outer width."),
+    height=length(0.08, 0.8, default=0.18, usual=(0.12, 0.3), help="Outer height."),
+    depth=length(0.02, 0.2, default=0.03, usual=(0.02, 0.06), help="Of the housing."),
+    buttons=whole(1, 24, default=12, usual=(2, 16), help="In rows, from the top left.", words="key, push button"),
+    columns=whole(1, 6, default=3, usual=(1, 4), help="Of buttons.", words="column"),
+    knobs=whole(0, 4, default=0, usual=(0, 3), help="Above the buttons.", words="dial"),
+    shape=choice({"square": "rectangular", "round": "circular"}, help="Of the buttons."),
+    display=choice({"none": "", "display": "screen"}, help="A recess for a screen."),
+)
+def button_panel(
+    w: Workshop,
+    width: float,
+    height: float,
+    depth: float,
+    buttons: int,
+    columns: int,
+    knobs: int,
+    shape: str,
+    display: str,
+    open: float,
+    clearance: float,
+) -> None:
+    """Button panels and keypads: buttons in rows on a housing, with knobs and a display above them."""
+    w.body("housing", box((-0.5 * width, 0, 0), (0.5 * width, depth, height)))
+    top = 0.94 * height
+    if display == "display":
+        w.cut("housing", box((-0.42 * width, -1.0, top - 0.16 * height), (0.42 * width, 0.002, top)))
+        top = top - 0.2 * height
+    if knobs:
+        pitch = 0.9 * width / knobs
+        radius = min(0.09 * height, 0.38 * pitch)
+        for k in range(knobs):
+            with drawn_on(w, clearance, open) as b:
+                knob(
+                    b,
+                    f"knob_{k + 1}",
+                    parent="housing",
+                    at=[(k - 0.5 * (knobs - 1)) * pitch, 0, top - 0.1 * height],
+                    out=-Y,
+                    radius=radius,
+                    deep=min(0.011, 0.5 * radius),
+                    reach=4.7,
+                )
+        top = top - 0.22 * height
+    bottom = 0.06 * height
+    its_columns = min(columns, buttons)
+    rows = -(-buttons // its_columns)
+    pitch_2 = min(0.9 * width / its_columns, (top - bottom) / rows)
+    tight = min(clearance, 0.08 * pitch_2)
+    area = (
+        its_columns * min(0.9 * width / its_columns, 1.6 * pitch_2),
+        rows * min((top - bottom) / rows, 1.6 * pitch_2),
+    )
+    size = (0.84 * pitch_2 - 2.0 * tight,) * 2
+    for k_2, (x_2, z) in enumerate(grid(buttons, its_columns, area)):
+        with drawn_on(w, clearance) as b:
+            button(
+                b,
+                f"button_{k_2 + 1}",
+                parent="housing",
+                at=(x_2, 0, 0.5 * (bottom + top) + z),
+                out=-Y,
+                size=size,
+                high=min(0.006, 0.4 * pitch_2),
+                is_round=shape == "round",
+            )
+    w.settle()

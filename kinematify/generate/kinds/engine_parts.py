@@ -1,0 +1,203 @@
+"""Parts of engines and vehicles: brakes, pumps, shafts."""
+
+from __future__ import annotations
+
+from math import cos, sin
+from typing import TYPE_CHECKING
+
+from kinematify.generate.library.kind import kind, length, whole
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box
+
+if TYPE_CHECKING:
+    from kinematify.generate.library.builder import ObjectBuilder
+
+
+@kind(
+    "disc brake",
+    words="disk brake, brake disc, brake caliper",
+    part_words={"disc": "disk, rotor", "pad": "brake pad, piston"},
+    radius=length(0.08, 0.18),
+)
+def disc_brake(b: ObjectBuilder, radius: float) -> None:
+    r = radius
+    b.part(
+        "carrier",
+        box((-0.15 * r, 0.2 * r, -0.2 * r), (0.15 * r, 0.3 * r, 1.1 * r)),
+        box((-0.35 * r, -0.32 * r, 1.05 * r), (0.35 * r, 0.3 * r, 1.2 * r)),
+        box((-0.35 * r, -0.32 * r, 0.7 * r), (0.35 * r, -0.2 * r, 1.1 * r)),
+        box((-0.35 * r, 0.2 * r, 0.7 * r), (0.35 * r, 0.3 * r, 1.1 * r)),
+        material="steel",
+        color="grey",
+    )
+    b.bore("carrier", b.cylinder(0.13 * r, (0, -r, 0), (0, r, 0)))
+    b.part(
+        "disc",
+        b.cylinder(r, (0, -0.03 * r, 0), (0, 0.03 * r, 0)),
+        b.cylinder(0.12 * r, (0, -0.2 * r, 0), (0, 0.4 * r, 0)),
+        b.cylinder(0.35 * r, (0, -0.15 * r, 0), (0, 0, 0)),
+        material="steel",
+    )
+    b.spin("disc", parent="carrier", axis=Y, pivot=(0, 0, 0))
+    for k, s in enumerate((-1, 1)):
+        b.part(
+            f"pad_{k + 1}",
+            box(
+                (-0.25 * r, min(s * 0.06 * r, s * 0.18 * r), 0.72 * r),
+                (0.25 * r, max(s * 0.06 * r, s * 0.18 * r), 0.98 * r),
+            ),
+            material="rubber",
+            color="black",
+        )
+        b.slide(f"pad_{k + 1}", parent="carrier", axis=-s * Y, upper=0.025 * r)
+
+
+@kind(
+    "shock absorber",
+    words="damper, gas spring, gas strut, suspension strut, telescopic damper",
+    part_words={"rod": "piston, piston rod"},
+    length=length(0.2, 0.5),
+)
+def shock_absorber(b: ObjectBuilder, length: float) -> None:
+    L = length
+    b.part(
+        "cylinder",
+        b.cylinder(0.07 * L, (0, 0, 0.06 * L), (0, 0, 0.6 * L)),
+        b.cylinder(0.05 * L, (-0.04 * L, 0, 0.03 * L), (0.04 * L, 0, 0.03 * L)),
+        material="steel",
+        color="black",
+    )
+    b.bore("cylinder", b.cylinder(0.027 * L, (0, 0, 0.12 * L), (0, 0, L)))
+    b.part(
+        "rod",
+        b.cylinder(0.025 * L, (0, 0, 0.2 * L), (0, 0, 0.97 * L)),
+        b.cylinder(0.05 * L, (-0.04 * L, 0, L), (0.04 * L, 0, L)),
+        b.cylinder(0.08 * L, (0, 0, 0.9 * L), (0, 0, 0.92 * L)),
+        material="chrome",
+    )
+    b.slide("rod", parent="cylinder", axis=Z, lower=-0.07 * L, upper=0.22 * L)
+
+
+@kind(
+    "steering rack",
+    words="rack and pinion steering, steering gear",
+    part_words={"rack": "tie rod, bar", "pinion": "shaft, steering shaft"},
+    length=length(0.5, 1.0),
+)
+def steering_rack(b: ObjectBuilder, length: float) -> None:
+    L = length
+    b.part(
+        "housing",
+        b.cylinder(0.04 * L, (-0.3 * L, 0, 0), (0.3 * L, 0, 0)),
+        b.cylinder(0.035 * L, (0, -0.03 * L, 0.03 * L), (0, -0.03 * L, 0.12 * L)),
+        [
+            box((s * 0.25 * L - 0.02 * L, -0.06 * L, -0.06 * L), (s * 0.25 * L + 0.02 * L, 0.06 * L, -0.03 * L))
+            for s in (-1, 1)
+        ],
+        material="metal",
+    )
+    b.bore("housing", b.cylinder(0.0215 * L, (-L, 0, 0), (L, 0, 0)))
+    b.bore("housing", b.cylinder(0.0135 * L, (0, -0.03 * L, 0.045 * L), (0, -0.03 * L, L)))
+    b.part(
+        "rack",
+        b.cylinder(0.02 * L, (-0.42 * L, 0, 0), (0.42 * L, 0, 0)),
+        [ball(0.03 * L, (s * 0.43 * L, 0, 0)) for s in (-1, 1)],
+        material="steel",
+    )
+    b.slide("rack", parent="housing", axis=X, lower=-0.08 * L, upper=0.08 * L)
+    b.part(
+        "pinion",
+        b.cylinder(0.012 * L, (0, -0.03 * L, 0.055 * L), (0, -0.03 * L, 0.3 * L)),
+        b.cylinder(0.03 * L, (0, -0.03 * L, 0.28 * L), (0, -0.03 * L, 0.3 * L)),
+        material="steel",
+    )
+    b.hinge("pinion", parent="housing", axis=Z, pivot=[0, -0.03 * L, 0], lower=-6.28, upper=6.28)
+    b.follow("rack", leader="pinion", multiplier=0.0127 * L)
+
+
+@kind(
+    "camshaft",
+    words="cam shaft, valve train, cam shaft with followers",
+    part_words={"shaft": "cam", "follower": "valve, tappet, pushrod, lifter"},
+    followers=whole(1, 6),
+)
+def camshaft(b: ObjectBuilder, followers: int) -> None:
+    n = followers
+    L = 0.08 * followers + 0.06
+    b.part(
+        "frame",
+        box((-0.5 * L - 0.02, -0.06, 0), (0.5 * L + 0.02, 0.06, 0.012)),
+        [box((s * 0.5 * L - 0.012, -0.03, 0.01), (s * 0.5 * L + 0.012, 0.03, 0.22)) for s in (-1, 1)],
+        box((-0.5 * L, -0.03, 0.19), (0.5 * L, 0.03, 0.22)),
+        material="metal",
+    )
+    b.bore("frame", b.cylinder(0.0108, (-L, 0, 0.08), (L, 0, 0.08)))
+    b.part(
+        "shaft",
+        b.cylinder(0.01, (-0.5 * L - 0.03, 0, 0.08), (0.5 * L + 0.06, 0, 0.08)),
+        [
+            b.cylinder(
+                0.02,
+                (x - 0.012, 0.012 * cos(2.1 * k), 0.08 + 0.012 * sin(2.1 * k)),
+                (x + 0.012, 0.012 * cos(2.1 * k), 0.08 + 0.012 * sin(2.1 * k)),
+            )
+            for k, x in enumerate([0.08 * (k - 0.5 * (n - 1)) for k in range(n)])
+        ],
+        material="steel",
+    )
+    b.spin("shaft", parent="frame", axis=X, pivot=(0, 0, 0.08))
+    for k in range(n):
+        x = 0.08 * (k - 0.5 * (n - 1))
+        b.bore("frame", b.cylinder(0.0068, (x, 0, 0.15), (x, 0, 0.3)))
+        b.part(
+            f"follower_{k + 1}",
+            b.cylinder(0.006, (x, 0, 0.13), (x, 0, 0.25)),
+            b.cylinder(0.016, (x, 0, 0.127), (x, 0, 0.133)),
+            material="steel",
+        )
+        b.slide(f"follower_{k + 1}", parent="frame", axis=Z, lower=-0.008, upper=0.016)
+
+
+@kind(
+    "gear pump",
+    words="hydraulic gear pump",
+    part_words={"drive_gear": "shaft, driver", "idler": "gear"},
+    radius=length(0.03, 0.06),
+)
+def gear_pump(b: ObjectBuilder, radius: float) -> None:
+    r = radius
+    b.part(
+        "housing",
+        b.cylinder(1.6 * r, (-0.85 * r, -0.5 * r, 0), (-0.85 * r, 0.4 * r, 0)),
+        b.cylinder(1.6 * r, (0.85 * r, -0.5 * r, 0), (0.85 * r, 0.4 * r, 0)),
+        box((-0.85 * r, -0.5 * r, -1.6 * r), (0.85 * r, 0.4 * r, 1.6 * r)),
+        material="metal",
+    )
+    b.cut(
+        "housing",
+        b.cylinder(1.12 * r, (-0.85 * r, -r, 0), (-0.85 * r, 0.05 * r, 0)),
+        b.cylinder(1.12 * r, (0.85 * r, -r, 0), (0.85 * r, 0.05 * r, 0)),
+    )
+    b.bore(
+        "housing",
+        b.cylinder(0.29 * r, (-0.85 * r, -r, 0), (-0.85 * r, r, 0)),
+        b.cylinder(0.29 * r, (0.85 * r, -r, 0), (0.85 * r, 0.3 * r, 0)),
+    )
+    for s, name in zip((-1, 1), ("drive_gear", "idler"), strict=False):
+        b.part(
+            name,
+            b.cylinder(0.72 * r, (s * 0.85 * r, -0.4 * r, 0), (s * 0.85 * r, 0, 0)),
+            b.cylinder(0.25 * r, (s * 0.85 * r, -0.4 * r, 0), (s * 0.85 * r, 0.9 * r if s < 0 else 0.25 * r, 0)),
+            [
+                beam(
+                    0.16 * r,
+                    0.4 * r,
+                    (s * 0.85 * r, -0.2 * r, 0),
+                    (s * 0.85 * r + 0.97 * r * cos(a), -0.2 * r, 0.97 * r * sin(a)),
+                    Y,
+                )
+                for a in [6.28318 * (k + (0.5 if s > 0 else 0)) / 10 for k in range(10)]
+            ],
+            material="steel",
+        )
+        b.spin(name, parent="housing", axis=s * Y, pivot=[s * 0.85 * r, 0, 0])
+    b.follow("idler", leader="drive_gear", multiplier=1)

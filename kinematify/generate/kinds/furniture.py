@@ -1,0 +1,402 @@
+"""Beds, seats and tables that fold, tilt or extend."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.generate.library.builder import spread
+from kinematify.generate.library.kind import choice, kind, length, whole
+from kinematify.generate.library.mechanisms import case, caster, legs, wheel
+from kinematify.generate.library.panels import drawer, grip, leaf
+from kinematify.generate.procedural.solids import X, Y, Z, beam, box
+
+if TYPE_CHECKING:
+    from kinematify.generate.library.builder import ObjectBuilder
+
+
+@kind("kitchen block", words="row of kitchen units, kitchen counter, kitchenette", number=whole(2, 4, words="door"))
+def kitchen_block(b: ObjectBuilder, number: int) -> None:
+    """A row of base units: doors, drawers, a sink front that tilts."""
+    h = 0.87
+    t = 0.58
+    case(b, "block", lower=(0, 0, 0), upper=(0.6 * number, t, h), opening=-Y, wall=0.02)
+    b.part("block", box((-0.01, -0.03, h), (0.6 * number + 0.01, t, h + 0.04)))
+    for k, x in enumerate(spread(number, 0, 0.6 * number)):
+        if k:
+            b.part("block", box((x - 0.31, 0, 0), (x - 0.29, t, h)))
+        kind = b.pick("door", "drawers", "tilt")
+        low = x - 0.28
+        high = x + 0.28
+        if kind == "drawers":
+            b.part("block", box((low - 0.01, 0.01, 0.1), (high + 0.01, t, h)))
+            for i, z in enumerate(spread(3, 0.12, h - 0.02)):
+                drawer(
+                    b,
+                    f"drawer_{k}_{i}",
+                    parent="block",
+                    lower=(low + 0.01, 0, z - 0.105),
+                    upper=(high - 0.01, 0.5, z + 0.105),
+                    out=-Y,
+                    handle=True,
+                )
+        elif kind == "door":
+            leaf(
+                b,
+                f"door_{k}",
+                parent="block",
+                lower=(low - 0.005, -0.018, 0.1),
+                upper=(high + 0.005, 0, h - 0.02),
+                hinge=b.pick(X, -X),
+                out=-Y,
+            )
+        else:
+            leaf(
+                b,
+                f"front_{k}",
+                parent="block",
+                lower=(low - 0.005, -0.018, 0.1),
+                upper=(high + 0.005, 0, h - 0.02),
+                hinge=-Z,
+                out=-Y,
+                reach=b.draw(0.4, 1.5),
+            )
+
+
+@kind(
+    "wall cupboard",
+    words="overhead cabinet, overhead locker, overhead cupboard",
+    width=length(0.5, 1.2),
+    height=length(0.35, 0.8),
+    depth=length(0.25, 0.4),
+    rows=whole(1, 2, words="flap, door"),
+)
+def wall_cupboard(b: ObjectBuilder, width: float, height: float, depth: float, rows: int) -> None:
+    """Flaps that go up, or doors, on a wall unit."""
+    case(b, "unit", lower=(-width / 2, 0, 0), upper=(width / 2, depth, height), opening=-Y, wall=0.018)
+    for k, z in enumerate(spread(rows, 0, height)):
+        if rows == 2:
+            b.part("unit", box((-width / 2, 0, height / 2 - 0.009), (width / 2, depth, height / 2 + 0.009)))
+        leaf(
+            b,
+            f"flap_{k}",
+            parent="unit",
+            lower=(-width / 2, -0.018, z - height / 2 / rows + 0.002),
+            upper=(width / 2, 0, z + height / 2 / rows - 0.002),
+            hinge=Z,
+            out=-Y,
+            reach=b.draw(1.2, 1.8),
+        )
+
+
+@kind(
+    "sideboard with sliding doors",
+    words="sliding door sideboard, sliding door cabinet, sliding door wardrobe",
+    width=length(1.0, 2.0),
+    height=length(0.5, 0.9),
+    depth=length(0.35, 0.5),
+)
+def sideboard_with_sliding_doors(b: ObjectBuilder, width: float, height: float, depth: float) -> None:
+    """Two panels that pass each other before a case."""
+    case(b, "case", lower=(-width / 2, 0, 0.1), upper=(width / 2, depth, height), opening=-Y, wall=0.02)
+    legs(b, "case", lower=(-width / 2, 0, 0), upper=(width / 2, depth, 0.105), thick=0.05)
+    b.part(
+        "case",
+        box((-width / 2, -0.06, 0.1), (width / 2, 0.01, 0.12)),
+        box((-width / 2, -0.06, height - 0.02), (width / 2, 0.01, height)),
+    )
+    play1 = b.gap(0.02)
+    for k, s in enumerate((-1, 1)):
+        y = -0.022 - 0.022 * k
+        b.part(
+            f"door_{k}",
+            box(
+                (min(0, s * width / 2) - 0.03 * (s > 0), y - 0.018, 0.12 + play1),
+                (max(0, s * width / 2) + 0.03 * (s < 0), y, height - 0.02 - play1),
+            ),
+        )
+        if b.style.grips != "none":
+            b.part(
+                f"door_{k}",
+                b.cylinder(
+                    0.03,
+                    (0.85 * s * width / 2, y - 0.0181 - (0.002 if k else 0), height / 2),
+                    (0.85 * s * width / 2, y, height / 2),
+                ),
+            )
+        b.slide(f"door_{k}", parent="case", axis=-s * X, upper=width / 2 - 0.04)
+
+
+@kind(
+    "desk with pedestal",
+    words="pedestal desk, computer desk, office desk",
+    width=length(1.1, 1.8),
+    depth=length(0.55, 0.8),
+    height=length(0.7, 0.78),
+    p=length(0.35, 0.5),
+)
+def desk_with_pedestal(b: ObjectBuilder, width: float, depth: float, height: float, p: float) -> None:
+    """A desk with three drawers on one side and a keyboard tray."""
+    b.part(
+        "desk",
+        box((-width / 2, 0, height - 0.03), (width / 2, depth, height)),
+        box((width / 2 - 0.03, 0, 0), (width / 2, depth, height)),
+        material="wood",
+    )
+    b.part("desk", box((-width / 2, 0.02, 0), (-width / 2 + p, depth, height - 0.02)))
+    for k, z in enumerate(spread(3, 0.05, height - 0.04)):
+        drawer(
+            b,
+            f"drawer_{k}",
+            parent="desk",
+            lower=(-width / 2 + 0.03, 0.02, z - 0.09),
+            upper=(-width / 2 + p - 0.03, depth - 0.08, z + 0.09),
+            out=-Y,
+        )
+    if b.maybe(0.6):
+        g = b.gap(0.02)
+        x0 = -width / 2 + p + 0.1
+        x1 = width / 2 - 0.1
+        for x in (x0 - 0.015, x1 + 0.015):
+            b.part("desk", box((x - 0.015 + g, 0.05, height - 0.1), (x + 0.015 - g, depth - 0.1, height - 0.025)))
+        b.part("tray", box((x0, 0.03, height - 0.1), (x1, 0.4, height - 0.08)))
+        b.slide("tray", parent="desk", axis=-Y, upper=0.3)
+
+
+@kind(
+    "standing desk",
+    words="sit stand desk, height adjustable desk, adjustable desk, lifting desk",
+    width=length(1.0, 1.8),
+    depth=length(0.6, 0.8),
+    height=length(0.6, 0.75),
+)
+def standing_desk(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
+    """A top on two or one telescopic columns."""
+    g = b.gap(0.06)
+    for x in (-0.35 * width, 0.35 * width):
+        b.part(
+            "feet",
+            box((x - 0.04, -depth / 2 + 0.05, 0), (x + 0.04, depth / 2 - 0.05, 0.03)),
+            box((x - 0.04, -0.04, 0.02), (x + 0.04, 0.04, 0.55)),
+            material="steel",
+        )
+        b.bore("feet", box((x - 0.03 - g, -0.03 - g, 0.05), (x + 0.03 + g, 0.03 + g, 0.6)))
+        b.part("top", box((x - 0.03, -0.03, 0.1 if b.style.has_bore else 0.54), (x + 0.03, 0.03, height)))
+    b.part("feet", box((-0.35 * width, -0.02, 0.03), (0.35 * width, 0.02, 0.1)))
+    b.part("top", box((-width / 2, -depth / 2, height), (width / 2, depth / 2, height + 0.025)), material="wood")
+    b.slide("top", parent="feet", axis=Z, upper=b.draw(0.3, 0.5))
+
+
+@kind(
+    "piano stool",
+    words=(
+        "swivel stool, bar stool, screw stool, music stool, stool, barstool, swivel bar stool, counter stool, "
+        "pub stool, work stool, drafting stool, lab stool, vanity stool, saddle stool, kitchen stool, drum "
+        "stool, drum throne, rotating stool, bar chair, artist stool, milking stool, massage stool, doctor "
+        "stool, dentist stool, shop stool, revolving stool, spinning stool, cobbler stool"
+    ),
+    radius=length(0.15, 0.22),
+    height=length(0.4, 0.6),
+)
+def piano_stool(b: ObjectBuilder, radius: float, height: float) -> None:
+    """A seat that turns on its screw."""
+    b.part("base", b.cylinder(0.04, (0, 0, 0.1), (0, 0, height)), material="wood")
+    n = b.count(3, 5)
+    for a in np.arange(n) * 2 * pi / n:
+        b.part("base", beam(0.04, 0.04, (0, 0, 0.2), (1.2 * radius * cos(a), 1.2 * radius * sin(a), 0.02)))
+    g = b.gap(radius)
+    b.part("seat", b.cylinder(radius, (0, 0, height + g), (0, 0, height + b.draw(0.03, 0.1))))
+    if b.style.has_bore:
+        b.cut("base", b.cylinder(0.02 + 2 * g, (0, 0, 0.2), (0, 0, height + 0.01)))
+        b.part("seat", b.cylinder(0.02, (0, 0, 0.22), (0, 0, height + 0.02)))
+    b.spin("seat", parent="base", axis=Z, pivot=(0, 0, height))
+
+
+@kind(
+    "trundle bed",
+    words="storage bed, captains bed, bed with drawers, pull out bed",
+    width=length(0.8, 1.2),
+    number=whole(1, 2, words="box, drawer"),
+)
+def trundle_bed(b: ObjectBuilder, width: float, number: int) -> None:
+    """A second bed on wheels, or a bed box, below the first."""
+    t = 2.0
+    h = 0.45
+    b.part(
+        "bed",
+        box((0, 0, 0.3), (t, width, h)),
+        box((0, 0, 0), (0.03, width, 0.9)),
+        box((t - 0.03, 0, 0), (t, width, 0.7)),
+        material="wood",
+    )
+    for k, x in enumerate(spread(number, 0.04, t - 0.04)):
+        half = (t - 0.1) / 2 / number
+        g = b.gap(0.1) + 0.002
+        b.part(f"box_{k}", box((x - half, -0.01, 0.04), (x + half, 0.85 * width, 0.27)), material="wood")
+        if b.style.drawer == "tray":
+            b.cut(f"box_{k}", box((x - half + 0.02, 0.01, 0.06), (x + half - 0.02, 0.85 * width - 0.02, 0.4)))
+        b.part("bed", box((x - half, 0.85 * width + g, 0.1), (x + half, 0.85 * width + g + 0.02, 0.31)))
+        b.slide(f"box_{k}", parent="bed", axis=-Y, upper=0.6)
+
+
+@kind(
+    "crib",
+    words="cot, baby crib, baby bed, baby cot, infant bed",
+    width=length(1.1, 1.4),
+    depth=length(0.6, 0.75),
+    height=length(0.8, 1.0),
+)
+def crib(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
+    """A cot with a side that slides down or swings out."""
+    b.part("cot", box((0, 0, 0.25), (width, depth, 0.3)), material="wood")
+    for x in (0, width):
+        b.part("cot", box((x - 0.02, 0, 0), (x + 0.02, depth, height)))
+    b.part("cot", box((0, depth - 0.03, 0.25), (width, depth, height)))
+    g = b.gap(0.05)
+    bars = [
+        b.cylinder(0.008, (x, -0.025, 0.32), (x, -0.025, height)) for x in spread(b.count(8, 16), 0.04, width - 0.04)
+    ]
+    rails = [box((0.021 + g, -0.045, z), (width - 0.021 - g, -0.005, z + 0.04)) for z in (0.3, height - 0.04)]
+    b.part("side", bars, rails)
+    if b.maybe():
+        b.slide("side", parent="cot", axis=-Z, upper=0.25)
+    else:
+        b.hinge("side", parent="cot", axis=X, pivot=(width / 2, -0.025, 0.31), upper=1.5)
+
+
+@kind(
+    "bar cart",
+    words=("serving trolley, tea trolley, serving cart, tea cart, kitchen cart, kitchen trolley, hostess trolley"),
+    width=length(0.5, 0.9),
+    depth=length(0.35, 0.5),
+    height=length(0.7, 0.95),
+    kind=choice(("casters", "wheels")),
+)
+def bar_cart(b: ObjectBuilder, width: float, depth: float, height: float, kind: str) -> None:
+    """Two trays on a frame with four wheels or casters, and a drawer."""
+    foot = 0.1
+    legs(b, "frame", lower=(-width / 2, -depth / 2, foot), upper=(width / 2, depth / 2, height), thick=0.03)
+    for z in (foot + 0.02, 0.55 * height, height - 0.05):
+        b.part("frame", box((-width / 2, -depth / 2, z), (width / 2, depth / 2, z + 0.03)), material="steel")
+    corners = [(x, y) for x in (-width / 2 + 0.015, width / 2 - 0.015) for y in (-depth / 2 + 0.015, depth / 2 - 0.015)]
+    for k, (x, y) in enumerate(corners):
+        if kind == "casters":
+            caster(b, f"caster_{k}", parent="frame", top=(x, y, foot), high=foot)
+        else:
+            s = np.sign(y)
+            wheel(
+                b,
+                f"wheel_{k}",
+                parent="frame",
+                middle=(x, y + s * 0.03, 0.06),
+                radius=0.06,
+                wide=0.025,
+                out=s * Y,
+                axle=0.012,
+            )
+            b.part("frame", box((x - 0.015, y - 0.012, 0.05), (x + 0.015, y + 0.012, foot + 0.01)))
+
+
+@kind(
+    "office drawer unit",
+    words="roll container, mobile pedestal, rolling drawer unit, rolling pedestal",
+    width=length(0.35, 0.45),
+    depth=length(0.5, 0.7),
+    height=length(0.5, 0.65),
+)
+def office_drawer_unit(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
+    """A roll container."""
+    foot = 0.07
+    case(b, "unit", lower=(-width / 2, 0, foot), upper=(width / 2, depth, height), material="steel")
+    n = b.count(2, 4)
+    for k, z in enumerate(spread(n, foot + 0.02, height - 0.02)):
+        b_ = 0.42 * (height - foot - 0.04) / n
+        drawer(
+            b,
+            f"drawer_{k}",
+            parent="unit",
+            lower=(-0.44 * width, 0, z - b_),
+            upper=(0.44 * width, 0.85 * depth, z + b_),
+            out=-Y,
+            material="steel",
+        )
+    for k, (x, y) in enumerate([(x, y) for x in (-0.4 * width, 0.4 * width) for y in (0.12 * depth, 0.88 * depth)]):
+        caster(b, f"caster_{k}", parent="unit", top=(x, y, foot), high=foot)
+
+
+@kind(
+    "swivel bookcase",
+    words="rotating bookcase, revolving bookcase",
+    width=length(0.35, 0.5),
+    height=length(0.6, 1.4),
+    foot=length(0.04, 0.1),
+)
+def swivel_bookcase(b: ObjectBuilder, width: float, height: float, foot: float) -> None:
+    """A square bookcase that turns on its foot."""
+    b.part("foot", b.cylinder(0.45 * width, (0, 0, 0), (0, 0, foot)), material="wood")
+    g = b.gap(width)
+    b.part("case", box((-width / 2, -width / 2, foot + g), (width / 2, width / 2, height)), material="wood")
+    for z in spread(3, foot, height):
+        b.cut(
+            "case",
+            box((-width / 2 - 1, -width / 2 + 0.02, z - 0.12 * height), (-0.02, width / 2 - 0.02, z + 0.12 * height)),
+        )
+    b.spin("case", parent="foot", axis=Z, pivot=(0, 0, foot))
+
+
+@kind(
+    "roller shutter cabinet",
+    words="tambour cabinet, roll front cabinet",
+    width=length(0.6, 1.2),
+    height=length(0.6, 1.8),
+)
+def roller_shutter_cabinet(b: ObjectBuilder, width: float, height: float) -> None:
+    """A shutter of slats drawn as one plate that slides up or aside."""
+    t = 0.4
+    case(b, "cabinet", lower=(-width / 2, 0, 0), upper=(width / 2, t, height), opening=-Y, wall=0.03)
+    g = b.gap(0.02)
+    z0 = 0.03 + g
+    z1 = height * b.draw(0.45, 0.95)
+    b.part("shutter", box((-width / 2 + 0.005 + g, -0.015 - g, z0), (width / 2 - 0.005 - g, -g, z1)))
+    for z in spread(int((z1 - z0) / 0.05), z0, z1):
+        b.part("shutter", b.cylinder(0.008, (-width / 2 + 0.01, -0.015 - g, z), (width / 2 - 0.01, -0.015 - g, z)))
+    grip(b, "shutter", at=(0, -0.015 - g, z0 + 0.06), out=-Y, along=X, length=0.12)
+    b.slide("shutter", parent="cabinet", axis=Z, upper=0.7 * (z1 - z0))
+
+
+@kind(
+    "bunk bed",
+    words="double decker bed",
+    part_words={"drawer": "bed box, box"},
+    width=length(0.8, 1.0),
+    height=length(1.5, 1.8),
+    number=whole(1, 3, default=2, words="drawer, bed box, storage box"),
+)
+def bunk_bed(b: ObjectBuilder, width: float, height: float, number: int) -> None:
+    """Two beds above each other, a ladder, drawers below."""
+    t = 2.0
+    up = height - 0.45
+    b.part(
+        "bed",
+        [box((x, y, 0), (x + 0.06, y + 0.06, height)) for x in (0, t - 0.06) for y in (0, width - 0.06)],
+        [box((0, 0, z), (t, width, z + 0.1)) for z in (0.35, up)],
+        [box((0, y, height - 0.12), (t, y + 0.03, height - 0.02)) for y in (0, width - 0.03)],
+        material="wood",
+    )
+    x = t - 0.55
+    b.part(
+        "ladder",
+        [box((x + a, -0.035, 0), (x + a + 0.04, -0.0005, height)) for a in (0, 0.36)],
+        [b.cylinder(0.015, (x + 0.02, -0.018, z), (x + 0.38, -0.018, z)) for z in spread(5, 0.1, height - 0.2)],
+        material="wood",
+    )
+    b.fix("ladder", parent="bed")
+    for k, x in enumerate(spread(number, 0.08, t - 0.6)):
+        half = (t - 0.74) / 2 / number
+        g = b.gap(0.1) + 0.002
+        b.part(f"drawer_{k}", box((x - half, 0.005, 0.04), (x + half, 0.85 * width, 0.3)), material="wood")
+        b.cut(f"drawer_{k}", box((x - half + 0.02, 0.025, 0.06), (x + half - 0.02, 0.85 * width - 0.02, 0.4)))
+        b.part("bed", box((x - half, 0.85 * width + g, 0.1), (x + half, 0.85 * width + g + 0.02, 0.36)))
+        b.slide(f"drawer_{k}", parent="bed", axis=-Y, upper=0.5)

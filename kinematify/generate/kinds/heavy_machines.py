@@ -1,0 +1,382 @@
+"""Excavators, cranes and what has tracks, carved."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import cos, degrees, pi, radians, sin, sqrt, tan
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.generate.kinds.limbs import track_ring, track_top, tracked, turntable
+from kinematify.generate.library.kind import choice, kind, length, whole
+from kinematify.generate.procedural.pieces.bearing_pieces import bent_fork, fork_room, stub
+from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, off, rod, union, vector
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from manifold3d import Manifold
+
+    from kinematify.generate.procedural.workshop import Workshop
+    from kinematify.robot.arrays import FloatArray
+
+
+@kind(
+    "excavator",
+    words=(
+        "digger, backhoe, mini excavator, power shovel, toy excavator, backhoe loader, toy digger, trencher, "
+        "crawler excavator"
+    ),
+    material="steel",
+    length=length(1.5, 5.0, default=2.6, usual=(1.6, 4.0), help="Of the tracks."),
+    width=length(1.0, 4.0, default=1.8, usual=(1.2, 2.6), help="Over the tracks."),
+    boom=length(1.6, 8.0, default=2.6, usual=(2.0, 4.0), help="Its length."),
+    stick=length(1.0, 5.0, default=1.6, usual=(1.2, 2.4), help="Its length.", words="arm"),
+    bucket=length(0.3, 1.8, default=0.7, usual=(0.5, 1.0), help="Its size."),
+    wheels=whole(0, 4, default=0, usual=(0, 3), help="Seen on each side.", words="wheel"),
+)
+def excavator(
+    w: Workshop,
+    length: float,
+    width: float,
+    boom: float,
+    stick: float,
+    bucket: float,
+    wheels: int,
+    open: float,
+    clearance: float,
+) -> None:
+    """Excavators: a house on tracks, a boom, a stick and a bucket on pins."""
+    # leans: house, boom below and above its bend, stick and bucket: from the upright to the front [rad].
+    # swings: Positive upwards [rad].
+    leans = (0.0, 0.45, 1.25, 2.3, 2.7)
+    swings = {"boom": (-0.35, 0.3), "stick": (-0.3, 0.8), "bucket": (-0.8, 0.9)}
+
+    # Platform, cab, engine and counterweight; returns the boom's pin and the radius of its knuckles.
+    def house() -> tuple[FloatArray, float]:
+        half = 0.46 * tracks_width
+        long = 0.5 * tracks_length
+        low = tracks_top - 0.2 * tracks_ring
+        thick = 0.12 * tracks_length
+        top = low + thick
+        radius = min(0.055 * tracks_width, 0.05 * tracks_length)
+        cab = 0.42 * tracks_length
+        w.add(
+            "house",
+            box((-half, -0.8 * long, low), (half, long, top)),
+            box((-half, -0.75 * long, top - 0.001), (-0.2 * tracks_width, 0.1 * long, top + cab)),
+            box((-half, 0.25 * long, top - 0.001), (half, 0.7 * long, top + 0.6 * cab)),
+            cylinder(min(half, 0.5 * long), (0, 0.55 * long, low), (0, 0.55 * long, top + 0.4 * cab)),
+        )
+        window = box((-2.0, -0.68 * long, top + 0.45 * cab), (-half + 0.01, 0.02 * long, top + 0.92 * cab))
+        front = box(
+            (-0.95 * half, -2.0, top + 0.45 * cab), (-0.23 * tracks_width, -0.75 * long + 0.01, top + 0.92 * cab)
+        )
+        w.cut("house", window, front)
+        return (vector(0.0, -0.7 * long, top + 1.9 * radius), radius)
+
+    # A bucket above the origin, open towards -y, with teeth.
+    def scoop_of(radius: float, start: float) -> Manifold:
+        size = bucket
+        half = 0.45 * bucket
+        outer = 0.42 * size
+        wall = 0.03 * size
+        centre = start + outer
+        shell = cylinder(outer, (-half, 0, centre), (half, 0, centre))
+        shell = shell - cylinder(outer - wall, (wall - half, 0, centre), (half - wall, 0, centre))
+        shell = shell.trim_by_plane((0, 1, 0), -0.3 * outer)
+        lip = centre + sqrt(outer * outer - 0.3 * outer * (0.3 * outer))
+        teeth = [
+            box((x - 0.05 * size, -0.65 * outer, lip - 1.2 * wall), (x + 0.05 * size, -0.25 * outer, lip - 0.2 * wall))
+            for x in np.linspace(-0.8, 0.8, 4) * half
+        ]
+        ear = box((-0.6 * radius, -0.6 * radius, start), (0.6 * radius, 0.6 * radius, start + 2.5 * wall))
+        return union(shell, ear, *teeth)
+
+    def along(lean: float) -> FloatArray:
+        return vector(0.0, -sin(lean), cos(lean))
+
+    # A beam between two points, `thick` at its bend and as thick as a knuckle at the other end.
+    def beam_(start: FloatArray, end: FloatArray, radius: float, thick: float, swap: bool = False) -> Manifold:
+        first, second = (thick, 0.9 * radius) if swap else (0.9 * radius, thick)
+        x = vector(1.2 * radius, 0.0, 0.0)
+        return hull(cylinder(first, start - x, start + x, segments=24), cylinder(second, end - x, end + x, segments=24))
+
+    tracks_length = length
+    tracks_width = width
+    tracks_ring = track_ring(length, width)
+    tracks_top = track_top(clearance, length, width)
+    tracked(w, clearance, "tracks", tracks_length, tracks_width, wheels)
+    turntable(w, clearance, "house", "tracks", tracks_length, tracks_width)
+    pivot, radius = house()
+    # Boom, stick and bucket, one after the other.
+    pivot_2 = pivot
+    lengths = {"boom": boom, "stick": stick}
+    parent = "house"
+    below = leans[0]
+    for name, above in (("boom", leans[1]), ("stick", leans[3]), ("bucket", leans[4])):
+        forked, tongue = bent_fork(pivot_2, (below, above), 2.6 * radius, radius, clearance)
+        w.add(parent, forked)
+        if name == "bucket":
+            scoop = scoop_of(radius, fork_room(radius, 0.15 * radius))
+            w.body(name, tongue, scoop.rotate((degrees(above), 0, 0)).translate(pivot_2))
+            end = pivot_2
+            last = above
+        else:
+            last = leans[2] if name == "boom" else above
+            bend = pivot_2 + 0.5 * lengths[name] * along(above)
+            end = bend + 0.5 * lengths[name] * along(last)
+            start = pivot_2 + 2.2 * radius * along(above)
+            stop = end - 2.3 * radius * along(last)
+            thick = 1.5 * radius if name == "boom" else radius
+            beams = (beam_(start, bend, radius, thick), beam_(bend, stop, radius, thick, swap=True))
+            w.body(name, tongue, beams)
+        w.turns(name, parent=parent, axis=(-1, 0, 0), pivot=pivot_2, limits=swings[name], rest=open)
+        parent = name
+        below = last
+        pivot_2 = end
+    w.settle()
+
+
+@kind(
+    "crane",
+    words=(
+        "tower crane, mobile crane, construction crane, hoist, toy crane, harbor crane, dock crane, truck "
+        "crane, toy tower crane, building crane"
+    ),
+    material="steel",
+    kind=choice(
+        {"tower": "", "mobile": "crawler, tracked, telescopic, telescoping"},
+        help="A tower with a trolley on its jib, or a boom on tracks.",
+    ),
+    height=length(1.5, 20.0, default=3.0, usual=(2.0, 5.0), help="Of a tower; sets the scale."),
+    jib=length(1.0, 20.0, default=2.4, usual=(1.6, 3.0), help="Its length; of a boom drawn out.", words="jib, boom"),
+    sections=whole(0, 4, default=2, usual=(0, 3), help="That a boom lengthens by.", words="section"),
+    wheels=whole(0, 4, default=0, usual=(0, 3), help="Seen on each side.", words="wheel"),
+)
+def crane(
+    w: Workshop, kind: str, height: float, jib: float, sections: int, wheels: int, open: float, clearance: float
+) -> None:
+    """Cranes: a tower with a trolley on its jib, or a house on tracks with a boom that lifts and lengthens."""
+    # lean: of a mobile crane's boom at zero, from the upright to the front [rad]
+    # rises: of the boom, positive upwards [rad]
+    lean = 0.7
+    rises = (-0.35, 0.5)
+
+    # Four posts with rungs, closed by a plate on top.
+    def mast(half: float, low: float, high: float) -> Sequence[Manifold]:
+        post = 0.22 * half
+        at = half - post
+        solids = [box((x - post, y - post, low), (x + post, y + post, high)) for x in (-at, at) for y in (-at, at)]
+        for z in np.linspace(low, high - 2.0 * post, max(3, min(16, int((high - low) / (3.0 * half))))):
+            frame = box((-half, -half, z), (half, half, z + post))
+            solids = [*solids, frame - box((post - at, post - at, -1.0), (at - post, at - post, high + 1.0))]
+        return [*solids, box((-half, -half, high - post), (half, half, high + 0.001))]
+
+    # Two stiff ropes of `length` below a point of the parent, tied at both ends, and a hook block on them.
+    def hook_of(parent: str, top: FloatArray, half: float, length: float) -> None:
+        rope = 0.12 * half
+        size = 0.9 * half
+        tight = min(clearance, 0.5 * rope)
+        x = 0.42 * size
+        end = off(top, 0, 0, -length)
+        ties = [box(off(at, -x - rope, -rope, -rope), off(at, x + rope, rope, rope)) for at in (top, end)]
+        falls = [(off(top, s * x, 0, 0), off(end, s * x, 0, 0)) for s in (-1, 1)]
+        w.add(parent, ties, [cylinder(rope, *fall) for fall in falls])
+        start = off(top, 0, 0, -0.6 * half - 2.0 * clearance)
+        block = box(off(start, -0.62 * size, -0.35 * size, -size), off(start, 0.62 * size, 0.35 * size, 0))
+        block = block - union(*[bore(rope, tight, off(low, 0, 0, -1.0), high) for high, low in falls])
+        shape = ((0.0, 0.8), (0.0, 1.4), (0.3, 1.8), (-0.1, 2.2), (-0.5, 2.0), (-0.6, 1.6))
+        points = [off(start, 0, ahead * size, -down * size) for ahead, down in shape]
+        hook = [rod(0.13 * size, one, other, segments=16) for one, other in pairwise(points)]
+        w.body("hook", block, hook, material="steel", color="yellow")
+        travel = length - 0.6 * half - 2.0 * clearance - 2.4 * size - 3.0 * rope
+        w.slides("hook", parent=parent, axis=(0, 0, -1), pivot=start, limits=(0.0, travel), rest=open)
+
+    # A square bar along z, from `deep` on hollow and open at its end if `inner` is above zero.
+    def tube_(half: float, start: float, end: float, inner: float, deep: float) -> Manifold:
+        bar = box((-half, -half, start), (half, half, end))
+        return bar - box((-inner, -inner, deep), (inner, inner, end + 1.0)) if inner else bar
+
+    if kind == "tower":
+        # Foot, mast, and a jib that turns on it with a trolley and a hook.
+        half = min(0.02 * height + 0.01 * jib, 0.05 * jib, 0.04 * height)
+        level = height - 7.0 * half
+        foot = 0.12 * height + 2.0 * half
+        w.body("tower", box((-foot, -foot, 0), (foot, foot, 0.02 * height)), mast(half, 0.01 * height, level))
+        pivot = (0.0, 0.0, level + half)
+        boss, hole, rotor = stub(pivot, (0, 0, 1), 1.5 * half, clearance, length=half)
+        w.add("tower", boss)
+        w.cut("tower", hole)
+        beam = level + 3.0 * half
+        thick = 0.7 * half
+        counter = 0.3 * jib
+        w.body(
+            "jib",
+            rotor,
+            box((-half, -half, pivot[2] + 0.9 * half), (half, half, height)),
+            box((-thick, -jib, beam), (thick, counter, beam + 2.0 * thick)),
+            box((-1.2 * half, 0.7 * counter, beam - 2.0 * half), (1.2 * half, 0.98 * counter, beam + 2.2 * thick)),
+            box((half - 0.001, -2.5 * half, beam - 1.5 * half), (2.6 * half, half, beam + half)),
+            [rod(0.12 * half, (0, 0, height), (0, y, beam + thick), segments=12) for y in (-0.7 * jib, 0.9 * counter)],
+        )
+        w.turns("jib", parent="tower", axis=(0, 0, 1), pivot=pivot)
+        # A trolley around the jib, with a rope on which a hook is lowered.
+        wall = 0.35 * half
+        long = 1.5 * half
+        y = -3.2 * half - long
+        gap = thick + clearance
+        high = beam + 2.0 * thick + clearance
+        block = box((-gap - wall, y - long, beam - clearance - wall), (gap + wall, y + long, high + wall))
+        inner = box((-gap, -2.0 * jib, beam - clearance), (gap, 1.0, high))
+        slot = box((-0.3 * half, -2.0 * jib, high - 0.001), (0.3 * half, 1.0, high + 1.0))
+        w.body("trolley", block - inner - slot)
+        travel = 0.98 * jib - 3.2 * half - 2.0 * long
+        w.slides("trolley", parent="jib", axis=(0, -1, 0), pivot=(0, y, beam), limits=(0.0, travel), rest=open)
+        top = beam - clearance - 0.5 * wall
+        hook_of("trolley", vector(0.0, y, top), half=half, length=0.75 * beam)
+    elif kind == "mobile":
+        # A house on tracks with a boom of boxes that run in each other.
+        length = min(0.35 * height, 0.4 * jib)
+        width = 0.75 * length
+        tracks_length = length
+        tracks_width = width
+        tracks_ring = track_ring(length, width)
+        tracks_top = track_top(clearance, length, width)
+        tracked(w, clearance, "tracks", tracks_length, tracks_width, wheels)
+        turntable(w, clearance, "house", "tracks", tracks_length, tracks_width)
+        half_2 = 0.46 * tracks_width
+        long_2 = 0.5 * tracks_length
+        low = tracks_top - 0.2 * tracks_ring
+        top_2 = low + 0.1 * tracks_length
+        radius = 0.14 * tracks_width
+        w.add(
+            "house",
+            box((-half_2, -0.7 * long_2, low), (half_2, long_2, top_2)),
+            box(
+                (-half_2, -0.7 * long_2, top_2 - 0.001),
+                (-0.26 * tracks_width, 0.2 * long_2, top_2 + 0.3 * tracks_length),
+            ),
+            box((-half_2, 0.6 * long_2, top_2 - 0.001), (half_2, long_2, top_2 + 0.2 * tracks_length)),
+        )
+        pivot_2 = vector(0.0, 0.1 * long_2, top_2 + 2.0 * radius)
+        forked, tongue = bent_fork(pivot_2, (0.0, lean), 2.4 * radius, radius, clearance)
+        w.add("house", forked)
+        # The boom on its tongue, its sections, and the hook at the end of the last one.
+        long_3 = 0.5 * jib
+        wall_2 = 0.12 * radius
+        gap_2 = min(clearance, 0.05 * radius)
+        start = 1.3 * radius
+        deep = 2.4 * radius
+        half_3 = 0.95 * radius
+        along = vector(0.0, -sin(lean), cos(lean))
+
+        def placed(*solids: Manifold) -> Sequence[Manifold]:
+            return [solid.rotate((degrees(lean), 0, 0)).translate(pivot_2) for solid in solids]
+
+        w.body("boom", tongue, placed(tube_(half_3, start, long_3, half_3 - wall_2 if sections else 0.0, deep)))
+        w.turns("boom", parent="house", axis=(-1, 0, 0), pivot=pivot_2, limits=rises, rest=open)
+        parent = "boom"
+        for k in range(sections):
+            half_3 = half_3 - (wall_2 + gap_2)
+            start, deep, long_3 = (deep + gap_2, deep + gap_2 + wall_2, long_3 + 1.5 * wall_2)
+            name = f"section_{k + 1}"
+            w.body(name, placed(tube_(half_3, start, long_3, half_3 - wall_2 if k + 1 < sections else 0.0, deep)))
+            w.slides(name, parent=parent, axis=along, pivot=pivot_2, limits=(0.0, 0.75 * (long_3 - start)), rest=open)
+            parent = name
+        tip = pivot_2 + (long_3 + 0.8 * half_3) * along
+        jut = off(tip, 0, -2.6 * radius, 0)
+        head = box((-0.8 * half_3, -0.8 * half_3, long_3 - 0.001), (0.8 * half_3, 0.8 * half_3, long_3 + 1.6 * half_3))
+        w.add(
+            parent,
+            placed(head),
+            rod(min(0.35 * half_3, 0.3 * radius), tip, jut, segments=16),
+            ball(min(0.6 * half_3, 0.4 * radius), jut),
+        )
+        hook_of(parent, jut, half=0.8 * radius, length=0.8 * jut[2])
+    w.settle()
+
+
+@kind(
+    "tracked tree",
+    words=(
+        "tracked robot tree, robot tree, tracked robot, tree on tracks, tree of links, linkage tree, tree "
+        "linkage, kinematic tree, tree robot, branching robot"
+    ),
+    title="tree of links on tracks",
+    material="metal",
+    branches=whole(1, 8, default=4, usual=(2, 6), help="Around the trunk.", words="branch, limb"),
+    links=whole(1, 3, default=2, help="Of a branch.", words="link, joint, joint per branch"),
+    wheels=whole(0, 4, default=0, usual=(0, 3), help="Seen on each side.", words="wheel"),
+    length=length(0.4, 3.0, default=0.8, usual=(0.6, 1.2), help="Of the tracks."),
+    width=length(0.4, 2.0, default=0.6, usual=(0.4, 0.9), help="Over the tracks."),
+    trunk=length(0.2, 2.0, default=0.5, usual=(0.3, 0.8), help="Its height."),
+    link_length=length(0.25, 1.0, default=0.3, usual=(0.25, 0.5), help="Its length."),
+    joint_radius=length(0.015, 0.04, default=0.025, usual=(0.02, 0.035), help="Of the hinges."),
+)
+def tracked_tree(
+    w: Workshop,
+    branches: int,
+    links: int,
+    wheels: int,
+    length: float,
+    width: float,
+    trunk: float,
+    link_length: float,
+    joint_radius: float,
+    clearance: float,
+) -> None:
+    """Linkages in the shape of a tree on tracks: branches of links around a trunk that turns. No such thing is sold."""
+    # start: lean of the trunk's arms from the upright [rad]
+    # leans: of the links of a branch, in turn [rad]
+    # swing: of every link, both ways [rad]
+    start = 0.6
+    leans = (1.0, 0.5)
+    swing = 0.4
+
+    def along(lean: float) -> FloatArray:
+        return vector(0.0, -sin(lean), cos(lean))
+
+    tracks_length = length
+    tracks_width = width
+    tracks_ring = track_ring(length, width)
+    tracks_top = track_top(clearance, length, width)
+    tracked(w, clearance, "tracks", tracks_length, tracks_width, wheels)
+    turntable(w, clearance, "trunk", "tracks", tracks_length, tracks_width)
+    low = tracks_top - 0.2 * tracks_ring
+    its_ring = max(2.5 * joint_radius, 2.1 * joint_radius / sin(pi / max(branches, 3)))
+    w.add("trunk", cylinder(max(1.6 * joint_radius, 0.3 * its_ring), (0, 0, low), (0, 0, low + trunk)))
+    for k in range(branches):
+        # An arm of the trunk, and links one after the other; built towards -y and then turned about the trunk.
+        angle = 360.0 * k / branches
+        first = vector(0.0, -its_ring, low + trunk + 1.2 * its_ring)
+        cosine = cos(radians(angle))
+        sine = sin(radians(angle))
+        turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+
+        def turned(*solids: Manifold, angle: float = angle) -> Sequence[Manifold]:
+            return [solid.rotate((0, 0, angle)) for solid in solids]
+
+        foot = vector(0.0, 0.0, first[2] - np.abs(first[1]) / tan(start))
+        parent = "trunk"
+        pivot = first
+        below = start
+        w.add(
+            parent, turned(cylinder(0.7 * joint_radius, foot, pivot - 1.6 * joint_radius * along(below), segments=20))
+        )
+        for link in range(links):
+            above = leans[link % 2]
+            name = f"branch_{k + 1}_{link + 1}"
+            forked, tongue = bent_fork(pivot, (below, above), 2.4 * joint_radius, joint_radius, clearance)
+            end = pivot + link_length * along(above)
+            last = link + 1 == links
+            stop = end if last else end - 1.6 * joint_radius * along(above)
+            w.add(parent, turned(forked))
+            bar = cylinder(0.7 * joint_radius, pivot + 1.6 * joint_radius * along(above), stop, segments=20)
+            w.body(name, turned(tongue, bar, *([ball(1.3 * joint_radius, end, segments=20)] if last else [])))
+            w.turns(name, parent=parent, axis=turn @ (-1.0, 0.0, 0.0), pivot=turn @ pivot, limits=(-swing, swing))
+            parent = name
+            pivot = end
+            below = above
+    w.settle()

@@ -1,0 +1,615 @@
+"""Things of a home: lamps, blinds, windows, doors."""
+
+from __future__ import annotations
+
+from math import cos, sin
+from typing import TYPE_CHECKING
+
+from kinematify.generate.library.builder import spread
+from kinematify.generate.library.kind import kind, length, whole
+from kinematify.generate.library.mechanisms import knob, legs, lever
+from kinematify.generate.library.panels import drawer, leaf
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled
+
+if TYPE_CHECKING:
+    from kinematify.generate.library.builder import ObjectBuilder
+
+
+@kind(
+    "door handle",
+    words="lever handle, door lever, door fitting, lock fitting",
+    size=length(0.9, 1.1),
+)
+def lever_handle(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part("plate", box(p(-0.022, 0, -0.12), p(0.022, 0.008, 0.12)), material="brass")
+    lever(
+        b, "lever", parent="plate", at=p(0, 0, 0.05), out=-Y, along=X, length=0.12 * size, reach=0.6, material="brass"
+    )
+    b.bore("plate", b.cylinder(0.008 * size, p(0, -0.1, -0.05), p(0, 0.1, -0.05)))
+    b.part(
+        "key",
+        b.cylinder(0.0068 * size, p(0, -0.001, -0.05), p(0, 0.007, -0.05)),
+        b.cylinder(0.003 * size, p(0, -0.02, -0.05), p(0, 0.03, -0.05)),
+        b.torus(0.012 * size, 0.003 * size, p(0, -0.033, -0.05), X),
+        box(p(-0.002, 0.018, -0.062), p(0.002, 0.03, -0.05)),
+        material="steel",
+    )
+    b.hinge("key", parent="plate", axis=-Y, pivot=p(0, 0, -0.05), upper=1.57, lower=-1.57)
+
+
+@kind(
+    "mortise lock",
+    words="rim lock, latch lock, dead lock, spring latch, night latch",
+    size=length(0.8, 1.2),
+)
+def mortise_lock(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part(
+        "case",
+        box(p(-0.04, -0.012, -0.08), p(0.04, 0.012, 0.08)),
+        box(p(0.04, -0.015, -0.1), p(0.045, 0.015, 0.1)),
+        material="steel",
+    )
+    b.cut(
+        "case",
+        box(p(-0.03, -0.0085, -0.0465), p(0.1, 0.0085, -0.0185)),
+        box(p(-0.03, -0.0065, 0.0335), p(0.1, 0.0065, 0.0565)),
+    )
+    b.part("bolt", box(p(-0.02, -0.0075, -0.0455), p(0.047, 0.0075, -0.0195)), material="brass")
+    b.slide("bolt", parent="case", axis=X, upper=0.02)
+    b.part("latch", box(p(-0.01, -0.0055, 0.0345), p(0.06, 0.0055, 0.0555)), material="brass")
+    b.cut("latch", beam(0.02 * size, 0.04 * size, p(0.045, -0.02, 0.045), p(0.08, 0.005, 0.045), Z))
+    b.slide("latch", parent="case", axis=-X, upper=0.014)
+    knob(
+        b,
+        "knob",
+        parent="case",
+        at=p(0, -0.012, 0.005),
+        radius=0.016 * size,
+        high=0.03 * size,
+        out=-Y,
+        reach=1.6,
+        material="brass",
+    )
+
+
+@kind(
+    "portcullis",
+    words="castle gate, sluice gate, flood gate",
+    width=length(1.2, 3.0),
+    height=length(1.5, 3.0),
+)
+def portcullis(b: ObjectBuilder, width: float, height: float) -> None:
+    w = width / 2
+    b.part(
+        "wall",
+        [box((s * w, -0.15, 0), (s * (w + 0.4), 0.15, 2.1 * height)) for s in (-1, 1)],
+        box((-w, -0.15, 2 * height), (w, 0.15, 2.1 * height)),
+        box((-w, 0.06, height), (w, 0.15, 1.1 * height)),
+        material="ceramic",
+        color="grey",
+    )
+    b.cut("wall", [box((s * (w - 0.001), -0.05, 0), (s * (w + 0.08), 0.05, 1.98 * height)) for s in (-1, 1)])
+    b.part(
+        "gate",
+        [box((x - 0.03, -0.03, 0), (x + 0.03, 0, height)) for x in spread(7, -w, w)],
+        [box((-w - 0.07, 0, z - 0.03), (w + 0.07, 0.03, z + 0.03)) for z in spread(5, 0.1, height)],
+        material="steel",
+        color="black",
+    )
+    b.slide("gate", parent="wall", axis=Z, upper=0.9 * height)
+
+
+@kind(
+    "sliding gate",
+    words="driveway gate, sliding driveway gate, yard sliding gate, factory gate",
+    width=length(2.0, 4.0),
+    height=length(1.0, 1.8),
+)
+def sliding_gate(b: ObjectBuilder, width: float, height: float) -> None:
+    w = width / 2
+    b.part(
+        "posts",
+        [box((x - 0.1, -0.1, 0), (x + 0.1, 0.1, height + 0.1)) for x in (-w - 0.12, w + 0.12)],
+        box((-w - 0.02, -0.16, 0), (2.9 * w, -0.11, 0.04)),
+        [box((x - 0.08, -0.155, 0), (x + 0.08, -0.1, 0.03)) for x in (-w - 0.1, w + 0.1)],
+        material="steel",
+        color="black",
+    )
+    b.part(
+        "gate",
+        box((-w - 0.1, -0.16, 0.045), (w + 0.05, -0.11, 0.15)),
+        box((-w - 0.1, -0.16, height - 0.06), (w + 0.05, -0.11, height)),
+        [box((x - 0.012, -0.15, 0.1), (x + 0.012, -0.12, height - 0.03)) for x in spread(14, -w, w)],
+        material="steel",
+        color="black",
+    )
+    b.slide("gate", parent="posts", axis=X, upper=0.85 * width)
+
+
+@kind(
+    "air conditioner",
+    words="split air conditioner, air conditioning unit",
+    width=length(0.5, 0.9),
+    number=whole(1, 4, words="louver, louvre, vane, flap"),
+)
+def air_conditioner(b: ObjectBuilder, width: float, number: int) -> None:
+    w = width / 2
+    b.part("case", box((-w, 0, 0), (w, 0.22, 0.28)), color="white")
+    b.cut(
+        "case",
+        box((-w + 0.03, -0.1, 0.02), (w - 0.03, 0.14, 0.12)),
+        box((-w + 0.01, 0.02, 0.14), (w - 0.01, 0.21, 0.27)),
+    )
+    for k, z in enumerate(spread(number, 0.02, 0.12)):
+        b.part(f"louver_{k}", box((-w + 0.032, -0.005, z - 0.002), (w - 0.032, 0.02, z + 0.002)), color="grey")
+        b.hinge(f"louver_{k}", parent="case", axis=X, pivot=(0, 0.008, z), upper=0.35, lower=-0.35)
+        if k:
+            b.follow(f"louver_{k}", leader="louver_0", multiplier=1)
+
+
+@kind(
+    "cat litter box",
+    words="litter box, litter tray, pet carrier, cat carrier",
+    width=length(0.35, 0.55),
+)
+def litter_box(b: ObjectBuilder, width: float) -> None:
+    w = width / 2
+    b.part("box", box((-w, -0.25, 0), (w, 0.25, 0.4)), color="grey")
+    b.cut("box", box((-w + 0.006, -0.244, 0.006), (w - 0.006, 0.244, 1)), box((-0.12, -1, 0.12), (0.12, 0, 0.34)))
+    b.part("lid", box((-w, -0.25, 0.401), (w, 0.25, 0.42)), box((-0.08, -0.02, 0.42), (0.08, 0.02, 0.46)), color="blue")
+    b.cut("lid", box((-0.06, -0.1, 0.42), (0.06, 0.1, 0.445)))
+    b.hinge("lid", parent="box", axis=-X, pivot=(0, 0.25, 0.401), upper=1.5)
+    b.part("flap", box((-0.118, -0.2485, 0.122), (0.118, -0.2455, 0.335)), material="glass")
+    b.hinge("flap", parent="box", axis=X, pivot=(0, -0.247, 0.335), upper=0.9, lower=-0.9)
+
+
+@kind(
+    "hamster cage",
+    words="rodent cage, hamster cage with a wheel, mouse cage",
+    width=length(0.4, 0.7),
+)
+def hamster_cage(b: ObjectBuilder, width: float) -> None:
+    w = width / 2
+    b.part(
+        "cage",
+        box((-w, -0.18, 0), (w, 0.18, 0.08)),
+        box((-w, -0.18, 0.38), (w, 0.18, 0.39)),
+        [b.cylinder(0.003, (x, y, 0.07), (x, y, 0.385)) for x in spread(9, -w, w) for y in (-0.175, 0.175)],
+        [b.cylinder(0.003, (x, y, 0.07), (x, y, 0.385)) for x in (-w + 0.005, w - 0.005) for y in (-0.1, 0, 0.1)],
+        [box((0.3 * w - 0.01, 0.075, 0.07), (0.3 * w + 0.01, 0.09, 0.22)) for k in (1,)],
+        b.cylinder(0.006, (0.3 * w, 0.08, 0.2), (0.3 * w, -0.05, 0.2)),
+        color="blue",
+    )
+    b.cut(
+        "cage",
+        box((-w + 0.006, -0.174, 0.008), (w - 0.006, 0.174, 0.079)),
+        box((-0.8 * w, -0.2, 0.09), (-0.3 * w, -0.1, 0.3)),
+    )
+    b.part(
+        "wheel",
+        b.tube(0.1, 0.092, (0.3 * w, 0.06, 0.2), (0.3 * w, -0.04, 0.2)),
+        b.cylinder(0.1, (0.3 * w, 0.066, 0.2), (0.3 * w, 0.058, 0.2)),
+        color="yellow",
+    )
+    b.cut("wheel", b.cylinder(0.0075, (0.3 * w, -1, 0.2), (0.3 * w, 1, 0.2)))
+    b.spin("wheel", parent="cage", axis=Y, pivot=(0.3 * w, 0, 0.2))
+    b.part("door", box((-0.82 * w, -0.185, 0.085), (-0.28 * w, -0.1805, 0.305)), material="metal")
+    b.hinge("door", parent="cage", axis=X, pivot=(0, -0.185, 0.085), upper=1.5)
+
+
+@kind(
+    "coat rack",
+    words="coat hook rail, hook rail, coat hooks, folding hooks, wall hooks, key rack",
+    number=whole(1, 12, default=4, usual=(3, 6), words="hook, peg"),
+)
+def coat_rack(b: ObjectBuilder, number: int) -> None:
+    w = 0.06 * number
+    b.part("board", box((-w, 0, 0), (w, 0.02, 0.12)), material="wood")
+    for k, x in enumerate(spread(number, -w, w)):
+        b.part("board", [box((x + s * 0.012, -0.02, 0.03), (x + s * 0.017, 0.005, 0.05)) for s in (-1, 1)])
+        b.part(f"hook_{k}", box((x - 0.011, -0.016, 0.032), (x + 0.011, -0.006, 0.1)), material="metal")
+        b.hinge(f"hook_{k}", parent="board", axis=X, pivot=(x, -0.011, 0.04), upper=1.2)
+
+
+@kind(
+    "shoe cabinet",
+    words="shoe rack, tilting shoe cabinet, tilt out cabinet, laundry cabinet, tilt out bin",
+    rows=whole(1, 4, words="flap, compartment"),
+    width=length(0.5, 0.9),
+    drawers=whole(0, 1, default=0, words="drawer"),
+)
+def shoe_cabinet(b: ObjectBuilder, rows: int, width: float, drawers: int) -> None:
+    w = width / 2
+    h = 0.36 * rows + 0.1
+    top = h + 0.14 * drawers
+    b.part(
+        "cabinet",
+        [box((s * w, 0, 0), (s * (w - 0.018), 0.2, top)) for s in (-1, 1)],
+        box((-w, 0.19, 0), (w, 0.2, top)),
+        box((-w, -0.02, top), (w, 0.2, top + 0.018)),
+        box((-w, 0, 0), (w, 0.2, 0.06)),
+        material="wood",
+        color="white",
+    )
+    if drawers:
+        b.part("cabinet", box((-w, 0, h - 0.009), (w, 0.2, h + 0.009)))
+        drawer(
+            b,
+            "drawer",
+            parent="cabinet",
+            lower=(-w + 0.018, -0.018, h + 0.012),
+            upper=(w - 0.018, 0.18, top - 0.003),
+            out=-Y,
+            material="wood",
+        )
+    for k, z in enumerate(spread(rows, 0.07, h - 0.01)):
+        half = (h - 0.08) / rows / 2
+        b.part(
+            f"flap_{k}",
+            box((-w, -0.018, z - half + 0.004), (w, -0.001, z + half - 0.004)),
+            box((-w + 0.022, -0.002, z - half + 0.004), (w - 0.022, 0.12, z - half + 0.014)),
+            box((-0.05, -0.035, z + half - 0.05), (0.05, -0.017, z + half - 0.04)),
+            material="wood",
+        )
+        b.hinge(f"flap_{k}", parent="cabinet", axis=X, pivot=(0, -0.018, z - half + 0.004), upper=0.7)
+
+
+@kind(
+    "picture frame",
+    words="photo frame, easel frame, table mirror, makeup mirror with a stand",
+    width=length(0.1, 0.3),
+    height=length(0.13, 0.4),
+)
+def picture_frame(b: ObjectBuilder, width: float, height: float) -> None:
+    b.part("frame", box((-width / 2, 0, 0), (width / 2, 0.012, height)), material="wood")
+    b.cut("frame", box((-0.42 * width, -1, 0.08 * height), (0.42 * width, 0.005, 0.92 * height)))
+    b.part(
+        "stand",
+        box((-0.12 * width, 0.0125, 0.05 * height), (0.12 * width, 0.016, 0.75 * height)),
+        material="cardboard",
+        color="black",
+    )
+    b.hinge("stand", parent="frame", axis=X, pivot=(0, 0.0125, 0.75 * height), upper=0.6)
+
+
+@kind(
+    "extension table",
+    words=("extending table, extendable table, dining table with extension, telescopic table, pull out table"),
+    width=length(1.0, 1.8),
+    depth=length(0.7, 1.0),
+)
+def extension_table(b: ObjectBuilder, width: float, depth: float) -> None:
+    w = width / 2
+    t = depth / 2
+    legs(b, "table", lower=(-w + 0.05, -t + 0.05, 0), upper=(w - 0.05, t - 0.05, 0.7), thick=0.07)
+    b.part(
+        "table",
+        box((-w, -t, 0.725), (w, t, 0.75)),
+        [box((-w + 0.06, s * (t - 0.06), 0.63), (w - 0.06, s * (t - 0.1), 0.7)) for s in (-1, 1)],
+        [box((-w + 0.06, s * (t - 0.06), 0.69), (-w + 0.12, s * (t - 0.1), 0.726)) for s in (-1, 1)],
+        [box((w - 0.12, s * (t - 0.06), 0.69), (w - 0.06, s * (t - 0.1), 0.726)) for s in (-1, 1)],
+        material="wood",
+    )
+    for k, s in enumerate((-1, 1)):
+        b.part(f"leaf_{k}", box((s * 0.03, -t + 0.12, 0.702), (s * (w + 0.01), t - 0.12, 0.723)), material="wood")
+        b.slide(f"leaf_{k}", parent="table", axis=s * X, upper=0.7 * w)
+
+
+@kind(
+    "coffee table with drawer",
+    words="lift top coffee table, coffee table, lift top table",
+    width=length(0.8, 1.2),
+    depth=length(0.5, 0.7),
+)
+def lift_top_table(b: ObjectBuilder, width: float, depth: float) -> None:
+    w = width / 2
+    t = depth / 2
+    b.part("body", box((-w, -t, 0.12), (w, t, 0.42)), material="wood")
+    legs(b, "body", lower=(-w, -t, 0), upper=(w, t, 0.125), thick=0.06)
+    b.cut("body", box((-w + 0.02, -t + 0.02, 0.28), (w - 0.02, t - 0.02, 1)))
+    drawer(b, "drawer", parent="body", lower=(-0.4 * width, -t, 0.14), upper=(0.4 * width, 0.6 * t, 0.25), out=-Y)
+    b.part(
+        "top",
+        box((-w, -t, 0.421), (w, t, 0.445)),
+        [box((s * 0.8 * w - 0.02, -0.05, 0.29), (s * 0.8 * w + 0.02, 0.05, 0.422)) for s in (-1, 1)],
+        material="wood",
+    )
+    b.slide("top", parent="body", axis=Z, upper=0.12)
+
+
+@kind("glider chair", words="hanging chair", size=length(0.9, 1.1))
+def glider_chair(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part(
+        "stand",
+        box(p(-0.4, -0.4, 0), p(0.4, 0.4, 0.04)),
+        [box(p(s * 0.36 - 0.02, -0.03, 0.03), p(s * 0.36 + 0.02, 0.03, 0.62)) for s in (-1, 1)],
+        material="wood",
+    )
+    b.bore("stand", b.cylinder(0.0115 * size, p(-1, 0, 0.58), p(1, 0, 0.58)))
+    b.part(
+        "seat",
+        box(p(-0.28, -0.28, 0.36), p(0.28, 0.25, 0.4)),
+        beam(0.56 * size, 0.03 * size, p(0, 0.24, 0.38), p(0, 0.36, 1), X),
+        [box(p(s * 0.3, -0.25, 0.55), p(s * 0.25, 0.25, 0.61)) for s in (-1, 1)],
+        [box(p(s * 0.28, -0.22, 0.38), p(s * 0.25, -0.17, 0.56)) for s in (-1, 1)],
+        [box(p(s * 0.28, 0.17, 0.38), p(s * 0.25, 0.22, 0.56)) for s in (-1, 1)],
+        [b.cylinder(0.01 * size, p(s * 0.29, 0, 0.58), p(s * 0.39, 0, 0.58)) for s in (-1, 1)],
+        material="wood",
+        color="brown",
+    )
+    b.hinge("seat", parent="stand", axis=X, pivot=p(0, 0, 0.58), upper=0.3, lower=-0.3)
+
+
+@kind(
+    "adjustable headrest chair",
+    words="airline seat row, train seat, bus seat, gaming seat, car seat with a headrest",
+    size=length(0.9, 1.1),
+)
+def passenger_seat(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part(
+        "seat",
+        box(p(-0.26, -0.25, 0.25), p(0.26, 0.25, 0.42)),
+        [box(p(s * 0.2 - 0.03, -0.2, 0), p(s * 0.2 + 0.03, 0.2, 0.26)) for s in (-1, 1)],
+        [box(p(s * 0.31, -0.2, 0.3), p(s * 0.27, 0.34, 0.62)) for s in (-1, 1)],
+        [box(p(s * 0.28, -0.1, 0.27), p(s * 0.25, 0.1, 0.4)) for s in (-1, 1)],
+        color="grey",
+    )
+    b.part("back", box(p(-0.26, 0.255, 0.35), p(0.26, 0.37, 1)), color="blue")
+    b.cut("back", [b.cylinder(0.009 * size, p(s * 0.08, 0.31, 0.8), p(s * 0.08, 0.31, 2)) for s in (-1, 1)])
+    b.hinge("back", parent="seat", axis=-X, pivot=p(0, 0.31, 0.36), upper=0.4, lower=0)
+    b.part(
+        "headrest",
+        box(p(-0.14, 0.26, 1.03), p(0.14, 0.36, 1.22)),
+        [b.cylinder(0.007 * size, p(s * 0.08, 0.31, 0.83), p(s * 0.08, 0.31, 1.04)) for s in (-1, 1)],
+        color="blue",
+    )
+    b.slide("headrest", parent="back", axis=Z, upper=0.1, lower=-0.02)
+
+
+@kind(
+    "parking bollard",
+    words="bollard, traffic post, folding parking post, parking lock",
+    height=length(0.5, 0.9),
+)
+def parking_bollard(b: ObjectBuilder, height: float) -> None:
+    b.part(
+        "base",
+        box((-0.2, -0.2, 0), (0.2, 0.2, 0.02)),
+        [box((s * 0.055, -0.04, 0.01), (s * 0.068, 0.04, 0.12)) for s in (-1, 1)],
+        material="steel",
+        color="black",
+    )
+    b.part(
+        "post",
+        box((-0.05, -0.04, 0.03), (0.05, 0.04, height)),
+        box((-0.0501, -0.0401, 0.7 * height), (0.0501, 0.0401, 0.8 * height)),
+        material="steel",
+        color="yellow",
+    )
+    b.hinge("post", parent="base", axis=X, pivot=(0, 0.0, 0.095), upper=0.7, lower=-0.7)
+
+
+@kind(
+    "atm",
+    words="cash machine, cash dispenser",
+    width=length(0.5, 0.8),
+)
+def atm(b: ObjectBuilder, width: float) -> None:
+    w = width / 2
+    b.part(
+        "case",
+        prism([(-0.3, 0), (0.3, 0), (0.3, 1.6), (-0.1, 1.6), (-0.15, 1), (-0.3, 0.9)], (0, 0, 0), width, "x"),
+        material="steel",
+        color="blue",
+    )
+    b.cut(
+        "case",
+        box((-w + 0.03, -0.28, 0.05), (w - 0.03, 0.28, 0.75)),
+        box((-0.35 * width, -0.4, 0.1), (0.35 * width, -0.2, 0.65)),
+        box((-0.12, -0.5, 0.78), (0.12, -0.22, 0.86)),
+    )
+    leaf(
+        b,
+        "door",
+        parent="case",
+        lower=(-0.36 * width, -0.32, 0.08),
+        upper=(0.36 * width, -0.301, 0.67),
+        hinge=X,
+        out=-Y,
+        reach=1.8,
+        material="steel",
+    )
+    b.part("flap", box((-0.118, -0.309, 0.775), (0.118, -0.301, 0.858)), color="black")
+    b.hinge("flap", parent="case", axis=-X, pivot=(0, -0.309, 0.858), upper=1.2)
+
+
+@kind(
+    "shipping container",
+    words="cargo container, container with doors, freight container, storage container, sea container",
+)
+def shipping_container(b: ObjectBuilder) -> None:
+    size = b.pick(0.1, 1)
+    p = scaled(size)
+    b.part(
+        "container",
+        box(p(-1.2, 0, 0), p(1.2, 6, 2.5)),
+        [box(p(s * 1.2, y - 0.05, 0.1), p(s * 1.23, y + 0.05, 2.4)) for s in (-1, 1) for y in spread(12, 0.2, 5.8)],
+        material="steel",
+        color="dark blue",
+    )
+    b.cut("container", box(p(-1.15, -1, 0.1), p(1.15, 5.95, 2.42)))
+    for k, s in enumerate((-1, 1)):
+        b.part(
+            f"door_{k}",
+            box(p(s * 0.01, -0.06, 0.02), p(s * 1.2, -0.005, 2.48)),
+            [box(p(s * 0.3 - 0.06, -0.13, z - 0.05), p(s * 0.3 + 0.06, -0.05, z + 0.05)) for z in (0.4, 2.1)],
+            material="steel",
+            color="dark blue",
+        )
+        b.cut(f"door_{k}", b.cylinder(0.0225 * size, p(s * 0.3, -0.1, -1), p(s * 0.3, -0.1, 3)))
+        b.hinge(f"door_{k}", parent="container", axis=s * Z, pivot=p(s * 1.2, -0.06, 0), upper=2.0)
+        b.part(
+            f"bar_{k}",
+            b.cylinder(0.02 * size, p(s * 0.3, -0.1, 0.03), p(s * 0.3, -0.1, 2.47)),
+            box(p(s * 0.3, -0.12, 1.1), p(s * 0.6, -0.09, 1.16)),
+            material="steel",
+        )
+        b.hinge(f"bar_{k}", parent=f"door_{k}", axis=-s * Z, pivot=p(s * 0.3, -0.1, 0), upper=1.2)
+
+
+@kind(
+    "butterfly valve",
+    words="throttle valve, throttle body, damper flap, air damper",
+    radius=length(0.03, 0.12),
+)
+def butterfly_valve(b: ObjectBuilder, radius: float) -> None:
+    r = radius
+    b.part(
+        "body",
+        b.tube(1.25 * r, r, (0, -0.4 * r, 0), (0, 0.4 * r, 0)),
+        [b.tube(1.5 * r, r, (0, y - 0.06 * r, 0), (0, y + 0.06 * r, 0)) for y in (-0.4 * r, 0.4 * r)],
+        b.cylinder(0.2 * r, (0, 0, 1.2 * r), (0, 0, 1.6 * r)),
+        material="steel",
+        color="blue",
+    )
+    b.bore("body", b.cylinder(0.115 * r, (0, 0, -1.15 * r), (0, 0, 3 * r)))
+    b.part(
+        "disc",
+        b.cylinder(0.96 * r, (0, -0.05 * r, 0), (0, 0.05 * r, 0)),
+        b.cylinder(0.1 * r, (0, 0, -1.1 * r), (0, 0, 1.9 * r)),
+        beam(0.2 * r, 0.12 * r, (0, 0, 1.8 * r), (1.8 * r, 0, 1.8 * r)),
+        material="steel",
+    )
+    b.hinge("disc", parent="body", axis=Z, pivot=(0, 0, 0), upper=1.5, lower=-1.5)
+
+
+@kind(
+    "fire hydrant",
+    words="hydrant, standpipe, garden hydrant",
+    size=length(0.9, 1.1),
+)
+def fire_hydrant(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part(
+        "body",
+        b.cylinder(0.14 * size, p(0, 0, 0), p(0, 0, 0.05)),
+        b.cylinder(0.1 * size, p(0, 0, 0.04), p(0, 0, 0.6)),
+        ball(0.1 * size, p(0, 0, 0.6)),
+        [b.cylinder(0.06 * size, p(s * 0.05, 0, 0.45), p(s * 0.15, 0, 0.45)) for s in (-1, 1)],
+        b.cylinder(0.025 * size, p(0, 0, 0.68), p(0, 0, 0.72)),
+        material="steel",
+        color="red",
+    )
+    b.cut("body", b.cylinder(0.085 * size, p(0, 0, 0.06), p(0, 0, 0.6)))
+    for k, s in enumerate((-1, 1)):
+        b.part(
+            f"cap_{k}",
+            b.cylinder(0.07 * size, p(s * 0.151, 0, 0.45), p(s * 0.185, 0, 0.45)),
+            box(p(s * 0.18, -0.015, 0.435), p(s * 0.215, 0.015, 0.465)),
+            material="steel",
+            color="yellow",
+        )
+        b.spin(f"cap_{k}", parent="body", axis=s * X, pivot=p(0, 0, 0.45))
+    b.part(
+        "valve",
+        b.cylinder(0.04 * size, p(0, 0, 0.721), p(0, 0, 0.75)),
+        box(p(-0.012, -0.012, 0.74), p(0.012, 0.012, 0.78)),
+        material="steel",
+        color="red",
+    )
+    b.spin("valve", parent="body", axis=Z, pivot=p(0, 0, 0))
+
+
+@kind(
+    "rotary clothesline",
+    words=(
+        "clothesline, rotary clothes line, clothes line, rotary washing line, washing line, rotary airer, "
+        "rotary dryer, hills hoist"
+    ),
+    height=length(1.5, 2.0),
+)
+def rotary_clothesline(b: ObjectBuilder, height: float) -> None:
+    b.part(
+        "post",
+        b.cylinder(0.15, (0, 0, 0), (0, 0, 0.03)),
+        b.cylinder(0.022, (0, 0, 0.02), (0, 0, height)),
+        material="steel",
+    )
+    b.part(
+        "head",
+        b.tube(0.04, 0.0245, (0, 0, height - 0.25), (0, 0, height)),
+        b.cylinder(0.04, (0, 0, height + 0.001), (0, 0, height + 0.04)),
+        b.tube(0.04, 0.0245, (0, 0, height - 0.01), (0, 0, height + 0.01)),
+        [
+            beam(0.02, 0.02, (0.03 * cos(a), 0.03 * sin(a), height - 0.1), (0.9 * cos(a), 0.9 * sin(a), height + 0.3))
+            for a in (0, 1.5708, 3.1416, 4.7124)
+        ],
+        [
+            beam(
+                0.006,
+                0.006,
+                (q * cos(a), q * sin(a), height - 0.1 + 0.46 * q),
+                (q * cos(a + 1.5708), q * sin(a + 1.5708), height - 0.1 + 0.46 * q),
+            )
+            for q in (0.4, 0.6, 0.85)
+            for a in (0, 1.5708, 3.1416, 4.7124)
+        ],
+        material="metal",
+    )
+    b.spin("head", parent="post", axis=Z, pivot=(0, 0, 0))
+
+
+@kind(
+    "birdcage",
+    words="bird cage, parrot cage, aviary, budgie cage",
+    width=length(0.3, 0.6),
+    height=length(0.45, 0.9),
+)
+def birdcage(b: ObjectBuilder, width: float, height: float) -> None:
+    """Bars on a tray under a roof, a door in front, a swing inside."""
+    w = width / 2
+    top = height
+    low = 0.25 * height
+    high = 0.6 * height
+    half = 0.3 * width
+    b.part(
+        "cage",
+        box((-w, -w, 0), (w, w, 0.03)),
+        box((-w, -w, top), (w, w, top + 0.015)),
+        [
+            b.cylinder(0.003, (x, s * (w - 0.005), 0.02), (x, s * (w - 0.005), top + 0.01))
+            for x in spread(9, -w, w)
+            for s in (-1, 1)
+            if s > 0 or abs(x) > half
+        ],
+        [
+            b.cylinder(0.003, (s * (w - 0.005), y, 0.02), (s * (w - 0.005), y, top + 0.01))
+            for y in spread(9, -w, w)
+            for s in (-1, 1)
+        ],
+        [
+            b.cylinder(0.003, (x, 0.005 - w, a), (x, 0.005 - w, b_))
+            for x in spread(9, -w, w)
+            if abs(x) <= half
+            for a, b_ in ((0.02, low), (high, top + 0.01))
+        ],
+        [box((-half - 0.01, -w, z - 0.006), (half + 0.01, 0.01 - w, z + 0.006)) for z in (low, high)],
+        [box((s * half - 0.006, -w, low), (s * half + 0.006, 0.01 - w, high)) for s in (-1, 1)],
+        [box((-w, y - 0.01, top - 0.01), (w, y + 0.01, top + 0.001)) for y in [0]],
+        material="steel",
+    )
+    leaf(b, "door", parent="cage", lower=(-half, -w - 0.008, low), upper=(half, -w, high), hinge=-X, out=-Y, reach=2.0)
+    z = top - 0.02
+    arm = 0.35 * w
+    b.part(
+        "swing",
+        [b.cylinder(0.003, (s * arm, 0, z), (s * arm, 0, 0.45 * height)) for s in (-1, 1)],
+        b.cylinder(0.006, (-1.2 * arm, 0, 0.45 * height), (1.2 * arm, 0, 0.45 * height)),
+        b.cylinder(0.004, (-arm, 0, z), (arm, 0, z)),
+        material="wood",
+    )
+    b.hinge("swing", parent="cage", axis=X, pivot=(0, 0, z), upper=0.5, lower=-0.5, ajar=False)

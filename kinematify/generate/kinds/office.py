@@ -1,0 +1,946 @@
+"""Things of an office."""
+
+from __future__ import annotations
+
+from math import cos, sin
+from typing import TYPE_CHECKING
+
+from kinematify.generate.library.builder import spread
+from kinematify.generate.library.kind import kind, length, whole
+from kinematify.generate.library.mechanisms import bail, button, case, crank, knob
+from kinematify.generate.library.panels import drawer, leaf
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, vector
+
+if TYPE_CHECKING:
+    from kinematify.generate.library.builder import ObjectBuilder
+
+
+@kind(
+    "typewriter",
+    words="mechanical typewriter",
+    number=whole(5, 9, words="key"),
+)
+def typewriter(b: ObjectBuilder, number: int) -> None:
+    width = 0.34
+    b.part(
+        "body",
+        prism([(-0.17, 0), (0.17, 0), (0.17, 0.1), (0, 0.1), (-0.17, 0.03)], (0, 0, 0), width, "x"),
+        material="metal",
+        color="dark green",
+    )
+    b.part(
+        "carriage",
+        box((-0.19, 0.06, 0.102), (0.19, 0.14, 0.112)),
+        b.cylinder(0.022, (-0.16, 0.1, 0.132), (0.16, 0.1, 0.132)),
+        [box((s * 0.17 - 0.01, 0.075, 0.11), (s * 0.17 + 0.01, 0.125, 0.15)) for s in (-1, 1)],
+        material="metal",
+        color="black",
+    )
+    b.slide("carriage", parent="body", axis=X, upper=0.1, lower=-0.1)
+    for k, x in enumerate(spread(number, -0.15, 0.15)):
+        b.part(
+            f"key_{k}",
+            b.cylinder(0.009, (x, -0.11, 0.068), (x, -0.11, 0.076)),
+            b.cylinder(0.003, (x, -0.11, 0.03), (x, -0.11, 0.07)),
+            color="black",
+        )
+        b.bore("body", b.cylinder(0.0045, (x, -0.11, 0.01), (x, -0.11, 0.2)))
+        b.slide(f"key_{k}", parent="body", axis=-Z, upper=0.006)
+
+
+@kind(
+    "cash register",
+    words="till, cash drawer",
+    width=length(0.36, 0.46),
+)
+def cash_register(b: ObjectBuilder, width: float) -> None:
+    w = width / 2
+    b.part(
+        "body",
+        box((-w, -0.2, 0), (w, 0.2, 0.12)),
+        prism([(-0.15, 0.12), (0.2, 0.12), (0.2, 0.24), (0.05, 0.24)], (0, 0, 0), 0.8 * width, "x"),
+        color="grey",
+    )
+    b.bore("body", box((-w + 0.02, -0.21, 0.02), (w - 0.02, 0.15, 0.1)))
+    b.part(
+        "drawer",
+        box((-w + 0.022, -0.19, 0.022), (w - 0.022, 0.14, 0.09)),
+        box((-w + 0.005, -0.21, 0.015), (w - 0.005, -0.201, 0.105)),
+        box((-w + 0.022, -0.202, 0.022), (w - 0.022, -0.18, 0.09)),
+        material="metal",
+        color="black",
+    )
+    b.cut(
+        "drawer",
+        [
+            box((x - w / 5 + 0.006, -0.17, 0.03), (x + w / 5 - 0.006, 0.13, 0.2))
+            for x in spread(4, -w + 0.025, w - 0.025)
+        ],
+    )
+    b.slide("drawer", parent="body", axis=-Y, upper=0.25)
+    b.part(
+        "display",
+        box((-0.09, 0.08, 0.25), (0.09, 0.1, 0.35)),
+        b.cylinder(0.008, (-0.03, 0.1, 0.253), (0.03, 0.1, 0.253)),
+        color="black",
+    )
+    b.hinge("display", parent="body", axis=X, pivot=(0, 0.1, 0.253), upper=0.3, lower=-0.3)
+
+
+@kind(
+    "rotary phone",
+    words="telephone, rotary telephone, dial telephone, landline phone, old phone",
+    size=length(0.9, 1.1),
+)
+def rotary_phone(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part(
+        "body",
+        prism(
+            [
+                (-0.1 * size, 0),
+                (0.1 * size, 0),
+                (0.08 * size, 0.09 * size),
+                (0.02 * size, 0.1 * size),
+                (-0.1 * size, 0.03 * size),
+            ],
+            (0, 0, 0),
+            0.18 * size,
+            "x",
+        ),
+        [box(p(s * 0.05 - 0.008, 0.02, 0.09), p(s * 0.05 + 0.008, 0.08, 0.115)) for s in (-1, 1)],
+        color="black",
+    )
+    b.cut("body", [b.cylinder(0.0125 * size, p(s * 0.03, 0.05, 0.115), p(s * 0.07, 0.05, 0.115)) for s in (-1, 1)])
+    b.part(
+        "handset",
+        b.cylinder(0.0115 * size, p(-0.13, 0.05, 0.117), p(0.13, 0.05, 0.117)),
+        [b.cone(0.026 * size, 0.018 * size, p(s * 0.125, 0.05, 0.092), p(s * 0.125, 0.05, 0.125)) for s in (-1, 1)],
+        color="black",
+    )
+    b.slide("handset", parent="body", axis=Z, upper=0.1)
+    up = vector(0, -0.5, 0.86)
+    at = vector(0, -0.045, 0.0625) * size
+    b.part(
+        "dial",
+        b.cylinder(0.035 * size, at + 0.001 * size * up, at + 0.008 * size * up),
+        b.cylinder(0.012 * size, at + 0.007 * size * up, at + 0.012 * size * up),
+        material="metal",
+    )
+    b.hinge("dial", parent="body", axis=up, pivot=at, upper=5.0)
+
+
+@kind(
+    "radio",
+    words="transistor radio, portable radio",
+    width=length(0.18, 0.3),
+    height=length(0.12, 0.18),
+)
+def radio(b: ObjectBuilder, width: float, height: float) -> None:
+    w = width / 2
+    b.part("case", box((-w, -0.03, 0), (w, 0.03, height)), material="wood")
+    for k, x in enumerate((0.4 * w, 0.75 * w)):
+        knob(b, f"knob_{k}", parent="case", at=(x, -0.03, 0.35 * height), radius=0.016, high=0.015, out=-Y)
+    b.part(
+        "case",
+        [
+            box((-0.85 * w, -0.033, z - 0.002), (0.1 * w, -0.029, z + 0.002))
+            for z in spread(8, 0.15 * height, 0.85 * height)
+        ],
+        b.cylinder(0.005, (-0.8 * w, 0.02, height - 0.01), (-0.8 * w, 0.02, height + 0.06)),
+    )
+    b.bore("case", b.cylinder(0.0037, (-0.8 * w, 0.02, 0.02), (-0.8 * w, 0.02, height + 0.1)))
+    b.part(
+        "antenna",
+        b.cylinder(0.0025, (-0.8 * w, 0.02, 0.025), (-0.8 * w, 0.02, height + 0.07)),
+        ball(0.004, (-0.8 * w, 0.02, height + 0.072)),
+        material="chrome",
+    )
+    b.slide("antenna", parent="case", axis=Z, upper=0.1)
+    bail(
+        b,
+        "handle",
+        parent="case",
+        start=(-w, 0, height - 0.02),
+        end=(w, 0, height - 0.02),
+        high=0.05,
+        thick=0.008,
+        up=Z,
+        lower=-1.2,
+        upper=1.2,
+    )
+
+
+@kind(
+    "boombox",
+    words="cassette recorder, cassette player, tape recorder, cd player",
+    width=length(0.4, 0.6),
+)
+def boombox(b: ObjectBuilder, width: float) -> None:
+    w = width / 2
+    h = 0.22
+    b.part(
+        "case",
+        box((-w, -0.06, 0), (w, 0.06, h)),
+        [b.cylinder(0.08, (s * 0.66 * w, -0.066, 0.11), (s * 0.66 * w, -0.059, 0.11)) for s in (-1, 1)],
+        color="grey",
+    )
+    b.cut("case", box((-0.055, -0.1, 0.025), (0.055, -0.03, 0.105)))
+    b.part("door", box((-0.053, -0.066, 0.027), (0.053, -0.06, 0.103)), material="glass")
+    b.hinge("door", parent="case", axis=X, pivot=(0, -0.066, 0.027), upper=0.7)
+    for k, x in enumerate(spread(5, -0.09, 0.09)):
+        button(b, f"key_{k}", parent="case", at=(x, -0.02, h), size=(0.02, 0.03), high=0.008, out=Z)
+    for k, s in enumerate((-1, 1)):
+        knob(b, f"knob_{k}", parent="case", at=(s * 0.05, -0.06, 0.17), radius=0.016, high=0.014, out=-Y, reach=4.7)
+    bail(
+        b,
+        "handle",
+        parent="case",
+        start=(-w, 0.03, h - 0.03),
+        end=(w, 0.03, h - 0.03),
+        high=0.09,
+        thick=0.016,
+        up=Z,
+        lower=-0.9,
+        upper=0.9,
+    )
+
+
+@kind("dvd player", words="blu ray player, disc player", width=length(0.3, 0.43))
+def dvd_player(b: ObjectBuilder, width: float) -> None:
+    w = width / 2
+    b.part(
+        "case",
+        box((-w, -0.14, 0.006), (w, 0.14, 0.055)),
+        [b.cylinder(0.012, (x, y, 0), (x, y, 0.007)) for x in (-0.8 * w, 0.8 * w) for y in (-0.11, 0.11)],
+        material="metal",
+        color="black",
+    )
+    b.cut("case", box((-0.072, -0.2, 0.022), (0.072, 0.06, 0.042)), box((0.1, -0.13, 0.012), (w - 0.01, 0.13, 0.05)))
+    b.part(
+        "tray",
+        box((-0.07, -0.143, 0.024), (0.07, 0.05, 0.034)),
+        box((-0.071, -0.146, 0.023), (0.071, -0.141, 0.041)),
+        color="black",
+    )
+    b.cut("tray", b.cylinder(0.061, (0, -0.065, 0.028), (0, -0.065, 0.1)))
+    b.slide("tray", parent="case", axis=-Y, upper=0.13)
+    button(b, "power", parent="case", at=(-0.85 * w, -0.14, 0.03), size=(0.016, 0.01), high=0.004, out=-Y)
+
+
+@kind(
+    "game controller",
+    words="gamepad, game pad, controller",
+    size=length(0.9, 1.1),
+)
+def game_controller(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part(
+        "body",
+        box(p(-0.05, -0.03, 0), p(0.05, 0.03, 0.03)),
+        [b.rod(0.022 * size, p(s * 0.055, 0.02, 0.003), p(s * 0.065, -0.06, -0.005)) for s in (-1, 1)],
+        color="black",
+    )
+    for k, x in enumerate((-0.025, 0.025)):
+        b.bore("body", b.cone(0.008 * size, 0.013 * size, p(x, -0.012, 0.018), p(x, -0.012, 0.0301)))
+        b.part(
+            f"stick_{k}",
+            b.cylinder(0.004 * size, p(x, -0.012, 0.019), p(x, -0.012, 0.036)),
+            b.cylinder(0.009 * size, p(x, -0.012, 0.035), p(x, -0.012, 0.041)),
+            material="rubber",
+            color="grey",
+        )
+        b.hinge(f"stick_{k}", parent="body", axis=X, pivot=p(x, -0.012, 0.021), upper=0.3, lower=-0.3)
+    for k, (x, y) in enumerate(((0.03, 0.012), (0.042, 0.02), (0.03, 0.026), (0.018, 0.018))):
+        button(
+            b,
+            f"button_{k}",
+            parent="body",
+            at=p(x, y, 0.03),
+            size=(0.008 * size, 0.008 * size),
+            high=0.004 * size,
+            out=Z,
+            is_round=True,
+        )
+
+
+@kind(
+    "joystick",
+    words="flight stick, control stick",
+    height=length(0.14, 0.22),
+)
+def joystick(b: ObjectBuilder, height: float) -> None:
+    b.part("base", box((-0.08, -0.08, 0), (0.08, 0.08, 0.045)), color="black")
+    b.cut("base", box((-0.05, -0.05, 0.01), (0.05, 0.05, 1)))
+    b.bore("base", b.cylinder(0.0062, (-0.07, 0, 0.03), (0.07, 0, 0.03)))
+    b.part(
+        "frame",
+        [box((-0.03, s * 0.03, 0.022), (0.03, s * 0.036, 0.038)) for s in (-1, 1)],
+        [box((s * 0.03, -0.036, 0.022), (s * 0.036, 0.036, 0.038)) for s in (-1, 1)],
+        [b.cylinder(0.005, (s * 0.034, 0, 0.03), (s * 0.068, 0, 0.03)) for s in (-1, 1)],
+        material="metal",
+    )
+    b.bore("frame", b.cylinder(0.0062, (0, -0.05, 0.03), (0, 0.05, 0.03)))
+    b.hinge("frame", parent="base", axis=X, pivot=(0, 0, 0.03), upper=0.3, lower=-0.3)
+    b.part(
+        "stick",
+        b.cylinder(0.005, (0, -0.04, 0.03), (0, 0.04, 0.03)),
+        b.cylinder(0.008, (0, 0, 0.028), (0, 0, 0.1)),
+        b.rod(0.018, (0, 0, 0.1), (0, 0, height)),
+        color="grey",
+    )
+    b.hinge("stick", parent="frame", axis=Y, pivot=(0, 0, 0.03), upper=0.3, lower=-0.3)
+
+
+@kind(
+    "computer mouse",
+    words="mouse, gaming mouse",
+    size=length(0.9, 1.1),
+)
+def computer_mouse(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part(
+        "body",
+        box(p(-0.03, -0.015, 0), p(0.03, 0.06, 0.03)),
+        box(p(-0.03, -0.06, 0), p(0.03, -0.01, 0.02)),
+        b.cylinder(0.03 * size, p(0, 0.055, 0), p(0, 0.055, 0.03)),
+        color="black",
+    )
+    b.bore("body", box(p(-0.006, -0.052, 0.004), p(0.006, -0.024, 0.1)))
+    for k, (a, b_) in enumerate(((-0.029, -0.0065), (0.0065, 0.029))):
+        b.part(f"button_{k}", box(p(a, -0.06, 0.023), p(b_, -0.017, 0.028)), color="grey")
+        b.hinge(f"button_{k}", parent="body", axis=X, pivot=p(0, -0.017, 0.028), upper=0.05)
+    b.part("wheel", b.cylinder(0.012 * size, p(-0.0035, -0.038, 0.019), p(0.0035, -0.038, 0.019)), material="rubber")
+    b.spin("wheel", parent="body", axis=X, pivot=p(0, -0.038, 0.019))
+
+
+@kind(
+    "computer keyboard",
+    words="pc keyboard, keyboard",
+    columns=whole(6, 10),
+    rows=whole(2, 4),
+)
+def computer_keyboard(b: ObjectBuilder, columns: int, rows: int) -> None:
+    width = 0.019 * columns + 0.02
+    depth = 0.019 * rows + 0.02
+    b.part("board", box((-width / 2, -depth / 2, 0), (width / 2, depth / 2, 0.012)), color="black")
+    for i in range(rows):
+        for k in range(columns):
+            x = -width / 2 + 0.0195 + 0.019 * k
+            y = -depth / 2 + 0.0195 + 0.019 * i
+            b.bore("board", box((x - 0.004, y - 0.004, 0.003), (x + 0.004, y + 0.004, 1)))
+            b.part(
+                f"key_{i}_{k}",
+                box((x - 0.0085, y - 0.0085, 0.0155), (x + 0.0085, y + 0.0085, 0.021)),
+                box((x - 0.003, y - 0.003, 0.008), (x + 0.003, y + 0.003, 0.016)),
+                color="grey",
+            )
+            b.slide(f"key_{i}_{k}", parent="board", axis=-Z, upper=0.003)
+
+
+@kind(
+    "server rack",
+    words="rack cabinet, network cabinet, server cabinet",
+    number=whole(3, 6, words="server, drawer, unit"),
+    height=length(1.2, 2.0),
+)
+def server_rack(b: ObjectBuilder, number: int, height: float) -> None:
+    b.part(
+        "rack",
+        [box((x - 0.02, y - 0.02, 0), (x + 0.02, y + 0.02, height)) for x in (-0.28, 0.28) for y in (-0.38, 0.38)],
+        box((-0.3, -0.4, 0), (0.3, 0.4, 0.05)),
+        box((-0.3, -0.4, height - 0.03), (0.3, 0.4, height)),
+        [box((s * 0.3, -0.36, 0.05), (s * 0.295, 0.36, height)) for s in (-1, 1)],
+        material="steel",
+        color="black",
+    )
+    for k, z in enumerate(spread(number, 0.1, height - 0.1)):
+        b.part("rack", [box((s * 0.24, -0.39, z - 0.06), (s * 0.27, 0.39, z - 0.052)) for s in (-1, 1)])
+        b.part(
+            f"server_{k}",
+            box((-0.23, -0.36, z - 0.05), (0.23, 0.33, z + 0.05)),
+            [box((s * 0.2 - 0.005, -0.38, z - 0.03), (s * 0.2 + 0.005, -0.359, z + 0.03)) for s in (-1, 1)],
+            material="metal",
+            color="grey",
+        )
+        b.cut(f"server_{k}", box((-0.225, -0.35, z - 0.045), (0.225, 0.32, z + 0.045)))
+        b.slide(f"server_{k}", parent="rack", axis=-Y, upper=0.02)
+    leaf(
+        b,
+        "door",
+        parent="rack",
+        lower=(-0.3, -0.425, 0.02),
+        upper=(0.3, -0.405, height),
+        hinge=X,
+        out=-Y,
+        reach=2.0,
+        material="glass",
+    )
+
+
+@kind(
+    "projector screen",
+    words="projection screen, roll up screen",
+    width=length(1.2, 2.2),
+)
+def projector_screen(b: ObjectBuilder, width: float) -> None:
+    b.part("case", box((-width / 2, -0.05, 0), (width / 2, 0.05, 0.1)), material="metal", color="white")
+    b.cut("case", box((-width / 2 + 0.03, -0.03, -0.1), (width / 2 - 0.03, 0.03, 0.09)))
+    b.part(
+        "screen",
+        box((-width / 2 + 0.035, -0.004, -0.02), (width / 2 - 0.035, 0.004, 0.08)),
+        box((-width / 2 + 0.02, -0.012, -0.045), (width / 2 - 0.02, 0.012, -0.015)),
+        color="white",
+    )
+    b.slide("screen", parent="case", axis=-Z, upper=0.06)
+
+
+@kind(
+    "microphone stand",
+    words="mic stand, boom stand, microphone",
+    height=length(0.9, 1.2),
+)
+def microphone_stand(b: ObjectBuilder, height: float) -> None:
+    b.part(
+        "base",
+        [beam(0.02, 0.015, (0, 0, 0.12), (0.32 * cos(a), 0.32 * sin(a), 0.008)) for a in (0.3, 2.4, 4.5)],
+        b.tube(0.014, 0.01, (0, 0, 0.08), (0, 0, 0.75 * height)),
+        material="steel",
+        color="black",
+    )
+    b.cut("base", b.cylinder(0.01, (0, 0, 0.085), (0, 0, 2)))
+    b.part(
+        "post",
+        b.cylinder(0.0085, (0, 0, 0.3 * height), (0, 0, height)),
+        [box((-0.012, s * 0.012, height - 0.01), (0.012, s * 0.018, height + 0.03)) for s in (-1, 1)],
+        box((-0.012, -0.018, height - 0.012), (0.012, 0.018, height - 0.004)),
+        material="steel",
+        color="black",
+    )
+    b.slide("post", parent="base", axis=Z, upper=0.35 * height)
+    b.part(
+        "boom",
+        b.cylinder(0.008, (-0.2, 0, height + 0.018), (0.45, 0, height + 0.018)),
+        b.cylinder(0.018, (-0.3, 0, height + 0.018), (-0.2, 0, height + 0.018)),
+        b.rod(0.02, (0.47, 0, height + 0.018), (0.56, 0, height + 0.018)),
+        material="steel",
+        color="black",
+    )
+    b.hinge("boom", parent="post", axis=Y, pivot=(0, 0, height + 0.018), upper=0.7, lower=-0.5)
+
+
+@kind(
+    "flip chart",
+    words="flipchart",
+    width=length(0.6, 0.75),
+    height=length(1.6, 1.9),
+)
+def flip_chart(b: ObjectBuilder, width: float, height: float) -> None:
+    number = 1
+    b.part(
+        "stand",
+        [beam(0.03, 0.02, (s * 0.3 * width, 0.03, height - 0.1), (s * 0.55 * width, 0.03, 0), Y) for s in (-1, 1)],
+        beam(0.03, 0.02, (0, 0.06, height - 0.1), (0, 0.5, 0), Y),
+        box((-width / 2, 0, 0.45 * height), (width / 2, 0.015, height)),
+        box((-0.02, 0.01, height - 0.15), (0.02, 0.07, height - 0.05)),
+        material="metal",
+        color="white",
+    )
+    for k in range(number):
+        b.part(
+            f"sheet_{k}",
+            box((-0.46 * width, -0.003 - 0.004 * k, 0.5 * height), (0.46 * width, -0.001 - 0.004 * k, height)),
+            material="cardboard",
+            color="white",
+        )
+        b.hinge(f"sheet_{k}", parent="stand", axis=-X, pivot=(0, -0.003 - 0.004 * k, height), upper=2.2)
+
+
+@kind(
+    "desk calendar",
+    words="date block, perpetual calendar",
+    size=length(0.9, 1.2),
+)
+def desk_calendar(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part(
+        "frame",
+        box(p(-0.1, -0.05, 0), p(0.1, 0.05, 0.015)),
+        [box(p(x - 0.004, -0.04, 0.01), p(x + 0.004, 0.04, 0.1)) for x in (-0.09, 0.09)],
+        material="wood",
+    )
+    b.bore("frame", b.cylinder(0.006 * size, p(-0.12, 0, 0.06), p(0.12, 0, 0.06)))
+    for k, (a, b_) in enumerate(((-0.083, -0.032), (-0.028, 0.028), (0.032, 0.083))):
+        b.part(f"drum_{k}", b.cylinder(0.035 * size, p(a, 0, 0.06), p(b_, 0, 0.06)), color="white")
+        b.cut(f"drum_{k}", b.cylinder(0.006 * size, p(-0.12, 0, 0.06), p(0.12, 0, 0.06)))
+        b.spin(f"drum_{k}", parent="frame", axis=X, pivot=p(0, 0, 0.06))
+    b.part(
+        "frame",
+        b.cylinder(0.0045 * size, p(-0.094, 0, 0.06), p(0.094, 0, 0.06)),
+        [box(p(s * 0.094, -0.012, 0.048), p(s * 0.098, 0.012, 0.072)) for s in (-1, 1)],
+    )
+
+
+@kind(
+    "rubber stamp",
+    words="self inking stamp, stamp, date stamp",
+    width=length(0.04, 0.07),
+)
+def rubber_stamp(b: ObjectBuilder, width: float) -> None:
+    b.part("base", box((-width / 2, -0.02, 0), (width / 2, 0.02, 0.05)), color="black")
+    b.cut(
+        "base",
+        box((-width / 2 + 0.004, -0.016, -1), (width / 2 - 0.004, 0.016, 0.04)),
+        box((-width / 2 + 0.008, -0.012, 0), (width / 2 - 0.008, 0.012, 1)),
+    )
+    b.part(
+        "handle",
+        box((-width / 2 + 0.009, -0.011, 0.02), (width / 2 - 0.009, 0.011, 0.085)),
+        box((-width / 2, -0.02, 0.08), (width / 2, 0.02, 0.095)),
+        box((-width / 2 + 0.006, -0.014, 0.012), (width / 2 - 0.006, 0.014, 0.021)),
+        color="red",
+    )
+    b.slide("handle", parent="base", axis=-Z, upper=0.012)
+
+
+@kind(
+    "clapperboard",
+    words="film clapper, film slate, clapper board",
+    width=length(0.25, 0.35),
+)
+def film_clapper(b: ObjectBuilder, width: float) -> None:
+    b.part("board", box((0, 0, 0), (width, 0.008, 0.6 * width)), material="wood", color="black")
+    b.part(
+        "clapper", box((0, 0, 0.6 * width + 0.001), (width, 0.01, 0.6 * width + 0.03)), material="wood", color="white"
+    )
+    b.hinge("clapper", parent="board", axis=-Y, pivot=(0, 0, 0.6 * width + 0.001), upper=0.8)
+
+
+@kind(
+    "movie camera",
+    words="cine camera, super 8 camera",
+    size=length(0.9, 1.2),
+)
+def movie_camera(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part(
+        "body",
+        box(p(-0.05, -0.1, 0), p(0.05, 0.1, 0.16)),
+        box(p(-0.02, -0.02, -0.1), p(0.02, 0.03, 0.01)),
+        material="metal",
+        color="black",
+    )
+    b.cut("body", box(p(0, -0.08, 0.02), p(0.1, 0.08, 0.14)))
+    b.part(
+        "lens",
+        b.cylinder(0.03 * size, p(0, -0.101, 0.11), p(0, -0.16, 0.11)),
+        b.cylinder(0.034 * size, p(0, -0.13, 0.11), p(0, -0.15, 0.11)),
+        material="metal",
+        color="grey",
+    )
+    b.spin("lens", parent="body", axis=-Y, pivot=p(0, -0.1, 0.11))
+    leaf(
+        b,
+        "door",
+        parent="body",
+        lower=p(0.051, -0.09, 0.01),
+        upper=p(0.057, 0.09, 0.15),
+        hinge=Y,
+        out=X,
+        reach=1.8,
+        handle=False,
+        material="metal",
+    )
+    crank(b, "crank", parent="body", at=p(-0.05, 0.03, 0.08), out=-X, length=0.05 * size)
+
+
+@kind(
+    "flashlight",
+    words="torch, pocket torch, pocket lamp, penlight",
+    length=length(0.12, 0.22),
+)
+def flashlight(b: ObjectBuilder, length: float) -> None:
+    b.part(
+        "body",
+        b.cylinder(0.015, (0, 0, 0), (0, length, 0)),
+        b.cylinder(0.012, (0, -0.012, 0), (0, 0.01, 0)),
+        material="metal",
+        color="black",
+    )
+    b.cut(
+        "body",
+        box((-0.005, 0.4 * length, 0.0115), (0.005, 0.4 * length + 0.03, 1)),
+        b.cylinder(0.0115, (0, 0.01, 0), (0, length - 0.01, 0)) if b.style.hollow else ball(0.001, (0, length / 2, 0)),
+    )
+    b.part("head", b.cone(0.018, 0.025, (0, -0.001, 0), (0, -0.05, 0)), material="metal", color="grey")
+    b.cut("head", b.cylinder(0.0135, (0, 0.1, 0), (0, -0.02, 0)), b.cylinder(0.02, (0, -0.035, 0), (0, -0.1, 0)))
+    b.spin("head", parent="body", axis=-Y, pivot=(0, 0, 0))
+    b.part("switch", box((-0.004, 0.4 * length + 0.001, 0.0123), (0.004, 0.4 * length + 0.016, 0.019)), color="red")
+    b.slide("switch", parent="body", axis=Y, upper=0.012)
+
+
+@kind(
+    "lantern",
+    words="oil lamp, kerosene lamp, storm lantern, camping lantern, hurricane lamp",
+    radius=length(0.05, 0.08),
+    height=length(0.2, 0.3),
+)
+def lantern(b: ObjectBuilder, radius: float, height: float) -> None:
+    b.part(
+        "base",
+        b.cylinder(radius, (0, 0, 0), (0, 0, 0.25 * height)),
+        [
+            b.cylinder(
+                0.004,
+                (0.85 * radius * cos(a), 0.85 * radius * sin(a), 0.2 * height),
+                (0.85 * radius * cos(a), 0.85 * radius * sin(a), 0.9 * height),
+            )
+            for a in (0.8, 2.36, 3.93, 5.5)
+        ],
+        b.cylinder(0.7 * radius, (0, 0, 0.25 * height), (0, 0, 0.88 * height)),
+        b.cylinder(radius, (0, 0, 0.88 * height), (0, 0, 0.92 * height)),
+        material="metal",
+        color="dark green",
+    )
+    b.cut("base", b.cylinder(0.66 * radius, (0, 0, 0.27 * height), (0, 0, 0.86 * height)))
+    b.part(
+        "cap",
+        b.cone(0.8 * radius, 0.3 * radius, (0, 0, 0.92 * height + 0.001), (0, 0, height + 0.03)),
+        material="metal",
+        color="dark green",
+    )
+    b.slide("cap", parent="base", axis=Z, upper=0.04)
+    knob(b, "wick_knob", parent="base", at=(radius, 0, 0.15 * height), radius=0.01, high=0.015, out=X)
+    bail(
+        b,
+        "handle",
+        parent="base",
+        start=(0, -radius, 0.9 * height),
+        end=(0, radius, 0.9 * height),
+        high=0.5 * height,
+        thick=0.006,
+        up=Z,
+        lower=-1.2,
+        upper=1.2,
+    )
+
+
+@kind(
+    "floor lamp",
+    words="standard lamp, standing lamp, reading floor lamp",
+    height=length(1.3, 1.7),
+)
+def floor_lamp(b: ObjectBuilder, height: float) -> None:
+    b.part(
+        "base",
+        b.cylinder(0.14, (0, 0, 0), (0, 0, 0.025)),
+        b.cylinder(0.011, (0, 0, 0.02), (0, 0, height - 0.03)),
+        [box((-0.012, s * 0.008, height - 0.03), (0.012, s * 0.013, height + 0.015)) for s in (-1, 1)],
+        box((-0.012, -0.013, height - 0.035), (0.012, 0.013, height - 0.012)),
+        material="steel",
+        color="black",
+    )
+    b.part("arm", beam(0.012, 0.012, (-0.008, 0, height), (0.4, 0, height + 0.12), Y), material="steel", color="black")
+    b.hinge("arm", parent="base", axis=-Y, pivot=(0, 0, height), upper=0.6, lower=-0.25)
+    b.part(
+        "head",
+        b.cone(0.09, 0.03, (0.4, 0, height - 0.05), (0.4, 0, height + 0.06)),
+        [box((0.39, s * 0.0085, height + 0.05), (0.41, s * 0.014, height + 0.13)) for s in (-1, 1)],
+        material="metal",
+        color="white",
+    )
+    b.cut("head", b.cone(0.085, 0.026, (0.4, 0, height - 0.055), (0.4, 0, height + 0.05)))
+    b.hinge("head", parent="arm", axis=Y, pivot=(0.4, 0, height + 0.12), upper=0.5, lower=-0.5)
+
+
+@kind("clip lamp", words="clamp lamp, clip on lamp", size=length(0.9, 1.2))
+def clip_lamp(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part(
+        "body",
+        box(p(-0.015, -0.08, 0), p(0.015, 0.03, 0.012)),
+        b.cylinder(0.006 * size, p(0, 0, 0.01), p(0, 0, 0.125)),
+        [box(p(s * 0.008, -0.008, 0.12), p(s * 0.013, 0.008, 0.16)) for s in (-1, 1)],
+        box(p(-0.013, -0.008, 0.118), p(0.013, 0.008, 0.13)),
+        [box(p(s * 0.008, -0.01, -0.025), p(s * 0.014, 0.01, 0.002)) for s in (-1, 1)],
+        color="black",
+    )
+    b.part("clip", box(p(-0.007, -0.08, -0.022), p(0.007, 0.04, -0.012)), color="black")
+    b.hinge("clip", parent="body", axis=X, pivot=p(0, 0, -0.017), upper=0.25)
+    b.part(
+        "head",
+        b.cone(0.045 * size, 0.02 * size, p(0, -0.09, 0.15), p(0, -0.03, 0.15)),
+        beam(0.012 * size, 0.012 * size, p(0, -0.035, 0.15), p(0, 0.004, 0.15)),
+        material="metal",
+        color="black",
+    )
+    b.cut("head", b.cone(0.042 * size, 0.017 * size, p(0, -0.095, 0.15), p(0, -0.04, 0.15)))
+    b.hinge("head", parent="body", axis=X, pivot=p(0, 0, 0.15), upper=0.6, lower=-0.6)
+
+
+@kind(
+    "chess clock",
+    words="game clock, chess timer",
+    width=length(0.16, 0.22),
+)
+def chess_clock(b: ObjectBuilder, width: float) -> None:
+    w = width / 2
+    b.part(
+        "case",
+        box((-w, -0.025, 0), (w, 0.025, 0.1)),
+        [b.cylinder(0.036, (s * w / 2, -0.029, 0.052), (s * w / 2, -0.024, 0.052)) for s in (-1, 1)],
+        [box((-0.012, s * 0.015, 0.098), (0.012, s * 0.02, 0.122)) for s in (-1, 1)],
+        material="wood",
+    )
+    b.part(
+        "rocker",
+        box((-0.8 * w, -0.012, 0.113), (0.8 * w, 0.012, 0.119)),
+        [box((s * 0.8 * w - 0.012, -0.012, 0.118), (s * 0.8 * w + 0.012, 0.012, 0.124)) for s in (-1, 1)],
+        material="metal",
+    )
+    b.hinge("rocker", parent="case", axis=Y, pivot=(0, 0, 0.116), upper=0.12, lower=-0.12)
+    for k, s in enumerate((-1, 1)):
+        b.part(
+            f"hand_{k}",
+            b.cylinder(0.003, (s * w / 2, -0.03, 0.052), (s * w / 2, -0.034, 0.052)),
+            beam(0.003, 0.002, (s * w / 2, -0.032, 0.052), (s * w / 2, -0.032, 0.08)),
+            material="steel",
+            color="black",
+        )
+        b.spin(f"hand_{k}", parent="case", axis=-Y, pivot=(s * w / 2, 0, 0.052))
+
+
+@kind(
+    "drafting table",
+    words="drawing table, drawing board, art table, architect table",
+    width=length(0.8, 1.3),
+    depth=length(0.55, 0.8),
+)
+def drafting_table(b: ObjectBuilder, width: float, depth: float) -> None:
+    b.part(
+        "frame",
+        [box((s * 0.4 * width - 0.02, -0.3, 0), (s * 0.4 * width + 0.02, 0.3, 0.05)) for s in (-1, 1)],
+        [box((s * 0.4 * width - 0.02, -0.03, 0.04), (s * 0.4 * width + 0.02, 0.03, 0.72)) for s in (-1, 1)],
+        box((-0.4 * width, -0.02, 0.2), (0.4 * width, 0.02, 0.26)),
+        material="steel",
+        color="black",
+    )
+    b.part(
+        "board",
+        box((-width / 2, -depth / 2, 0.75), (width / 2, depth / 2, 0.775)),
+        box((-width / 2, -depth / 2 - 0.012, 0.75), (width / 2, -depth / 2 + 0.001, 0.79)),
+        [box((s * 0.4 * width - 0.05, -0.03, 0.72), (s * 0.4 * width - 0.025, 0.03, 0.751)) for s in (-1, 1)],
+        material="wood",
+        color="white",
+    )
+    b.hinge("board", parent="frame", axis=X, pivot=(0, 0, 0.715), upper=1.0, lower=0)
+
+
+@kind(
+    "lectern",
+    words="pulpit, speaker desk, music stand, note stand, podium, book stand",
+    height=length(0.95, 1.2),
+)
+def lectern(b: ObjectBuilder, height: float) -> None:
+    b.part(
+        "base",
+        b.cylinder(0.22, (0, 0, 0), (0, 0, 0.03)),
+        b.tube(0.035, 0.028, (0, 0, 0.02), (0, 0, 0.75 * height)),
+        material="steel",
+        color="black",
+    )
+    b.part(
+        "post",
+        b.cylinder(0.026, (0, 0, 0.25 * height), (0, 0, height)),
+        [box((s * 0.03, -0.03, height - 0.01), (s * 0.038, 0.03, height + 0.05)) for s in (-1, 1)],
+        box((-0.038, -0.03, height - 0.012), (0.038, 0.03, height)),
+        material="steel",
+    )
+    b.slide("post", parent="base", axis=Z, upper=0.3 * height)
+    b.part(
+        "desk",
+        box((-0.25, -0.18, height + 0.085), (0.25, 0.18, height + 0.1)),
+        box((-0.25, -0.2, height + 0.085), (0.25, -0.179, height + 0.13)),
+        box((-0.028, -0.02, height + 0.02), (0.028, 0.02, height + 0.086)),
+        material="wood",
+    )
+    b.hinge("desk", parent="post", axis=X, pivot=(0, 0, height + 0.035), upper=0.5, lower=0)
+
+
+@kind(
+    "binding machine",
+    words="comb binder",
+    width=length(0.32, 0.42),
+)
+def binding_machine(b: ObjectBuilder, width: float) -> None:
+    b.part(
+        "body",
+        box((-width / 2, -0.1, 0), (width / 2, 0.1, 0.1)),
+        [box((s * width / 2, -0.05, 0.08), (s * (width / 2 - 0.012), 0.05, 0.16)) for s in (-1, 1)],
+        color="grey",
+    )
+    b.bore("body", box((-0.42 * width, -0.2, 0.015), (0.42 * width, 0.05, 0.045)))
+    b.part("drawer", box((-0.415 * width, -0.11, 0.017), (0.415 * width, 0.04, 0.042)), color="black")
+    b.cut("drawer", box((-0.4 * width, -0.09, 0.022), (0.4 * width, 0.035, 0.1)))
+    b.slide("drawer", parent="body", axis=-Y, upper=0.1)
+    b.part(
+        "lever",
+        box((-width / 2 + 0.014, 0.015, 0.13), (width / 2 - 0.014, 0.04, 0.15)),
+        [beam(0.02, 0.012, (s * 0.42 * width, 0.028, 0.14), (s * 0.42 * width, -0.05, 0.3), X) for s in (-1, 1)],
+        b.cylinder(0.012, (-0.43 * width, -0.05, 0.3), (0.43 * width, -0.05, 0.3)),
+        material="steel",
+    )
+    b.hinge("lever", parent="body", axis=X, pivot=(0, 0.028, 0.14), upper=0.9, lower=0)
+
+
+@kind(
+    "visor helmet",
+    words="welding helmet, motorcycle helmet, helmet with visor, knight helmet, face shield",
+    size=length(0.9, 1.1),
+)
+def visor_helmet(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part("shell", ball(0.13 * size, p(0, 0, 0.13)), color="black")
+    b.cut(
+        "shell",
+        ball(0.118 * size, p(0, 0, 0.13)),
+        box(p(-0.2, -0.2, -0.1), p(0.2, 0.2, 0.06)),
+        box(p(-0.09, -0.2, 0.06), p(0.09, -0.04, 0.15)),
+    )
+    b.part("visor", ball(0.139 * size, p(0, 0, 0.13)), material="glass")
+    b.cut(
+        "visor",
+        ball(0.132 * size, p(0, 0, 0.13)),
+        box(p(-0.2, -0.2, -0.1), p(0.2, 0.2, 0.07)),
+        box(p(-0.2, -0.2, 0.155), p(0.2, 0.2, 0.4)),
+        box(p(-0.2, 0.012, -0.1), p(0.2, 0.2, 0.4)),
+    )
+    b.hinge("visor", parent="shell", axis=-X, pivot=p(0, 0, 0.13), upper=1.0)
+
+
+@kind(
+    "tablet stand",
+    words="phone stand, phone holder, book holder, cookbook stand",
+    size=length(0.9, 1.3),
+)
+def tablet_stand(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part(
+        "base",
+        box(p(-0.06, -0.06, 0), p(0.06, 0.06, 0.01)),
+        [box(p(s * 0.018, 0.02, 0.008), p(s * 0.025, 0.05, 0.05)) for s in (-1, 1)],
+        material="metal",
+    )
+    b.part("arm", beam(0.03 * size, 0.01 * size, p(0, 0.035, 0.035), p(0, 0, 0.14)), material="metal")
+    b.hinge("arm", parent="base", axis=X, pivot=p(0, 0.035, 0.035), upper=0.5, lower=-0.4)
+    b.part(
+        "back",
+        box(p(-0.07, -0.015, 0.1), p(0.07, -0.009, 0.22)),
+        box(p(-0.07, -0.035, 0.1), p(0.07, -0.009, 0.106)),
+        [box(p(s * 0.017, -0.01, 0.125), p(s * 0.022, 0.008, 0.15)) for s in (-1, 1)],
+        material="metal",
+    )
+    b.hinge("back", parent="arm", axis=X, pivot=p(0, 0, 0.14), upper=0.25, lower=-0.4)
+
+
+@kind(
+    "drawer box",
+    words="desk organizer, desk tidy, parts cabinet, small parts organizer, craft organizer",
+    rows=whole(2, 4),
+    columns=whole(1, 3),
+)
+def desk_organizer(b: ObjectBuilder, rows: int, columns: int) -> None:
+    width = 0.1 * columns + 0.02
+    height = 0.06 * rows + 0.01
+    case(b, "body", lower=(-width / 2, 0, 0), upper=(width / 2, 0.16, height), material="plastic")
+    for i, z in enumerate(spread(rows, 0.005, height - 0.005)):
+        for k, x in enumerate(spread(columns, -width / 2 + 0.01, width / 2 - 0.01)):
+            drawer(
+                b,
+                f"drawer_{i}_{k}",
+                parent="body",
+                lower=(x - 0.044, 0, z - 0.023),
+                upper=(x + 0.044, 0.14, z + 0.023),
+                out=-Y,
+                material="plastic",
+            )
+
+
+@kind(
+    "intercom",
+    words="door phone, doorbell, door bell button, entry phone",
+    number=whole(1, 5, words="button"),
+)
+def intercom(b: ObjectBuilder, number: int) -> None:
+    height = 0.12 + 0.03 * number
+    b.part(
+        "panel",
+        box((-0.05, 0, 0), (0.05, 0.02, height)),
+        [
+            b.cylinder(0.004, (x, -0.001, height - 0.03 - 0.01 * k), (x, 0.001, height - 0.03 - 0.01 * k))
+            for x in (-0.015, 0, 0.015)
+            for k in range(3)
+        ],
+        material="steel",
+    )
+    for k, z in enumerate(spread(number, 0.02, height - 0.07)):
+        button(
+            b,
+            f"button_{k}",
+            parent="panel",
+            at=(0, 0, z),
+            size=(0.02, 0.02),
+            high=0.005,
+            out=-Y,
+            is_round=True,
+            material="chrome",
+        )
+
+
+@kind(
+    "usb stick",
+    words="flash drive, thumb drive, memory stick",
+    size=length(0.9, 1.2),
+)
+def usb_stick(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part(
+        "stick",
+        box(p(-0.01, -0.02, 0), p(0.01, 0.025, 0.007)),
+        box(p(-0.006, -0.036, 0.001), p(0.006, -0.02, 0.006)),
+        color="black",
+    )
+    b.part(
+        "cover",
+        box(p(-0.0105, -0.038, 0.008), p(0.0105, 0.03, 0.0095)),
+        box(p(-0.0105, -0.038, -0.0025), p(0.0105, 0.03, -0.001)),
+        box(p(-0.0105, -0.0395, -0.0025), p(0.0105, -0.038, 0.0095)),
+        material="steel",
+    )
+    b.spin("cover", parent="stick", axis=Z, pivot=p(0, 0.018, 0))
+
+
+@kind(
+    "work light",
+    words="flood lamp on a tripod, stage lamp stand",
+    height=length(1.2, 2.0),
+)
+def work_light(b: ObjectBuilder, height: float) -> None:
+    b.part(
+        "stand",
+        [beam(0.025, 0.025, (0, 0, 0.4), (0.4 * cos(a), 0.4 * sin(a), 0.012)) for a in (0.5, 2.6, 4.7)],
+        b.cylinder(0.016, (0, 0, 0.3), (0, 0, height)),
+        box((-0.17, -0.012, height - 0.01), (0.17, 0.012, height + 0.015)),
+        [box((s * 0.17, -0.012, height - 0.01), (s * 0.162, 0.012, height + 0.13)) for s in (-1, 1)],
+        material="steel",
+        color="yellow",
+    )
+    b.part(
+        "head",
+        box((-0.15, -0.05, height + 0.03), (0.15, 0.03, height + 0.2)),
+        [b.cylinder(0.006, (s * 0.149, 0, height + 0.11), (s * 0.16, 0, height + 0.11)) for s in (-1, 1)],
+        material="metal",
+        color="black",
+    )
+    b.cut("head", box((-0.14, -0.1, height + 0.04), (0.14, -0.03, height + 0.19)))
+    b.hinge("head", parent="stand", axis=X, pivot=(0, 0, height + 0.11), upper=0.5, lower=-0.9)

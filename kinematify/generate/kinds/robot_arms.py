@@ -1,0 +1,270 @@
+"""Robot arms, gantries, grippers and hands, carved."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.generate.kinds.limbs import finger_palm, fingered, jaw_rail, jaws
+from kinematify.generate.library.kind import choice, kind, length, whole
+from kinematify.generate.procedural.pieces.bearing_pieces import at, fork, fork_room, stub
+from kinematify.generate.procedural.solids import box, cylinder, hull, off, union, vector
+
+if TYPE_CHECKING:
+    from kinematify.generate.procedural.workshop import Workshop
+
+
+@kind(
+    "robot arm",
+    words=(
+        "arm, manipulator, robotic arm, serial arm, articulated arm, industrial robot, axis robot, cobot, "
+        "collaborative robot, welding robot, painting robot, robot manipulator, assembly robot"
+    ),
+    material="metal",
+    joints=whole(
+        1,
+        12,
+        default=6,
+        usual=(3, 7),
+        help="Joints in series.",
+        words="joint, dof, axis, degree of freedom, degrees of freedom",
+    ),
+    length=length(0.2, 3.0, default=0.9, usual=(0.5, 1.5), help="Sum of the links.", words="reach"),
+    gripper=choice(
+        {"none": "", "jaws": "gripper, parallel gripper, jaw gripper", "fingers": "finger gripper, fingered gripper"},
+        help="What is on its flange.",
+        drawn=False,
+    ),
+    fingers=whole(
+        2, 6, default=3, usual=None, help="Of a gripper with fingers; two are jaws.", words="finger", drawn=False
+    ),
+    radius=length(0.01, 0.15, default=0.04, usual=(0.03, 0.06), help="Of joints."),
+)
+def serial_arm(
+    w: Workshop, joints: int, length: float, gripper: str, fingers: int, radius: float, open: float, clearance: float
+) -> None:
+    """Robot arms: a foot and any number of joints that turn about the upright and across it in turn."""
+    # half: of a gripper: half the way of its jaws, length of its fingers [m]
+    # finger: of a gripper: half the way of its jaws, length of its fingers [m]
+    half = 0.06
+    finger = 0.07
+    reach = length / max(joints, 1) - 3.0 * radius
+    parent = "foot"
+    side = 1.0
+    w.body(
+        parent,
+        box((-3 * radius, -2 * radius, 0), (2 * radius, 2 * radius, 0.02)),
+        cylinder(radius, (0, 0, 0.01), (0, 0, 0.02 + 1.1 * radius)),
+    )
+    tip = vector(0.0, 0.0, 0.02 + radius)
+    for k in range(joints):
+        name = f"link_{k + 1}"
+        upright = k % 2 == 0
+        pivot = off(tip, 0, 0, radius) if upright else off(tip, 0, side * radius, 0.5 * radius)
+        axis = np.array([0.0, 0.0, 1.0] if upright else [0.0, side, 0.0])
+        boss, hole, rotor = stub(pivot, axis, radius, clearance, length=radius if upright else 2 * radius)
+        w.add(parent, boss)
+        w.cut(parent, hole)
+        tip = pivot + (radius + clearance) * axis
+        solids = [rotor]
+        if not upright:
+            solids = [*solids, cylinder(radius, tip, tip + radius * axis)]
+            side = -side
+        end = off(tip, 0, 0, max(reach, 2.5 * radius))
+        w.body(name, solids, cylinder(0.75 * radius, tip, end))
+        limits = (-2.8, 2.8) if upright else (-1.7, 1.7)
+        w.turns(name, parent=parent, axis=(0, 0, 1) if upright else (0, 1, 0), pivot=pivot, limits=limits)
+        tip = end
+        parent = name
+    w.add(parent, box(tip - 0.8 * radius, off(tip, 1.2 * radius, 0.8 * radius, 0.2 * radius)))
+    if gripper != "none":
+        is_jaws = gripper == "jaws" or fingers == 2
+        flange = at(off(tip, 0, 0, 0.2 * radius - 0.001))
+        palm = jaw_rail(half) if is_jaws else finger_palm(fingers)
+        w.add(parent, [solid.transform(flange) for solid in palm])
+        if is_jaws:
+            jaws(w, clearance, flange, parent, "finger", half, finger, open)
+        else:
+            fingered(w, clearance, flange, parent, "finger", fingers, finger, open)
+    w.settle()
+
+
+@kind(
+    "scara",
+    words="scara robot, scara arm",
+    title="SCARA robot",
+    material="metal",
+    upper_arm=length(0.15, 1.0, default=0.3, usual=(0.2, 0.4), help="First link."),
+    forearm=length(0.15, 1.0, default=0.25, usual=(0.2, 0.35), help="Second link."),
+    height=length(0.2, 1.0, default=0.35, usual=(0.25, 0.45), help="Of the column."),
+    stroke=length(0.05, 0.13, default=0.12, usual=(0.08, 0.13), help="Of the ram."),
+)
+def scara(w: Workshop, upper_arm: float, forearm: float, height: float, stroke: float, clearance: float) -> None:
+    """SCARA robots: two upright hinges, a spindle that goes up and down, and a tool that turns on it."""
+    size = 0.06
+    thick = 0.05
+    pivot = (0.0, 0.0, height)
+    boss, hole, rotor = stub(pivot, (0, 0, 1), size, clearance)
+    w.body("column", box((-0.12, -0.12, 0), (0.12, 0.12, 0.03)), cylinder(size, (0, 0, 0.02), (0, 0, height)), boss)
+    w.cut("column", hole)
+    low = height + clearance
+    elbow = (upper_arm, 0.0, low + thick)
+    boss, hole, second = stub(elbow, (0, 0, 1), size, clearance, length=thick)
+    beam = hull(*[cylinder(size, (x, 0, low), (x, 0, low + thick)) for x in (0.0, upper_arm)])
+    w.body("upper_arm", rotor, beam, boss)
+    w.cut("upper_arm", hole)
+    w.turns("upper_arm", parent="column", axis=(0, 0, 1), pivot=pivot, limits=(-2.2, 2.2))
+    start = elbow[2] + clearance
+    half = 0.016
+    x = upper_arm + forearm
+    its_room = half + clearance
+    arm = hull(*[cylinder(size, (at, 0, start), (at, 0, start + thick)) for at in (upper_arm, x)])
+    head = cylinder(0.7 * size, (x, 0, start - 0.02), (x, 0, start + thick + 0.06))
+    w.body("forearm", second, arm, head)
+    w.cut("forearm", box((x - its_room, -its_room, start - 1), (x + its_room, its_room, start + 1)))
+    w.turns("forearm", parent="upper_arm", axis=(0, 0, 1), pivot=elbow, limits=(-2.0, 2.0))
+    bottom = start - 0.06
+    top = start + thick + 0.09 + stroke
+    spindle = box((x - half, -half, bottom), (x + half, half, top))
+    cap = cylinder(0.03, (x, 0, top - 0.001), (x, 0, top + 0.01))
+    tip = (x, 0.0, bottom)
+    _unused, hole, tool = stub(tip, (0, 0, -1), 0.024, clearance)
+    collar = cylinder(0.024, (x, 0, bottom), (x, 0, bottom + 0.03))
+    w.body("spindle", spindle, cap, collar)
+    w.cut("spindle", hole)
+    w.slides("spindle", parent="forearm", axis=(0, 0, -1), pivot=tip, limits=(0.0, stroke))
+    plate = box((x - 0.03, -0.02, bottom - 0.05), (x + 0.045, 0.02, bottom - 0.022))
+    w.body("tool", union(tool, plate))
+    w.turns("tool", parent="spindle", axis=(0, 0, 1), pivot=tip, limits=(-3.1, 3.1))
+    w.settle()
+
+
+@kind(
+    "gantry",
+    words=(
+        "three axis gantry, gantry robot, cartesian robot, portal, cnc machine, milling machine, cnc router, "
+        "laser cutter, laser engraver, pick and place machine, pen plotter, gantry crane, overhead crane"
+    ),
+    title="three-axis gantry",
+    material="metal",
+    width=length(0.5, 4.0, default=0.9, usual=(0.6, 1.4), help="Between the sides."),
+    depth=length(0.4, 4.0, default=1.0, usual=(0.6, 1.5), help="Along the bed."),
+    height=length(0.4, 3.0, default=0.6, usual=(0.45, 0.9), help="Of the bridge."),
+)
+def gantry(w: Workshop, width: float, depth: float, height: float, clearance: float) -> None:
+    """Gantries: a bridge along a bed, a carriage along the bridge, a ram up and down; each on rails."""
+    # bar: Half the width of a rail [m].
+    bar = 0.02
+    tall = 0.06
+    inner = bar + clearance
+    bed = [box((-0.5 * width, -0.5 * depth, 0), (0.5 * width, 0.5 * depth, 0.05))]
+    rails = [sign * (0.5 * width - 2 * bar) for sign in (-1, 1)]
+    for x in rails:
+        bed = [*bed, box((x - bar, -0.5 * depth, 0.04), (x + bar, 0.5 * depth, 0.05 + tall))]
+        for y0, y1 in ((-0.5 * depth, -0.5 * depth + 0.02), (0.5 * depth - 0.02, 0.5 * depth)):
+            bed = [*bed, box((x - 1.5 * bar, y0, 0.04), (x + 1.5 * bar, y1, 0.07 + tall))]
+    w.body("bed", bed)
+    foot = 0.12
+    top = height
+    shoes = [
+        box((x - 2 * bar, -0.5 * foot, 0.05 + clearance), (x + 2 * bar, 0.5 * foot, 0.05 + tall + 0.04))
+        - box((x - inner, -1, 0), (x + inner, 1, 0.05 + tall + clearance))
+        for x in rails
+    ]
+    posts = [box((x - bar, -0.03, 0.05 + tall + 0.03), (x + bar, 0.03, top)) for x in rails]
+    beam = box((rails[0], -bar, top - 2 * bar), (rails[1], bar, top))
+    w.body("bridge", shoes, posts, beam)
+    travel = depth - 0.04 - foot - 0.002
+    w.slides("bridge", parent="bed", axis=(0, 1, 0), pivot=(0, 0, 0.1), limits=(-0.5 * travel, 0.5 * travel))
+    half = 0.07
+    carriage = box((-half, -0.06, top - 2 * bar - 0.03), (half, 0.06, top + 0.03))
+    carriage = carriage - box((-1, -inner, top - 2 * bar - clearance), (1, inner, top + clearance))
+    its_room = 0.015 + clearance
+    tower = box((-0.04, -0.13, top - 2 * bar - 0.03), (0.04, -0.05, top + 0.03))
+    tower = tower - box((-its_room, -0.09 - its_room, 0), (its_room, -0.09 + its_room, 2 * height))
+    w.body("carriage", union(carriage, tower))
+    reach = 0.5 * (rails[1] - rails[0]) - bar - half - 0.002
+    w.slides("carriage", parent="bridge", axis=(1, 0, 0), pivot=(0, 0, top), limits=(-reach, reach))
+    low = top - 2 * bar - 0.08
+    stroke = low - 0.12
+    ram = box((-0.015, -0.105, low), (0.015, -0.075, top + 0.08 + stroke))
+    cap = box((-0.03, -0.12, top + 0.08 + stroke - 0.001), (0.03, -0.06, top + 0.1 + stroke))
+    tool = cylinder(0.02, (0, -0.09, low - 0.03), (0, -0.09, low + 0.001))
+    w.body("ram", ram, cap, tool)
+    w.slides("ram", parent="carriage", axis=(0, 0, -1), pivot=(0, -0.09, low), limits=(0.0, stroke))
+    w.settle()
+
+
+@kind(
+    "gripper",
+    words="parallel gripper, parallel jaw gripper, claw, robot gripper, grasper",
+    material="metal",
+    fingers=whole(2, 6, default=2, usual=(2, 4), help="Two are parallel jaws.", words="finger, jaw"),
+    width=length(0.06, 0.5, default=0.12, usual=(0.08, 0.16), help="Of two jaws."),
+    finger=length(0.05, 0.3, default=0.07, usual=(0.06, 0.1), help="Its length."),
+)
+def gripper(w: Workshop, fingers: int, width: float, finger: float, open: float, clearance: float) -> None:
+    """Grippers: parallel jaws on a rail, or fingers on pins around a palm."""
+    half = 0.5 * width
+    if fingers == 2:
+        w.body("palm", jaw_rail(half))
+        jaws(w, clearance, at((0, 0, 0)), "palm", "finger", half, finger, open)
+    else:
+        w.body("palm", finger_palm(fingers))
+        fingered(w, clearance, at((0, 0, 0)), "palm", "finger", fingers, finger, open)
+    w.settle()
+
+
+@kind(
+    "hand",
+    words=(
+        "robot hand, robotic hand, dexterous hand, humanoid hand, prosthetic hand, anthropomorphic hand, hand "
+        "prosthesis, bionic hand"
+    ),
+    title="robot hand",
+    material="plastic",
+    fingers=whole(1, 8, default=4, usual=(2, 5), help="Side by side.", words="finger"),
+    joints=whole(1, 5, default=3, usual=(2, 4), help="Of every finger.", words="joint, phalanx, segment, knuckle"),
+    phalanx=length(0.02, 0.2, default=0.045, usual=(0.035, 0.06), help="First phalanx."),
+    finger_width=length(0.01, 0.06, default=0.018, usual=(0.014, 0.022), help="Width."),
+)
+def hand(
+    w: Workshop, fingers: int, joints: int, phalanx: float, finger_width: float, open: float, clearance: float
+) -> None:
+    """Robot hands: a palm with fingers of phalanges on pins, straight at zero."""
+    # shares: Length of a phalanx beside the first one.
+    shares = (1.0, 0.72, 0.62)
+    tight = min(clearance, 0.04 * finger_width)
+    radius = 0.4 * finger_width
+    pitch = 1.4 * finger_width
+    half = 0.5 * pitch * fingers
+    level = 0.09
+    w.body(
+        "palm",
+        box((-half, -radius, 0), (half, radius, level - 2 * radius)),
+        cylinder(1.5 * radius, (0, 0, -0.04), (0, 0, 0.01)),
+    )
+    for finger in range(fingers):
+        x = (finger - 0.5 * (fingers - 1)) * pitch
+        z = level
+        parent = "palm"
+        for k in range(joints):
+            name = f"finger_{finger + 1}_{k + 1}"
+            forked, tongue = [solid.translate((x, 0, z)) for solid in fork(finger_width, radius, tight, 2.2 * radius)]
+            w.add(parent, forked)
+            length = max(phalanx * shares[min(k, 2)], 6.0 * radius)
+            top = z + length - (2 * radius if k + 1 < joints else radius)
+            solids = [
+                tongue,
+                box(
+                    (x - 0.5 * finger_width, -radius, z + fork_room(radius, tight)),
+                    (x + 0.5 * finger_width, radius, top),
+                ),
+            ]
+            if k + 1 == joints:
+                solids = [*solids, cylinder(radius, (x - 0.5 * finger_width, 0, top), (x + 0.5 * finger_width, 0, top))]
+            w.body(name, solids)
+            w.turns(name, parent=parent, axis=(1, 0, 0), pivot=(x, 0, z), limits=(0.0, 1.5), rest=open)
+            parent, z = (name, z + length)
+    w.settle()

@@ -1,0 +1,376 @@
+"""Robots with legs, carved."""
+
+from __future__ import annotations
+
+from math import asin, cos, pi, sin
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.generate.kinds.limbs import leg_solids, limb_solids
+from kinematify.generate.library.kind import choice, kind, length, whole
+from kinematify.generate.procedural.pieces.bearing_pieces import at, fork, fork_room, stub
+from kinematify.generate.procedural.solids import ball, box, cylinder, hull, off, rod, vector
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+    from kinematify.generate.procedural.solids import Point
+    from kinematify.generate.procedural.workshop import Workshop
+
+
+@kind(
+    "quadruped",
+    words=(
+        "robot dog, dog robot, dog, four legged robot, quadruped robot, robot cat, robotic dog, robot horse, "
+        "mechanical dog, toy dog"
+    ),
+    title="robot on four legs",
+    material="metal",
+    joints=whole(2, 3, default=3, help="Of every leg.", words="joint, joint per leg, dof"),
+    length=length(0.25, 2.0, default=0.4, usual=(0.3, 0.7), help="Of the trunk."),
+    width=length(0.14, 1.0, default=0.18, usual=(0.16, 0.3), help="Of the trunk."),
+    thigh=length(0.15, 0.6, default=0.2, usual=(0.16, 0.28), help="Its length."),
+    shank=length(0.12, 0.6, default=0.2, usual=(0.16, 0.28), help="Its length."),
+    joint_radius=length(0.02, 0.05, default=0.03, usual=(0.024, 0.034), help="Of the stubs."),
+)
+def quadruped(
+    w: Workshop,
+    joints: int,
+    length: float,
+    width: float,
+    thigh: float,
+    shank: float,
+    joint_radius: float,
+    clearance: float,
+) -> None:
+    """Robots on four legs: a trunk and legs of two or three joints on flanged stubs."""
+
+    # How far hips roll inwards, and thighs and shanks swing, until two legs could meet [rad].
+    def swings_of() -> Point:
+        leg = thigh + shank
+        beside = 0.5 * width
+        between = length + 0.04
+        thigh_2 = asin(min(sin(0.8), between / leg))
+        return (min(0.2, beside / leg), thigh_2, asin(min(sin(1.2), between / shank)))
+
+    half = 0.5 * length
+    wide = 0.5 * width
+    lengths = (thigh, shank)
+    high = lengths[0] + lengths[1] + 0.5 * joint_radius
+    w.body(
+        "trunk",
+        box((-half, -wide, high - 1.3 * joint_radius), (half, wide, high + 1.7 * joint_radius)),
+        box((half - 0.05, -0.03, high + joint_radius), (half + 0.03, 0.03, high + 2.7 * joint_radius)),
+    )
+    for leg, side in (
+        ("front_left", (1, 1)),
+        ("front_right", (1, -1)),
+        ("rear_left", (-1, 1)),
+        ("rear_right", (-1, -1)),
+    ):
+        hip = vector(side[0] * (half + 0.02), side[1] * (wide - joint_radius), high)
+        boss, hole, links, pivots = leg_solids(clearance, hip, side, joint_radius, lengths)
+        w.add("trunk", boss)
+        w.cut("trunk", hole)
+        above = "trunk"
+        roll, its_thigh, its_shank = swings_of()
+        if joints > 2:
+            w.body(f"{leg}_hip", links["hip"])
+            w.turns(
+                f"{leg}_hip",
+                parent="trunk",
+                axis=(1, 0, 0),
+                pivot=pivots[0],
+                limits=(-roll, 0.5) if side[1] > 0 else (-0.5, roll),
+            )
+            above = f"{leg}_hip"
+        else:
+            hip_2 = pivots[0]
+            w.add(
+                "trunk",
+                links["hip"],
+                cylinder(joint_radius, off(hip_2, -joint_radius, 0, 0), off(hip_2, joint_radius, 0, 0)),
+            )
+        w.body(f"{leg}_thigh", links["thigh"])
+        w.turns(f"{leg}_thigh", parent=above, axis=(0, 1, 0), pivot=pivots[1], limits=(-its_thigh, its_thigh))
+        w.body(f"{leg}_shank", links["shank"])
+        w.turns(f"{leg}_shank", parent=f"{leg}_thigh", axis=(0, 1, 0), pivot=pivots[2], limits=(-its_shank, its_shank))
+    w.settle()
+
+
+@kind(
+    "hexapod",
+    words=(
+        "six legged robot, spider robot, robot spider, spider, hexapod robot, insect robot, robot ant, robot "
+        "insect, robotic spider, ant robot, beetle robot, toy spider"
+    ),
+    title="robot on six legs",
+    material="plastic",
+    legs=whole(4, 8, default=6, usual=(6, 8), help="Around the trunk.", words="leg"),
+    joints=whole(2, 3, default=3, help="Of every leg.", words="joint, joint per leg, dof"),
+    trunk=length(0.12, 1.0, default=0.2, usual=(0.14, 0.3), help="Its diameter."),
+    femur=length(0.1, 0.5, default=0.12, usual=(0.1, 0.18), help="Its length."),
+    tibia=length(0.12, 0.5, default=0.16, usual=(0.13, 0.22), help="Its length."),
+    joint_radius=length(0.012, 0.025, default=0.018, usual=(0.015, 0.02), help="Of the stubs."),
+)
+def hexapod(
+    w: Workshop, legs: int, joints: int, trunk: float, femur: float, tibia: float, joint_radius: float, clearance: float
+) -> None:
+    """Robots on six legs, or four to eight, that stand around a round trunk."""
+    # outwards: turns a leg that hangs down, its first joint along x, to reach out along x, that joint upright.
+    outwards = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
+    lengths = (femur, tibia)
+    high = lengths[1] - 1.5 * joint_radius - clearance
+    its_ring = max(0.5 * trunk, 3.5 * joint_radius / sin(pi / legs))
+    plate = ((0, 0, high - 1.4 * joint_radius), (0, 0, high - 0.2 * joint_radius))
+    w.body(
+        "trunk",
+        cylinder(its_ring + 0.4 * joint_radius, *plate),
+        ball(0.5 * its_ring, (0, 0, high - 0.2 * joint_radius)).trim_by_plane((0, 0, 1), high - joint_radius),
+    )
+    for k in range(legs):
+        angle = 2.0 * pi * (k + 0.5) / legs
+        cosine = cos(angle)
+        sine = sin(angle)
+        turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        place = at((its_ring * cosine, its_ring * sine, high), turn @ outwards)
+        # A coxa on an upright joint, a femur that reaches out and a tibia that reaches down.
+        leg = f"leg_{k + 1}"
+        lengths_2 = (femur, tibia)
+        boss, hole, links, pivots = leg_solids(clearance, np.zeros(3), (1, 1), joint_radius, lengths_2)
+        knee = pivots[2]
+        shank = links["shank"].translate(-knee).rotate((0, 90, 0)).translate(knee)
+        coxa, its_femur, its_tibia = [link.transform(place) for link in (links["hip"], links["thigh"], shank)]
+        upright, femur_at, tibia_at = [place @ (*pivot, 1.0) for pivot in pivots]
+        w.add("trunk", boss.transform(place))
+        w.cut("trunk", hole.transform(place))
+        above = "trunk"
+        across = -place[:, 1]
+        if joints > 2:
+            above = f"{leg}_coxa"
+            w.body(above, coxa)
+            w.turns(above, parent="trunk", axis=(0, 0, 1), pivot=upright, limits=(-0.3, 0.3))
+        else:
+            w.add(
+                "trunk",
+                coxa,
+                cylinder(joint_radius, off(upright, 0, 0, -joint_radius), off(upright, 0, 0, joint_radius)),
+            )
+        w.body(f"{leg}_femur", its_femur)
+        w.turns(f"{leg}_femur", parent=above, axis=across, pivot=femur_at, limits=(-0.3, 0.8))
+        w.body(f"{leg}_tibia", its_tibia)
+        w.turns(f"{leg}_tibia", parent=f"{leg}_femur", axis=across, pivot=tibia_at, limits=(-0.35, 0.9))
+    w.settle()
+
+
+@kind(
+    "humanoid",
+    words=(
+        "humanoid robot, android, biped, bipedal robot, person shaped robot, toy robot, robot toy, wind up "
+        "robot, robot figure, action figure, mannequin, articulated doll, robot man, toy humanoid"
+    ),
+    title="robot with arms and legs",
+    material="plastic",
+    thigh=length(0.25, 0.6, default=0.36, usual=(0.3, 0.42), help="Its length."),
+    shank=length(0.25, 0.6, default=0.36, usual=(0.3, 0.42), help="Its length."),
+    torso=length(0.3, 0.7, default=0.42, usual=(0.36, 0.5), help="Its height."),
+    shoulders=length(0.36, 0.9, default=0.5, usual=(0.44, 0.56), help="Their width."),
+    upper_arm=length(0.16, 0.45, default=0.26, usual=(0.22, 0.3), help="Its length."),
+    forearm=length(0.15, 0.4, default=0.22, usual=(0.2, 0.28), help="Its length."),
+    joint_radius=length(0.02, 0.036, default=0.028, usual=(0.022, 0.032), help="Of the stubs."),
+    feet=choice({"feet": "foot", "none": ""}, help="Feet on ankles."),
+    hands=choice(("turning", "fixed"), help="Of the palms about the forearms."),
+)
+def humanoid(
+    w: Workshop,
+    thigh: float,
+    shank: float,
+    torso: float,
+    shoulders: float,
+    upper_arm: float,
+    forearm: float,
+    joint_radius: float,
+    feet: str,
+    hands: str,
+    clearance: float,
+) -> None:
+    """Robots with legs, arms and a head. They look along x, as robots do."""
+    # the_sole: of the ankles over the floor, in joint radii
+    the_sole = 1.6
+    # Half the distance of the shoulders' pivots [m].
+    shoulder = max(0.5 * shoulders, 8.5 * joint_radius)
+
+    # How far a leg rolls inwards until it meets the other one, and outwards until it meets a hand [rad].
+    def roll() -> tuple[float, float]:
+        inwards = min(0.1, 2.2 * joint_radius / (thigh + shank))
+        room = shoulder - 7.4 * joint_radius - 2.0 * clearance
+        arm = upper_arm + forearm + 5.0 * joint_radius
+        below = arm - torso - 2.2 * joint_radius
+        return (inwards, 0.4 if below <= 0.0 else min(0.4, 0.9 * room / (below + joint_radius)))
+
+    # A block from x and z to x and z, between two y in any order.
+    def between(lower: tuple[float, float], upper: tuple[float, float], one: float, other: float) -> Manifold:
+        y0, y1 = sorted((one, other))
+        return box((lower[0], y0, lower[1]), (upper[0], y1, upper[1]))
+
+    hip = thigh + shank + (the_sole if feet == "feet" else 0.5) * joint_radius
+    wide = 1.6 * joint_radius
+    back = -2.0 * joint_radius - clearance
+    top = hip + 3.6 * joint_radius
+    w.body(
+        "pelvis",
+        box(
+            (back - 2.0 * joint_radius, -wide - joint_radius, hip - 1.2 * joint_radius),
+            (back, wide + joint_radius, top),
+        ),
+        box(
+            (back - 2.0 * joint_radius, -wide - 0.5 * joint_radius, top - 0.8 * joint_radius),
+            (2.0 * joint_radius, wide + 0.5 * joint_radius, top),
+        ),
+    )
+    for name, sy in (("left", 1), ("right", -1)):
+        # Hip, thigh and shank, and a foot.
+        lengths = (thigh, shank)
+        boss, hole, links, pivots = leg_solids(clearance, vector(back, sy * wide, hip), (1, sy), joint_radius, lengths)
+        w.add("pelvis", boss)
+        w.cut("pelvis", hole)
+        w.body(f"{name}_hip", links["hip"])
+        inwards, outwards = roll()
+        limits = (-inwards, outwards) if sy > 0 else (-outwards, inwards)
+        w.turns(f"{name}_hip", parent="pelvis", axis=(1, 0, 0), pivot=pivots[0], limits=limits)
+        w.body(f"{name}_thigh", links["thigh"])
+        w.turns(f"{name}_thigh", parent=f"{name}_hip", axis=(0, -1, 0), pivot=pivots[1], limits=(-0.6, 1.2))
+        w.body(f"{name}_shank", links["shank"])
+        w.turns(f"{name}_shank", parent=f"{name}_thigh", axis=(0, 1, 0), pivot=pivots[2], limits=(0.0, 1.8))
+        if feet == "feet":
+            # A sole beside the end of a shank, on a stub through it.
+            ankle = off(pivots[2], 0, -sy * (0.8 * joint_radius + clearance), -lengths[1])
+            small = 0.6 * joint_radius
+            pivot = off(ankle, 0, sy * small, 0)
+            boss_2, hole_2, rotor = stub(pivot, (0, sy, 0), small, clearance, length=2.0 * small)
+            w.add(f"{name}_shank", boss_2)
+            w.cut(f"{name}_shank", hole_2)
+            outer = pivot[1] + sy * (2.0 * small + clearance)
+            inner = pivot[1] + sy * (0.4 * small + clearance)
+            strut = between((-0.5 * joint_radius, 0.2 * joint_radius), (0.5 * joint_radius, ankle[2]), inner, outer)
+            sole = between(
+                (-2.2 * joint_radius, 0.0),
+                (4.2 * joint_radius, 0.4 * joint_radius),
+                ankle[1] - sy * 1.2 * joint_radius,
+                outer,
+            )
+            w.body(f"{name}_foot", rotor, strut, sole, material="rubber")
+            w.turns(f"{name}_foot", parent=f"{name}_shank", axis=(0, 1, 0), pivot=pivot, limits=(-0.5, 0.5))
+    # A torso that turns on the pelvis, its head and its arms.
+    half = shoulder
+    waist = (-joint_radius, 0.0, top)
+    x = -joint_radius
+    boss_3, hole_3, rotor_2 = stub(waist, (0, 0, 1), 1.6 * joint_radius, clearance, length=joint_radius)
+    w.add("pelvis", boss_3)
+    w.cut("pelvis", hole_3)
+    low = top + 1.5 * joint_radius
+    high = top + torso
+    side = half - 3.2 * joint_radius
+    trunk = hull(
+        box((x - 1.5 * joint_radius, -0.6 * side, low - 0.7 * joint_radius), (x + 1.5 * joint_radius, 0.6 * side, low)),
+        box((x - 2.0 * joint_radius, -side, high - 0.5 * torso), (x + 2.2 * joint_radius, side, high)),
+    )
+    w.body("torso", rotor_2, trunk)
+    w.turns("torso", parent="pelvis", axis=(0, 0, 1), pivot=waist, limits=(-1.2, 1.2))
+    pivot_2 = off((x, 0.0, high), 0, 0, joint_radius)
+    boss_4, hole_4, rotor_3 = stub(pivot_2, (0, 0, 1), joint_radius, clearance)
+    w.add("torso", boss_4)
+    w.cut("torso", hole_4)
+    centre = off(pivot_2, 0.2 * joint_radius, 0, 3.6 * joint_radius)
+    size = 2.0 * joint_radius
+    skull = hull(ball(size, centre), ball(0.7 * size, off(centre, 0.5 * size, 0, -0.6 * size)))
+    eyes = [ball(0.18 * size, off(centre, 0.95 * size, s * 0.4 * size, 0.1 * size)) for s in (-1, 1)]
+    w.body("head", rotor_3, cylinder(0.8 * joint_radius, off(pivot_2, 0, 0, 0.5 * joint_radius), centre), skull, eyes)
+    w.turns("head", parent="torso", axis=(0, 0, 1), pivot=pivot_2, limits=(-1.2, 1.2))
+    for name_2, sy_2 in (("left", 1), ("right", -1)):
+        shoulder_2 = vector(x, sy_2 * half, high - 1.4 * joint_radius)
+        w.add("torso", cylinder(joint_radius, off(shoulder_2, 0, -sy_2 * half, 0), shoulder_2))
+        # Upper arm, forearm and a hand that turns about the forearm.
+        lengths_2 = (upper_arm, forearm)
+        boss, hole, upper, lower, elbow, wrist = limb_solids(clearance, shoulder_2, sy_2, joint_radius, lengths_2)
+        w.add("torso", boss)
+        w.cut("torso", hole)
+        w.body(f"{name_2}_upper_arm", upper)
+        w.turns(f"{name_2}_upper_arm", parent="torso", axis=(0, -1, 0), pivot=shoulder_2, limits=(-0.8, 2.6))
+        w.body(f"{name_2}_forearm", lower)
+        w.turns(f"{name_2}_forearm", parent=f"{name_2}_upper_arm", axis=(0, -1, 0), pivot=elbow, limits=(0.0, 2.0))
+        small_2 = 0.6 * joint_radius
+        end = off(wrist, 0, 0, -0.6 * joint_radius)
+        palm = [off(end, 0, 0, -z * joint_radius - clearance) for z in (1.0, 2.4)]
+        hand = hull(
+            *[
+                rod(0.3 * joint_radius, off(p, -0.6 * joint_radius, 0, 0), off(p, 0.6 * joint_radius, 0, 0))
+                for p in palm
+            ]
+        )
+        thumb = rod(
+            0.25 * joint_radius,
+            off(palm[0], 0.6 * joint_radius, 0, 0),
+            off(palm[1], 1.3 * joint_radius, 0, 0.3 * joint_radius),
+        )
+        if hands == "fixed":
+            w.add(f"{name_2}_forearm", hand, thumb, cylinder(small_2, wrist, off(end, 0, 0, -joint_radius)))
+        else:
+            boss_5, hole_5, rotor_4 = stub(end, (0, 0, -1), small_2, clearance, length=1.2 * small_2)
+            w.add(f"{name_2}_forearm", boss_5)
+            w.cut(f"{name_2}_forearm", hole_5)
+            w.body(f"{name_2}_hand", rotor_4, hand, thumb)
+            w.turns(f"{name_2}_hand", parent=f"{name_2}_forearm", axis=(0, 0, 1), pivot=end, limits=(-1.4, 1.4))
+    w.settle()
+
+
+@kind(
+    "snake",
+    words=(
+        "snake robot, worm robot, chain robot, snake arm, caterpillar robot, inchworm robot, tentacle, "
+        "tentacle robot, toy snake"
+    ),
+    title="snake robot",
+    material="plastic",
+    segments=whole(2, 40, default=8, usual=(4, 10), help="In a row.", words="segment, module, link"),
+    radius=length(0.01, 0.2, default=0.03, usual=(0.02, 0.05), help="Of the body."),
+    segment=length(0.05, 1.0, default=0.15, usual=(0.12, 0.25), help="Its length."),
+)
+def snake(w: Workshop, segments: int, radius: float, segment: float, clearance: float) -> None:
+    """Snake robots: segments on hinges that turn about the upright and across it in turn."""
+    # the_size: Radius of a hinge beside that of the body.
+    the_size = 0.45
+    length = segment
+    tight = min(clearance, 0.03 * radius)
+    size = the_size * radius
+    space = fork_room(size, tight)
+    length = max(length, 8.0 * size)
+    for k in range(segments):
+        start = k * length
+        end = (k + 1) * length
+        first = k == 0
+        last = k + 1 == segments
+        name = f"segment_{k + 1}"
+        its_body = cylinder(
+            radius,
+            (start + (0.0 if first else 1.6 * space + 0.5 * radius), 0, radius),
+            (end - (0.0 if last else 1.6 * space + 0.5 * radius), 0, radius),
+        )
+        w.body(name, its_body)
+        if not first:
+            # Join segment k to segment k + 1 at x: a fork on the one, a tongue on the other.
+            upright = k % 2 == 0
+            size_2 = the_size * radius
+            forked, tongue = fork(1.6 * radius, size_2, tight, 1.8 * size_2 + 0.9 * radius)
+            lay = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+            if upright:
+                lay = np.array([[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]])
+            place = np.column_stack([lay, (start, 0.0, radius)])
+            reach = tongue.transform(place)
+            w.add(f"segment_{k}", forked.transform(place))
+            w.add(f"segment_{k + 1}", reach)
+            axis = (0, 0, 1) if upright else (0, 1, 0)
+            w.turns(f"segment_{k + 1}", parent=f"segment_{k}", axis=axis, pivot=(start, 0, radius), limits=(-0.7, 0.7))
+    w.add("segment_1", rod(0.8 * radius, (0, 0, radius), (-0.6 * radius, 0, radius)))
+    w.settle()

@@ -1,1 +1,0 @@
-"""A sentence becomes a family with parameters; what was not understood is said."""

@@ -1,0 +1,113 @@
+"""Sentences fill a request; what is not read is listed, and nothing is invented."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from kinematify.errors import InputError
+from kinematify.generate.reader import read_sentence
+
+QUARTER, EIGHTH = math.pi / 2, math.pi / 4
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Make me a cupboard, please", {"kind": "cabinet"}),
+        ("a kitchen cabinet with two doors above three drawers, 80 cm wide",
+         {"parameters": {"shelves": 0, "layout": "2*door / 3*drawer"}, "size": {"width": 0.8}}),
+        ("cupboard with a door on the left and three drawers on the right",
+         {"parameters.layout": "(door) | (3*drawer)"}),
+        ("a dresser with six drawers in two columns", {"parameters.layout": " / ".join(["(drawer | drawer)"] * 3)}),
+        ("an oak 6-drawer dresser", {"parameters.material": "oak", "parts.drawer.count": 6}),
+        ("a box, 40 x 30 x 20 cm", {"size": {"width": 0.4, "depth": 0.3, "height": 0.2}}),
+        ("a grey wardrobe 2 metres high with three mirrored doors",
+         {"size": {"height": 2.0}, "parts.door.material": "mirror"}),
+        ("a laptop opened by 90 degrees", {"parameters.open_angle": QUARTER}),
+        ("a safe with its door half open", {"parts.door.open": 0.5}),
+        ("a paper cutter with an arm that swings up by 45 degrees", {"parts.arm.range": (0.0, EIGHTH)}),
+        ("a tricycle whose handlebar turns 45 degrees to either side", {"parts.handlebar.range": (-EIGHTH, EIGHTH)}),
+        ("a pan tilt camera whose tilt goes -45 to 90 deg", {"parts.tilt.range": (-EIGHTH, QUARTER)}),
+        ("a cabinet with red doors and brass knobs",
+         {"parameters.handle_material": "brass", "parts.door.color": "red"}),
+        ("a pair of nightstands", {"copies": 2}),
+        ("a pair of scissors", {"kind": "scissors", "copies": 1}),
+        ("a dollhouse style doll's cupboard", {"kind": "cabinet"}),
+    ],
+)  # fmt: skip
+def test_a_sentence_fills_a_request(text, expected):
+    stated = read_sentence(text).request.model_dump()
+    for path, wanted in expected.items():
+        found = stated
+        for step in path.split("."):
+            found = found[step]
+        assert found == pytest.approx(wanted) if isinstance(wanted, float | tuple) else found == wanted, path
+
+
+@pytest.mark.parametrize(
+    ("text", "unread"),
+    [
+        ("a laptop with a projector", ["a projector"]),
+        ("a cabinet that sings", ["sings"]),
+        ("a filing cabinet with four drawers, the second one from the top red", ["the second one from the top red"]),
+        ("a rocking cupboard", ["rocking"]),
+        ("a modern cupboard for my grandmother", []),
+    ],
+)
+def test_words_that_are_not_read_are_listed_and_never_as_something_that_lacks(text, unread):
+    made = read_sentence(text).made()
+    assert [words.removeprefix("a ") for words in made.unread] == [words.removeprefix("a ") for words in unread]
+    assert not made.differences
+    assert made.is_complete is not bool(unread)
+
+
+def test_what_was_asked_for_and_is_otherwise_is_listed():
+    assert read_sentence("an office chair on nine castors").made().differences[0].startswith("number of casters")
+    assert read_sentence("a fridge with 3 drawers").made().differences == ("drawer: a fridge has none; it has door",)
+    assert "2 asked for" in "; ".join(read_sentence("a laptop with two screens").made().differences)
+
+
+def test_a_slip_of_the_pen_is_repaired_with_a_word():
+    assert read_sentence("a cabnet").notes == ("Read 'cabnet' as 'cabinet'.",)
+    assert read_sentence("a bycicle").notes == ("Read 'bycicle' as 'bicycle'.",)
+
+
+def test_sizes_toys_and_shares_of_parts_are_read_as_they_are_written():
+    assert read_sentence("a desk 1400x700mm").request.size["width"] == pytest.approx(1.4)
+    assert (toy := read_sentence("a dump truck toy, yellow")).request.kind == "dump_truck"
+    assert toy.unread == ("toy",)
+    assert "per door" in read_sentence("a cabinet with two doors, one knob per door").unread
+    assert read_sentence("a built-in oven").request.kind == "oven"
+    assert "88" in "; ".join(read_sentence("a piano with 88 keys").made().differences)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("", "empty"),
+        ("шкаф с двумя дверями", "not English"),
+        ("word " * 300, "300 words"),
+        ("a flying carpet", "No kind of object is called 'flying carpet'. The nearest are"),
+        ("a laptop cushion", "No kind of object is called 'laptop cushion'"),
+        ("a cabinet with -3 drawers", "negative"),
+        ("a cabinet with 10000000 doors", "less than or equal to"),
+        ("a wardrobe, 0 m high", "greater than 0"),
+        ("a four-door cabinet with three doors", "4 and 3 of 'door'"),
+        ("a cabinet 80 cm wide, 1.2 m wide", "0.8 m and 1.2 m"),
+        ("a cabinet with two doors and three doors", "2 and 3 of 'door'"),
+        ("a wardrobe without doors whose door is red", "no door"),
+    ],
+)
+def test_what_cannot_be_is_refused(text, reason):
+    with pytest.raises(InputError) as caught:
+        read_sentence(text)
+    assert reason in str(caught.value)
+
+
+def test_the_nearest_kind_is_taken_on_request_and_said():
+    made = read_sentence("a hovercraft bicycle rack, 2 m long", nearest=True).made()
+    assert made.request.instead_of == "hovercraft bicycle rack"
+    assert "built is the nearest" in made.notes[0]
+    assert made.facts["request"]["instead_of"]
