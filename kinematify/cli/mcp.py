@@ -12,6 +12,7 @@ import click
 
 from kinematify import __version__
 from kinematify.cli.options import examples
+from kinematify.errors import InputError
 from kinematify.versions import require
 
 if TYPE_CHECKING:
@@ -36,15 +37,17 @@ _INSTRUCTIONS = (
 @click.command(
     "mcp",
     short_help="The commands as tools for coding agents (Model Context Protocol).",
-    epilog=examples("kinematify mcp robots/", "claude mcp add kinematify -- kinematify mcp ."),
+    epilog=examples("kinematify mcp robots/", "kinematify mcp ."),
 )
-@click.argument("root", type=click.Path(path_type=Path, exists=True, file_okay=False), default=".")
+@click.argument("root", type=click.Path(path_type=Path), default=".")
 def command(*, root: Path) -> int:
     """Serve validate, explain, fix, infer, export and look over stdin and stdout, until the client goes away.
 
     The tools read and write below ROOT alone. Needs the extra mcp: pip install "kinematify[mcp]".
     """
     require("kinematify mcp", "mcp")
+    if not root.is_dir():
+        raise InputError(f"{root} is no folder. Give the folder whose models the tools may read and write.")
     server(root.resolve()).run("stdio")
     return 0
 
