@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import sys
 import tempfile
@@ -147,14 +148,20 @@ async def _run(*words: str, findings: bool = False) -> str:
     Raises:
         ToolError: It ends with another status than 0, or 1 where that means findings.
     """
-    import anyio
-
-    with anyio.move_on_after(_SECONDS):
-        done = await anyio.run_process([sys.executable, "-m", "kinematify", *words], check=False)
-        if done.returncode == 0 or (findings and done.returncode == 1 and done.stdout):
-            return done.stdout.decode()
-        raise _refused(done.stderr.decode(errors="replace").strip()[-2000:] or f"Ended with {done.returncode}.")
-    raise _refused(f"kinematify {words[0]} was stopped after {_SECONDS:.0f} s.")
+    command = [sys.executable, "-m", "kinematify", *words]
+    process = await asyncio.create_subprocess_exec(
+        *command, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE
+    )
+    try:
+        out, said = await asyncio.wait_for(process.communicate(), _SECONDS)
+    except TimeoutError:
+        raise _refused(f"kinematify {words[0]} was stopped after {_SECONDS:.0f} s.") from None
+    finally:
+        if process.returncode is None:
+            process.kill()
+    if process.returncode == 0 or (findings and process.returncode == 1 and out):
+        return out.decode()
+    raise _refused(said.decode(errors="replace").strip()[-2000:] or f"Ended with {process.returncode}.")
 
 
 def _refused(message: str) -> Exception:
