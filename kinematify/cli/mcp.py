@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import sys
 import tempfile
@@ -12,6 +13,7 @@ import click
 
 from kinematify import __version__
 from kinematify.cli.options import examples
+from kinematify.errors import InputError
 from kinematify.versions import require
 
 if TYPE_CHECKING:
@@ -36,15 +38,17 @@ _INSTRUCTIONS = (
 @click.command(
     "mcp",
     short_help="The commands as tools for coding agents (Model Context Protocol).",
-    epilog=examples("kinematify mcp robots/", "claude mcp add kinematify -- kinematify mcp ."),
+    epilog=examples("kinematify mcp robots/", "kinematify mcp ."),
 )
-@click.argument("root", type=click.Path(path_type=Path, exists=True, file_okay=False), default=".")
+@click.argument("root", type=click.Path(path_type=Path), default=".")
 def command(*, root: Path) -> int:
     """Serve validate, explain, fix, infer, export and look over stdin and stdout, until the client goes away.
 
     The tools read and write below ROOT alone. Needs the extra mcp: pip install "kinematify[mcp]".
     """
     require("kinematify mcp", "mcp")
+    if not root.is_dir():
+        raise InputError(f"{root} is no folder. Give the folder whose models the tools may read and write.")
     server(root.resolve()).run("stdio")
     return 0
 
@@ -144,14 +148,20 @@ async def _run(*words: str, findings: bool = False) -> str:
     Raises:
         ToolError: It ends with another status than 0, or 1 where that means findings.
     """
-    import anyio
-
-    with anyio.move_on_after(_SECONDS):
-        done = await anyio.run_process([sys.executable, "-m", "kinematify", *words], check=False)
-        if done.returncode == 0 or (findings and done.returncode == 1 and done.stdout):
-            return done.stdout.decode()
-        raise _refused(done.stderr.decode(errors="replace").strip()[-2000:] or f"Ended with {done.returncode}.")
-    raise _refused(f"kinematify {words[0]} was stopped after {_SECONDS:.0f} s.")
+    command = [sys.executable, "-m", "kinematify", *words]
+    process = await asyncio.create_subprocess_exec(
+        *command, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE
+    )
+    try:
+        out, said = await asyncio.wait_for(process.communicate(), _SECONDS)
+    except TimeoutError:
+        raise _refused(f"kinematify {words[0]} was stopped after {_SECONDS:.0f} s.") from None
+    finally:
+        if process.returncode is None:
+            process.kill()
+    if process.returncode == 0 or (findings and process.returncode == 1 and out):
+        return out.decode()
+    raise _refused(said.decode(errors="replace").strip()[-2000:] or f"Ended with {process.returncode}.")
 
 
 def _refused(message: str) -> Exception:

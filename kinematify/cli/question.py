@@ -17,7 +17,7 @@ from kinematify.errors import OutputError
     short_help="A picture of numbered pieces and a question: which of them move together.",
     epilog=examples(
         "kinematify question whole.glb -o Q",
-        "kinematify infer whole.glb --answer Q/answer.json -o out/whole",
+        "kinematify question scan.stl -o Q --up y --scale 0.001",
     ),
 )
 @click.argument("mesh", type=click.Path(path_type=Path))

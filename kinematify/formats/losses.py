@@ -131,13 +131,3 @@ def losses(content: Content, to: str) -> tuple[Loss, ...]:
     ]
     rows += [(what, count, _NONE) for what, count in sorted(others.items())]
     return tuple(Loss(what=what, count=count, became=became) for what, count, became in rows if count)
-
-
-def losses_markdown() -> str:
-    """Return the table of all formats, as docs/formats.md has it."""
-    lines = [f"| | {' | '.join(TREATMENT)} |", "|---|" + "---|" * len(TREATMENT)]
-    lines += [
-        f"| {what} | {' | '.join(own.get(what, KEPT).split(': {')[0] for own in TREATMENT.values())} |"
-        for what in (*_COUNTS, OTHERS)
-    ]
-    return "\n".join(lines)

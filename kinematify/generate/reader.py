@@ -191,8 +191,6 @@ def read_sentence(text: str, *, nearest: bool = False) -> Sentence:
     plain = re.sub(rf"\b({'|'.join(_NUMBERS)}) (?=(?:{_UNIT})\b)", lambda found: f"{_NUMBERS[found[1]]} ", plain)
     purposes = [item[0].strip() for item in _PURPOSE.finditer(plain)]
     plain = re.sub(r"^((?:an? |the )?)built in ", r"\1", plain)
-    shares = re.findall(r"\bper [a-z]+", plain)
-    plain = re.sub(r"\bper [a-z]+", " ", plain)
     purposes = [
         item for item in purposes if not (set(key_of(item)) & {*_PARTS, *_MOTIONS, *_NUMBERS} or re.search(r"\d", item))
     ]
@@ -200,7 +198,6 @@ def read_sentence(text: str, *, nearest: bool = False) -> Sentence:
         plain = plain.replace(purpose, " ")
     parser = _Parser(text=text, tokens=[_Token(str(found.lastgroup), found[0]) for found in _TOKENS.finditer(plain)])
     parser.harmless += purposes
-    parser.unread += shares
     parser.find_kind(nearest=nearest)
     parser.read()
     try:
@@ -338,7 +335,7 @@ class _Parser:
                 self.parts[lemma(head)] = {"count": count}
             else:
                 self.unread += _KINDS & set(self.said)
-        elif count > 1:
+        elif count > 1 and "grid" not in self.waiting:
             self.copies = count
         self._settle("")
         self.subject, self.fresh, self.is_before, k = "", False, False, self.stop
@@ -615,6 +612,9 @@ class _Parser:
             own.pop("count", None)
         if "count" in facts and own.get("count", facts["count"]) != facts["count"]:
             if facts.keys() & {"side", "color", "material"} or own.keys() & {"side", "color", "material"}:
+                self.unread.append(said)
+                return
+            if " per " in self.text:  # of each of what is not read
                 self.unread.append(said)
                 return
             raise InputError(f"The text says {own['count']} and {facts['count']} of {noun!r}. Say one.")

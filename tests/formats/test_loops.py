@@ -17,7 +17,7 @@ from kinematify.cli.app import cli
 from kinematify.config import load_config
 from kinematify.errors import DescriptionError, InputError
 from kinematify.formats.export_model import export
-from kinematify.formats.losses import losses_markdown
+from kinematify.formats.losses import _COUNTS, KEPT, OTHERS, TREATMENT
 from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.procedural.blueprint_file import described_blueprint
 from kinematify.generate.providers.judge_blueprint import drawn_findings
@@ -87,8 +87,10 @@ def test_a_folder_without_a_model_is_refused(tmp_path):
 
 
 def test_the_docs_have_the_table_of_the_code():
-    page = Path(__file__).parents[2] / "docs" / "formats.md"
-    assert losses_markdown() in page.read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "formats.md").read_text(encoding="utf-8")
+    assert f"| | {' | '.join(TREATMENT)} |" in page
+    for what in (*_COUNTS, OTHERS):
+        assert f"| {what} | {' | '.join(own.get(what, KEPT).split(': {')[0] for own in TREATMENT.values())} |" in page
 
 
 def test_sdf_has_a_ball_joint(toolbox, tmp_path):

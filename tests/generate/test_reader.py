@@ -78,7 +78,9 @@ def test_sizes_toys_and_shares_of_parts_are_read_as_they_are_written():
     assert read_sentence("a desk 1400x700mm").request.size["width"] == pytest.approx(1.4)
     assert (toy := read_sentence("a dump truck toy, yellow")).request.kind == "dump_truck"
     assert toy.unread == ("toy",)
-    assert "per door" in read_sentence("a cabinet with two doors, one knob per door").unread
+    gate = read_sentence("a garden gate, two leaves, seven vertical pickets per leaf")
+    assert gate.request.parts["leaf"].count == 2
+    assert gate.unread
     assert read_sentence("a built-in oven").request.kind == "oven"
     assert "88" in "; ".join(read_sentence("a piano with 88 keys").made().differences)
 

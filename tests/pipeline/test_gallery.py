@@ -63,7 +63,7 @@ def test_the_first_object_is_opened_joint_by_joint(made):
         for k in range(moving.n_frames):
             moving.seek(k)
             frames.append(np.asarray(moving.convert("RGB")).astype(float))
-    assert len(frames) == 3, "at rest, the drawer, both wheels"
+    assert len(frames) >= 3, "at rest, and after each group of joints"
     assert all(np.abs(after - before).max(axis=2).mean() > 0.5 for before, after in pairwise(frames))
 
 

@@ -107,7 +107,7 @@ def _result(report: ValidationReport, group: FindingGroup, index: dict[str, int]
 def _location(model: str, finding: Finding) -> dict[str, Any]:
     # Code scanning shows a result at a line only; what is about the whole model stands at the first.
     line = max(finding.line or 1, 1)
-    text = linecache.getline(model, line)
+    text = "" if "\0" in model else linecache.getline(model, line)
     region = {"startLine": line, "startColumn": len(text) - len(text.lstrip()) + 1}
     location: dict[str, Any] = {"physicalLocation": {"artifactLocation": {"uri": _uri(model)}, "region": region}}
     named = [("joint", finding.joint), ("link", finding.link), *(("link", name) for name in finding.pair or ())]
