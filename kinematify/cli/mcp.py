@@ -78,8 +78,7 @@ def server(root: Path) -> MCPServer:
     @served.tool()
     async def explain(check: str) -> dict[str, Any]:
         """Explain a check, such as KV301: what it verifies, why it matters, how to repair what it finds."""
-        answer: dict[str, Any] = (await _answer("explain", "--", check))["checks"][0]
-        return answer
+        return dict((await _answer("explain", "--", check))["checks"][0])
 
     @served.tool()
     async def fix(model: str, out: str, kinematics: bool = False) -> dict[str, Any]:
@@ -137,9 +136,7 @@ async def _answer(name: str, *words: str) -> dict[str, Any]:
     Raises:
         ToolError: It gave none; the message is the command's.
     """
-    text = await _run(name, "--json", "-", *words, findings=True)
-    found: dict[str, Any] = json.loads(text)
-    return found
+    return dict(json.loads(await _run(name, "--json", "-", *words, findings=True)))
 
 
 async def _run(*words: str, findings: bool = False) -> str:
