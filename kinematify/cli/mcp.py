@@ -25,7 +25,7 @@ _SECONDS = 600.0
 """A command is stopped after so long."""
 _MOST_FINDINGS = 60
 """In one answer, the most severe first: an agent repairs these and asks again."""
-_TOLD = ("check", "severity", "line", "link", "joint", "pair", "engine", "message", "remedy")
+_FIELDS = ("check", "severity", "line", "link", "joint", "pair", "engine", "message", "remedy")
 """Fields of a finding in an answer."""
 _INSTRUCTIONS = (
     "Kinematify checks and repairs robot descriptions (URDF, xacro, MJCF, SDF, USD) in simulation and finds the joints "
@@ -72,8 +72,8 @@ def server(root: Path) -> MCPServer:
         chosen = ["--checks", checks] if checks else ["--quick"] if quick else []
         report = await _answer("validate", *chosen, "--", _inside(root, model))
         found = [item for item in report["findings"] if item["suppressed"] is None and item["severity"] != "note"]
-        told = [{key: item[key] for key in _TOLD if item.get(key) is not None} for item in found[:_MOST_FINDINGS]]
-        return {"verdict": report["verdict"], "findings": told, "not_shown": len(found) - len(told)}
+        shown = [{key: item[key] for key in _FIELDS if item.get(key) is not None} for item in found[:_MOST_FINDINGS]]
+        return {"verdict": report["verdict"], "findings": shown, "not_shown": len(found) - len(shown)}
 
     @served.tool()
     async def explain(check: str) -> dict[str, Any]:

@@ -483,9 +483,10 @@ def part_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str]
     if part.motion and not (joints and all(_moves(joint, part.motion) for joint in joints)):
         kinds = listed(sorted({joint.kind.value for joint in joints})) if joints else "part of the base"
         yield f"{part.motion} was asked for, it is {kinds}"
-    if part.range and not any(_goes(joint, part.range) for joint in joints):
+    leading = [joint for joint in joints if joint.mimic is None and joint.kind is not JointType.FIXED]
+    if part.range and not (leading and all(_goes(joint, part.range) for joint in leading)):
         yield f"range {_shown(part.range, joints)} was asked for, it is {_ranges(joints)}"
-    if part.open is not None and not any(_stands(joint, part.open) for joint in joints):
+    if part.open is not None and not (leading and all(_stands(joint, part.open) for joint in leading)):
         yield f"it does not open so far; its range is {_ranges(joints)}"
 
 

@@ -189,8 +189,8 @@ def read_sentence(text: str, *, nearest: bool = False) -> Sentence:
     _refuse_unreadable(text, plain)
     plain = re.sub(r"(?<=\d),(?=\d{3}\b)", "", plain)
     plain = re.sub(rf"\b({'|'.join(_NUMBERS)}) (?=(?:{_UNIT})\b)", lambda found: f"{_NUMBERS[found[1]]} ", plain)
-    purposes = [item[0].strip() for item in _PURPOSE.finditer(plain)]
     plain = re.sub(r"^((?:an? |the )?)built in ", r"\1", plain)
+    purposes = [item[0].strip() for item in _PURPOSE.finditer(plain)]
     purposes = [
         item for item in purposes if not (set(key_of(item)) & {*_PARTS, *_MOTIONS, *_NUMBERS} or re.search(r"\d", item))
     ]

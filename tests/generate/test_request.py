@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from kinematify.cli.app import run
 from kinematify.errors import InputError
-from kinematify.generate.delivery import build_kind, closed, deliver, mirrored
+from kinematify.generate.delivery import build_kind, closed, deliver, mirrored, part_faults
 from kinematify.generate.procedural.clearance import solid_of
 from kinematify.generate.procedural.materials import COLORS
 from kinematify.generate.request import request_of, schema_of, with_settings
@@ -65,6 +66,18 @@ def test_what_the_object_cannot_do_is_a_difference_each():
     assert listed == ("camera: pan was asked for, it is revolute",), "a level axis does not pan"
     far = deliver(request_of({"kind": "laptop", "parts": {"screen": {"range": "0 to 400 deg"}}}))
     assert "screen: range 0 to 400 deg was asked for" in far.differences[0]
+
+
+def test_a_range_is_asked_of_every_part_of_that_name():
+    request = request_of(with_settings({"kind": "cabinet"}, {"doors": 2, "door.range": "0 to 90 deg"}))
+    made = deliver(request)
+    assert made.differences == ()
+    joints = made.blueprint.joints
+    shorter = [replace(joint, upper=0.5) if joint.child == "door_2" else joint for joint in joints]
+    blueprint = replace(made.blueprint, joints=tuple(shorter))
+    names = ["door_1", "door_2"]
+    (fault,) = part_faults(request.family, blueprint, "door", names, request.parts["door"])
+    assert fault.startswith("range 0 to 90 deg was asked for")
 
 
 def test_one_joint_does_not_serve_two_requests():
