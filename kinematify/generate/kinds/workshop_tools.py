@@ -12,6 +12,8 @@ from kinematify.generate.library.panels import leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled
 
 if TYPE_CHECKING:
+    from manifold3d import Manifold
+
     from kinematify.generate.library.builder import ObjectBuilder
 
 
@@ -423,47 +425,25 @@ def air_compressor(b: ObjectBuilder, length: float) -> None:
 @kind("bellows", words="fireplace bellows, hand bellows", size=length(0.8, 1.2))
 def bellows(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
+
+    def board(end: float, height: float) -> Manifold:
+        half = [
+            (0.1 * size, end * size),
+            (0.09 * size, 0.3 * size),
+            (0.02 * size, 0.36 * size),
+            (0.02 * size, 0.46 * size),
+        ]
+        outline = [(-0.1 * size, end * size), *half, *((-x, y) for x, y in reversed(half[1:]))]
+        return prism(outline, p(0, 0, height), 0.014 * size, "z")
+
     b.part(
         "lower_board",
-        prism(
-            [
-                (-0.1 * size, 0.12 * size),
-                (0.1 * size, 0.12 * size),
-                (0.09 * size, 0.3 * size),
-                (0.02 * size, 0.36 * size),
-                (0.02 * size, 0.46 * size),
-                (-0.02 * size, 0.46 * size),
-                (-0.02 * size, 0.36 * size),
-                (-0.09 * size, 0.3 * size),
-                (-0.1 * size, 0.12 * size),
-            ][:-1],
-            p(0, 0, 0.008),
-            0.014 * size,
-            "z",
-        ),
+        board(0.12, 0.008),
         b.cylinder(0.012 * size, p(0, 0.06, 0.012), p(0, 0.13, 0.012)),
         b.cone(0.006 * size, 0.012 * size, p(0, -0.02, 0.012), p(0, 0.07, 0.012)),
         material="wood",
     )
-    b.part(
-        "board",
-        prism(
-            [
-                (-0.1 * size, 0.13 * size),
-                (0.1 * size, 0.13 * size),
-                (0.09 * size, 0.3 * size),
-                (0.02 * size, 0.36 * size),
-                (0.02 * size, 0.46 * size),
-                (-0.02 * size, 0.46 * size),
-                (-0.02 * size, 0.36 * size),
-                (-0.09 * size, 0.3 * size),
-            ],
-            p(0, 0, 0.035),
-            0.014 * size,
-            "z",
-        ),
-        material="wood",
-    )
+    b.part("board", board(0.13, 0.035), material="wood")
     b.hinge("board", parent="lower_board", axis=X, pivot=p(0, 0.13, 0.03), upper=0.45)
 
 
