@@ -459,11 +459,10 @@ def part_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str]
     """
     parameter = _count_parameter(family, noun)
     there = len(names)
-    if parameter is not None and (not names or (part.count and there > part.count and there % part.count == 0)):
+    if parameter and (not names or (part.count and there > part.count and there % part.count == 0)):
         there = int(made.parameters[parameter.name])  # slots are no parts, and a leg may be two
-    exact = parameter is not None or any(_joined(stem_of(name)) == _joined(noun) for name in names)
-    known = part.count is not None and (names or parameter is not None or part.count == 0)
-    if known and there != part.count and (exact or there < (part.count or 1)):
+    exact = parameter or any(_joined(stem_of(name)) == _joined(noun) for name in names)
+    if part.count not in (None, there) and (exact or (names and there < (part.count or 1))):
         yield f"{part.count} asked for, there {'is' if there == 1 else 'are'} {there}"
     if part.at_least and names and there < part.at_least:
         yield f"several asked for, there is {there}"
@@ -481,7 +480,7 @@ def part_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str]
         yield f"not hinged on the {part.hinge}"
     joints = [made.joint_above[name] for name in names if name in made.joint_above]
     if part.motion and not (joints and all(_moves(joint, part.motion) for joint in joints)):
-        kinds = listed(sorted({joint.kind.value for joint in joints})) if joints else "part of the base"
+        kinds = listed(sorted({joint.kind.value for joint in joints} or {"part of the base"}))
         yield f"{part.motion} was asked for, it is {kinds}"
     leading = [joint for joint in joints if joint.mimic is None and joint.kind is not JointType.FIXED]
     if part.range and not (leading and all(_goes(joint, part.range) for joint in leading)):
@@ -494,7 +493,7 @@ def _size_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str
     shut = closed(made)
     boxes = [item for item in shut.parts if item.name in names]
     for size, wanted in part.size.items():
-        own = [float(made.parameters[name]) for name in _length_names(family, noun, size)]
+        own = [made.parameters[name] for name in _length_names(family, noun, size)]
         sizes = [*own, *(_extent(np.ptp(box.bounds, axis=0), size) for box in boxes)]
         if not any(_same(wanted, value) for value in sizes):
             yield f"{size}: {wanted:.3g} m was asked for, it is {sizes[0]:.3g} m"
@@ -510,14 +509,14 @@ def _is_at(made: Blueprint, names: Sequence[str], side: str) -> bool:
     axis, sign = _SIDES[side]
     shut = closed(made)
     whole = shut.assembly.bounds[:, axis]
-    places = [float(item.bounds.mean(axis=0)[axis] - whole.mean()) for item in shut.parts if item.name in names]
-    return all(sign * place > _ASIDE * float(np.ptp(whole)) for place in places)
+    places = [item.bounds.mean(axis=0)[axis] - whole.mean() for item in shut.parts if item.name in names]
+    return all(sign * place > _ASIDE * np.ptp(whole) for place in places)
 
 
 def _is_hinged(made: Blueprint, names: Sequence[str], side: str) -> bool:
     shut = closed(made)
     joints = [shut.joint_above[name] for name in names if name in shut.joint_above]
-    middle = {part.name: float(part.bounds.mean(axis=0)[0]) for part in shut.parts}
+    middle = {part.name: part.bounds.mean(axis=0)[0] for part in shut.parts}
     return bool(joints) and all(
         (joint.pivot[0] < middle[joint.child]) == (side == "left") and abs(joint.axis[2]) > _UPRIGHT for joint in joints
     )
@@ -550,7 +549,7 @@ def _stands(joint: BlueprintJoint, much: float | tuple[float, str]) -> bool:
 
 
 def _ranges(joints: Sequence[BlueprintJoint]) -> str:
-    return listed(sorted({_shown(_limits(joint), [joint]) for joint in joints})) if joints else "none"
+    return listed(sorted({_shown(_limits(joint), [joint]) for joint in joints} or {"none"}))
 
 
 def _shown(ends: tuple[float, float], joints: Sequence[BlueprintJoint]) -> str:
