@@ -7,6 +7,8 @@ SHELL := bash
 FOUND := $(shell for v in 3.11 3.12 3.13; do python$$v -c '' 2> /dev/null && echo python$$v; done; true)
 PYTHON ?= $(firstword $(FOUND) python3.11)
 VENV := .venv
+# Tests and demo start hundreds of processes: each would compile every module again.
+unexport PYTHONDONTWRITEBYTECODE
 IN_VENV := $(VENV)/bin/python -m
 # Says which package it is at; modules are compiled when they are first used, which saves time and 100 MB.
 install = $(IN_VENV) pip install --no-compile $(1) | sed -u -n 's/^Collecting \([^ ]*\).*/  \1/p'
