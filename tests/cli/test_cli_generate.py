@@ -142,13 +142,13 @@ def test_what_a_killed_process_left_of_a_corpus_is_cleared_away_and_some_objects
 
 def test_several_processes_write_the_same_corpus_as_one(tmp_path):
     for name, workers in (("one", 1), ("two", 2)):
-        write_corpus(tmp_path / name, 9, seed=2, progress=lambda name, done: None, workers=workers)
+        write_corpus(tmp_path / name, 4, seed=2, progress=lambda name, done: None, workers=workers)
     one, two = (
         {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
         for folder in (tmp_path / "one", tmp_path / "two")
     )
     assert one == two
-    assert len(list((tmp_path / "two").iterdir())) == 10
+    assert len(list((tmp_path / "two").iterdir())) == 5
 
 
 def test_the_categories_and_their_parameters_are_listed(capsys):
