@@ -60,7 +60,6 @@ class FeedbackRow(StrEnum):
     DERAILED = "against this line, this type and this parent; a slide ends before"
     GUIDE = "the range ends before"
     LINE = "against this line"
-    TYPE = "against this type"
     AS_LOADED = "against this line, this type and this parent"
     NO_WAY = "against this line, this type and this parent, if several places of the robot were tried"
     EXPORTER = "none: files, frames or masses are for the exporter to fix"
@@ -102,8 +101,6 @@ class Check:
     """What refinement makes of its findings; None if nothing."""
     doubts: bool = False
     """Its findings put axis, place, type, parent or direction of a joint in doubt; a robot's task wants to know."""
-    opinion: bool = False
-    """Its findings are what our own inference holds of the shapes; they name no cause where no fact agrees."""
     follows: Mapping[str, CauseScope] = field(default_factory=dict)
     """Checks whose findings can be the cause of its own, and what both must be about; the first that fits is taken."""
     needs: tuple[Need, ...] = ()
@@ -219,7 +216,6 @@ def check(
     engines: tuple[str, ...] = (),
     feedback: FeedbackRow | None = None,
     doubts: bool = False,
-    opinion: bool = False,
     follows: Mapping[str, CauseScope] | None = None,
     needs: tuple[Need, ...] = (),
 ) -> Callable[[CheckFunction], CheckFunction]:
@@ -240,7 +236,6 @@ def check(
             engines=engines,
             feedback=feedback or (FeedbackRow.EXPORTER if id.startswith(_NOT_OURS) else None),
             doubts=doubts,
-            opinion=opinion,
             follows=follows or {},
             needs=needs,
             function=function,

@@ -15,7 +15,7 @@ from kinematify.validation.check import OpenCheck
 from kinematify.validation.finding import CheckResult, Severity, Status
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from kinematify.config.validation import ValidationSettings
@@ -51,8 +51,8 @@ class StageRequest:
     """What the file holds and `urdf` does not, one sentence each."""
     free_travel: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Range around rest in which nothing collides by exact geometry, of joints where it was measured [rad or m]."""
-    doubted: frozenset[str] | None = None
-    """Joints that exact sweeps speak against, for the stage of the evidence; None where none were made."""
+    doubted: Mapping[str, Sequence[str]] | None = None
+    """Checks by exact geometry that speak against a joint, for the stage of the evidence; None where none were made."""
     suspects: Mapping[str, PriorFinding] = field(default_factory=dict)
     """Joints that earlier stages doubt, for the stage of the task."""
 

@@ -1,6 +1,6 @@
 """Repairing contacts and tree: parts that hang on what they do not touch, or run into what should carry them.
 
-A part that loses its parent (KV303, KV341) may simply hang on the wrong one because the contact with the right one was
+A part that loses its parent (KV303) may simply hang on the wrong one because the contact with the right one was
 never seen. The exact distances of all near parts say which contacts there are, whatever the graph holds. The feedback
 then weakens edges, and the search restarts warm from the trees it had, with R_sim among its terms. Joints of edges that
 are new are chosen as the inference would. Pieces of one part are joined for the inference, and fixed to each other in

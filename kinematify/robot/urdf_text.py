@@ -49,6 +49,8 @@ _DECLARED = re.compile(rb"\bxmlns:([A-Za-z_][\w.-]*)\s*=")
 _PREFIX = re.compile(rb"</?([A-Za-z_][\w.-]*):[A-Za-z_]")
 _DEFINITIONS = ("property", "macro", "arg")
 """Elements of xacro that do nothing unless something calls them: expanded files often keep some."""
+_EXPRESSION = re.compile(r"\$\{|\$\((?:arg|optenv|env|eval)\b")
+"""Of xacro; a mere ``$(find NAME)`` is a path that can be missing without harm."""
 _WORDS = re.compile(rb"<(robot|link|joint)[\s>/]")
 
 
@@ -229,7 +231,7 @@ def calls_xacro(root: _Element) -> bool:
         if within:
             continue
         values = (str(value) for value in element.attrib.values())
-        if "xacro" in (names[0].namespace or "") or any("${" in value or "$(arg" in value for value in values):
+        if "xacro" in (names[0].namespace or "") or any(map(_EXPRESSION.search, values)):
             return True
     return False
 

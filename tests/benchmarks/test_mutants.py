@@ -94,7 +94,7 @@ def test_what_changes_nothing_is_not_planted(tmp_path: Path) -> None:
     assert "wrong parent" not in planted
 
 
-FACT = {"check": "KV342", "severity": "error", "cause": "kinematics", "joint": "hinge", "link": None, "pair": None}
+FACT = {"check": "KV349", "severity": "error", "cause": "kinematics", "joint": "hinge", "link": None, "pair": None}
 NOTE = {**FACT, "severity": "note"}
 PLANTED = PlantedFault(how="turned", joint="hinge", links=("door",))
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 SETTINGS = load_nightly()
 AXIS = Problem(id="axis hinge", check="axis", severity="error", text="off by 40 deg")
 TOUCH = Problem(id="KV312 joint hinge", check="KV312", severity="error", text="runs into the frame")
-HINT = Problem(id="KV343 joint hinge", check="KV343", severity="warning", text="beside the pin")
+HINT = Problem(id="KV344 joint hinge", check="KV344", severity="warning", text="beside the pin")
 ACCURACY = Run(
     scenario="s1", object="door", kind="everyday", category="door", what="accuracy", case="rest", status="ok",
     seconds=2.0, values={"angle_deg": 0.5, "types": 1.0},

@@ -120,3 +120,39 @@ def test_findings_of_geometry_have_the_line_of_their_joint_or_link(tmp_path: Pat
     lines = path.read_text().splitlines()
     assert finding.line is not None
     assert 'joint name="slide"' in lines[finding.line - 1]
+
+
+FINE = {
+    "a package in a folder of another name": [(BOX, mesh("package://my_robot/part.stl"))],
+    "a prefix without a namespace": [("</robot>", "<drake:joint/></robot>")],
+    "macros that nobody calls": [
+        ('<robot name="r">', '<robot name="r" xmlns:xacro="x"><xacro:macro name="m"><link name="${n}"/></xacro:macro>')
+    ],
+    "a value with a default": [
+        ('name="r"', 'name="r" xmlns:xacro="http://ros.org/wiki/xacro"'),
+        ('"0 0 0.1"', '"$(optenv PLACE 0 0 0.1)"'),
+    ],
+    "a visual in VRML": [("</link>", f"<visual><geometry>{mesh('look.wrl')}</geometry></visual></link>")],
+    "a wrist of 445 deg": [("prismatic", "revolute"), ('lower="0" upper="0.05"', 'lower="-3.883" upper="3.883"')],
+    "turns without a bound": [("prismatic", "revolute"), ('lower="0" upper="0.05"', 'lower="-10.4" upper="10.01"')],
+    "a drive without a bound": [('effort="10" velocity="1"', 'effort="1e9" velocity="1e9"')],
+    "a hook on a rope": [('"0 0 0.1"', '"0 0 -0.1"'), ('"1 0 0"', '"0 0 -1"'), ('"0.05"', '"0.5"')],
+}
+
+
+@pytest.mark.parametrize("case", FINE)
+def test_what_published_files_have_is_no_error_and_blocks_nothing(case: str, tmp_path: Path) -> None:
+    text, path = robot(), tmp_path / "clone-main" / "model.urdf"
+    for old, new in FINE[case]:
+        assert old in text
+        text = text.replace(old, new, 1)
+    path.parent.mkdir()
+    path.write_text(text)
+    (path.parent / "package.xml").write_text("<package><name>my_robot</name></package>")
+    (path.parent / "look.wrl").write_text("#VRML V2.0 utf8\n")
+    trimesh.creation.box((0.1, 0.1, 0.1)).export(path.parent / "part.stl")
+    report = validate(path, workers=1)
+    assert not [(item.check, item.reason) for item in report.checks if item.status is Status.BLOCKED]
+    assert not [item.message for item in report.findings if item.severity is Severity.ERROR]
+    assert not [item.message for item in report.findings if item.check in {"KV133", "KV321"}]
+    assert "PyBullet 1 of 1" in report.as_loaded or case == "a visual in VRML"

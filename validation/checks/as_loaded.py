@@ -65,7 +65,7 @@ def nothing_moves(context: AsLoadedContext) -> str | None:
     severity=Severity.ERROR,
     cause=Cause.ASSET,
     engines=_ENGINES,
-    follows={**dict.fromkeys(NOT_A_BODY, CauseScope.BODY), "KV138": CauseScope.MODEL},
+    follows={**dict.fromkeys(NOT_A_BODY, CauseScope.BODY), "KV138": CauseScope.MODEL, "KV221": CauseScope.JOINT},
 )
 def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     """The untouched file, loaded with the engine's own defaults (`MjModel.from_xml_path`; `loadURDF` with a fixed

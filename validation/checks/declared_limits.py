@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.joint_type import JointType
-from kinematify.validation.check import check
+from kinematify.validation.check import CauseScope, check
 from kinematify.validation.checks.needs import something_follows, something_moves
 from kinematify.validation.finding import Cause, Severity
 
@@ -25,6 +25,8 @@ _ROUND_DEGREES = 5.0
 """People choose limits that are multiples of this [deg]."""
 _ROUND_TOLERANCE = 0.3
 """What two decimals of a radian leave of a round angle [deg]: 200 deg are written as 3.49 rad."""
+_EVEN, _FEW_TURNS = 0.1, 16.0 * math.pi
+"""A range goes as far to both sides within this share of it; up to this width it may stand for no limit [rad]."""
 
 
 @check(
@@ -37,10 +39,10 @@ _ROUND_TOLERANCE = 0.3
 )
 def implausible_ranges(result: OpenCheck, physics: Physics) -> None:
     """No hinge turns by more than `widest_turn` (a warning from `full_turn` on; a warning beyond `endless`, and a note
-    at plus and minus 10 rad or a multiple of pi, where no limit was meant), unless both limits are round numbers of
-    degrees up to `widest_wrist`; it is a note where the range would be less than ten degrees if it were degrees. No
-    slide moves by more than `slide_sizes` times the size of the model, by `widest_slide` where no geometry shows its
-    size; beyond `slide_wrong` times it is an error.
+    at plus and minus 10 rad or a multiple of pi, where no limit was meant; a warning for some turns to both sides that
+    are no round numbers), unless both limits are round numbers of degrees up to `widest_wrist`; it is a note where the
+    range would be less than ten degrees if it were degrees. No slide moves by more than `slide_sizes` times the size
+    of the model, by `widest_slide` where no geometry shows its size; beyond `slide_wrong` times it is an error.
 
     Why it matters: Degrees for radians and millimetres for metres load in every engine, and the joint then moves
     freely.
@@ -59,7 +61,10 @@ def _turn(result: OpenCheck, physics: Physics, joint: Joint) -> None:
     width = joint.upper - joint.lower
     if width <= settings.full_turn:
         return
-    endless = joint.endless or width > settings.endless
+    # -10.4 and 10.01 are no degrees that anybody writes: they stand for no limit.
+    even = abs(joint.lower + joint.upper) < _EVEN * width and width < _FEW_TURNS
+    odd = any(end % 0.5 for end in (joint.lower, joint.upper))
+    endless = joint.endless or width > settings.endless or (even and odd)
     # Wrists of large arms turn by 400 degrees to each side; their limits are round numbers of degrees.
     meant = _round(joint.lower) and _round(joint.upper) and width <= settings.widest_wrist
     if meant:
@@ -118,6 +123,7 @@ def _slide(result: OpenCheck, physics: Physics, joint: Joint) -> None:
     fails="The range of a joint is empty",
     severity=Severity.WARNING,
     cause=Cause.KINEMATICS,
+    follows={"KV136": CauseScope.JOINT},
     needs=(something_moves,),
 )
 def empty_ranges(result: OpenCheck, physics: Physics) -> None:

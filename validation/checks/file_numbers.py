@@ -45,7 +45,6 @@ _SHAPES: _Counts = {
     "mesh": {"scale": (3, 1)},  # some exporters write one factor for all axes
 }
 _COLOR: _Counts = {"color": {"rgba": (4,)}}
-_DRIVE = ("effort", "velocity", "damping", "friction")
 _COUNTS = {1: "one finite number", 3: "three finite numbers", 4: "four finite numbers"}
 
 
@@ -129,8 +128,9 @@ def _remedy(text: str) -> str:
     cause=Cause.ASSET,
 )
 def implausible_numbers(result: OpenCheck, urdf: Urdf) -> None:
-    """No number is larger than `max_number` (a warning for effort, velocity, damping and friction, and for limits of a
-    hinge to both sides, which are none then), and no roll, pitch or yaw is more than one turn (a warning).
+    """No number is larger than `max_number` (a warning for damping and friction, and for limits of a hinge to both
+    sides, which are none then; an effort or velocity of such a size is no bound, which is fine), and no roll, pitch or
+    yaw is more than one turn (a warning).
 
     Why it matters: With 1e16 metres or radians all digits are lost; angles above a turn are degrees most of the time.
 
@@ -142,6 +142,8 @@ def implausible_numbers(result: OpenCheck, urdf: Urdf) -> None:
         if not values or field.element.tag == "color":
             continue
         largest = max(values, key=abs)
+        if field.attribute in ("effort", "velocity"):
+            continue
         if abs(largest) > settings.max_number:
             _huge(result, field, largest, settings.max_number)
         elif field.attribute == "rpy" and abs(largest) > settings.max_angle:
@@ -164,7 +166,7 @@ def _huge(result: OpenCheck, field: _Field, value: float, limit: float) -> None:
     endless = bound and _is_endless(field.element, limit)
     if endless and field.attribute == "lower":
         return  # the upper end tells it
-    drive = field.attribute in _DRIVE
+    drive = field.attribute in ("damping", "friction")
     result.find(
         f"{field.called} is {value:g}, and the lower one is as far: that is no limit."
         if endless
@@ -172,7 +174,7 @@ def _huge(result: OpenCheck, field: _Field, value: float, limit: float) -> None:
         (
             'Write type="continuous" where a hinge has no limit.'
             if bound
-            else "Write what the motor can do."
+            else "Write zero or what was measured."
             if drive
             else "Write the true value; all lengths are in metres."
         ),

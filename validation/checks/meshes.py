@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.validation.check import check
+from kinematify.validation.check import CauseScope, check
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     fails="A mesh file cannot be read",
     severity=Severity.ERROR,
     cause=Cause.ASSET,
+    follows={"KV142": CauseScope.BODY},
 )
 def unreadable(result: OpenCheck, look: MeshContext) -> None:
     """Every mesh file that the URDF names opens, is complete, not larger than `max_mesh_bytes`, and its faces refer to

@@ -228,8 +228,9 @@ def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
 )
 def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
     """Along the range, the gap between child and parent grows by less than geometry.lost of the model's size; beyond
-    geometry.far it is an error, unless the two are that far apart at rest. It counts where both what is visible and
-    what collides part.
+    geometry.far it is an error, unless the two are that far apart at rest, or a slide is beside its parent with less
+    than half of its length: the rope or rod of such a part is not in the file. It counts where both what is visible
+    and what collides part.
 
     Why it matters: A hinge about the wrong line swings the part away from it, and a slide that is too long drops it.
 
@@ -247,11 +248,13 @@ def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
         parent, child = motion.look.parent_and_child(connection, {motion.sweep.leader: value})
         what = "turns away from its hinge" if motion.sweep.travel.turns else "leaves its guide"
         far = grown > scene.settings.far * scene.size and motion.look.allowance.gap(pair) <= limit
+        side = motion.side(1.0 if value > motion.sweep.travel.rest else -1.0)
+        held = 1.0 if motion.sweep.travel.turns else motion.guide(connection, side)[1]
         result.find(
             f"{child} gets {length(grown)} farther away from {parent} than at rest at {_value(motion, value)} of "
             f"{motion.joint}: it {what}.",
             "Align <axis> and <origin> with the hinge or guide, check the type, or reduce the limits.",
-            severity=Severity.ERROR if far else Severity.WARNING,
+            severity=Severity.ERROR if far and held >= _GUIDED else Severity.WARNING,
             joint=motion.joint,
             pair=in_document_order(scene.model, parent, child),
             q=configuration(scene, {motion.sweep.leader: value}),

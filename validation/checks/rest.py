@@ -80,7 +80,9 @@ def _overlap(
 ) -> None:
     seen = rest.depth if look.visible is None else look.visible.allowance.at_rest(rest.pair)
     unseen = seen <= limit
-    wrong = joint is None and min(rest.depth, seen) > look.scene.settings.wrong * look.scene.size
+    wrong = (
+        joint is None and look.shown(rest.pair) and min(rest.depth, seen) > look.scene.settings.wrong * look.scene.size
+    )
     said = UNSEEN if look.clear(rest.pair, {}) else BARELY
     result.find(
         f"{message} {said}" if unseen else message,

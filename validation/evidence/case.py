@@ -15,7 +15,7 @@ from kinematify.robot.transforms import joint_motion
 from kinematify.validation.summary import JointSummary
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Mapping, Sequence
     from typing import Any
 
     from kinematify.config.validation import EvidenceSettings
@@ -97,8 +97,8 @@ class JointCase:
     settings: EvidenceSettings
     every: Sequence[JointMeasures]
     """Of all joints of the model that were measured, in the order of the description."""
-    doubted: Collection[str] | None = None
-    """Joints that exact sweeps speak against; None where none were made."""
+    doubted: Mapping[str, Sequence[str]] | None = None
+    """Checks by exact geometry that speak against a joint, by joint; None where none were made."""
 
     @property
     def examined(self) -> bool:
@@ -172,7 +172,8 @@ class JointCase:
         """Joints whose axes run along what the bodies show but for the same few degrees."""
         found = [item for item in self.every if self.settings.askew_deg < item.angle <= self.settings.unknown_deg]
         middle = np.median([item.angle for item in found]) if found else 0.0
-        return [item for item in found if abs(item.angle - middle) <= self.settings.askew_spread]
+        same = [item for item in found if abs(item.angle - middle) <= self.settings.askew_spread]
+        return same if len(same) >= self.settings.askew_share * len(self.every) else []
 
     @property
     def misplaced(self) -> bool:
@@ -194,6 +195,27 @@ class JointCase:
         if self._supported:
             return False
         return not self.linkage or self.contradicted or self.blocked > self.settings.blocked
+
+    @property
+    def doubts_line(self) -> bool:
+        """Its line is not one that the two bodies show, or another one is likelier."""
+        return self.unexplained or self.misplaced or self.outdone
+
+    @property
+    def doubts_type(self) -> bool:
+        """The other type is likelier by far.
+
+        No more than habit counts nowhere: few joints of linkages slide, but those that do are meant to, unless
+        something else speaks against it, too: a bearing, a better slide, a parent in the way. Nor does anybody write
+        that a part turns without end by mistake.
+        """
+        measures, settings = self.measures, self.settings
+        likelier = self.judged_alone and measures.odds_against > settings.type_odds
+        if not likelier or measures.joint.kind is JointType.CONTINUOUS:
+            return False
+        if not self.linkage or not measures.slides:
+            return True
+        return measures.deficit > settings.better or measures.scene.has_bearing or self.blocked > settings.blocked
 
     @property
     def usual_deficit(self) -> float:
@@ -295,16 +317,12 @@ def _written(vector: FloatArray) -> str:
     return " ".join(f"{value + 0.0:.4g}" for value in np.round(vector, 6))
 
 
-def better_joint(measures: JointMeasures, doubts: Collection[str]) -> Alternative | None:
-    """Return the joint that the geometry speaks for instead.
-
-    Args:
-        measures: Of the declared joint.
-        doubts: Ids of the checks that speak against it; None is returned where none of them is about its line or type.
-    """
-    if not {"KV342", "KV343", "KV344", "KV345"} & set(doubts):
+def better_joint(case: JointCase) -> Alternative | None:
+    """Return the joint that the geometry speaks for instead; None where its line and its type are not in doubt."""
+    measures = case.measures
+    if not case.examined or not (case.doubts_type or case.doubts_line):
         return None
-    if "KV345" not in doubts:
+    if not case.doubts_type:
         kind = JointType.PRISMATIC if measures.slides else JointType.REVOLUTE
         return Alternative(kind=kind, axis=measures.best_axis, pivot=measures.best_pivot, score=measures.deficit)
     best, found = measures.best_other, measures.posterior.hypotheses
@@ -312,12 +330,12 @@ def better_joint(measures: JointMeasures, doubts: Collection[str]) -> Alternativ
     return Alternative(kind=kind, axis=found.axes[best], pivot=found.pivots[best], score=score)
 
 
-def summary_of(robot: Robot, case: JointCase, doubts: Collection[str]) -> JointSummary:
-    """Return what the report tells of the joint besides its checks, `doubts` as for `better_joint`."""
+def summary_of(robot: Robot, case: JointCase) -> JointSummary:
+    """Return what the report shows of the joint besides its checks."""
     joint = case.measures.joint
     declared = robot.joint_by_name[joint.source]
     limited = declared.kind in (JointType.REVOLUTE, JointType.PRISMATIC)
-    better = better_joint(case.measures, doubts)
+    better = better_joint(case)
     return JointSummary(
         joint=joint.source,
         kind=declared.kind.value,

@@ -93,6 +93,11 @@ class GeometryContext:
         """Thickness of the thinner of two bodies [m]: no penetration is deeper."""
         return min(_thickness(solid) for solid in self.overlap.solids(pair))
 
+    def shown(self, pair: Pair) -> bool:
+        """True if both bodies are visible; where no visual could be read, nobody sees whether they overlap."""
+        links = self.scene.model.link_by_name
+        return all(any(links[name].visuals for name in self.scene.bodies[body].links) for body in pair)
+
     def clear(self, pair: Pair, values: Mapping[int, float]) -> bool:
         """True if the visible surfaces of two bodies do not meet, both being visible.
 
@@ -100,8 +105,8 @@ class GeometryContext:
             pair: The bodies.
             values: Leaders that are not at rest [rad or m].
         """
-        visible, links = self.visible, self.scene.model.link_by_name
-        if visible is None or not all(any(links[n].visuals for n in self.scene.bodies[k].links) for k in pair):
+        visible = self.visible
+        if visible is None or not self.shown(pair):
             return False
         row = self.scene.mechanism.rest.copy()
         row[list(values)] = list(values.values())

@@ -28,7 +28,6 @@ from kinematify.validation.lines import in_source, with_lines
 from kinematify.validation.model_cache import has_model
 from kinematify.validation.run.causes import with_causes
 from kinematify.validation.run.loaded_findings import across_engines, with_refusals
-from kinematify.validation.run.opinions import demote_inference_findings, join_facts
 from kinematify.validation.run.plan import (
     asset_stage,
     geometry_stage,
@@ -271,11 +270,14 @@ class _Run:
             self._take_end(end)
             self._progress(end.stage.name, 0.4 + 0.55 * (number + 1) / len(stages))
 
-    def _doubted(self) -> frozenset[str]:
-        """Joints against whose kinematics the geometry speaks."""
-        found = [item for key, result in self._results.items() if key[0].startswith("KV3") for item in result.findings]
-        counted = [item for item in found if item.severity is not Severity.NOTE and item.cause is Cause.KINEMATICS]
-        return frozenset(item.joint for item in counted if item.joint is not None)
+    def _doubted(self) -> dict[str, list[str]]:
+        """Checks by exact geometry that speak against the kinematics of a joint, by joint."""
+        doubted: dict[str, list[str]] = {}
+        for (check, _), result in self._results.items():
+            for item in result.findings if check.startswith("KV3") else ():
+                if item.joint and item.severity is not Severity.NOTE and item.cause is Cause.KINEMATICS:
+                    doubted.setdefault(item.joint, []).append(check)
+        return doubted
 
     def _use(self, request: StageRequest, engines: Sequence[str]) -> None:
         """Make a robot use the object; it has time of its own."""
@@ -309,9 +311,7 @@ class _Run:
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
         results = [self._result(key) for key in keys(list(self.checks.values()))]
         robot = self.robot
-        results = demote_inference_findings(
-            join_facts(across_engines(with_refusals(with_lines(results, robot)), self.engines, named=self.named))
-        )
+        results = across_engines(with_refusals(with_lines(results, robot)), self.engines, named=self.named)
         if self.description is not None and self.description.form != "urdf":
             results = in_source(results, self.description)
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)

@@ -328,7 +328,7 @@ def _into_others(case: _Case, finding: Finding, joint: Joint) -> None:
 
 
 def _not_carried(case: _Case, finding: Finding, joint: Joint) -> None:
-    """KV303 and KV341: no contact supports the part there."""
+    """KV303: no contact supports the part there."""
     other = next((name for name in finding.pair or () if name not in (joint.child, joint.parent)), None)
     case.against_parent(finding, joint, "it does not touch what carries it", other)
 
@@ -372,10 +372,6 @@ def _line_doubted(case: _Case, finding: Finding, joint: Joint) -> None:
     case.against_line(finding, joint, "the parts show another line")
 
 
-def _type_doubted(case: _Case, finding: Finding, joint: Joint) -> None:
-    case.against_type(finding, joint, "the parts look as if they moved otherwise")
-
-
 def _as_loaded(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV803 and KV804: the written file, whose pieces leave every free motion free, does not move as it should."""
     case.against_all(finding, joint, f"as loaded, {finding.engine} does not move it as it should")
@@ -397,7 +393,6 @@ _ROWS: dict[FeedbackRow | None, Callable[[_Case, Finding, Joint], None]] = {
     FeedbackRow.DERAILED: _derailed,
     FeedbackRow.GUIDE: _out_of_guide,
     FeedbackRow.LINE: _line_doubted,
-    FeedbackRow.TYPE: _type_doubted,
     FeedbackRow.AS_LOADED: _as_loaded,
     FeedbackRow.NO_WAY: _no_way,
 }

@@ -83,7 +83,7 @@ def with_refusals(checks: Sequence[CheckResult]) -> list[CheckResult]:
 
 
 def across_engines(checks: Sequence[CheckResult], engines: Sequence[str], *, named: bool = True) -> list[CheckResult]:
-    """Make errors of the untouched file warnings where another engine has none, and say which.
+    """Make errors of the untouched file warnings where another engine has none or did not finish, and say which.
 
     What is laid to an engine and only one shows is a note then, and a warning where no other engine runs the file.
 
@@ -95,9 +95,12 @@ def across_engines(checks: Sequence[CheckResult], engines: Sequence[str], *, nam
     if tuple(engines) != DEFAULT_ENGINES and named:
         return list(checks)
     ran: dict[str, set[str | None]] = {}
+    late: dict[str, set[str | None]] = {}
     for check in checks:
         if check.status in (Status.PASS, Status.FAIL):
             ran.setdefault(check.check, set()).add(check.engine)
+        elif check.unfinished:
+            late.setdefault(check.check, set()).add(check.engine)
     errors = [
         finding
         for check in checks
@@ -106,14 +109,21 @@ def across_engines(checks: Sequence[CheckResult], engines: Sequence[str], *, nam
         if finding.severity is Severity.ERROR
     ]
     return [
-        check.with_findings(_across(finding, errors, ran, named=named) for finding in check.findings)
+        check.with_findings(_across(finding, errors, ran, late, named=named) for finding in check.findings)
         if check.check.startswith(_FAMILY)
         else check
         for check in checks
     ]
 
 
-def _across(finding: Finding, errors: Sequence[Finding], ran: Mapping[str, set[str | None]], *, named: bool) -> Finding:
+def _across(
+    finding: Finding,
+    errors: Sequence[Finding],
+    ran: Mapping[str, set[str | None]],
+    late: Mapping[str, set[str | None]],
+    *,
+    named: bool,
+) -> Finding:
     failing = {
         other.engine
         for other in errors
@@ -125,6 +135,10 @@ def _across(finding: Finding, errors: Sequence[Finding], ran: Mapping[str, set[s
     alone = finding.cause is Cause.ENGINE and not any(
         other.check == finding.check and other.engine != finding.engine for other in errors
     )
+    unknown = [entry.title for name, entry in ENGINES.items() if name in late.get(finding.check, set())]
+    if unknown and not works:
+        message = f"{finding.message} {' and '.join(unknown)} did not finish."
+        return replace(finding, severity=Severity.WARNING, message=message)
     if not (works or named):
         return replace(finding, severity=Severity.WARNING, message=f"{finding.message} No other engine was asked.")
     if not works:

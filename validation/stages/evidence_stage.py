@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from kinematify.validation.checks import checks_of
@@ -40,16 +39,13 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     )
     cases = [case for case in all_cases if request.remaining and (not case.examined or case.measures.posterior)]
     left = len(every) - len(cases)
-    doubts: dict[str | None, set[str]] = defaultdict(set)
     for check in of_joints:
         with recorder.check(check.id) as result:
             result.measured["joints"] = len(cases)
-            for case in (case for case in cases if case.examined or not check.opinion):
+            for case in cases:
                 check.run(result, case)
             if left:
                 result.leave(f"{left} of the joints")
-        for finding in result.findings:
-            doubts[finding.joint].add(check.id)
     pins = () if left else tuple(shared_pins(bodies, robot))
     for check in of_pins:
         with recorder.check(check.id) as result:
@@ -58,4 +54,4 @@ def run(request: StageRequest, recorder: Recorder) -> None:
             if left:
                 result.leave("the pins, and before that some of the joints")
     for case in cases:
-        recorder.summarise(summary_of(robot, case, doubts[case.measures.joint.source]))
+        recorder.summarise(summary_of(robot, case))
