@@ -331,6 +331,11 @@ class AsLoadedContext:
             return run
         return replace(run, without_contacts=self.running.push(push, self.values, contacts=False).farthest)
 
+    def by_motor(self, travel: Travel, end: float, effort: float) -> float:
+        """Value that a joint gets to under gravity by no more than an effort, the others held [rad or m]."""
+        push = self._push(travel, (travel.rest, end), effort, effort)
+        return self.running.push(push, self.values, contacts=True, gravity=True).farthest
+
     def strength(self, travel: Travel) -> float:
         """Force of the hand [N or N m]."""
         return self.settings.torque if travel.turns else self.settings.force

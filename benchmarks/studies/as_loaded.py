@@ -193,7 +193,7 @@ def _written(model: KinematicModel, config: Config, engines: Sequence[str]) -> R
 
 def _judged(urdf: Path, engines: Sequence[str], package_dirs: Sequence[Path] = (), *, run_code: bool = False) -> Record:
     """What `kinematify validate` says of a file as it is loaded, by engine."""
-    checks = checks_of("KV8")
+    checks = checks_of("KV80")
     report = validate(
         urdf,
         package_dirs=package_dirs,
@@ -209,7 +209,7 @@ def _judged(urdf: Path, engines: Sequence[str], package_dirs: Sequence[Path] = (
 
 def _world(checks: Sequence[CheckResult], engine: str, *, run_code: bool) -> Record:
     """The judgement of one engine."""
-    judged = [check for check in checks if check.check.startswith("KV8") and check.engine == engine]
+    judged = [check for check in checks if check.check.startswith("KV80") and check.engine == engine]
     measured = {name: value for check in judged for name, value in check.measured.items()}
     counted = [item for check in judged for item in check.findings if item.severity is not Severity.NOTE]
     return {

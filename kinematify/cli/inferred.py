@@ -68,7 +68,7 @@ def describe_joints(joints: Sequence[Joint], inferred: Mapping[str, JointEstimat
     return format_table((*headings, "confidence", "ended by"), sure)
 
 
-_CHECKS = ("KV1", "KV2", "KV30", "KV31", "KV32", "KV33", "KV8")
+_CHECKS = ("KV1", "KV2", "KV30", "KV31", "KV32", "KV33", "KV80")
 """Of the file, masses and inertias, exact geometry, and the file as loaded: all that is judged without a second run."""
 
 

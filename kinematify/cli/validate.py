@@ -52,6 +52,11 @@ _COARSE = {"points": 450}
     help="File, meshes, declared physics, each joint in motion by exact geometry, and the file in MuJoCo: seconds.",
 )
 @click.option(
+    "--contract",
+    is_flag=True,
+    help="Also ask whether it rests on a floor in MuJoCo and its motors move its joints there.",
+)
+@click.option(
     "--fail-on",
     type=click.Choice([item.value for item in reversed(Severity)]),
     default=Severity.ERROR.value,
@@ -133,6 +138,7 @@ def command(
     checks: str | None,
     skip: str | None,
     quick: bool,
+    contract: bool,
     fail_on: str,
     engines: str | None,
     suppress: Path | None,
@@ -185,7 +191,7 @@ def command(
         models=find_models([word for word in models if ":=" not in word]),
         arguments=dict(word.split(":=", 1) for word in models if ":=" in word),
         package_dirs=_existing(package_dirs),
-        selected=_selected(checks or (_QUICK if quick else None), skip),
+        selected=_selected(checks or (_QUICK if quick else None), skip, contract=contract),
         engines=("mujoco",) if quick else _engines(engines),
         fail_on=Severity(fail_on),
         quick=quick,
@@ -216,10 +222,14 @@ def _existing(folders: Sequence[Path]) -> tuple[Path, ...]:
     return tuple(folders)
 
 
-def _selected(checks: str | None, skip: str | None) -> frozenset[str]:
-    from kinematify.validation.checks import CHECKS
+def _selected(checks: str | None, skip: str | None, *, contract: bool) -> frozenset[str]:
+    from kinematify.validation.run.loaded_findings import CONTRACT
 
-    wanted = _matching(checks) if checks is not None else frozenset(CHECKS)
+    parts, wanted = _matching(f"{CONTRACT}*"), _matching(checks or "*")
+    if contract:
+        wanted |= parts
+    elif CONTRACT not in (checks or "").upper():
+        wanted -= parts
     left = wanted - (_matching(skip) if skip is not None else frozenset())
     if not left:
         raise click.UsageError(f"--checks {checks} and --skip {skip} leave no check. Give other patterns.")

@@ -26,6 +26,7 @@ from kinematify.validation.formats.report_content import (
     title,
     where,
 )
+from kinematify.validation.run.loaded_findings import contract_words
 from kinematify.validation.run.outcome import Unusable, counted_words, severity_counts, status_counts
 
 if TYPE_CHECKING:
@@ -116,9 +117,11 @@ def _more(report: ValidationReport) -> str:
 
 
 def describe_table(outcomes: Sequence[Outcome]) -> str:
-    """All models, a row each."""
+    """All models, a row each, and how many keep the contract, if that was asked for."""
     headings = ("model", "verdict", "errors", "warnings", "notes", "failed", "skipped", "blocked", "seconds")
-    return format_table(headings, [_summary_row(outcome) for outcome in outcomes])
+    table = format_table(headings, [_summary_row(outcome) for outcome in outcomes])
+    contract = contract_words([outcome.checks for outcome in outcomes if not isinstance(outcome, Unusable)])
+    return "\n".join(filter(None, (table, contract)))
 
 
 def describe_briefly(report: ValidationReport) -> str:
@@ -147,7 +150,9 @@ def describe_unused(rules: Iterable[Suppression]) -> str:
 def _first_lines(report: ValidationReport) -> str:
     """The verdict, and what the file does as it is loaded."""
     return "\n".join(
-        [f"{_verdict(report)}: {summary_words(report)}", *([report.as_loaded] if report.as_loaded else [])]
+        filter(
+            None, (f"{_verdict(report)}: {summary_words(report)}", report.as_loaded, contract_words([report.checks]))
+        )
     )
 
 

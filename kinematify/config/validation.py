@@ -239,8 +239,6 @@ class GeometrySettings(StageConfig):
     """More of a turn that is free is not early for a chain that reaches itself, or a joint without stops [deg]."""
     late: float = 0.05  # designers leave that much for cushions
     """Declared ends this close behind the free travel are not mentioned, fraction of the range."""
-    small_range: float = 0.2
-    """A declared range below this fraction of the free travel is worth a note."""
     guide: float = 1.0
     """Share of its guide that a slide may run out."""
     always: float = 0.95  # the customary share in motion planning
@@ -261,8 +259,6 @@ class EvidenceSettings(StageConfig):
     """Lines closer than this in direction and in position are one [deg]."""
     same_distance: float = 0.03  # and within 3 % of the part for 95 of 100 hinges
     """The same for their distance, fraction of the child's diagonal."""
-    far_gap: float = 0.01  # true pairs that do not touch are below 0.5 %; parts elsewhere are several percent away
-    """A child counts as detached beyond this gap, fraction of the model's diagonal."""
     weak_contact: float = 0.35  # no true parent of 138 with rivals is below 0.7
     """A parent is doubtful below this share of the quality of the best other contact."""
     unknown_deg: float = 5.0  # ten times the largest angle of a true axis
@@ -313,14 +309,6 @@ class EvidenceSettings(StageConfig):
     """Slides are looked at up to here, fraction of the child's diagonal."""
     type_odds: float = 1.0  # one true joint of 30, four swapped ones of five
     """Log odds from which the other type is worth a warning."""
-    one_sided: float = 0.5  # hinges that are drawn ajar have up to a third on the closing side
-    """A range is one-sided if its shorter side is below this fraction of its longer one."""
-    shut: float = 0.5  # doors and drawers that lead inwards are free over a tenth of their range
-    """A permitted side that is free over less than this share of its range leads into the parent."""
-    open: float = 0.8  # and over all of it the other way; the rest is for rough meshes
-    """The other side is open from this share on."""
-    panel_inward: float = 0.5  # closed doors of the benchmark all have a cosine above 0.9 the other way
-    """Cosine between the motion of a closed panel and the way into its parent beyond which it opens inwards."""
     widest_door: float = 170.0  # 2 of 30 doors of the benchmark open to 180 deg, the others to at most 149
     """Opening beyond which that of an upright panel is unusual [deg]."""
     widest_lid: float = 190.0  # lids are thrown back onto what stands behind: 181 at most
@@ -329,10 +317,6 @@ class EvidenceSettings(StageConfig):
     """A range from here on, mostly to one side, needs no limits [deg]."""
     lopsided: float = 0.2  # wrists that turn by more go as far to both sides
     """A range is mostly to one side if the sum of its ends is above this share of its width."""
-    button_travel: float = 1.25  # buttons that vanish are modelled with up to 1.15
-    """Travel of a button over its own length beyond which it is unusual."""
-    button_outward: float = 0.5  # buttons go in
-    """How far out on its parent, from 0 in the middle to 1 at the side, a small part may be that moves farther out."""
 
 
 class AsLoadedSettings(StageConfig):

@@ -304,10 +304,10 @@ class RunningFile(RawEngineModel):
             seen.append(energy)
         return ReleaseRun(energy=np.array(seen), complaint=self.complaint)
 
-    def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
+    def push(self, push: Push, values: Mapping[str, float], *, contacts: bool, gravity: bool = False) -> Pushed:
         """Push a joint from `values`, the others held there."""
         moved = np.array([self.joints.index(name) for name in push.moved])
-        self.begin(values, contacts=contacts, gravity=False, released=moved.tolist())
+        self.begin(values, contacts=contacts, gravity=gravity, released=moved.tolist())
         rest, ratios, weights = self.row(values), np.array(push.ratios), np.array(push.weights)
         progress = PushProgress(start=values[push.joint], push=push, time_step=self.time_step)
         done, pushed, still = 0, int(moved[0]), np.zeros_like(rest)

@@ -24,7 +24,8 @@ from kinematify.validation.run.report import ValidationReport
 from kinematify.validation.run.suppression_file import load_suppressions
 from tests.reports import add_checks, finding, full_report, report, result
 
-USUAL = [check for check in CHECKS.values() if not check.id.startswith("KV7")]
+CONTRACT = {"KV820", "KV821"}
+USUAL = [check for check in CHECKS.values() if not check.id.startswith("KV7") and check.id not in CONTRACT]
 USUAL_KEYS = keys(USUAL)
 """KV7 runs only with --task."""
 INERTIAL = """<inertial><origin xyz="{x} 0 {z}"/><mass value="2"/>
@@ -243,13 +244,18 @@ def test_choices_reach_the_run(answered: dict[str, Any], chest: Path, tmp_path: 
     ]
     assert run(["validate", str(chest), *words, "--jobs", "1", "--package-dir", str(tmp_path)]) == 0
     asked = answered["asked"]
-    assert asked["selected"] == {"KV396", *(check for check in CHECKS if check.startswith("KV8"))} - {"KV896"}
+    assert asked["selected"] == {"KV396", *(check for check in CHECKS if check.startswith("KV8"))} - {
+        "KV896",
+        *CONTRACT,
+    }
     assert asked["engines"] == ("mujoco", "pybullet")
     assert (asked["settings"].budget.seconds, asked["settings"].seed) == (7.0, 3)
     assert asked["workers"] == 1
     assert asked["package_dirs"] == (tmp_path,)
     assert run(["validate", str(chest), "--engines", "none"]) == 0
     assert answered["asked"]["engines"] == ()
+    assert answered["asked"]["selected"] == set(CHECKS) - CONTRACT
+    assert run(["validate", str(chest), "--contract"]) == 0
     assert answered["asked"]["selected"] == set(CHECKS)
 
 

@@ -23,7 +23,7 @@ from kinematify.validation.run import validate
 from kinematify.validation.run.loaded_findings import (
     across_engines,
     as_loaded_words,
-    with_refusals,
+    contract_words,
 )
 from kinematify.validation.stage import StageRequest
 from kinematify.validation.stages import loaded_file
@@ -31,6 +31,7 @@ from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabin
 
 ENGINES = ("mujoco", "pybullet")
 each_engine = pytest.mark.parametrize("engine", ENGINES)
+CONTRACT = ("KV820", "KV821")
 WALL = Box(size=(0.02, 0.64, 0.4), at=(0.35, 0.0, 0.0))
 """In front of the cabinet: the drawer gets 135 mm far, the door hits it too."""
 
@@ -386,22 +387,6 @@ def test_what_an_engine_says_of_a_file_that_it_refuses_is_quoted_with_what_to_do
     assert "kinematify fix" in finding.remedy
 
 
-def test_only_an_inertia_for_which_an_engine_refuses_the_file_is_said_to_be_refused() -> None:
-    def noted(check: str, link: str, severity: Severity, engine: str | None = None) -> CheckResult:
-        finding = Finding(
-            check=check, severity=severity, cause=Cause.PHYSICS, message="It is off.", remedy="", link=link
-        )
-        return CheckResult(check=check, engine=engine, status=Status.PASS, findings=(finding,))
-
-    refused = noted("KV801", "camera", Severity.ERROR, "mujoco")
-    camera, foot, _ = with_refusals(
-        [noted("KV205", "camera", Severity.NOTE), noted("KV204", "foot", Severity.NOTE), refused]
-    )
-    assert (camera.status, camera.findings[0].severity) == (Status.FAIL, Severity.WARNING)
-    assert camera.findings[0].message == "It is off. MuJoCo refuses the file for it."
-    assert (foot.status, foot.findings[0].severity) == (Status.PASS, Severity.NOTE)
-
-
 def test_light_parts_that_pybullet_answers_wrongly_move_by_their_motor(tmp_path: Path) -> None:
     """Motors of 0.1 kg with the inertia of a man: pushes are limited there, and nothing is wrong with the joint."""
     rotor = Part(
@@ -414,3 +399,38 @@ def test_light_parts_that_pybullet_answers_wrongly_move_by_their_motor(tmp_path:
     base = Part(name="base", boxes=(Box(size=(0.1, 0.1, 0.1)),))
     measured = reported(Model(parts=(base, rotor, arm)), tmp_path, "pybullet").results["KV804"].measured
     assert measured["right"] == measured["joints"] == 2.0
+
+
+@pytest.mark.parametrize(
+    ("change", "found"),
+    [
+        ({}, []),
+        ({"collision": ()}, ["KV820"]),
+        ({"center": (0.3, 0.0, 0.0)}, ["KV820"]),
+    ],
+)
+def test_an_object_that_keeps_the_contract_rests_on_a_floor(tmp_path: Path, change: dict, found: list[str]) -> None:
+    urdf = (
+        Model(parts=(Part(name="stone", boxes=(Box(size=(0.2, 0.2, 0.2)),)),))
+        .with_part("stone", **change)
+        .write(tmp_path)
+    )
+    report = validate(urdf, engines=("mujoco",), selected=CONTRACT, workers=1)
+    assert [item.check for item in report.findings] == found
+    assert contract_words([report.checks]) == f"contract: {'failed' if found else 'kept'}"
+
+
+@pytest.mark.parametrize(("effort", "found"), [(1000.0, []), (1.0, ["drawer_joint"]), (0.0, [])])
+def test_a_motor_moves_its_joint_by_no_more_than_its_effort(tmp_path: Path, effort: float, found: list[str]) -> None:
+    model = cabinet().with_part("drawer", effort=effort, axis=(0.0, 0.0, 1.0), limits=(0.0, 0.005))
+    report = validate(model.write(tmp_path), engines=("mujoco",), selected=CONTRACT, workers=1)
+    assert [item.joint for item in report.findings if item.check == "KV821"] == found
+    assert not [check for check in validate(tmp_path / "model.urdf", engines=()).checks if check.check in CONTRACT]
+
+
+def test_the_share_that_keeps_the_contract_has_an_interval() -> None:
+    statuses = [Status.PASS] * 3 + [Status.FAIL, Status.BLOCKED, Status.SKIPPED]
+    reports = [[CheckResult(check="KV820", engine="mujoco", status=status)] for status in statuses]
+    assert contract_words(reports) == (
+        "contract: kept by 3 of 4 (75%, 95 % interval 30% to 95%); blocked 1, not applicable 1"
+    )

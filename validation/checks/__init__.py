@@ -9,6 +9,7 @@ from kinematify.validation.check import REGISTRY, Check
 from kinematify.validation.checks import (  # noqa: F401 - each registers its checks
     as_loaded,
     collision_geometry,
+    contract,
     declared_limits,
     declared_masses,
     drives,

@@ -73,10 +73,8 @@ def shapes_suggest_another(result: OpenCheck, case: JointCase) -> None:
     other contact. Of the line, unless KV349 finds a better one: it runs within evidence.unknown_deg of a direction that
     the two bodies show, within evidence.unknown_distance of the child's size (in linkages evidence.linkage_distance)
     of a hinge that they show, and no other line is likelier by evidence.better (in linkages evidence.linkage_better
-    with a bearing, or a parent in the way). The other type has log odds below evidence.type_odds. A one-sided range
-    does not lead into the parent within evidence.shut of it where the other side is free for evidence.open; a closed
-    panel does not turn into its body (evidence.panel_inward), and small parts that slide do not move outwards
-    (evidence.button_outward). It needs no ground truth: people build along what they build.
+    with a bearing, or a parent in the way). The other type has log odds below evidence.type_odds. No ground truth is
+    needed: people build along what they build.
 
     Why it matters: People build what no rule has seen, so this is no fault; but where it is one, nothing else names
     what to write.
@@ -112,7 +110,7 @@ def _suggested(case: JointCase) -> _Suggested | None:
             settings.type_odds,
             "log odds",
         )
-    return _opens_inwards(case)
+    return None
 
 
 def _better_line(case: JointCase) -> _Suggested:
@@ -128,68 +126,6 @@ def _better_line(case: JointCase) -> _Suggested:
     return message, case.instead, line.deficit, case.usual_deficit, None
 
 
-def _opens_inwards(case: JointCase) -> _Suggested | None:
-    """Return what speaks for the other direction of a one-sided range."""
-    joint, room, settings, child = case.measures.joint, case.measures, case.settings, case.child
-    short, long = sorted((abs(joint.lower), abs(joint.upper)))
-    if not case.judged_alone or not np.isfinite(long) or short >= settings.one_sided * long:
-        return None
-    forward = abs(joint.upper) > abs(joint.lower)
-    free, other = room.free if forward else room.free[::-1]
-    outward = room.outward if forward else -room.outward
-    wanted = min(long, room.reach)
-    remedy = "Turn the axis round (or swap the limits with their signs), so that the permitted motion opens."
-    if room.slides and case.small and not case.linkage:
-        if outward > settings.button_outward:  # pressed parts sink into what they stand on: only the way out is wrong
-            return (
-                f"{child} is a small part and moves out; buttons go in.",
-                remedy,
-                outward,
-                settings.button_outward,
-                None,
-            )
-    elif free < settings.shut * wanted and other > settings.open * wanted:
-        message = f"its permitted motion leads into {case.parent}, while the other way is free."
-        return message, remedy, free, settings.shut * wanted, "m" if room.slides else "rad"
-    elif case.closed_panel and outward < -settings.panel_inward:  # it does not open inwards, though nothing stops it
-        message = f"{child} is a closed panel and the permitted motion turns it into {case.parent}."
-        return message, remedy, outward, -settings.panel_inward, None
-    return None
-
-
-@check(
-    "KV347",
-    title="A slide stays with its parent",
-    fails="A slide leaves its parent",
-    severity=Severity.WARNING,
-    cause=Cause.KINEMATICS,
-    follows={"KV321": CauseScope.JOINT, "KV320": CauseScope.JOINT},
-)
-def leaves_guides(result: OpenCheck, case: JointCase) -> None:
-    """At the end of its range, a part that slides by more than its own length along the axis is not evidence.far_gap
-    of the model's size farther away from its parent than at rest; beyond, it has left its guides.
-
-    Why it matters: A drawer that travels twice its length hangs in the air.
-
-    Remedy: Reduce the limits, for a drawer to about four fifths of its length.
-    """
-    joint, room = case.measures.joint, case.measures
-    travel = max(abs(joint.lower), abs(joint.upper))
-    limit = case.settings.far_gap * case.bodies.diagonal
-    if not case.judged_alone or not case.measures.slides or room.parted <= limit or travel <= room.length:
-        return
-    _doubt(
-        result,
-        case,
-        f"{case.child} travels by {travel:.3g} m, more than its own length of {room.length:.3g} m along the "
-        f"axis, and is {room.parted:.3g} m away from {case.parent} at the end.",
-        f"Reduce the range to about {0.8 * room.length:.3g} m, four fifths of its length.",
-        value=room.parted,
-        limit=limit,
-        unit="m",
-    )
-
-
 @check(
     "KV348",
     title="The range is usual for such a part",
@@ -199,15 +135,14 @@ def leaves_guides(result: OpenCheck, case: JointCase) -> None:
 )
 def unusual_range(result: OpenCheck, case: JointCase) -> None:
     """No limited range is a whole turn, mostly to one side (evidence.whole_turn). Outside linkages, an upright panel
-    opens by no more than evidence.widest_door, a level one by no more than evidence.widest_lid; a button that travels
-    by more than evidence.button_travel of its own length is a note. Meshes do not hold designed stops, so this is
-    experience.
+    opens by no more than evidence.widest_door, a level one by no more than evidence.widest_lid. Meshes do not hold
+    designed stops, so this is experience.
 
     Why it matters: A robot that learns to open a door to twice its angle fails on the real one.
 
     Remedy: Correct the limit, or accept the finding with a reason.
     """
-    joint, room, scene, settings = case.measures.joint, case.measures, case.measures.scene, case.settings
+    joint, scene, settings = case.measures.joint, case.measures.scene, case.settings
     span = max(abs(joint.lower), abs(joint.upper))
     if not case.judged_alone or not np.isfinite(span):
         return
@@ -224,11 +159,8 @@ def unusual_range(result: OpenCheck, case: JointCase) -> None:
             limit=settings.whole_turn,
             unit="deg",
         )
-    elif case.linkage:
+    elif case.linkage or case.measures.slides:
         return
-    elif case.measures.slides:
-        if case.small and abs(room.outward) > settings.button_outward:
-            _wide(result, case, "button", span / room.length, settings.button_travel)
     elif scene.panel and scene.upright:
         _wide(result, case, "door", float(np.degrees(span)), settings.widest_door)
     elif scene.panel and scene.flat:
@@ -242,19 +174,17 @@ def _turns_round(lower: float, upper: float, settings: EvidenceSettings) -> bool
 
 
 def _wide(result: OpenCheck, case: JointCase, name: str, span: float, limit: float) -> None:
-    """Tell a range [deg, or the length of the part] that is wide for such a part although nothing stops it."""
-    unit = None if case.measures.slides else "deg"
+    """Report a range [deg] that is wide for such a part although nothing stops it."""
     if span > limit:
         _doubt(
             result,
             case,
-            f"{case.child} looks like a {name} and moves by {span:.3g} {unit or 'times its own length'} to one side; "
-            f"such parts hardly ever move by more than {limit:.3g}.",
+            f"{case.child} looks like a {name} and moves by {span:.3g} deg to one side; such parts hardly ever move by "
+            f"more than {limit:.3g}.",
             "Check the limit, and halve it if the range was doubled; suppress the finding if it is meant.",
-            severity=Severity.NOTE if case.measures.slides else None,
             value=span,
             limit=limit,
-            unit=unit,
+            unit="deg",
         )
 
 
@@ -312,14 +242,12 @@ def _doubt(
     value: float,
     limit: float,
     unit: str | None = None,
-    severity: Severity | None = None,
 ) -> None:
     """Add a finding against the declared joint."""
     joint = case.measures.joint
     result.find(
         message,
         remedy,
-        severity=severity,
         joint=joint.source,
         q={joint.source: joint.value},
         value=value,

@@ -177,7 +177,7 @@ def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
     range): a warning, an error as in KV310, unless only the collision geometry meets (see KV310), or
     the two are in each other at rest. Where the joint has no limits (a whole turn is none) it is a warning, and a note
     after geometry.early_turn. A rail may go through a solid carriage, and a contact that is alike over half of the way
-    or more is no stop. A range below geometry.small_range of the free travel is a note.
+    or more is no stop.
 
     Why it matters: Controllers drive to the declared end; what they meet before it bends, breaks or explodes.
 
@@ -201,18 +201,6 @@ def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
             if motion.has_stops
             else "Nothing to do where software limits the joint; else give it limits, or correct its axis.",
             severity=None if motion.has_stops else Severity.NOTE if motion.late(meeting) else Severity.WARNING,
-        )
-    low, high = motion.sweep.free
-    if travel.limited and 0.0 < travel.range < settings.small_range * (high - low):
-        result.find(
-            f"{motion.joint} is declared over {_value(motion, travel.range)} only; nothing is in its way over "
-            f"{_value(motion, high - low)}.",
-            "Check the unit of the limits; nothing to do if the stop is not modelled.",
-            severity=Severity.NOTE,
-            joint=motion.joint,
-            value=travel.range,
-            limit=high - low,
-            unit=travel.unit,
         )
 
 

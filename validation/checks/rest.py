@@ -171,8 +171,7 @@ def hovering(result: OpenCheck, look: GeometryContext) -> None:
 )
 def tolerated(result: OpenCheck, look: GeometryContext) -> None:
     """Nothing: it lists the pairs whose contact other checks do not count (joined and in contact at rest, in contact
-    at rest, in contact in more than geometry.always of all configurations, fixed together), with the overlap that
-    each may reach, and the links without collision geometry.
+    at rest, in contact in more than geometry.always of all configurations), with the overlap that each may reach.
 
     Why it matters: A check that ignores pairs silently can be made to pass by ignoring more of them.
 
@@ -190,23 +189,6 @@ def tolerated(result: OpenCheck, look: GeometryContext) -> None:
             + ".",
             "Nothing to do; the table says what later checks do not report.",
         )
-    links = scene.model.link_by_name
-    solid = [[name for name in body.links if links[name].has_geometry] for body in scene.bodies]
-    fixed = [names for names in solid if len(names) > 1]
-    if fixed:
-        result.find(
-            "Links that fixed joints hold together are one body and not held against each other: "
-            + _listed([", ".join(names) for names in fixed], scene.settings.listed, sign="; ")
-            + ".",
-            "Nothing to do.",
-        )
-    if scene.stand_ins:
-        result.find(
-            f"{len(scene.stand_ins)} links have no collision geometry: "
-            + _listed(list(scene.stand_ins), scene.settings.listed)
-            + ". They are held against others by what is visible only.",
-            "Write <collision> elements; engines see nothing there.",
-        )
     result.measured["bodies"] = len(scene.bodies)
     result.measured["tolerated_pairs"] = len(reasons)
     result.measured["deepest_at_rest"] = max((allowance.at_rest(pair) for pair in reasons), default=0.0)
@@ -217,7 +199,7 @@ def _tolerated(look: GeometryContext, pair: Pair) -> str:
     return f"{first} - {second} ({length(look.allowance.at_rest(pair) + look.allowance.tolerance(pair))})"
 
 
-def _listed(names: list[str], most: int, sign: str = ", ") -> str:
+def _listed(names: list[str], most: int) -> str:
     """The first names, and how many more there are."""
     more = f" and {len(names) - most} more" if len(names) > most else ""
-    return sign.join(names[:most]) + more
+    return ", ".join(names[:most]) + more

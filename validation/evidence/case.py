@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from kinematify.validation.evidence.measure import JointMeasures
 
 _LINKAGE = 0.5  # `JointScene.mechanism` from which a pair belongs to a linkage rather than to furniture
-_SMALL = 0.5  # `JointScene.smallness` from which a part is a button or knob
 
 _STEPS = 4
 """Places to each side at which the contact is looked at."""
@@ -109,17 +108,6 @@ class JointCase:
     def linkage(self) -> bool:
         """The pair belongs to a machine, not to furniture."""
         return self.measures.scene.mechanism > _LINKAGE
-
-    @property
-    def small(self) -> bool:
-        """The child is a button, a knob or a lever."""
-        return self.measures.scene.smallness > _SMALL
-
-    @property
-    def closed_panel(self) -> bool:
-        """The child is a door or lid that is shut."""
-        panel = self.measures.scene.panel and not self.measures.ajar
-        return panel and not self.measures.slides and not self.linkage
 
     @property
     def instead(self) -> str:
@@ -299,35 +287,9 @@ class JointCase:
         return missing / max(upper + lower, 1e-12)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Alternative:
-    """A joint that explains the contact better than the declared one."""
-
-    kind: JointType
-    axis: FloatArray
-    """Unit direction, world frame at rest, shape (3,)."""
-    pivot: FloatArray
-    """A point on the axis, world frame at rest [m], shape (3,)."""
-    score: float
-    """By how much it leads over the declared joint."""
-
-
 def _written(vector: FloatArray) -> str:
     """Numbers as a file has them."""
     return " ".join(f"{value + 0.0:.4g}" for value in np.round(vector, 6))
-
-
-def better_joint(case: JointCase) -> Alternative | None:
-    """Return the joint that the geometry speaks for instead; None where its line and its type are not in doubt."""
-    measures = case.measures
-    if not case.examined or not (case.doubts_type or case.doubts_line):
-        return None
-    if not case.doubts_type:
-        kind = JointType.PRISMATIC if measures.slides else JointType.REVOLUTE
-        return Alternative(kind=kind, axis=measures.best_axis, pivot=measures.best_pivot, score=measures.deficit)
-    best, found = measures.best_other, measures.posterior.hypotheses
-    kind, score = measures.posterior.kind(best), measures.odds_against
-    return Alternative(kind=kind, axis=found.axes[best], pivot=found.pivots[best], score=score)
 
 
 def summary_of(robot: Robot, case: JointCase) -> JointSummary:
@@ -335,23 +297,29 @@ def summary_of(robot: Robot, case: JointCase) -> JointSummary:
     joint = case.measures.joint
     declared = robot.joint_by_name[joint.source]
     limited = declared.kind in (JointType.REVOLUTE, JointType.PRISMATIC)
-    better = better_joint(case)
     return JointSummary(
         joint=joint.source,
         kind=declared.kind.value,
         declared_limits=(declared.lower, declared.upper) if limited else None,
-        best_alternative=None if better is None else _at_zero(robot, case, better),
+        best_alternative=_better_joint(robot, case),
     )
 
 
-def _at_zero(robot: Robot, case: JointCase, better: Alternative) -> dict[str, Any]:
-    """The better joint in the world frame at zero: where the parent carries it from its place at rest."""
-    carrier = case.bodies.truth.part_links[case.measures.joint.parent][0]
+def _better_joint(robot: Robot, case: JointCase) -> dict[str, Any] | None:
+    """Return the joint that the geometry speaks for instead; None where its line and its type are not in doubt.
+
+    Its line is in the world frame at zero, where the parent carries it from its place at rest.
+    """
+    measures = case.measures
+    if not case.examined or not (case.doubts_type or case.doubts_line):
+        return None
+    found, best = measures.posterior.hypotheses, measures.best_other if case.doubts_type else measures.best
+    carrier = case.bodies.truth.part_links[measures.joint.parent][0]
     T_world_rest = forward_kinematics(robot, rest_configuration(robot))[carrier]
     T_zero_rest = forward_kinematics(robot, {})[carrier] @ np.linalg.inv(T_world_rest)
     return {
-        "kind": better.kind.value,
-        "axis": (T_zero_rest[:3, :3] @ better.axis).tolist(),
-        "pivot": (T_zero_rest[:3, :3] @ better.pivot + T_zero_rest[:3, 3]).tolist(),
-        "score": better.score,
+        "kind": measures.posterior.kind(best).value,
+        "axis": (T_zero_rest[:3, :3] @ found.axes[best]).tolist(),
+        "pivot": (T_zero_rest[:3, :3] @ found.pivots[best] + T_zero_rest[:3, 3]).tolist(),
+        "score": measures.odds_against if case.doubts_type else measures.deficit,
     }

@@ -17,7 +17,6 @@ from kinematify.joints.candidate import FIXED, GIVEN, SLIDE, TURN
 from kinematify.joints.choice.judge import judge
 from kinematify.joints.features.columns import features_of
 from kinematify.joints.features.edge_scene import joint_scene, part_frames
-from kinematify.joints.features.turn_cues import outwardness
 from kinematify.joints.features.workspace import PartCache
 from kinematify.joints.hypotheses.propose import propose
 from kinematify.robot.joint_type import JointType
@@ -173,7 +172,7 @@ class JointMeasures:
         return np.asarray((not self.slides) * beside / self.scene.frame.diagonal)
 
     @cached_property
-    def _best(self) -> int:
+    def best(self) -> int:
         """Position of the best candidate of the declared type."""
         every = self.posterior.hypotheses
         others = (every.kinds == (SLIDE if self.slides else TURN)) & ~_given(every)
@@ -186,17 +185,17 @@ class JointMeasures:
         of_type = every.kinds == (SLIDE if self.slides else TURN)
         same = self._near(every) & (self._away(every) < self.settings.same_distance)
         own = float(scores[of_type & (_given(every) | same)].max())
-        return max(0.0, float(scores[self._best]) - own)
+        return max(0.0, float(scores[self.best]) - own)
 
     @property
     def best_axis(self) -> FloatArray:
         """Of the best candidate of the declared type, shape (3,)."""
-        return np.asarray(self.posterior.hypotheses.axes[self._best])
+        return np.asarray(self.posterior.hypotheses.axes[self.best])
 
     @property
     def best_pivot(self) -> FloatArray:
         """World frame at rest [m], shape (3,)."""
-        return np.asarray(self.posterior.hypotheses.pivots[self._best])
+        return np.asarray(self.posterior.hypotheses.pivots[self.best])
 
     @property
     def reach(self) -> float:
@@ -211,42 +210,6 @@ class JointMeasures:
         row = np.flatnonzero(_given(every) & (every.kinds == (SLIDE if self.slides else TURN)))
         forward, backward = self.features.free_parent[row[0]] * (self.scene.diagonal if self.slides else 1.0)
         return float(forward), float(backward)
-
-    @cached_property
-    def outward(self) -> float:
-        """Of a turn, the cosine between the first motion towards + and the way out of the parent.
-
-        Of a slide, where the child is along it: 1 at the far side of the parent or beyond, -1 at the near side, 0 in
-        the middle.
-        """
-        if not self.slides:
-            every = self.proposed
-            return float(outwardness(self.scene, every.at(np.flatnonzero(_given(every) & (every.kinds == TURN))))[0])
-        child, parent = (
-            self.cache.samples(part).points @ self.joint.axis for part in (self.scene.child, self.scene.parent)
-        )
-        apart = 0.5 * float(child.min() + child.max() - parent.min() - parent.max())
-        return apart / max(0.5 * float(np.ptp(child) + np.ptp(parent)), 1e-12)
-
-    @property
-    def length(self) -> float:
-        """Size of the child along the declared line [m]."""
-        return float(np.ptp(self.cache.samples(self.scene.child).points @ self.joint.axis))
-
-    @property
-    def ajar(self) -> bool:
-        """A plate that touches its parent along one edge only, so that it stands open."""
-        return bool(np.nanmax(self.features.columns["turn_ajar_contact"]) > 0.0)
-
-    @cached_property
-    def parted(self) -> float:
-        """How much farther a slide is from its parent at the end of its range than at rest [m]."""
-        joint, points = self.joint, self.cache.samples(self.scene.child).points
-        way = joint.upper if abs(joint.upper) >= abs(joint.lower) else joint.lower
-        if not np.isfinite(way):
-            return 0.0
-        gaps = [float(self.cache.distances(self.scene.parent, points + t * joint.axis).min()) for t in (0.0, way)]
-        return gaps[1] - gaps[0]
 
 
 def measure_joints(bodies: Bodies, settings: EvidenceSettings, *, seed: int) -> list[JointMeasures]:

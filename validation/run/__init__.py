@@ -27,7 +27,7 @@ from kinematify.validation.isolation import load_imports, run_stages
 from kinematify.validation.lines import in_source, with_lines
 from kinematify.validation.model_cache import has_model
 from kinematify.validation.run.causes import with_causes
-from kinematify.validation.run.loaded_findings import across_engines, with_refusals
+from kinematify.validation.run.loaded_findings import CONTRACT, across_engines
 from kinematify.validation.run.plan import (
     asset_stage,
     geometry_stage,
@@ -80,7 +80,8 @@ def validate(
         path: The file.
         package_dirs: Where packages lie (``package://``).
         settings: Thresholds and budgets; the shipped ones if absent.
-        selected: Ids of the checks to run; all if absent. Those of file and meshes always run, and their errors count.
+        selected: Ids of the checks to run; all but those of the contract if absent. Those of file and meshes always
+            run, and their errors count.
         engines: Of `kinematify.simulation.engines.ENGINES`; all that are installed if absent. Checks of others are
             reported as skipped, with the reason.
         named: The user named the engines: what one of them shows is an error, even if others were not asked.
@@ -102,7 +103,7 @@ def validate(
     if task is not None:
         require("A robot arm", "pin", "coal", "ompl")
     chosen = tuple(engine for engine in ENGINES if engine in engines)
-    checks = _checks(task)
+    checks = _checks(task, selected or ())
     wanted = frozenset(checks) if selected is None else frozenset(checks) & frozenset(selected)
     run = _Run(
         path=Path(path), selected=wanted, progress=progress, task=task, engines=chosen, named=named, checks=checks
@@ -143,9 +144,13 @@ _LEEWAY = 20.0
 """Processor time that the stage of a task has to end what it is at [s]."""
 
 
-def _checks(task: TaskRequest | None) -> dict[str, Check]:
-    """Checks of the report; those of a task only when it was asked for."""
-    return {name: check for name, check in CHECKS.items() if task is not None or not name.startswith("KV7")}
+def _checks(task: TaskRequest | None, selected: Collection[str]) -> dict[str, Check]:
+    """Checks of the report; those of a task and of the contract only when they were asked for."""
+    return {
+        name: check
+        for name, check in CHECKS.items()
+        if (task is not None or not name.startswith("KV7")) and (name in selected or not name.startswith(CONTRACT))
+    }
 
 
 class _Run:
@@ -311,7 +316,7 @@ class _Run:
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
         results = [self._result(key) for key in keys(list(self.checks.values()))]
         robot = self.robot
-        results = across_engines(with_refusals(with_lines(results, robot)), self.engines, named=self.named)
+        results = across_engines(with_lines(results, robot), self.engines, named=self.named)
         if self.description is not None and self.description.form != "urdf":
             results = in_source(results, self.description)
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)

@@ -14,9 +14,11 @@ if TYPE_CHECKING:
 
     from kinematify.validation.finding import CheckResult, Finding
 
+_Z = 1.96
+"""Of an interval of 95 %."""
 _FAMILY, _OPENS, _MOVES, _ENERGY = "KV8", "KV801", "KV804", "KV806"
-_TENSORS = ("KV204", "KV205")
-"""Checks of inertia tensors, for which engines refuse files."""
+CONTRACT = "KV82"
+"""Begin of the ids of the contract for objects."""
 
 
 def as_loaded_words(checks: Sequence[CheckResult]) -> str:
@@ -51,35 +53,30 @@ def as_loaded_words(checks: Sequence[CheckResult]) -> str:
     return "\n".join(words)
 
 
-def with_refusals(checks: Sequence[CheckResult]) -> list[CheckResult]:
-    """Say of inertias for which an engine refuses the untouched file that it does; they are no mere notes then.
+def contract_words(reports: Sequence[Sequence[CheckResult]]) -> str:
+    """Return how many of some models keep the contract, with Wilson's interval of 95 %; empty if it was not asked for.
 
     Args:
-        checks: All results.
+        reports: All results of each model.
     """
-    refusals: dict[str, list[str]] = {}
-    for check in checks:
-        for finding in check.findings:
-            if check.check == _OPENS and finding.link is not None:
-                refusals.setdefault(finding.link, []).append(ENGINES[check.engine or ""].title)
+    asked = [[check for check in checks if check.check.startswith(CONTRACT)] for checks in reports]
+    states = [_contract_state({check.status for check in checks}) for checks in asked if checks]
+    if not states:
+        return ""
+    if len(states) == 1:
+        return f"contract: {states[0]}"
+    kept, count = states.count("kept"), states.count("kept") + states.count("failed")
+    others = ", ".join(f"{name} {states.count(name)}" for name in ("blocked", "not applicable"))
+    share, part = kept / max(count, 1), _Z**2 / max(count, 1)
+    spread = math.sqrt(part * share * (1.0 - share) + part**2 / 4.0)
+    low, high = ((share + part / 2.0 + sign * spread) / (1.0 + part) for sign in (-1, 1))
+    return f"contract: kept by {kept} of {count} ({share:.0%}, 95 % interval {low:.0%} to {high:.0%}); {others}"
 
-    def worded(finding: Finding) -> Finding:
-        engines = refusals.get(finding.link or "", [])
-        if finding.check not in _TENSORS or not engines:
-            return finding
-        return replace(
-            finding,
-            severity=Severity.WARNING if finding.severity is Severity.NOTE else finding.severity,
-            message=f"{finding.message} {' and '.join(engines)} refuses the file for it.",
-        )
 
-    found = [check.with_findings(map(worded, check.findings)) for check in checks]
-    return [
-        replace(check, status=Status.FAIL)
-        if check.check in _TENSORS and any(item.severity is not Severity.NOTE for item in check.findings)
-        else check
-        for check in found
-    ]
+def _contract_state(found: set[Status]) -> str:
+    if Status.FAIL in found:
+        return "failed"
+    return "blocked" if Status.BLOCKED in found else "kept" if Status.PASS in found else "not applicable"
 
 
 def across_engines(checks: Sequence[CheckResult], engines: Sequence[str], *, named: bool = True) -> list[CheckResult]:
