@@ -59,9 +59,6 @@ class FeedbackRow(StrEnum):
     NOT_CARRIED = "against this parent"
     DERAILED = "against this line, this type and this parent; a slide ends before"
     GUIDE = "the range ends before"
-    LINE = "against this line"
-    AS_LOADED = "against this line, this type and this parent"
-    NO_WAY = "against this line, this type and this parent, if several places of the robot were tried"
     EXPORTER = "none: files, frames or masses are for the exporter to fix"
 
 

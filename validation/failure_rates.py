@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 RIGHT, LINE, TYPE, PARENT, RANGE = "right", "line", "type", "parent", "range"
 CLASSES = (RIGHT, LINE, TYPE, PARENT, RANGE)
 """What a joint was: right, or wrong in its line (axis or place), its type, its parent, or its range or sign."""
-GEOMETRY, ENGINES, TASK = "geometry", "engines", "task"
 RATES_FILE = "failure_rates.json"
 _SURE = 1.645  # standard errors: the true ratio is larger in 95 of 100 cases
 
@@ -33,8 +32,8 @@ _SURE = 1.645  # standard errors: the true ratio is larger in 95 of 100 cases
 class FailureRates:
     """Counts of joints, and of those that a check found fault with."""
 
-    joints: Mapping[str, Mapping[str, int]]
-    """Tier -> class of joint -> how many were simulated there."""
+    joints: Mapping[str, int]
+    """Class of joint -> how many were simulated."""
     failures: Mapping[str, Mapping[str, Mapping[str, int]]]
     """Check -> severity of its worst finding -> class of joint -> how many of them it found that fault with."""
     provenance: Mapping[str, Any]
@@ -47,7 +46,7 @@ class FailureRates:
             severity: Of its finding: a warning is more frequent on right joints than an error.
             wrong: `LINE`, `TYPE`, `PARENT` or `RANGE`.
         """
-        seen, failed = self.joints.get(tier_of(check), {}), self.failures.get(check, {}).get(severity, {})
+        seen, failed = self.joints, self.failures.get(check, {}).get(severity, {})
         if not (seen.get(wrong) and seen.get(RIGHT)):
             return 0.0
         # The usual interval of a ratio of two rates (Katz and others 1978), with half a failure added for none.
@@ -57,13 +56,6 @@ class FailureRates:
             ratio += sign * math.log(count / joints)
             variance += max(1.0 / count - 1.0 / joints, 0.0)
         return max(ratio - _SURE * math.sqrt(variance), 0.0)
-
-
-def tier_of(check: str) -> str:
-    """Return the tier of `kinematify refine` that runs a check."""
-    if check.startswith("KV7"):
-        return TASK
-    return GEOMETRY if check.startswith(("KV30", "KV31", "KV32")) else ENGINES
 
 
 @cache

@@ -12,10 +12,10 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 from pydantic import Field
 
@@ -31,7 +31,7 @@ from benchmarks.planted import (
     planted_faults,
     true_mechanism,
 )
-from benchmarks.study import Options, Study, among, explained
+from benchmarks.study import Options, Study, explained
 from kinematify import __version__
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
@@ -40,9 +40,9 @@ from kinematify.evaluation.benchmark_job import erased_item
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
 from kinematify.evaluation.result_record import table
 from kinematify.refinement.joint_plan import Plan
-from kinematify.refinement.simulate import TIERS, ExpensiveTiers, Simulator
+from kinematify.refinement.simulate import Simulator
 from kinematify.validation import failure_rates
-from kinematify.validation.failure_rates import CLASSES, GEOMETRY, RIGHT, FailureRates, tier_of
+from kinematify.validation.failure_rates import CLASSES, RIGHT, FailureRates
 from kinematify.validation.finding import Severity
 from kinematify.validation.run.feedback import only_collision_meets
 
@@ -76,31 +76,26 @@ _CLASS = {
 
 
 class FailuresOptions(Options):
-    """Which objects, how far they are simulated, where the counts go."""
+    """Which objects, where the counts go."""
 
     data: str = Field("everyday2", description="Folder or set of objects.")
     objects: tuple[str, ...] = Field(SAMPLE, description="Names or patterns of objects; * for all.")
-    tiers: Annotated[tuple[str, ...], among(TIERS)] = Field(
-        ("geometry",), description="Some of geometry, engines, task."
-    )
     seed: int = Field(0, description="Draws the joints.")
-    write: str | None = Field(None, description="File for the counts; a tier that was not simulated keeps its own.")
+    write: str | None = Field(None, description="File for the counts.")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Watched:
-    """One object whose joints are watched in one tier."""
+    """One object whose joints are watched."""
 
     item: BenchObject
-    tier: str
     seed: int
 
 
 def measure(options: FailuresOptions, work: Work) -> Measured:
     """Simulate every object as it is and with each fault, and count."""
     asked = {
-        f"{item.name}, {tier}": Watched(item=item, tier=tier, seed=options.seed)
-        for tier in options.tiers
+        item.name: Watched(item=item, seed=options.seed)
         for item in matching(find_objects(options.data), options.objects)
     }
     records = [joint for record in work.each(watched, asked, timeout=7200.0).values() for joint in record["joints"]]
@@ -116,14 +111,14 @@ def measure(options: FailuresOptions, work: Work) -> Measured:
 
 
 def watched(asked: Watched) -> Record:
-    """The joints of one object, right and wrong, with the checks that each failed in one tier."""
+    """The joints of one object, right and wrong, with the checks that each failed."""
     mechanism = true_mechanism(erased_item(asked.item, CONDITIONS[0]), load_config())
     if mechanism is None:
         return {"joints": []}
-    right = _failed(mechanism.inference, asked.tier)
+    right = _failed(mechanism.inference)
     joints = [_record(asked, part, RIGHT, NOTHING, failed) for part, failed in right.items()]
     for planted in planted_faults(mechanism, asked.seed, _FAULTS):
-        failed = _failed(planted.inference, asked.tier)[planted.part]
+        failed = _failed(planted.inference)[planted.part]
         what = _CLASS.get(planted.fault) or _class_of_second(mechanism.inference, planted.inference, planted.part)
         joints.append(_record(asked, planted.part, what, planted.fault, failed))
     return {"joints": joints}
@@ -138,7 +133,6 @@ def _class_of_second(right: Inference, wrong: Inference, part: str) -> str:
 def _record(asked: Watched, part: str, what: str, fault: str, failed: Mapping[str, Severity]) -> Record:
     return {
         "object": asked.item.name,
-        "tier": asked.tier,
         "part": part,
         "class": what,
         "fault": fault,
@@ -146,18 +140,15 @@ def _record(asked: Watched, part: str, what: str, fault: str, failed: Mapping[st
     }
 
 
-def _failed(inference: Inference, tier: str) -> dict[str, dict[str, Severity]]:
-    """Checks of a tier that found fault with the joint above each part, with the worst that they found."""
-    plan = Plan(assembly=inference.assembly, config=inference.config, tree=inference.trees[0], joints=inference.joints)
-    settings = load_settings()
-    verdict = Simulator(plan.model, settings.geometry).judge(plan.model)
-    if tier != GEOMETRY:
-        verdict = ExpensiveTiers(settings=settings).deepened(verdict, plan, tier)
+def _failed(inference: Inference) -> dict[str, dict[str, Severity]]:
+    """Checks that found fault with the joint above each part, with the worst that they found."""
+    plan = Plan(inference=inference)
+    verdict = Simulator(plan.model, load_settings().geometry).judge(plan.model)
     carrier = {joint.child: joint.name for joint in plan.model.joints}
     failed: dict[str, dict[str, Severity]] = {name: {} for name in carrier.values()}
     for finding in verdict.findings:
         joint = _suspected(finding, carrier)
-        if joint not in failed or tier_of(finding.check) != tier or only_collision_meets(finding):
+        if joint not in failed or only_collision_meets(finding):
             continue
         if finding.severity is not Severity.NOTE and failed[joint].get(finding.check) is not Severity.ERROR:
             failed[joint][finding.check] = finding.severity
@@ -174,34 +165,23 @@ def _suspected(finding: Finding, carrier: dict[str, str]) -> str | None:
 
 def rates_of(records: Iterable[Record], provenance: Record) -> FailureRates:
     """Count joints and failures by class."""
-    joints: dict[str, Counter[str]] = {}
+    joints: Counter[str] = Counter()
     failures: dict[str, dict[str, Counter[str]]] = {}
     for record in records:
-        joints.setdefault(record["tier"], Counter())[record["class"]] += 1
+        joints[record["class"]] += 1
         for check, severity in record["failed"].items():
             failures.setdefault(check, {}).setdefault(severity, Counter())[record["class"]] += 1
-    return FailureRates(
-        joints={tier: dict(counts) for tier, counts in joints.items()},
-        failures={
-            check: {severity: dict(counts) for severity, counts in sorted(failures[check].items())}
-            for check in sorted(failures)
-        },
-        provenance=dict.fromkeys(joints, provenance),
-    )
+    counts = {
+        check: {severity: dict(counted) for severity, counted in sorted(failures[check].items())}
+        for check in sorted(failures)
+    }
+    return FailureRates(joints=dict(joints), failures=counts, provenance=provenance)
 
 
 def _write(rates: FailureRates, path: Path) -> None:
-    """Write counts; those of tiers that were not simulated stay as the file has them."""
     try:
-        old = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
-        kept = {check: item for check, item in old.get("failures", {}).items() if tier_of(check) not in rates.joints}
-        facts = {
-            "joints": {**old.get("joints", {}), **rates.joints},
-            "failures": dict(sorted({**kept, **rates.failures}.items())),
-            "provenance": {**old.get("provenance", {}), **rates.provenance},
-        }
-        path.write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
-    except (OSError, ValueError) as error:
+        path.write_text(json.dumps(asdict(rates), indent=1) + "\n", encoding="utf-8")
+    except OSError as error:
         raise OutputError(
             f"The counts cannot be written to {path}: {error}. Give another file with --write."
         ) from error
@@ -215,7 +195,7 @@ def report(found: Report[Record]) -> list[str]:
         (
             check,
             severity,
-            *(f"{counts.get(what, 0)} of {rates.joints[tier_of(check)].get(what, 0)}" for what in CLASSES),
+            *(f"{counts.get(what, 0)} of {rates.joints.get(what, 0)}" for what in CLASSES),
             *(f"{rates.weight(check, Severity(severity), what):.2f}" for what in wrong),
         )
         for check, by_severity in rates.failures.items()

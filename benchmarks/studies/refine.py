@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from benchmarks.planted import FAULTS, NOTHING, PARENT, SECOND, PlantedJoint, planted_faults, true_mechanism
+from benchmarks.planted import FAULTS, NOTHING, PARENT, PlantedJoint, planted_faults, true_mechanism
 from benchmarks.study import Options, Study, among, explained
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
@@ -38,7 +38,7 @@ from kinematify.refinement import refine
 from kinematify.refinement.candidates import CandidateJoints, is_same
 from kinematify.refinement.choose import Chooser
 from kinematify.refinement.joint_plan import Plan
-from kinematify.refinement.simulate import TIERS, ExpensiveTiers, Simulator
+from kinematify.refinement.simulate import Simulator
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,21 +52,16 @@ SAMPLE = (
     "faucet_1466", "fridge_11178", "laptop_10040", "oven_7138", "trash_can_102181", "window_102906",
 )  # fmt: skip
 """Everyday objects that are measured where none are named; none of them is in the fit of the choice of joints."""
-_SECONDS = 300.0
-"""For each refinement, so that no answer depends on how busy the machine is [s]."""
 _IOU_LOST = 0.1
 AS_INFERRED, INFERRED = "as inferred", "inferred"
 
 
 class RefineOptions(Options):
-    """Which objects, which faults, how far they are simulated."""
+    """Which objects, which faults."""
 
     data: str = Field("everyday", description="Folder or set of objects.")
     objects: tuple[str, ...] = Field(SAMPLE, description="Names or patterns of objects; * for all.")
     faults: Annotated[tuple[str, ...], among(FAULTS)] = Field(FAULTS, description="Some of the faults.")
-    tiers: Annotated[tuple[str, ...], among(TIERS)] = Field(
-        ("geometry",), description="Some of geometry, engines, task."
-    )
     level: bool = Field(default=False, description="Planted joints score as the best candidate does.")
     inferred: tuple[str, ...] = Field((), description="Objects refined as they are inferred as well; * for all.")
     seed: int = Field(0, description="Draws the joints.")
@@ -79,7 +74,6 @@ class Planting:
 
     item: BenchObject
     faults: tuple[str, ...]
-    tier: str
     level: bool
     seed: int
     config: str
@@ -91,15 +85,13 @@ def measure(options: RefineOptions, work: Work) -> Measured:
     planted = {item.name for item in matching(every, options.objects)}
     inferred = {item.name for item in matching(every, options.inferred)} if options.inferred else set()
     asked = {
-        f"{item.name}, {tier}": Planting(
+        item.name: Planting(
             item=item,
             faults=options.faults if item.name in planted else (),
-            tier=tier,
             level=options.level,
             seed=options.seed,
             config=options.config,
         )
-        for tier in options.tiers
         for item in every
         if item.name in planted | inferred
     }
@@ -125,24 +117,18 @@ def judged_inferences(asked: Planting) -> Record:
     if mechanism is None:
         return {"faults": []}
     whole = PlantedJoint(fault=AS_INFERRED, part="", inference=replace(mechanism.inference, joints=mechanism.chosen))
-    judged = [
-        {"object": asked.item.name, "tier": asked.tier, "fault": INFERRED, **row}
-        for row in mistakes(mechanism, asked.tier)
-    ]
+    judged = [{"object": asked.item.name, "fault": INFERRED, **row} for row in mistakes(mechanism)]
     return {"faults": [_refined(mechanism, whole, asked), *judged]}
 
 
-def mistakes(mechanism: TrueMechanism, tier: str) -> list[Record]:
+def mistakes(mechanism: TrueMechanism) -> list[Record]:
     """Simulate the right near-best hypotheses of every joint that was chosen wrong, beside the chosen one."""
     answer = replace(mechanism.inference, joints=mechanism.chosen)
-    plan = Plan(assembly=answer.assembly, config=answer.config, tree=answer.trees[0], joints=answer.joints)
-    settings, wrong = load_settings(), mechanism.wrong(answer)
+    plan, wrong = Plan(inference=answer), mechanism.wrong(answer)
     chooser = Chooser(
+        plan=plan,
         candidates=CandidateJoints(answer.assembly, answer.graph, answer.bearings, answer.config),
-        simulator=Simulator(plan.model, settings.geometry),
-        dear=ExpensiveTiers(settings=settings),
-        config=answer.config.refine,
-        in_time=lambda: True,
+        simulator=Simulator(plan.model, load_settings().geometry),
     )
     records = []
     for joint in answer.joints:
@@ -151,13 +137,9 @@ def mistakes(mechanism: TrueMechanism, tier: str) -> list[Record]:
             continue
         best = joint.alternatives[0].score
         near = [item for item in joint.alternatives if item.score >= best - answer.config.refine.margin]
-        others = [chooser.candidates.realise(plan.tree, joint, item) for item in near if not is_same(joint, item)]
-        right = [
-            other
-            for other in others
-            if name not in mechanism.wrong(replace(answer, joints=plan.with_joint(other).joints))
-        ]
-        tried = [chooser.trial(plan, other, 0.0, tier).against for other in (joint, *right)]
+        others = [chooser.candidates.realise(answer.trees[0], joint, item) for item in near if not is_same(joint, item)]
+        right = [other for other in others if name not in mechanism.wrong(plan.with_joint(other).inference)]
+        tried = [chooser.trial(other, 0.0).against for other in (joint, *right)]
         records.append({
             "part": name,
             "hypotheses": len(near),
@@ -170,7 +152,7 @@ def mistakes(mechanism: TrueMechanism, tier: str) -> list[Record]:
 
 def _refined(mechanism: TrueMechanism, planted: PlantedJoint, asked: Planting) -> Record:
     start = time.perf_counter()
-    refinement = refine(planted.inference, tier=asked.tier, seconds=_SECONDS)
+    refinement = refine(planted.inference)
     seconds = time.perf_counter() - start
     history, answer = refinement.history, refinement.inference
     before, after = mechanism.scores(planted.inference), mechanism.scores(answer)
@@ -181,7 +163,6 @@ def _refined(mechanism: TrueMechanism, planted: PlantedJoint, asked: Planting) -
     cured = {part for part in wrong if after[part].matched} if planted.fault == PARENT else wrong - left
     return {
         "object": asked.item.name,
-        "tier": asked.tier,
         "fault": planted.fault,
         "part": planted.part,
         "failed": list(dict.fromkeys(failed for item in history.rounds for failed in item.failed)),
@@ -197,38 +178,31 @@ def _refined(mechanism: TrueMechanism, planted: PlantedJoint, asked: Planting) -
 
 
 def report(found: Report[Record]) -> list[str]:
-    """What was found, repaired and spoilt, by tier and fault, and the faults that were not repaired."""
+    """What was found, repaired and spoilt, by fault, and the faults that were not repaired."""
     blocks = [explained(__doc__)]
     inferred = [record for record in found.records if record["fault"] == INFERRED]
     if inferred:
-        heads = ("simulated by", "wrong joints", "in the pool", "found", "preferred")
-        rows = [_mistake_row(tier, own) for tier, own in grouped(inferred, by=itemgetter("tier")).items()]
+        counts = (
+            sum(row["in_pool"] for row in inferred),
+            sum(row["against"] > 0.0 for row in inferred),
+            sum(row["preferred"] for row in inferred),
+        )
+        heads = ("wrong joints", "in the pool", "found", "preferred")
+        row = (str(len(inferred)), *(_part_of(count, len(inferred)) for count in counts))
         lines = [
-            f"- {row['object']}, {row['part']}, {row['tier']}: {row['hypotheses']} near-best hypotheses, "
+            f"- {row['object']}, {row['part']}: {row['hypotheses']} near-best hypotheses, "
             f"{'one' if row['in_pool'] else 'none'} right; {row['against']:.1f} against the chosen one"
             for row in inferred
         ]
-        blocks += ["## What simulation shows of joints inferred wrong", table(heads, rows), "\n".join(lines)]
+        blocks += ["## What simulation shows of joints inferred wrong", table(heads, [row]), "\n".join(lines)]
     planted = [record for record in found.records if record["fault"] != INFERRED]
-    for tier, records in grouped(planted, by=itemgetter("tier")).items():
-        titles = ("planted", "faults", "found", "repaired", "harm", "time")
-        by_fault = grouped(records, by=itemgetter("fault"))
-        rows = [_row(fault, by_fault[fault]) for fault in (*FAULTS, NOTHING, AS_INFERRED) if fault in by_fault]
-        usual = [record for record in records if record["fault"] in FAULTS[:-1]]
-        rows += [_row("**all but second best**", usual)] if usual else []
-        blocks += [f"## Simulated by {tier}", table(titles, rows), "### Not repaired", _misses(records)]
+    titles = ("planted", "faults", "found", "repaired", "harm", "time")
+    by_fault = grouped(planted, by=itemgetter("fault"))
+    rows = [_row(fault, by_fault[fault]) for fault in (*FAULTS, NOTHING, AS_INFERRED) if fault in by_fault]
+    usual = [record for record in planted if record["fault"] in FAULTS[:-1]]
+    rows += [_row("**all but second best**", usual)] if usual else []
+    blocks += ["## Planted and as inferred", table(titles, rows), "### Not repaired", _misses(planted)]
     return [*blocks, "Time: of the refinement over that of the inference, median."]
-
-
-def _mistake_row(tier: str, records: Sequence[Record]) -> tuple[str, ...]:
-    found = [record["against"] > 0.0 for record in records]
-    return (
-        tier,
-        str(len(records)),
-        _part_of(sum(row["in_pool"] for row in records), len(records)),
-        _part_of(sum(found), len(records)),
-        _part_of(sum(row["preferred"] for row in records), len(records)),
-    )
 
 
 def _row(title: str, records: Sequence[Record]) -> tuple[str, ...]:
@@ -245,30 +219,6 @@ def _row(title: str, records: Sequence[Record]) -> tuple[str, ...]:
 
 def _part_of(some: int, of: int) -> str:
     return f"{some} ({some / of:.0%})" if of else "-"
-
-
-def sentence(found: Report[Record]) -> str:
-    """What the page of results says of it."""
-    parts = []
-    planted_records = [record for record in found.records if record["fault"] != INFERRED]
-    for tier, records in grouped(planted_records, by=itemgetter("tier")).items():
-        by_fault = grouped(records, by=itemgetter("fault"))
-        planted = [record["repaired"] for fault in FAULTS if fault != SECOND for record in by_fault.get(fault, [])]
-        second = [record["repaired"] for record in by_fault.get(SECOND, [])]
-        harmed = sum(len(record["harmed"]) for record in by_fault.get(NOTHING, []))
-        joints = sum(record["joints"] for record in by_fault.get(NOTHING, []))
-        own = by_fault.get(AS_INFERRED, [])
-        wrong, cured, right = (sum(record[what] for record in own) for what in ("wrong", "repaired", "joints"))
-        of_its_own = (
-            f"; of what is inferred, with the true tree given, it repairs {cured} of {wrong} wrong joints and spoils "
-            f"{sum(len(record['harmed']) for record in own)} of {right - wrong} right ones"
-        )
-        parts.append(
-            f"simulated by {tier} it repairs {sum(planted)} of {len(planted)} wrong joints that were planted in true "
-            f"mechanisms, {sum(second)} of {len(second)} where the second-best hypothesis stands in place of the best, "
-            f"as inference errs, and spoils {harmed} of {joints} joints that were right" + (of_its_own if own else "")
-        )
-    return f"What it is worth on everyday objects: {'; '.join(parts)} ([results/refine.md](../results/refine.md))."
 
 
 def _misses(records: Sequence[Record]) -> str:

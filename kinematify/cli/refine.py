@@ -15,14 +15,10 @@ from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from kinematify.pipeline.inference import Inference
     from kinematify.refinement import Refinement
 
-TIERS = ("geometry", "engines", "task")
-_ROUND_HEADINGS = ("round", "simulated by", "chosen again", "failed", "cause", "score", "time [s]")
-"""Of `round_rows`; the round that was kept has a star."""
+_HEADINGS = ("part", "what", "before", "after", "why")
 
 
 @click.command(
@@ -31,8 +27,7 @@ _ROUND_HEADINGS = ("round", "simulated by", "chosen again", "failed", "cause", "
     epilog=examples(
         "kinematify refine out -o refined",
         "kinematify refine out --force",
-        "kinematify refine out -o refined --tier engines --rounds 5",
-        "kinematify refine out -o refined --budget 20",
+        "kinematify refine out -o refined --rounds 5",
         "kinematify refine out -o refined --json - > rounds.json",
     ),
 )
@@ -41,19 +36,6 @@ _ROUND_HEADINGS = ("round", "simulated by", "chosen again", "failed", "cause", "
     "-o", "--out", type=click.Path(path_type=Path), help="Folder to make for the refined model; FOLDER if not given."
 )
 @click.option("--rounds", type=click.IntRange(min=0), help="Rounds at most; 3 if not given. 0 only simulates.")
-@click.option(
-    "--tier",
-    type=click.Choice(TIERS),
-    default="geometry",
-    show_default=True,
-    help="How far plans are simulated: exact sweeps; MuJoCo and PyBullet too; an arm that pulls as well.",
-)
-@click.option(
-    "--budget",
-    type=float,
-    metavar="SECONDS",
-    help="Time for all rounds. If not given, twice that of the inference for geometry, and no limit for the others.",
-)
 @click.option("--base", metavar="NAME", help="Part that the tree is rooted at, if the choice made is wrong.")
 @collision_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder; without -o, the model in FOLDER.")
@@ -65,8 +47,6 @@ def command(
     folder: Path,
     out: Path | None,
     rounds: int | None,
-    tier: str,
-    budget: float | None,
     base: str | None,
     collision: str | None,
     force: bool,
@@ -79,7 +59,8 @@ def command(
     FOLDER was written by `kinematify infer` or `generate`. Every joint is swept through its range by exact geometry; a
     collision, a lost contact or an unreachable limit is evidence against its axis, type, range or parent. The next best
     candidates of the joints that fail are simulated too; the evidence of shape and simulation is added. No collision is
-    ever switched off, no range is cut to hide a failure, and nothing is fixed without evidence.
+    ever switched off, no range is cut to hide a failure, and nothing is fixed without evidence. A joint that is wrong
+    but moves freely stays: no simulation sees it.
 
     The best round is written to OUT: fewest errors, then fewest warnings, then most evidence; the model as it was wins
     every tie. inference.json keeps all rounds. OUT also gets the other files of FOLDER, but no report about the earlier
@@ -95,7 +76,6 @@ def command(
     from kinematify.refinement.folder import open_model_folder, read_record, stored_state, write_refined
 
     target = _target(folder, out, force=force)
-    _check_budget(budget)
     with writing(target), progress_reporter() as progress:
         progress("reading the parts", 0.0)
         assembly, config = open_model_folder(folder)
@@ -105,8 +85,6 @@ def command(
         refinement = refine(
             stored_state(inference, read_record(folder)),
             rounds=rounds,
-            tier=tier,
-            seconds=budget,
             base=base,
             progress=lambda stage, done: progress(stage, 0.4 + 0.5 * done),
         )
@@ -137,48 +115,24 @@ def exit_status(refinement: Refinement) -> int:
 
 
 def describe_refinement(inference: Inference) -> str:
-    """The rounds as a table, which one was kept and why the loop ended."""
+    """What changed and why as a table, which round was kept and why the loop ended."""
+    from kinematify.validation.run.outcome import counted_words
+
     record = inference.refinement
     if record is None:
         return ""
-    table = format_table(_ROUND_HEADINGS, round_rows(record)) if record["rounds"] else ""
-    return "\n".join(line for line in (table, *_round_words(record)) if line)
-
-
-def round_rows(refinement: Mapping[str, Any]) -> list[tuple[str, ...]]:
-    """The rounds of a refinement as rows of a table."""
-    return [_round_row(item, kept=item["number"] == refinement["kept"]) for item in refinement["rounds"]]
-
-
-def _round_row(item: Mapping[str, Any], *, kept: bool) -> tuple[str, ...]:
-    changes = [f"{it['part']}: {it['what']} {it['before']} -> {it['after']}" for it in item["changes"]]
-    return (
-        f"{item['number']}{' *' if kept else ''}",
-        item["tier"],
-        "; ".join(changes) or ("as inferred" if item["number"] == 0 else "-"),
-        "; ".join(item["failed"]) or "nothing",
-        "; ".join(item["suspected"]) or "-",
-        f"{item['score']:.2f}",
-        f"{item['seconds']:.1f}",
-    )
-
-
-def _round_words(refinement: Mapping[str, Any]) -> list[str]:
-    """Which round was kept, why the loop ended, and what was refused, a sentence each."""
-    from kinematify.validation.run.outcome import counted_words
-
-    rounds, kept = refinement["rounds"], refinement["kept"]
+    rounds, kept = record["rounds"], record["kept"]
     if not rounds:
-        return ["Nothing was simulated."]
-    chosen = next(item for item in rounds if item["number"] == kept)
-    left = f"{counted_words(chosen['errors'], 'error')} and {counted_words(chosen['warnings'], 'warning')} about motion"
+        return "Nothing was simulated."
+    changes = [item for played in rounds[: kept + 1] for item in played["changes"]]
+    table = [format_table(_HEADINGS, [[item[key] for key in _HEADINGS] for item in changes])] if changes else []
     what = "the model as it was inferred" if kept == 0 else f"round {kept}"
-    refused = [phrase for item in rounds for phrase in item["refused"]]
-    cost = f"{refinement['seconds']:.1f} s, {refinement['candidates']} candidates"
-    return [
-        f"Kept: {what}, with {left}. The loop ended because {refinement['ended']} ({cost}).",
-        *(f"Refused, because it would have hidden a failure: {phrase}." for phrase in dict.fromkeys(refused)),
-    ]
+    left = ", ".join(counted_words(rounds[kept][name], name[:-1]) for name in ("errors", "warnings"))
+    refused = dict.fromkeys(phrase for item in rounds for phrase in item["refused"])
+    cost = f"{record['seconds']:.1f} s, {record['candidates']} candidates"
+    kept_words = f"Kept: {what}, with {left} about motion. The loop ended because {record['ended']} ({cost})."
+    refusals = [f"Refused, because it would have hidden a failure: {phrase}." for phrase in refused]
+    return "\n".join([*table, kept_words, *refusals])
 
 
 def as_answer(refinement: Refinement, folder: Path) -> dict[str, Any]:
@@ -227,10 +181,3 @@ def _target(folder: Path, out: Path | None, *, force: bool) -> Path:
     if out is not None:
         check_output(out, overwrite=force)
     return target
-
-
-def _check_budget(budget: float | None) -> None:
-    from kinematify.errors import InputError
-
-    if budget is not None and not 0.0 < budget < float("inf"):
-        raise InputError(f"--budget is {budget}. Give a number of seconds above 0.")

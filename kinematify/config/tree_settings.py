@@ -129,8 +129,6 @@ class FeedbackConfig(StageConfig):
     """A slide that leaves its guide, and whose way back is free over this share of its range, stands open."""
     full_turn: float = 1.5708  # doors open by a right angle
     """Ranges of turning joints count up to this [rad]."""
-    placements: int = 3
-    """Places of the robot that must have failed before that counts."""
 
 
 class RefineConfig(StageConfig):
@@ -138,10 +136,6 @@ class RefineConfig(StageConfig):
 
     rounds: int = 3  # nothing new fails after two rounds on nearly every object
     """Rounds at most after the first."""
-    seconds_factor: float = 2.0  # three times the inference alone, all in all
-    """Time for all rounds by geometry, as a multiple of that of the inference."""
-    seconds_least: float = 2.0  # small objects are inferred in half a second, which is no time for a sweep
-    """The same, at least [s]."""
     margin: float = 3.0  # one to twenty: what is less likely is not saved by a sweep
     """Candidates this far below the best are near-best and are simulated; where the chosen joint is farther below, its
     shape alone speaks against it [log odds]."""
@@ -163,8 +157,6 @@ class RefineConfig(StageConfig):
     """The tolerance then is this multiple of the median gap to the nearest part."""
     widest_tolerance: float = 0.03  # farther apart are parts of different things
     """And at most this, fraction of the diagonal."""
-    twin_lead: float = 0.0  # their evidence is added up, and the sum decides
-    """Twins get what most of them are if their common evidence leads by so much [log odds]."""
     survival_weight: float = 0.5  # half of what the quality of joints weighs
     """Weight of R_sim, the mean survival of a tree's edges, in the reward of the tree search."""
     feedback: FeedbackConfig = section()

@@ -1,48 +1,37 @@
-"""The tiers in which a plan is simulated: exact geometry in this process, engines, and an arm that pulls.
+"""Simulation of plans by exact geometry, in this process.
 
-The checks of the cheap tier are those of `kinematify validate` (KV301 to KV321), so that a plan that passes here
-passes there. All bodies of its scene stand in the world frame at rest: the checks then run on any tree with any joints,
-and what is costly about the parts (FCL trees, signed distances) is built once. Sweeps of joints that did not change
-since an earlier plan are not repeated, so that a candidate costs only the sweep of its own joint. For the dear tiers a
-plan is written as a model folder has it.
+The checks are those of `kinematify validate` (KV301 to KV321), so that a plan that passes here passes there. All bodies
+of its scene stand in the world frame at rest: the checks then run on any tree with any joints, and what is costly about
+the parts (FCL trees, signed distances) is built once. Sweeps of joints that did not change since an earlier plan are
+not repeated, so that a candidate costs only the sweep of its own joint.
 """
 
 from __future__ import annotations
 
-import tempfile
-from dataclasses import dataclass, field, replace
-from pathlib import Path
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinematify.geometry.scene import Scene, SceneBody
 from kinematify.geometry.solid import Solid
-from kinematify.manipulation.plan_request import PULL, TaskRequest
-from kinematify.model.simulable import simulable_model
-from kinematify.model.urdf import write_model
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import Joint, Link, LinkMesh, Robot, Shape, rigid_groups
-from kinematify.validation.check import FeedbackRow, OpenCheck
+from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import checks_of
-from kinematify.validation.failure_rates import ENGINES, GEOMETRY, TASK
-from kinematify.validation.finding import Severity
 from kinematify.validation.geometry.look import GeometryContext, JointMotion
-from kinematify.validation.run import validate
 from kinematify.validation.summary import JointSummary
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from kinematify.assembly.part import Part
-    from kinematify.config.validation import GeometrySettings, ValidationSettings
+    from kinematify.config.validation import GeometrySettings
     from kinematify.geometry.sweep import JointSweep
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.refinement.joint_plan import Plan
     from kinematify.robot.arrays import FloatArray
     from kinematify.validation.check import Check
     from kinematify.validation.finding import Finding
-    from kinematify.validation.run.report import ValidationReport
 
 _UNIT_SHARE = 1e-3  # of the largest part: a good unit for FCL, which takes short lengths for none
 
@@ -150,13 +139,11 @@ def _motions_about(joint: Joint, point: FloatArray, values: FloatArray) -> Float
 
 @dataclass(frozen=True, kw_only=True)
 class MotionVerdict:
-    """Verdict of a tier on one plan."""
+    """What exact geometry says of a plan."""
 
     findings: tuple[Finding, ...]
     joints: tuple[JointSummary, ...]
     """With the free travel of each joint that moves."""
-    placements: Mapping[str, float] = field(default_factory=dict)
-    """How many places of the robot were tried for each joint, if there was a task."""
 
 
 class Simulator:
@@ -172,25 +159,19 @@ class Simulator:
         self._world = PartsWorld(model, settings)
         self._sweeps: dict[tuple[object, ...], JointSweep] = {}
 
-    def judge(self, model: KinematicModel) -> MotionVerdict:
-        """Judge a whole plan."""
+    def judge(self, model: KinematicModel, child: str | None = None) -> MotionVerdict:
+        """Judge a whole plan, or the joint above one part by its motion alone; a fixed joint has nothing to say."""
         look = GeometryContext(self._world.scene(model))
-        found = _findings([check for check in checks_of("KV30") if check.id != "KV304"], look)  # a table, no failure
+        found: list[Finding] = []
+        if child is None:
+            found = _findings([check for check in checks_of("KV30") if check.id != "KV304"], look)  # a table
         summaries: list[JointSummary] = []
         for leader, travel in enumerate(look.scene.travels):
-            own, summary = self._joint(look, model, leader, travel.joint)
-            found += own
-            summaries.append(summary)
+            if child in (None, model.robot.joint_by_name[travel.joint].child):
+                own, summary = self._joint(look, model, leader, travel.joint)
+                found += own
+                summaries.append(summary)
         return MotionVerdict(findings=tuple(found), joints=tuple(summaries))
-
-    def judge_joint(self, model: KinematicModel, joint: str) -> MotionVerdict:
-        """Judge one joint of a plan by its motion alone; a fixed joint has nothing to say."""
-        look = GeometryContext(self._world.scene(model))
-        names = [travel.joint for travel in look.scene.travels]
-        if joint not in names:
-            return MotionVerdict(findings=(), joints=())
-        found, summary = self._joint(look, model, names.index(joint), joint)
-        return MotionVerdict(findings=tuple(found), joints=(summary,))
 
     def _joint(
         self, look: GeometryContext, model: KinematicModel, leader: int, name: str
@@ -222,69 +203,6 @@ def _key(model: KinematicModel, name: str) -> tuple[object, ...]:
     """Return the key of the sweep of a joint: its line and range, and which bodies the tree moves against which."""
     joint = next(item for item in model.joints if item.name == name)
     tree = tuple(sorted((item.child, item.parent, item.kind.value == "fixed") for item in model.joints))
-    return (*_line(model, joint), tree)
-
-
-def _line(model: KinematicModel, joint: Joint) -> tuple[object, ...]:
     origin = model.link_by_name[joint.child].T_world_link[:3, 3]
-    return (
-        joint.child, joint.kind.value, joint.lower, joint.upper, joint.axis.tobytes(), origin.tobytes()
-    )  # fmt: skip
-
-
-TIERS = (GEOMETRY, ENGINES, TASK)
-"""From cheap to dear; each includes those before it."""
-
-_TRIED = " tried"
-"""After the name of a joint, in what KV705 measures."""
-_RUN = {
-    ENGINES: [check.id for check in checks_of("KV8") if check.feedback not in (None, FeedbackRow.EXPORTER)],
-    TASK: [check.id for check in checks_of("KV7") if check.severity is not Severity.NOTE],
-}
-"""Checks that a dear tier runs beside those of the tiers before it: whose findings change what is chosen.
-
-What geometry holds of the shapes at rest (KV34x) is omitted: the scores of the inference have said that.
-"""
-
-
-@dataclass(kw_only=True, eq=False)
-class ExpensiveTiers:
-    """Runs plans of one assembly in engines and tasks, each once."""
-
-    settings: ValidationSettings
-    _reports: dict[tuple[object, ...], ValidationReport] = field(default_factory=dict)
-
-    def deepened(self, verdict: MotionVerdict, plan: Plan, tier: str) -> MotionVerdict:
-        """Return what all tiers up to a dear one say of a plan.
-
-        Args:
-            verdict: What the exact geometry says of it.
-            plan: The finalist.
-            tier: ``engines`` or ``task``.
-        """
-        for dear in TIERS[1 : TIERS.index(tier) + 1]:
-            report = self._report(plan, dear)
-            seen = tuple(finding for finding in report.counted if finding.check in _RUN[dear])
-            verdict = replace(
-                verdict, findings=(*verdict.findings, *seen), placements={**verdict.placements, **_placements(report)}
-            )
-        return verdict
-
-    def _report(self, plan: Plan, tier: str) -> ValidationReport:
-        """Return what one dear tier says of a plan."""
-        key = (tier, *plan.signature)
-        if key not in self._reports:
-            with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
-                urdf = write_model(simulable_model(plan.model, plan.config).robot, Path(folder))
-                task = TaskRequest(kind=PULL) if tier == TASK else None
-                report = validate(urdf, settings=self.settings, selected=_RUN[tier], task=task)
-            if report.environment.get("interrupted"):
-                raise KeyboardInterrupt
-            self._reports[key] = report
-        return self._reports[key]
-
-
-def _placements(report: ValidationReport) -> dict[str, float]:
-    """Return how many places of the robot were tried for each joint."""
-    measured = next((check.measured for check in report.checks if check.check == "KV705"), {})
-    return {name.removesuffix(_TRIED): value for name, value in measured.items() if name.endswith(_TRIED)}
+    line = joint.axis.tobytes(), origin.tobytes()
+    return joint.child, joint.kind.value, joint.lower, joint.upper, *line, tree

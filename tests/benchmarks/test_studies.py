@@ -75,7 +75,7 @@ def test_a_study_runs_goes_on_and_ends_with_1_on_faults(
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        (["refine", "--tiers", "cheap"], "'cheap' is none of geometry, engines, task"),
+        (["refine", "--faults", "rust"], "'rust' is none of axis by 90 deg, pivot"),
         (["detection", "--only", "both"], "--only 'both' does not fit"),
         (["detection", "--count", "0"], "--count '0' does not fit"),
         (["published", "--folder", "no/such/folder"], "no/such/folder"),

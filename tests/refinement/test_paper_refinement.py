@@ -67,7 +67,7 @@ def test_a_candidate_moves_because_of_a_failure() -> None:
 
 def test_a_slide_that_gets_stuck_is_straightened() -> None:
     before = drawer()
-    refinement = refine(before, seconds=60.0)
+    refinement = refine(before)
     (joint,) = refinement.inference.joints
     assert refinement.history.rounds[0].errors > 0
     assert refinement.history.rounds[refinement.history.kept].errors == 0

@@ -10,7 +10,7 @@ import numpy as np
 from kinematify.robot.mesh_paths import GLTF_SUFFIXES
 from kinematify.simulation.engines import ENGINES
 from kinematify.simulation.raw_model import FloatingLink, Unloadable
-from kinematify.validation.check import CauseScope, FeedbackRow, OpenCheck, check
+from kinematify.validation.check import CauseScope, OpenCheck, check
 from kinematify.validation.checks.follow import AT_REST, NOT_A_BODY
 from kinematify.validation.checks.needs import late
 from kinematify.validation.finding import Cause, Severity
@@ -199,7 +199,6 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
     severity=Severity.ERROR,
     cause=Cause.PHYSICS,
     engines=_RUNNING,
-    feedback=FeedbackRow.AS_LOADED,
     follows={**AT_REST, "KV802": CauseScope.CONTACT, "KV803": CauseScope.JOINT},
     needs=(not_loaded, nothing_moves, late),
 )
@@ -297,7 +296,6 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
     severity=Severity.ERROR,
     cause=Cause.PHYSICS,
     engines=_RUNNING,
-    feedback=FeedbackRow.AS_LOADED,
     follows={**AT_REST, "KV802": CauseScope.CONTACT, "KV803": CauseScope.CONTACT, "KV804": CauseScope.JOINT},
     needs=(not_loaded, nothing_moves, late),
 )

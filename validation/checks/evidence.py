@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.check import CauseScope, FeedbackRow, check
+from kinematify.validation.check import CauseScope, check
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
@@ -194,7 +194,6 @@ def _wide(result: OpenCheck, case: JointCase, name: str, span: float, limit: flo
     fails="A part lifts off what carries it, and not about another line",
     severity=Severity.WARNING,
     cause=Cause.KINEMATICS,
-    feedback=FeedbackRow.LINE,
     doubts=True,
 )
 def contact_opens(result: OpenCheck, case: JointCase) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.manipulation.plan_request import Failure, Hold
 from kinematify.simulation.engines import engines_that_hold
-from kinematify.validation.check import FeedbackRow, check
+from kinematify.validation.check import check
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
@@ -59,7 +59,6 @@ def no_hold(result: OpenCheck, task: RobotTask) -> None:
     fails="No arm reaches the hold",
     severity=Severity.ERROR,
     cause=Cause.TASK,
-    feedback=FeedbackRow.NO_WAY,
 )
 def out_of_reach(result: OpenCheck, task: RobotTask) -> None:
     """From at least one place around the object (task.plan.bearings, distances, heights) the arm's inverse kinematics
@@ -80,7 +79,6 @@ def out_of_reach(result: OpenCheck, task: RobotTask) -> None:
     fails="No way leads to the hold",
     severity=Severity.ERROR,
     cause=Cause.TASK,
-    feedback=FeedbackRow.NO_WAY,
 )
 def no_path(result: OpenCheck, task: RobotTask) -> None:
     """From the arm's home posture, RRTConnect finds a path free of collisions (task.plan.margin) to a place in front
@@ -99,7 +97,6 @@ def no_path(result: OpenCheck, task: RobotTask) -> None:
     fails="An arm does not open the joint",
     severity=Severity.ERROR,
     cause=Cause.TASK,
-    feedback=FeedbackRow.NO_WAY,
 )
 def not_opened(result: OpenCheck, task: RobotTask) -> None:
     """With the hand fixed to the part, the arm follows the joint from rest to the farther end of its range (joints
@@ -122,7 +119,6 @@ def not_opened(result: OpenCheck, task: RobotTask) -> None:
     fails="The joint blocks the way that a pull needs",
     severity=Severity.ERROR,
     cause=Cause.KINEMATICS,
-    feedback=FeedbackRow.NO_WAY,
 )
 def jams(result: OpenCheck, task: RobotTask) -> None:
     """On the way from rest to the open end, the moved part does not run into its own parent before task.plan.opened of
