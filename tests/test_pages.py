@@ -10,11 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from kinematify.config.nightly_settings import load_nightly
-from kinematify.evaluation.nightly.comparison import compare
-from kinematify.evaluation.nightly.night_page import night_page, nights_page, problem_anchor
+from kinematify.evaluation.nightly.comparison import Night, compare, counts
+from kinematify.evaluation.nightly.night_pages import anchor, night_page, nights_page
 from kinematify.evaluation.nightly.runs import Problem, Run
-from kinematify.evaluation.nightly.store import Night, earlier_runs
 from kinematify.robot.read import read_robot
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.view_data import view_data
@@ -126,7 +124,7 @@ def runs(objects: int, night: int) -> tuple[Run, ...]:
     for k in range(objects):
         values = {"angle_deg": 0.1 * k + 0.01 * night, "types": 1.0, "ted": 0.0, "root": 1.0, "limit_iou": 0.9}
         base = Run(
-            scenario="s", object=f"object_{k:02d}", kind="everyday", category="door", what="accuracy", case="rest",
+            scenario="s", content="c", object=f"object_{k:02d}", kind="everyday", what="accuracy", case="rest",
             status="ok", seconds=1.0 + k, values=values,
             problems=(AXIS,) if (k, night) == (3, 1) else (),
         )  # fmt: skip
@@ -147,18 +145,19 @@ def runs(objects: int, night: int) -> tuple[Run, ...]:
 
 
 def nights(objects: int, count: int) -> list[Night]:
-    settings, found = load_nightly(), []
+    found: list[Night] = []
     for number in range(count):
         done = runs(objects, number)
-        changes = compare(done, earlier_runs(found), settings, same_machine=True)
+        last = found[-1] if found else None
+        before = {run.place: [run] for run in last.runs} if last else {}
+        changes = compare(done, before, same_machine=True)
+        name = f"2026-01-{number + 1:02d}-abc"
         header = {
-            "night": f"2026-01-{number + 1:02d}-abc", "started": f"2026-01-{number + 1:02d}", "commit": "abc",
-            "dirty": False, "sessions": 1, "code": "0", "method": "0", "command": "kinematify nightly",
-            "processor": "2 x none", "workers": 2, "python": "3.11", "packages": {}, "objects": objects, "settings": {},
-            "seconds": 60.0, "runs": len(done), "last": found[-1].name if found else None, "baseline": None,
-            "counts": {"new": 0}, "baseline_counts": {}, "gate": "pass",
+            "started": name, "commit": "abc", "dirty": False, "processor": "2 x none", "workers": 2,
+            "objects": objects, "seconds": 60.0, "runs": len(done), "compared": last.name if last else None,
+            "counts": counts(changes),
         }  # fmt: skip
-        found.append(Night(name=str(header["night"]), header=header, runs=done, changes=changes))
+        found.append(Night(name=name, header=header, runs=done, changes=changes))
     return found
 
 
@@ -168,9 +167,9 @@ def test_pages_of_nights(tmp_path: Path) -> None:
         (tmp_path / night.name).mkdir()
         (tmp_path / night.name / "index.html").write_text(night_page(night), encoding="utf-8")
     (tmp_path / "index.html").write_text(nights_page(history), encoding="utf-8")
-    anchor = problem_anchor("object_03", "accuracy", "rest", AXIS.id)
-    with opened(f"{(tmp_path / history[1].name / 'index.html').as_uri()}#{anchor}") as (page, messages):
-        assert page.locator(f"#{anchor}").is_visible(), "a link to a problem opens the section that holds it"
+    problem = anchor("problem", "object_03", "accuracy", "rest", AXIS.id)
+    with opened(f"{(tmp_path / history[1].name / 'index.html').as_uri()}#{problem}") as (page, messages):
+        assert page.locator(f"#{problem}").is_visible(), "a link to a problem opens the section that holds it"
         assert page.evaluate("document.documentElement.scrollHeight") <= 4 * 800, "the night is folded"
         page.locator("details", has=page.locator("#accuracy")).locator("summary").first.click()
         rows = page.locator("#accuracy tbody tr:visible")
@@ -187,6 +186,16 @@ def test_pages_of_nights(tmp_path: Path) -> None:
         page.goto((tmp_path / "index.html").as_uri())
         assert page.locator("#nights tbody tr").count() == 2
         assert messages == []
+
+
+def test_names_are_escaped_in_the_pages_of_nights() -> None:
+    (night,) = nights(2, 1)
+    named = replace(night.runs[0], object="<img src=x onerror=alert(1)>", problems=(replace(AXIS, text="<b>"),))
+    page = night_page(replace(night, name='"><script>', runs=(named,)))
+    assert "<img" not in page
+    assert "<b>" not in page
+    assert '"><script>' not in page
+    assert "&lt;img src=x" in page
 
 
 @pytest.mark.parametrize("name", ["</script><script>document.title='x'</script>", '"><img src=x onerror=alert(1)>'])

@@ -7,14 +7,13 @@ import posixpath
 from collections import Counter
 from statistics import fmean
 from typing import TYPE_CHECKING
-from urllib.parse import quote
 
 from kinematify.batch.batch_inputs import filesystem
 from kinematify.batch.convert import REPORT_FILE, THUMBNAIL_FILE, VIEW_FILE
 from kinematify.batch.manifest import read_manifests
 from kinematify.batch.run_batch import OBJECTS
 from kinematify.errors import OutputError
-from kinematify.validation.formats.html_frame import badge, page, table, text
+from kinematify.validation.formats.html_frame import rendered
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,10 +22,6 @@ if TYPE_CHECKING:
 
 PAGE_FILE = "index.html"
 STEP_HEADINGS = ("step", "objects", "mean [s]", "95 % within [s]", "most [s]", "share")
-_OBJECT_HEADINGS = (
-    *("picture", "object", "result", "reason"),
-    *("joints", "parts", "faces", "seconds", "memory [MB]", "files"),
-)
 
 
 def outcome_words(records: Sequence[ObjectRecord]) -> str:
@@ -54,16 +49,18 @@ def step_rows(records: Sequence[ObjectRecord]) -> list[tuple[str, ...]]:
 
 def as_page(records: Sequence[ObjectRecord]) -> str:
     """Return a page that lists all objects, with links to their folders beside it."""
-    title = f"kinematify batch: {outcome_words(records)}"
-    rows = [_row(record) for record in records]
-    body = [
-        f"<h1>{text(title)}</h1>",
-        "<h2>Time</h2>",
-        table(STEP_HEADINGS, step_rows(records), name="steps", classes=("", *["number"] * 5)),
-        "<h2>Objects</h2>",
-        table(_OBJECT_HEADINGS, rows, name="objects", classes=("", "", "", "", *["number"] * 5, "")),
-    ]
-    return page(title, body, beside=True)
+    return rendered(
+        "batch.html",
+        title=f"kinematify batch: {outcome_words(records)}",
+        beside=True,
+        step_headings=STEP_HEADINGS,
+        steps=step_rows(records),
+        records=records,
+        objects=OBJECTS,
+        thumbnail=THUMBNAIL_FILE,
+        view=VIEW_FILE,
+        report=REPORT_FILE,
+    )
 
 
 def write_page(out: str) -> str:
@@ -82,26 +79,3 @@ def write_page(out: str) -> str:
             "room and call the command again with --resume."
         ) from error
     return place
-
-
-def _row(record: ObjectRecord) -> tuple[str, ...]:
-    folder = f"{OBJECTS}/{quote(record.object)}"
-    written, checked = record.status == "ok", record.verdict is not None
-    memory = record.peak_mb and round(record.peak_mb)
-    numbers = (record.joints, record.parts, record.faces, round(record.seconds, 1), memory)
-    name = text(record.object)
-    files = {"folder": "", "JSON report": REPORT_FILE if checked else None}
-    links = [f'<a href="{folder}/{file}">{words}</a>' for words, file in files.items() if file is not None]
-    return (
-        f'<img alt="" loading="lazy" width="160" src="{folder}/{THUMBNAIL_FILE}">' if written and checked else "",
-        f'<a href="{folder}/{VIEW_FILE}" title="Turn and move it, with its findings">{name}</a>' if checked else name,
-        badge(record.verdict or ("written" if written else record.status)),
-        text(_reason(record)),
-        *("" if value is None else str(value) for value in numbers),
-        " ".join(links) if written else "",
-    )
-
-
-def _reason(record: ObjectRecord) -> str:
-    """Why it is not what was asked for, else what to look at."""
-    return record.error or "; ".join((*record.errors, *record.warnings))

@@ -34,6 +34,7 @@ MODULES = {
     "manifold3d": ("manifold3d", "solids of the built-in generator"),
     "pydantic": ("pydantic", "configuration"),
     "PyYAML": ("yaml", "configuration"),
+    "jinja2": ("jinja2", "pages of reports"),
     "lxml": ("lxml.etree", "URDF"),
     "pycollada": ("collada", "DAE meshes"),
     "pillow": ("PIL.Image", "pictures"),

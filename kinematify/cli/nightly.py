@@ -14,9 +14,6 @@ from kinematify.cli.progress import progress_reporter
 from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from kinematify.config.nightly_settings import NightlySettings
     from kinematify.evaluation.nightly.comparison import Change
     from kinematify.evaluation.nightly.run_night import NightResult
 
@@ -52,11 +49,8 @@ _SHOWN = 20
     metavar="GLOB",
     help="Only objects of such a name, category or kind; may be given more than once.",
 )
-@click.option("--baseline", metavar="NIGHT", help="Compare with this night instead of the accepted one.")
-@click.option("--accept", metavar="NIGHT", help="Make a night the baseline, and run nothing.")
-@click.option(
-    "--pages", is_flag=True, help="Write a page for each model too, with curves and a view of it (0.4 MB each)."
-)
+@click.option("--baseline", metavar="NIGHT", help="Compare with this night, not the accepted one.")
+@click.option("--accept", "accepted", metavar="NIGHT", help="Make a night the baseline, and run nothing.")
 @click.option("--smoke", is_flag=True, help="Two objects of the built-in generator, in about half a minute.")
 @click.option(
     "--jobs", type=click.IntRange(min=1), help="Processes at a time; as many as there are cores if not given."
@@ -70,8 +64,7 @@ def command(
     data: str | None,
     patterns: tuple[str, ...],
     baseline: str | None,
-    accept: str | None,
-    pages: bool,
+    accepted: str | None,
     smoke: bool,
     jobs: int | None,
     json_to: str | None,
@@ -81,98 +74,64 @@ def command(
     DATA is a folder with URDF files at any depth, or a word that `kinematify bench` takes; without it the configuration
     says what runs. Writes a folder OUT/DATE-COMMIT with JSON, JSON lines, JUnit and a page, and OUT/index.html with a
     line for each night. A run that was killed at any point goes on where it stopped. Ends with 1 if quality became
-    worse than in the night before or than in the accepted baseline; times are only reported. An object whose files
-    changed is compared with its last result.
+    worse than in the accepted night, or than in the night before where none was accepted; times are only reported. An
+    object whose files changed is compared with its last result.
     """
-    from kinematify.evaluation.nightly.run_night import NightRequest, run_night
+    from kinematify.config.nightly_settings import load_nightly
+    from kinematify.evaluation.nightly.run_night import SMOKE, NightRequest, accept, run_night
 
     folder = out or Path("out/nightly-smoke" if smoke else "results/nightly")
-    if accept is not None:
-        return _accept(folder, accept)
+    if accepted is not None:
+        accept(folder, accepted)
+        click.echo(f"{accepted} is the baseline of {folder} from now on.")
+        return 0
     if data and folder_of_models:
         raise click.UsageError(f"DATA {folder_of_models} and --data {data} say the same. Give one of them.")
-    settings = _settings(config, data=data or folder_of_models, smoke=smoke)
+    chosen = {"data": data or folder_of_models} if data or folder_of_models else {}
+    settings = load_nightly(config, **chosen)
+    if smoke:
+        settings = settings.model_copy(update={"conditions": ["rest"], "engines": ["mujoco"]})
     request = NightRequest(
         settings=settings,
         out=folder,
         only=patterns,
         baseline=baseline,
-        smoke=smoke,
-        pages=pages,
+        smoke=SMOKE if smoke else (),
         workers=jobs or os.cpu_count() or 1,
     )
     with progress_reporter() as progress:
         result = run_night(request, progress)
     if json_to:
-        write_answer(_answer(result), json_to)
+        from kinematify.evaluation.nightly.comparison import CHANGES
+
+        night, changes = result.night, CHANGES.dump_python(result.night.changes, mode="json")
+        facts = {**night.header, "gate": night.gate, "changes": changes}
+        write_answer({**facts, "folder": str(result.place), "notices": list(result.notices)}, json_to)
     if json_to != "-":
         click.echo(_described(result))
     for notice in result.notices:
         click.echo(notice, err=True)
-    return ExitStatus.FAILURES if result.night.failed else 0
-
-
-def _accept(folder: Path, name: str) -> int:
-    from kinematify.evaluation.nightly.store import accept, find_night, load_nights
-    from kinematify.processes.lock import locked
-
-    with locked(folder / ".lock", f"The folder of nights {folder}"):
-        nights, _ = load_nights(folder)
-        accept(folder, find_night(nights, name, folder))
-    click.echo(f"{name} is the baseline of {folder} from now on.")
-    return 0
-
-
-def _settings(config: str, *, data: str | None, smoke: bool) -> NightlySettings:
-    from kinematify.config.nightly_settings import load_nightly
-
-    settings = load_nightly(config)
-    changes: dict[str, object] = {} if data is None else {"data": data}
-    if smoke:
-        changes |= {"conditions": settings.smoke.conditions, "engines": settings.smoke.engines}
-    return settings.model_copy(update=changes)
-
-
-def _answer(result: NightResult) -> dict[str, object]:
-    from kinematify.evaluation.nightly.comparison import CHANGES
-
-    night = result.night
-    return {
-        **night.header,
-        "changes": CHANGES.dump_python(night.changes, mode="json"),
-        "baseline_changes": CHANGES.dump_python(night.baseline_changes, mode="json"),
-        "folder": str(result.place),
-        "notices": list(result.notices),
-    }
+    return ExitStatus.FAILURES if result.night.gate == "fail" else 0
 
 
 def _described(result: NightResult) -> str:
     """The verdict, what changed by class, and where to look."""
-    night = result.night
-    header = night.header
-    compared = header["last"] or "nothing: it is the first night"
-    verdict = f"{header['gate']}: night {night.name}"
-    size = f"{header['objects']} objects, {header['runs']} runs, {header['seconds'] / 60.0:.1f} min"
-    lines = [f"{verdict}, {size}, compared with {compared}", *_change_lines(night.changes)]
-    if night.baseline_changes:
-        lines += [f"Compared with the baseline {header['baseline']}:", *_change_lines(night.baseline_changes)]
-    pages = f"Pages: {result.place / 'index.html'} and {result.place.parent / 'index.html'}"
-    return "\n".join([*lines, pages])
-
-
-def _change_lines(changes: Sequence[Change]) -> list[str]:
     from kinematify.evaluation.nightly.comparison import ChangeKind
 
-    lines = []
+    night = result.night
+    header = night.header
+    size = f"{header['objects']} objects, {header['runs']} runs, {header['seconds'] / 60.0:.1f} min"
+    compared = header["compared"] or "nothing: it is the first night"
+    lines = [f"{night.gate}: night {night.name}, {size}, compared with {compared}"]
     for kind in ChangeKind:
-        found = [change for change in changes if change.kind is kind]
-        if not found:
-            continue
-        lines.append(f"  {kind.value}: {len(found)}")
+        found = [change for change in night.changes if change.kind is kind]
+        if found:
+            lines.append(f"  {kind.value}: {len(found)}")
         if kind not in (ChangeKind.STILL_FAILING, ChangeKind.NEW_SERIES):
             lines += [f"    {_line(change)}" for change in found[:_SHOWN]]
             lines += [f"    and {len(found) - _SHOWN} more, see the page"] if len(found) > _SHOWN else []
-    return lines or ["  nothing changed"]
+    lines += ["  nothing changed"] if not night.changes else []
+    return "\n".join([*lines, f"Pages: {result.place / 'index.html'} and {result.place.parent / 'index.html'}"])
 
 
 def _line(change: Change) -> str:

@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from pydantic import TypeAdapter
 
-from kinematify.evaluation.nightly.runs import AS_LOADED, JOINTS, MORE_IS_BETTER, OPENED, UNITS
+from kinematify.evaluation.nightly.runs import GATES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from kinematify.config.nightly_settings import NightlySettings
-    from kinematify.evaluation.nightly.runs import Run, RunKey
+    from kinematify.evaluation.nightly.runs import Run
+
+_UNITS = {"angle_deg": " deg", "line_m": " m"}
+_SLOWER, _SECONDS = 1.5, 1.0  # shared machines vary by a third
 
 
 class ChangeKind(StrEnum):
@@ -43,8 +45,7 @@ class ChangeKind(StrEnum):
 
 QUALITY = (ChangeKind.NEW, ChangeKind.WORSE, ChangeKind.NEWLY_SKIPPED)
 """Classes that may fail a night."""
-SHOWN = (*QUALITY, ChangeKind.FIXED, ChangeKind.BETTER, ChangeKind.INPUT_CHANGED)
-"""Classes whose objects are drawn."""
+GOOD = (ChangeKind.FIXED, ChangeKind.BETTER)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,10 +66,26 @@ class Change:
 CHANGES = TypeAdapter(tuple[Change, ...])
 
 
+@dataclass(frozen=True, kw_only=True)
+class Night:
+    """A night that is over."""
+
+    name: str
+    """``<date>-<commit>``, numbered where one commit was run twice on a day."""
+    header: dict[str, Any]
+    """Commit, machine, versions, configuration, what it was compared with and the verdict."""
+    runs: tuple[Run, ...]
+    changes: tuple[Change, ...]
+
+    @property
+    def gate(self) -> str:
+        """``fail`` where quality became worse, else ``pass``."""
+        return "fail" if any(change.gate for change in self.changes) else "pass"
+
+
 def compare(
     runs: Iterable[Run],
-    before: Mapping[RunKey, Sequence[Run]],
-    settings: NightlySettings,
+    before: Mapping[tuple[str, str, str], Sequence[Run]],
     *,
     same_machine: bool,
     complete: bool = True,
@@ -78,7 +95,6 @@ def compare(
     Args:
         runs: Those of the night to judge.
         before: Earlier runs of each place, the latest first.
-        settings: Gates.
         same_machine: Whether times may be compared.
         complete: Whether a run that is missing is reported as gone.
 
@@ -88,25 +104,18 @@ def compare(
     tonight = {run.place: run for run in runs}
     found: list[Change] = []
     for place, run in tonight.items():
-        earlier = before.get(place, ())
-        same = next((other for other in earlier if other.scenario == run.scenario), None)
-        last = next((other for other in earlier if run.series and other.series == run.series), None)
-        if same is None and last is not None:
-            found.append(
-                _change(run, ChangeKind.INPUT_CHANGED, "", "its files are others than before; compared with them")
-            )
-            found += [*_losses(run, last), *_quality(run, last, settings)]
-        elif same is None:
-            why = "pose or thresholds are others than before" if earlier else "there is no earlier night with it"
-            found.append(_change(run, ChangeKind.NEW_SERIES, "", f"scenario {run.scenario}: {why}"))
-        else:
-            found += _quality(run, same, settings)
-            found += _timing(run, same, settings) if same_machine else ()
+        same = next((other for other in before.get(place, ()) if other.scenario == run.scenario), None)
+        if same is None:
+            found.append(_change(run, ChangeKind.NEW_SERIES, "", "there is no earlier run of this scenario"))
+            continue
+        if same.content != run.content:
+            found.append(_change(run, ChangeKind.INPUT_CHANGED, "", "its files are others than before"))
+        elif same_machine:
+            found += _timing(run, same)
+        found += _quality(run, same)
     if complete:
-        missing = [earlier[0] for place, earlier in before.items() if place not in tonight and earlier]
-        found += [
-            _change(run, ChangeKind.GONE, "", "an earlier night had it, this one has no such run") for run in missing
-        ]
+        gone = [earlier[0] for place, earlier in before.items() if place not in tonight and earlier]
+        found += [_change(run, ChangeKind.GONE, "", "this night has no such run") for run in gone]
     order = list(ChangeKind)
     return tuple(sorted(found, key=lambda change: (order.index(change.kind), not change.gate)))
 
@@ -117,30 +126,16 @@ def counts(changes: Iterable[Change]) -> dict[str, int]:
     return {kind.value: found.get(kind, 0) for kind in ChangeKind}
 
 
-_VERDICTS = ("pass", "warn", "fail")
-
-
-def _losses(run: Run, last: Run) -> Iterator[Change]:
-    """What a changed input must not lose: its verdict and its joints."""
-    if {run.status, last.status} <= {*_VERDICTS} and _VERDICTS.index(run.status) > _VERDICTS.index(last.status):
-        yield _change(run, ChangeKind.WORSE, "verdict", f"from {last.status} to {run.status}", gate=True)
-    before, now = last.values.get(JOINTS), run.values.get(JOINTS)
-    if before is not None and now is not None and now < before:
-        yield _change(run, ChangeKind.WORSE, JOINTS, f"from {before:.0f} to {now:.0f}", gate=True)
-
-
-def _quality(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]:
+def _quality(run: Run, same: Run) -> Iterator[Change]:
     if not run.answered:
         kind = ChangeKind.NEWLY_SKIPPED if same.answered else ChangeKind.STILL_FAILING
-        gate = same.answered and settings.gate_newly_skipped
-        yield _change(run, kind, "", f"{run.status}: {run.message}", gate=gate)
+        yield _change(run, kind, "", f"{run.status}: {run.message}", gate=same.answered)
         return
     old = {problem.id: problem for problem in same.problems}
     now = {problem.id: problem for problem in run.problems}
     for name, problem in now.items():
-        known = name in old or not same.answered
-        kind = ChangeKind.STILL_FAILING if known else ChangeKind.NEW
-        gate = kind is ChangeKind.NEW and problem.severity in settings.gate_severities
+        kind = ChangeKind.STILL_FAILING if name in old or not same.answered else ChangeKind.NEW
+        gate = kind is ChangeKind.NEW and problem.severity == "error"  # new warnings are listed
         yield _change(run, kind, name, f"{problem.severity}: {problem.text}", gate=gate)
     for name, problem in old.items():
         # What a check that no longer runs has found is not fixed; the check is reported as skipped below.
@@ -148,30 +143,20 @@ def _quality(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]
             yield _change(run, ChangeKind.FIXED, name, f"It was: {problem.text}")
     if same.answered:
         for check in sorted(run.not_run.keys() - same.not_run.keys()):
-            yield _change(run, ChangeKind.NEWLY_SKIPPED, check, run.not_run[check], gate=settings.gate_newly_skipped)
-    yield from _metrics(run, same, settings)
+            yield _change(run, ChangeKind.NEWLY_SKIPPED, check, run.not_run[check], gate=True)
+    for metric, (more, slack) in GATES.items():
+        before, after = same.values.get(metric), run.values.get(metric)
+        if before is not None and after is not None and abs(after - before) > slack:
+            worse = more * (before - after) > 0.0
+            text = f"from {before:.4g} to {after:.4g}{_UNITS.get(metric, '')}"
+            yield _change(run, ChangeKind.WORSE if worse else ChangeKind.BETTER, metric, text, gate=worse)
 
 
-def _metrics(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]:
-    for metric, slack in settings.gates.model_dump().items():
-        before, now = same.values.get(metric), run.values.get(metric)
-        if before is None or now is None:
-            continue
-        worse = before - now if metric in (*MORE_IS_BETTER, AS_LOADED, OPENED) else now - before
-        if abs(worse) > slack:
-            unit = f" {UNITS[metric]}" if metric in UNITS else ""
-            text = f"from {before:.4g} to {now:.4g}{unit}"
-            yield _change(run, ChangeKind.WORSE if worse > 0.0 else ChangeKind.BETTER, metric, text, gate=worse > 0.0)
-
-
-def _timing(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]:
-    if not (run.answered and same.answered) or abs(run.seconds - same.seconds) < settings.slower_seconds:
-        return
-    text = f"from {same.seconds:.1f} s to {run.seconds:.1f} s"
-    if run.seconds > settings.slower * same.seconds:
-        yield _change(run, ChangeKind.SLOWER, "seconds", text)
-    elif same.seconds > settings.slower * run.seconds:
-        yield _change(run, ChangeKind.FASTER, "seconds", text)
+def _timing(run: Run, same: Run) -> Iterator[Change]:
+    slow, fast = max(run.seconds, same.seconds), min(run.seconds, same.seconds)
+    if run.answered and same.answered and slow - fast >= _SECONDS and slow > _SLOWER * fast:
+        kind = ChangeKind.SLOWER if run.seconds == slow else ChangeKind.FASTER
+        yield _change(run, kind, "seconds", f"from {same.seconds:.1f} s to {run.seconds:.1f} s")
 
 
 def _change(run: Run, kind: ChangeKind, subject: str, text: str, *, gate: bool = False) -> Change:

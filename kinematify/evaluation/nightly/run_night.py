@@ -1,7 +1,19 @@
-"""A night: benchmark and validation of all objects, compared with earlier nights; resumable, and locked."""
+"""A night: benchmark and validation of all objects, compared with an earlier night; resumable, and locked.
+
+```text
+results/nightly/
+  index.html                 all nights, a line each
+  baseline.json              name of the accepted night, which later ones are compared with
+  2026-01-31-0a1b2c3/        night.json  runs.jsonl  junit.xml  index.html
+  .unfinished/  .lock        of the night that is running, not for the history
+```
+
+A folder of a night appears whole or not at all, and none is ever replaced.
+"""
 
 from __future__ import annotations
 
+import datetime
 import json
 import os
 import shutil
@@ -10,48 +22,24 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from pydantic import ValidationError
 
 from kinematify.batch.task_pool import Pool
 from kinematify.config import load_config
-from kinematify.config.validation import load_settings
+from kinematify.errors import InputError, OutputError
 from kinematify.evaluation.benchmark_job import INFER
-from kinematify.evaluation.datasets import CONDITIONS, find_objects, matching
-from kinematify.evaluation.nightly.comparison import SHOWN, compare, counts
-from kinematify.evaluation.nightly.night_junit import as_junit
-from kinematify.evaluation.nightly.night_page import night_page, nights_page
-from kinematify.evaluation.nightly.runs import (
-    PULLED,
-    RUN,
-    SCHEMA,
-    accuracy_run,
-    accuracy_scenario,
-    digest,
-    validation_scenario,
-)
-from kinematify.evaluation.nightly.store import (
-    BADGE_FILE,
-    JUNIT_FILE,
-    MODELS,
-    PAGE_FILE,
-    UNFINISHED,
-    Night,
-    State,
-    baseline_of,
-    earlier_runs,
-    find_night,
-    load_nights,
-    open_state,
-    write_night,
-)
-from kinematify.evaluation.nightly.validity import NightValidation, run_validation
-from kinematify.evaluation.result_record import code_version, replace_text
+from kinematify.evaluation.datasets import find_objects, matching
+from kinematify.evaluation.nightly.comparison import CHANGES, Night, compare, counts
+from kinematify.evaluation.nightly.night_pages import as_junit, night_page, nights_page
+from kinematify.evaluation.nightly.runs import PULLED, RUN, SCHEMA, ModelJob, Run, accuracy_run, digest, validation_run
+from kinematify.evaluation.result_record import code_version, git_commit, replace_text
 from kinematify.evaluation.run_benchmark import BenchmarkRequest, Variant, run_benchmark
 from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.reader import read_sentence
 from kinematify.processes.lock import locked
 from kinematify.processes.pool import TaskFailure
-from kinematify.validation.formats.report_picture import drawing_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -60,13 +48,14 @@ if TYPE_CHECKING:
     from kinematify.config.nightly_settings import NightlySettings
     from kinematify.evaluation.benchmark_job import JobResult
     from kinematify.evaluation.datasets import BenchObject
-    from kinematify.evaluation.nightly.comparison import Change
-    from kinematify.evaluation.nightly.runs import Run
     from kinematify.evaluation.result_record import Report
 
-_PICTURES, _SECONDS = 12, 15.0
-"""Objects that changed and are drawn, and the time for each [s]."""
-_ACCURACY, _VALIDATION = 0.45, 0.97  # shares of the time at which these are done, on the benchmark
+_ACCURACY = 0.45  # share of the time at which all is inferred, on the benchmark
+_SHOWN = 60
+"""Nights in the list of all, the latest: two months."""
+_UNFINISHED = ".unfinished"
+SMOKE = ("a cabinet with one door", "a cabinet with one drawer")
+"""Objects of a night that is small enough for a test suite."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,11 +68,9 @@ class NightRequest:
     only: tuple[str, ...] = ()
     """Patterns for names of objects, categories or kinds; empty for all."""
     baseline: str | None = None
-    """Name of a night to compare with instead of the accepted one."""
-    smoke: bool = False
-    """Run the objects of the built-in generator instead of the data."""
-    pages: bool = False
-    """Write a page for each validated model too, 0.4 MB each."""
+    """Name of a night to compare with instead of the accepted one, or the last."""
+    smoke: tuple[str, ...] = ()
+    """Sentences; the built-in generator's objects of these are run instead of the data."""
     workers: int = field(default_factory=lambda: os.cpu_count() or 1)
     infer: str = INFER
     """Function under test, as ``module:name``; tests plant faults with it."""
@@ -96,206 +83,229 @@ class NightResult:
     night: Night
     place: Path
     notices: tuple[str, ...]
-    """Sentences about what the user should know: broken folders, no baseline."""
+    """Sentences about what the user should know: broken folders."""
 
 
 def run_night(request: NightRequest, progress: Progress) -> NightResult:
-    """Run a night, taking up one of the same code and settings that was interrupted.
+    """Run a night; what one of the same code and settings has finished before it was interrupted is taken up.
 
     Args:
         request: What to run.
         progress: Called with what has just ended and the fraction done in [0, 1].
 
     Raises:
-        InputError: Another night is running; a night of a newer version is there; there is no such baseline, data or
-            object.
+        InputError: A night of a newer version is there; there is no such baseline, data or object.
         ConfigError: A configuration is unknown or malformed.
-        OutputError: The folder cannot be written.
+        OutputError: Another night is running, or the folder cannot be written.
     """
     with locked(request.out / ".lock", f"The folder of nights {request.out}"):
+        start = time.perf_counter()
         nights, warnings = load_nights(request.out)
-        name = request.baseline or baseline_of(request.out)
-        baseline = None if name is None else find_night(nights, name, request.out)
-        objects = _objects(request)
-        work = _Work(request, objects)
-        state = open_state(request.out, work.plan, {path.name for path in request.out.iterdir()})
-        night = next((night for night in nights if night.name == state.name), None)
-        if night is None:
-            night = _new_night(work, state, nights, baseline, progress)
-            nights = (*nights, night)
-        # The list of nights, then nothing of what was only needed to resume; all of it can be repeated after a kill.
-        replace_text(request.out / PAGE_FILE, nights_page(nights[-request.settings.shown_nights :]))
-        replace_text(request.out / BADGE_FILE, json.dumps(nights[-1].badge) + "\n")
-        shutil.rmtree(request.out / UNFINISHED, ignore_errors=True)
-        none = () if baseline is not None else (_NO_BASELINE,)
-        return NightResult(night=night, place=request.out / night.name, notices=(*warnings, *none))
-
-
-_NO_BASELINE = (
-    "No night is accepted as the baseline, so only the night before was compared with. When one is good, accept it: "
-    "kinematify nightly --accept NIGHT"
-)
-
-
-def _objects(request: NightRequest) -> list[BenchObject]:
-    data: str | Path | None = request.settings.data
-    if request.smoke:
-        data = request.out / UNFINISHED / "objects"
-        write_smoke_objects(data, request.settings.smoke.sentences)
-    return list(matching(find_objects(data), request.only))
-
-
-class _Work:
-    """The runs of a night."""
-
-    def __init__(self, request: NightRequest, objects: Sequence[BenchObject]) -> None:
-        self.request, self.objects, self.settings = request, objects, request.settings
-        self.folder = request.out / UNFINISHED
-        self.pages = self.folder / MODELS if request.pages else None
-        self.thresholds = load_settings(self.settings.validation_config)
-        self.code = code_version(without=("cli", "evaluation/nightly"))
-        self.method = digest(load_config(self.settings.infer_config).model_dump(mode="json"))
-        hashes = {item.name: item.content_hash for item in objects}
-        self.plan = digest(
-            [self.settings.model_dump(mode="json"), hashes, self.code, request.infer, self.thresholds.model_dump()]
+        name = request.baseline or _accepted(request.out)
+        compared = [find_night(nights, name, request.out)] if name else nights
+        work = request.out / _UNFINISHED
+        data: str | Path | None = request.settings.data
+        if request.smoke:
+            data = work / "objects"
+            write_smoke_objects(data, request.smoke)
+        objects = {item.name: item for item in matching(find_objects(data), request.only)}
+        report = _inferred(request, data, progress)
+        accuracy = [accuracy_run(result, objects[result.object], request.settings) for result in report.records]
+        runs = [*accuracy, *_validated(request, list(objects.values()), progress)]
+        header = report.header
+        processor = header.machine["processor"]
+        changes = compare(
+            runs,
+            _earlier_runs(compared),
+            same_machine=bool(compared) and compared[-1].header.get("processor") == processor,
+            complete=not request.only,
         )
-
-    def accuracy(self, progress: Progress) -> tuple[Report[JobResult], list[Run]]:
-        """Infer every object in every condition."""
-        report = run_benchmark(
-            BenchmarkRequest(
-                data=self._data(),
-                variants=(Variant(label="nightly", config=self.settings.infer_config),),
-                conditions=tuple(self.settings.conditions),
-                only=tuple(item.name for item in self.objects),
-                work_folder=self.folder,
-                workers=self.request.workers,
-                timeout=self.settings.timeout,
-                infer=self.request.infer,
-            ),
-            lambda what, share: progress(what.replace(", nightly", ""), _ACCURACY * share),
+        commit, dirty = git_commit()
+        now = datetime.datetime.now(tz=datetime.UTC)
+        base = f"{now.date().isoformat()}-{commit}"
+        same_day = sum(path.name.startswith(base) for path in request.out.iterdir())
+        night = Night(
+            name=f"{base}-{same_day + 1}" if same_day else base,
+            header={
+                "schema": SCHEMA,
+                "started": now.isoformat(timespec="seconds"),
+                "commit": commit,
+                "dirty": dirty,
+                "code": header.code,
+                "method": digest(load_config(request.settings.infer_config).model_dump(mode="json")),
+                "command": header.command,
+                "processor": processor,
+                "workers": request.workers,
+                "versions": header.versions,
+                "objects": len(objects),
+                "runs": len(runs),
+                "seconds": round(time.perf_counter() - start, 1),
+                "compared": compared[-1].name if compared else None,
+                "counts": counts(changes),
+                "settings": request.settings.model_dump(mode="json"),
+            },
+            runs=tuple(sorted(runs, key=lambda run: run.place)),
+            changes=changes,
         )
-        return report, [self._accuracy_run(result) for result in report.records]
-
-    def _data(self) -> str | Path | None:
-        return self.folder / "objects" if self.request.smoke else self.settings.data
-
-    def _accuracy_run(self, result: JobResult) -> Run:
-        item = next(item for item in self.objects if item.name == result.object)
-        condition = next(condition for condition in CONDITIONS if condition.name == result.condition)
-        return accuracy_run(result, accuracy_scenario(item, condition, self.settings), self.settings)
-
-    def validations(self, progress: Progress) -> list[Run]:
-        """Validate the models of every object."""
-        # The largest objects first, so that nobody waits for one at the end.
-        by_size = sorted(self._validations(), key=lambda task: task.item.mesh_bytes, reverse=True)
-        tasks = {self._key(task): task for task in by_size}
-        share = _VALIDATION - _ACCURACY
-        pool = Pool(
-            folder=self.folder,
-            workers=self.request.workers,
-            progress=lambda what, done: progress(what, _ACCURACY + share * done),
-        )
-        answers = pool.run(
-            {key: partial(run_validation, task) for key, task in tasks.items()},
-            RUN,
-            ledger="validations",
-            timeout=self.settings.validation_timeout,
-            said=lambda key, run: (
-                f"{tasks[key].item.name}, {tasks[key].source} model: {run.status}, {run.seconds:.1f} s"
-            ),
-            preload=("kinematify.evaluation.nightly.validity", "kinematify.pipeline.infer_assembly"),
-        )
-        return [
-            tasks[key].run(answer.status, answer.seconds, answer.message) if isinstance(answer, TaskFailure) else answer
-            for key, answer in answers.items()
-        ]
-
-    def _validations(self) -> Iterator[NightValidation]:
-        for item in self.objects:
-            pulled = any(fnmatchcase(item.name, pattern) for pattern in self.settings.pulled)
-            for source in (*self.settings.sources, *([PULLED] if pulled else [])):
-                yield NightValidation(
-                    item=item,
-                    scenario=validation_scenario(item, source, self.settings, self.thresholds),
-                    source=source,
-                    infer=self.request.infer,
-                    infer_config=self.settings.infer_config,
-                    validation_config=self.settings.validation_config,
-                    engines=tuple(self.settings.engines),
-                    checks=("KV7*",) if source == PULLED else tuple(self.settings.checks),
-                    budget=self.settings.pull_budget if source == PULLED else self.settings.budget,
-                    pages=self.pages,
-                )
-
-    def _key(self, task: NightValidation) -> str:
-        return digest([task.item.name, task.source, task.scenario, self.code, task.infer, task.budget])
+        place = _write(request.out, night, nights)
+        return NightResult(night=night, place=place, notices=warnings)
 
 
-def _new_night(work: _Work, state: State, nights: Sequence[Night], baseline: Night | None, progress: Progress) -> Night:
-    """Run what is missing, compare and write."""
-    start = time.perf_counter()
-    report, accuracy = work.accuracy(progress)
-    runs = sorted([*accuracy, *work.validations(progress)], key=lambda run: run.place)
-    last = nights[-1] if nights else None
-    processor = str(report.header.machine["processor"])
-    changes = _changes(work, runs, nights, processor)
-    drift = _changes(work, runs, [baseline], processor) if baseline is not None and baseline is not last else ()
-    header = {
-        **_facts(work, state, report),
-        "seconds": round(time.perf_counter() - start, 1),
-        "runs": len(runs),
-        "last": last.name if last else None,
-        "baseline": baseline.name if baseline else None,
-        "counts": counts(changes),
-        "baseline_counts": counts(drift),
-        "gate": "fail" if any(change.gate for change in (*changes, *drift)) else "pass",
-    }
-    night = Night(name=state.name, header=header, runs=tuple(runs), changes=changes, baseline_changes=drift)
-    pages = {path.name for path in (work.folder / MODELS).glob("*.html")}
-    changed = dict.fromkeys(change.object for change in (*changes, *drift) if change.kind in SHOWN)
-    shown = [item for item in work.objects if item.name in changed][:_PICTURES]
-    pictures = {
-        item.name: drawing_of(item.urdf, item.package_dirs, work.thresholds, seconds=_SECONDS) for item in shown
-    }
-    texts = {
-        JUNIT_FILE: as_junit(night),
-        PAGE_FILE: night_page(night, pages, {name: drawn.picture for name, drawn in pictures.items()}),
-    }
-    write_night(work.request.out, night, texts, models=work.folder / MODELS if pages else None)
-    return night
-
-
-def _changes(work: _Work, runs: Sequence[Run], nights: Sequence[Night], processor: str) -> tuple[Change, ...]:
-    """Compare with earlier nights, the oldest first; times only if the latest of them ran on the same machine."""
-    return compare(
-        runs,
-        earlier_runs(nights),
-        work.settings,
-        same_machine=bool(nights) and nights[-1].header.get("processor") == processor,
-        complete=not work.request.only,
+def _inferred(request: NightRequest, data: str | Path | None, progress: Progress) -> Report[JobResult]:
+    """Infer every object in every condition."""
+    return run_benchmark(
+        BenchmarkRequest(
+            data=data,
+            variants=(Variant(label="nightly", config=request.settings.infer_config),),
+            conditions=tuple(request.settings.conditions),
+            only=request.only,
+            work_folder=request.out / _UNFINISHED,
+            workers=request.workers,
+            timeout=request.settings.timeout,
+            infer=request.infer,
+        ),
+        lambda what, share: progress(what.replace(", nightly", ""), _ACCURACY * share),
     )
 
 
-def _facts(work: _Work, state: State, report: Report[JobResult]) -> dict[str, Any]:
-    header = report.header
-    return {
-        "schema": SCHEMA,
-        "night": state.name,
-        "started": state.started,
-        "commit": state.commit,
-        "dirty": state.dirty,
-        "sessions": state.sessions,
-        "code": work.code[:12],
-        "method": work.method,
-        "command": header.command,
-        "processor": header.machine["processor"],
-        "workers": header.machine["workers"],
-        "python": header.versions["python"],
-        "packages": {name: version for name, version in header.versions.items() if name != "python"},
-        "objects": len(work.objects),
-        "settings": work.settings.model_dump(mode="json"),
+def _validated(request: NightRequest, objects: Sequence[BenchObject], progress: Progress) -> Iterator[Run]:
+    """Validate the models of every object, the largest first, so that nobody waits for one at the end."""
+    settings, code = request.settings, code_version(without=("cli", "evaluation/nightly"))
+    asked = {
+        digest([item.name, item.content_hash, source, settings.model_dump(mode="json"), request.infer, code]): ModelJob(
+            item=item, source=source, settings=settings, infer=request.infer
+        )
+        for item in sorted(objects, key=lambda item: item.mesh_bytes, reverse=True)
+        for source in (*settings.sources, PULLED)
+        if source != PULLED or any(fnmatchcase(item.name, pattern) for pattern in settings.pulled)
     }
+    pool = Pool(
+        folder=request.out / _UNFINISHED,
+        workers=request.workers,
+        progress=lambda what, done: progress(what, _ACCURACY + (1.0 - _ACCURACY) * done),
+    )
+    answers = pool.run(
+        {key: partial(validation_run, job) for key, job in asked.items()},
+        RUN,
+        ledger="validations",
+        timeout=settings.timeout,
+        said=lambda key, run: f"{asked[key].item.name}, {asked[key].source} model: {run.status}, {run.seconds:.1f} s",
+        preload=("kinematify.evaluation.nightly.runs", "kinematify.pipeline.infer_assembly"),
+    )
+    for key, run in answers.items():
+        yield asked[key].run(run.status, run.seconds, run.message) if isinstance(run, TaskFailure) else run
+
+
+def load_nights(folder: Path) -> tuple[list[Night], tuple[str, ...]]:
+    """Return all nights, the oldest first, and a sentence about every folder that is none.
+
+    Raises:
+        InputError: A night was written by a newer version; it must not be shown or compared in part.
+    """
+    nights, warnings = [], []
+    for path in sorted(folder.iterdir()):
+        if path.is_dir() and not path.name.startswith("."):
+            try:
+                nights.append(_load_night(path))
+            except (ValueError, KeyError, OSError, ValidationError) as error:
+                why = str(error).splitlines()[0]
+                warnings.append(f"{path} is no whole night of this version ({why}) and was passed over, unchanged.")
+    return sorted(nights, key=lambda night: (night.header["started"], night.name)), tuple(warnings)
+
+
+def _load_night(path: Path) -> Night:
+    header = json.loads((path / "night.json").read_text(encoding="utf-8"))
+    if header["schema"] > SCHEMA:
+        raise InputError(
+            f"The night {path} has schema {header['schema']}, this version reads {SCHEMA}: a newer Kinematify wrote "
+            "it. Use that version, or give another folder with -o. Nothing was changed."
+        )
+    if header["schema"] < SCHEMA:
+        raise ValueError(f"it has schema {header['schema']}")
+    runs = tuple(RUN.validate_json(line) for line in (path / "runs.jsonl").read_bytes().splitlines())
+    if len(runs) != header["runs"]:
+        raise ValueError(f"runs.jsonl has {len(runs)} of {header['runs']} runs")
+    changes = CHANGES.validate_python(header.pop("changes"), strict=False)
+    return Night(name=path.name, header=header, runs=runs, changes=changes)
+
+
+def find_night(nights: Sequence[Night], name: str, folder: Path) -> Night:
+    """Return a night by its name.
+
+    Raises:
+        InputError: There is none of that name.
+    """
+    for night in nights:
+        if night.name == name:
+            return night
+    known = ", ".join(night.name for night in nights[-5:]) or "none yet"
+    raise InputError(f"There is no night {name} in {folder}. The latest are: {known}. Give one of them.")
+
+
+def accept(folder: Path, name: str) -> None:
+    """Make a night the one that later nights are compared with.
+
+    Raises:
+        InputError: There is none of that name.
+        OutputError: The file cannot be written.
+    """
+    with locked(folder / ".lock", f"The folder of nights {folder}"):
+        night = find_night(load_nights(folder)[0], name, folder)
+        replace_text(folder / "baseline.json", json.dumps({"schema": SCHEMA, "night": night.name}) + "\n")
+
+
+def _accepted(folder: Path) -> str | None:
+    file = folder / "baseline.json"
+    try:
+        return str(json.loads(file.read_text(encoding="utf-8"))["night"]) if file.is_file() else None
+    except (ValueError, KeyError, TypeError, OSError) as error:
+        raise InputError(
+            f"{file} does not name an accepted night ({error}). Delete it, or accept a night again with "
+            "`kinematify nightly --accept NIGHT`."
+        ) from error
+
+
+def _earlier_runs(nights: Sequence[Night]) -> dict[tuple[str, str, str], list[Run]]:
+    """Runs of each place, the latest first."""
+    found: dict[tuple[str, str, str], list[Run]] = {}
+    for night in reversed(nights):
+        for run in night.runs:
+            found.setdefault(run.place, []).append(run)
+    return found
+
+
+def _write(folder: Path, night: Night, earlier: Sequence[Night]) -> Path:
+    """Write a night and the list of all, and drop what was only needed to resume."""
+    place, aside = folder / night.name, folder / _UNFINISHED / night.name
+    problems = sum(change.gate for change in night.changes)
+    facts = {**night.header, "gate": night.gate, "changes": CHANGES.dump_python(night.changes, mode="json")}
+    files = {
+        "runs.jsonl": "".join(RUN.dump_json(run).decode() + "\n" for run in night.runs),
+        "junit.xml": as_junit(night),
+        "index.html": night_page(night),
+        "night.json": json.dumps(facts, indent=1, allow_nan=False) + "\n",
+    }
+    badge = {
+        "schemaVersion": 1,
+        "label": "nightly",
+        "message": f"{problems} worse" if problems else "passing",
+        "color": "red" if problems else "brightgreen",
+    }  # as an endpoint badge of shields.io reads it
+    try:
+        shutil.rmtree(aside, ignore_errors=True)
+        aside.mkdir(parents=True)
+        for name, text in files.items():
+            (aside / name).write_text(text, encoding="utf-8")
+        aside.rename(place)
+        replace_text(folder / "index.html", nights_page([*earlier, night][-_SHOWN:]))
+        replace_text(folder / "badge.json", json.dumps(badge) + "\n")
+    except OSError as error:
+        raise OutputError(
+            f"The nights cannot be kept in {folder}: {error.strerror or error}. Give a writable folder on a disk with "
+            "space with -o."
+        ) from error
+    shutil.rmtree(folder / _UNFINISHED, ignore_errors=True)
+    return place
 
 
 def write_smoke_objects(folder: Path, sentences: Sequence[str]) -> None:
@@ -312,9 +322,7 @@ def write_smoke_objects(folder: Path, sentences: Sequence[str]) -> None:
     for number, sentence in enumerate(sentences, start=1):
         blueprint = read_sentence(sentence).made(seed=0).blueprint
         place = folder / f"{blueprint.name}_{number}"
-        if place.is_dir():
-            continue
-        aside = folder / f".{place.name}.{os.getpid()}"
-        shutil.rmtree(aside, ignore_errors=True)
-        write_blueprint(blueprint, aside, load_config())
-        aside.rename(place)
+        if not place.is_dir():
+            aside = folder / f".{place.name}.{os.getpid()}"
+            write_blueprint(blueprint, aside, load_config())
+            aside.rename(place)
