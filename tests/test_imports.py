@@ -63,7 +63,7 @@ def test_inferring_loads_only_what_runs(tmp_path: Path) -> None:
 
 def test_what_drives_a_validation_loads_no_geometry() -> None:
     """The stages do, in their server, which starts at the same time."""
-    loaded = loaded_after("import kinematify.validation.run, kinematify.cli.validation_run")
+    loaded = loaded_after("import kinematify.validation.run, kinematify.cli.validate")
     assert "numpy" in loaded
     assert loaded & {"scipy", "igl", "fcl", "mujoco", "pybullet", "pinocchio", "trimesh", "PIL"} == set()
 

@@ -9,7 +9,7 @@ import click
 
 from kinematify.cli.inferred import describe_files, describe_joints
 from kinematify.cli.options import say, with_collision
-from kinematify.cli.report_files import generated_files, report_on
+from kinematify.cli.report_files import report_on
 from kinematify.config import load_config
 from kinematify.errors import ExitStatus, InputError
 from kinematify.generate.blueprint_files import INFERRED_FOLDER, PARTS_FOLDER, write_blueprint, write_parts
@@ -135,7 +135,7 @@ class Generation:
             )
 
     def _validate(self, progress: Reporter) -> None:
-        self.report = report_on(self.out, generated_files(self.out), progress=progress)
+        self.report = report_on(self.out, progress=progress)
 
     @property
     def exit_status(self) -> int:

@@ -15,7 +15,7 @@ from kinematify.cli.blueprint_feedback import in_blueprint_words
 from kinematify.cli.generation import Generation, status_of, summary_of, verdict_on, warn_if_interrupted
 from kinematify.cli.inferred import describe
 from kinematify.cli.options import say, with_collision
-from kinematify.cli.report_files import generated_files, report_on
+from kinematify.cli.report_files import report_on
 from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.providers.command import CommandSource
 from kinematify.generate.providers.job import open_job
@@ -162,7 +162,7 @@ class ProvidedGeneration:
         if self.with_verdict:
             rest = 1.0 - _WRITTEN
             self.report = report_on(
-                self.out, generated_files(self.out),
+                self.out,
                 progress=lambda stage, done: progress(f"validation: {stage}", _WRITTEN + rest * done),
             )  # fmt: skip
 

@@ -1,126 +1,105 @@
-"""The report files that `kinematify validate` is asked for: looked at before the run, written after it."""
+"""Report files that `kinematify validate` is asked for: looked at before the run, written after it."""
 
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from kinematify.errors import OutputError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from kinematify.cli.progress import Reporter
+    from kinematify.validation.formats.report_picture import Drawing
     from kinematify.validation.run.outcome import Outcome
     from kinematify.validation.run.report import ValidationReport
     from kinematify.validation.suppression import Suppression
 
 
-@dataclass(frozen=True, kw_only=True)
-class ReportFiles:
-    """Where each format goes; None where it was not asked for."""
-
-    json: str | None
-    """A file, or ``-`` for stdout."""
-    junit: Path | None
-    sarif: Path | None
-    html: Path | None
-    accept: Path | None = None
-    """Rules that accept what counts now."""
-
-    @property
-    def paths(self) -> dict[str, Path]:
-        """Files by the option that asked for them."""
-        wanted = {
-            "--json": Path(self.json) if self.json not in (None, "", "-") else None,
-            "--junit": self.junit,
-            "--sarif": self.sarif,
-            "--html": self.html,
-            "--suggest-accept": self.accept,
-        }
-        return {option: path for option, path in wanted.items() if path is not None}
-
-    def check(self) -> None:
-        """Find out now, not after minutes of work, whether all of them can be written.
-
-        Raises:
-            OutputError: One cannot.
-        """
-        for option, path in self.paths.items():
-            problem = _problem(path)
-            if problem:
-                raise OutputError(
-                    f"The report of {option} cannot be written to {path}: {problem}. Give a file in a folder that "
-                    "exists and is writable."
-                )
-        if len({os.path.realpath(path) for path in self.paths.values()}) < len(self.paths):
-            raise OutputError(f"Two of {', '.join(self.paths)} name the same file. Give each report its own.")
-
-    def write(
-        self,
-        outcomes: Sequence[Outcome],
-        pictures: Mapping[str, bytes],
-        scenes: Mapping[str, str] | None = None,
-        rules: Sequence[Suppression] = (),
-    ) -> None:
-        """Write what was asked for; see `as_html` for pictures and scenes, `rules` are those that hold already.
-
-        Raises:
-            OutputError: A file cannot be written.
-        """
-        texts = self._texts(outcomes, pictures, scenes or {}, rules)
-        for option, path in self.paths.items():
-            _write(option, path, texts[option])
-        if self.json == "-":
-            click.echo(texts["--json"], nl=False)
-
-    def _texts(
-        self,
-        outcomes: Sequence[Outcome],
-        pictures: Mapping[str, bytes],
-        scenes: Mapping[str, str],
-        rules: Sequence[Suppression],
-    ) -> dict[str, str]:
-        from kinematify.validation.formats.html import as_html
-        from kinematify.validation.formats.junit import as_junit
-        from kinematify.validation.formats.sarif import as_sarif
-        from kinematify.validation.run.outcome import Unusable, as_json_text
-        from kinematify.validation.run.suppression_file import suggested_suppressions, suppressions_text
-
-        texts = {}
-        if self.json:
-            texts["--json"] = as_json_text(outcomes)
-        if self.junit is not None:
-            texts["--junit"] = as_junit(outcomes)
-        if self.sarif is not None:
-            texts["--sarif"] = as_sarif(outcomes)
-        if self.html is not None:
-            texts["--html"] = as_html(outcomes, pictures, scenes)
-        if self.accept is not None:
-            reports = [outcome for outcome in outcomes if not isinstance(outcome, Unusable)]
-            texts["--suggest-accept"] = suppressions_text((*rules, *suggested_suppressions(reports)))
-        return texts
+_OPTIONS = {
+    "json_to": "--json", "junit": "--junit", "sarif": "--sarif", "html": "--html", "suggest_accept": "--suggest-accept",
+}  # fmt: skip
+"""Names of values -> the options that ask for a file."""
 
 
-def generated_files(folder: Path) -> ReportFiles:
-    """The reports in the folder of a generated model."""
-    return ReportFiles(json=str(folder / "validation.json"), junit=None, sarif=None, html=folder / "validation.html")
+def report_paths(given: Mapping[str, Any]) -> dict[str, Path]:
+    """Files by the option that asked for them; found out now, not after minutes of work, whether they can be written.
+
+    Args:
+        given: Values of the options, None or ``-`` for no file.
+
+    Raises:
+        OutputError: One cannot.
+    """
+    wanted = {option: Path(given[name]) for name, option in _OPTIONS.items() if given[name] not in (None, "", "-")}
+    for option, path in wanted.items():
+        if problem := _problem(path):
+            raise OutputError(
+                f"The report of {option} cannot be written to {path}: {problem}. Give a file in a folder that "
+                "exists and is writable."
+            )
+    if len({os.path.realpath(path) for path in wanted.values()}) < len(wanted):
+        raise OutputError(f"Two of {', '.join(wanted)} name the same file. Give each report its own.")
+    return wanted
 
 
-def report_on(folder: Path, files: ReportFiles, *, progress: Reporter | None = None) -> ValidationReport:
+def write_reports(
+    files: Mapping[str, Path],
+    outcomes: Sequence[Outcome],
+    drawings: Mapping[str, Drawing],
+    rules: Sequence[Suppression] = (),
+    *,
+    to_stdout: bool = False,
+) -> None:
+    """Write what was asked for.
+
+    Args:
+        files: As `report_paths` returns them.
+        outcomes: In the order of the models.
+        drawings: Picture and scene of a model, by its path as given; may lack some.
+        rules: That hold already, for a file of accepted findings.
+        to_stdout: Print the JSON.
+
+    Raises:
+        OutputError: A file cannot be written.
+    """
+    from kinematify.validation.formats.html import as_html
+    from kinematify.validation.formats.junit import as_junit
+    from kinematify.validation.formats.sarif import as_sarif
+    from kinematify.validation.run.outcome import Unusable, as_json_text
+    from kinematify.validation.run.suppression_file import suggested_suppressions, suppressions_text
+
+    pictures = {model: drawn.picture for model, drawn in drawings.items()}
+    scenes = {model: drawn.scene for model, drawn in drawings.items()}
+    reports = [outcome for outcome in outcomes if not isinstance(outcome, Unusable)]
+    texts: dict[str, Callable[[], str]] = {
+        "--json": lambda: as_json_text(outcomes),
+        "--junit": lambda: as_junit(outcomes),
+        "--sarif": lambda: as_sarif(outcomes),
+        "--html": lambda: as_html(outcomes, pictures, scenes),
+        "--suggest-accept": lambda: suppressions_text((*rules, *suggested_suppressions(reports))),
+    }
+    for option, path in files.items():
+        _write(option, path, texts[option]())
+    if to_stdout:
+        click.echo(texts["--json"](), nl=False)
+
+
+def report_on(folder: Path, *, progress: Reporter | None = None) -> ValidationReport:
     """Validate the model of a folder and write its reports, with the picture of the folder if there is one."""
     from kinematify.model.output import MODEL_FILE, PREVIEW_FILE
-    from kinematify.validation.formats.report_picture import scene_of
+    from kinematify.validation.formats.report_picture import Drawing, scene_of
     from kinematify.validation.run import validate
 
     report = validate(folder / MODEL_FILE, workers=os.cpu_count() or 1, progress=progress)
     picture = folder / PREVIEW_FILE
-    pictures = {report.model: picture.read_bytes()} if picture.is_file() else {}
-    files.write([report], pictures, {report.model: scene_of(folder / MODEL_FILE)})
+    drawing = Drawing(picture=picture.read_bytes() if picture.is_file() else b"", scene=scene_of(folder / MODEL_FILE))
+    files = {"--json": folder / "validation.json", "--html": folder / "validation.html"}
+    write_reports(files, [report], {report.model: drawing})
     return report
 
 

@@ -3,26 +3,37 @@
 from __future__ import annotations
 
 import os
+import tempfile
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from kinematify.cli.options import examples, package_dirs_option, sampling_seed_option
+from kinematify.cli.options import examples, listed, package_dirs_option, sampling_seed_option, say
 from kinematify.cli.progress import progress_reporter
-from kinematify.cli.report_files import ReportFiles
+from kinematify.cli.report_files import report_paths, write_reports
+from kinematify.errors import ConfigError, ExitStatus, InputError, OutputError
 from kinematify.validation.finding import Severity
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.config.validation import ValidationSettings
+    from kinematify.manipulation.plan_request import TaskRequest
+    from kinematify.validation.formats.report_picture import Drawing
+    from kinematify.validation.run.outcome import Outcome
+    from kinematify.validation.suppression import Suppression
 
 
 _QUICK = "KV1*,KV2*,KV30*,KV31*,KV32*,KV801,KV802,KV803,KV804"
 """Checks of `--quick`."""
 _COARSE = {"points": 450}
 """Settings of its sweeps: half of the usual points."""
+_PICTURES = 12
+"""With more models an HTML report shows none: it would take long to make and to load."""
+_PICTURE_SECONDS = 15.0
+"""A picture that takes longer is omitted [s]; known robots take 1 to 3."""
 
 
 @click.command(
@@ -131,37 +142,7 @@ _COARSE = {"points": 450}
     metavar="FILE",
     help="Report as one HTML file, with a 3-D view of the model.",
 )
-def command(
-    *,
-    models: tuple[str, ...],
-    package_dirs: tuple[Path, ...],
-    checks: str | None,
-    skip: str | None,
-    quick: bool,
-    contract: bool,
-    fail_on: str,
-    engines: str | None,
-    suppress: Path | None,
-    suggest_accept: Path | None,
-    budget: float | None,
-    config: str,
-    seed: int | None,
-    jobs: int | None,
-    task: str | None,
-    into: Path | None,
-    robot: Path | None,
-    tool: str | None,
-    gripper: str | None,
-    grasp: tuple[float, float, float] | None,
-    base: tuple[float, float, float, float] | None,
-    scale: float | None,
-    films: Path | None,
-    everything: bool,
-    json_to: str | None,
-    junit: Path | None,
-    sarif: Path | None,
-    html: Path | None,
-) -> int:
+def command(**given: Any) -> int:
     """Check URDFs: the file, declared physics, collision along the motion, joints, engines and their agreement.
 
     MODEL is a URDF, xacro, MJCF, SDF or USD file, a folder with URDF files at any depth, or a pattern in quotes;
@@ -176,46 +157,169 @@ def command(
     from kinematify.validation.isolation import load_imports
 
     load_imports()  # before anything loads NumPy
-    from kinematify.cli.task_options import TaskOptions
-    from kinematify.cli.validation_run import ValidationRun
+    from kinematify.cli.verdict import describe_listed
+    from kinematify.robot.description import form_of
     from kinematify.validation.models import find_models
+    from kinematify.validation.run import validate
+    from kinematify.validation.run.outcome import Unusable
     from kinematify.validation.run.suppression_file import load_suppressions
 
-    files = ReportFiles(json=json_to, junit=junit, sarif=sarif, html=html, accept=suggest_accept)
-    files.check()
-    options = TaskOptions(
-        task=task, robot=robot, tool=tool, gripper=gripper, grasp=grasp, base=base, scale=scale, films=films, into=into
-    )
-    asked = options.request(files, _existing(package_dirs))
-    run = ValidationRun(
-        models=find_models([word for word in models if ":=" not in word]),
-        arguments=dict(word.split(":=", 1) for word in models if ":=" in word),
-        package_dirs=_existing(package_dirs),
-        selected=_selected(checks or (_QUICK if quick else None), skip, contract=contract),
-        engines=("mujoco",) if quick else _engines(engines),
-        fail_on=Severity(fail_on),
-        quick=quick,
-        quiet=json_to == "-",
-        rules=load_suppressions(suppress) if suppress is not None else (),
-        settings=_settings(config, budget=budget, seed=seed, quick=quick),
-        workers=jobs or os.cpu_count() or 1,
-        with_pictures=html is not None,
-        everything=everything,
-        task=asked,
-    )
+    files = report_paths(given)
+    folders, quick = _existing(given["package_dirs"]), given["quick"]
+    task = _task(given, files, folders)
+    words = given["models"]
+    models = find_models([word for word in words if ":=" not in word])
+    arguments = dict(word.split(":=", 1) for word in words if ":=" in word)
+    selected = _selected(given["checks"] or (_QUICK if quick else None), given["skip"], contract=given["contract"])
+    engines = ("mujoco",) if quick else _engines(given["engines"])
+    rules = load_suppressions(given["suppress"]) if given["suppress"] is not None else ()
+    settings = _settings(given["config"], budget=given["budget"], seed=given["seed"], quick=quick)
+    several, quiet = len(models) > 1, given["json_to"] == "-"
+    outcomes: list[Outcome] = []
+    drawings: dict[str, Drawing] = {}
+    interrupted = False
     try:
         with progress_reporter() as progress:
-            run.run(progress)
+            for number, model in enumerate(models):
+                place = f"{model.parent.name}/{model.name} ({number + 1} of {len(models)}): " if several else ""
+
+                def report(stage: str, share: float, done: int = number, prefix: str = place) -> None:
+                    progress(prefix + stage, (done + share) / len(models))
+
+                try:
+                    outcomes.append(
+                        validate(
+                            model,
+                            package_dirs=folders,
+                            arguments=arguments if form_of(model) == "xacro" else None,
+                            settings=settings,
+                            selected=selected,
+                            engines=engines,
+                            named=not quick,
+                            suppressions=rules,
+                            task=_task_of(task, model, several=several),
+                            workers=given["jobs"] or os.cpu_count() or 1,
+                            progress=report,
+                        )
+                    )
+                except InputError as error:
+                    outcomes.append(Unusable(model=str(model), message=str(error)))
+                if several and not quiet:
+                    say(f"{describe_listed(outcomes[-1])}\n")
+                interrupted = _is_interrupted(outcomes[-1])
+                if interrupted:
+                    break
+                if given["html"] is not None and len(models) <= _PICTURES and _can_be_drawn(outcomes[-1]):
+                    from kinematify.validation.formats.report_picture import drawing_of
+
+                    report("picture", 0.97)
+                    drawings[outcomes[-1].model] = drawing_of(model, folders, settings, seconds=_PICTURE_SECONDS)
     except KeyboardInterrupt:
-        run.interrupted = True
-    files.write(run.outcomes, run.pictures, run.scenes, run.rules)
-    run.print()
-    return run.exit_status
+        interrupted = True
+    write_reports(files, outcomes, drawings, rules, to_stdout=quiet)
+    _print(outcomes, len(models), rules, quiet=quiet, interrupted=interrupted, everything=given["everything"])
+    if interrupted:
+        return ExitStatus.INTERRUPTED
+    found = {item.status_at(Severity(given["fail_on"])) for item in outcomes}
+    order = (ExitStatus.UNUSABLE, ExitStatus.FAILURES, ExitStatus.FAULT)
+    return next((status for status in order if status in found), ExitStatus.FINE)
+
+
+def _is_interrupted(outcome: Outcome) -> bool:
+    from kinematify.validation.run.outcome import Unusable
+
+    return not isinstance(outcome, Unusable) and bool(outcome.environment.get("interrupted"))
+
+
+def _can_be_drawn(outcome: Outcome) -> bool:
+    """True if the file and its meshes can be read."""
+    from kinematify.validation.run.outcome import Unusable
+
+    return not isinstance(outcome, Unusable) and not any(
+        item.check.startswith("KV1") and item.severity is Severity.ERROR for item in outcome.findings
+    )
+
+
+def _print(
+    outcomes: Sequence[Outcome],
+    models: int,
+    rules: Sequence[Suppression],
+    *,
+    quiet: bool,
+    interrupted: bool,
+    everything: bool,
+) -> None:
+    """Print the report on stdout unless a machine reads that, and what is no result on stderr."""
+    from kinematify.cli.verdict import describe, describe_table, describe_unused
+    from kinematify.validation.run.outcome import Unusable
+    from kinematify.validation.run.suppression_file import unused_suppressions
+
+    reports = [outcome for outcome in outcomes if not isinstance(outcome, Unusable)]
+    if models > 1 and not quiet:
+        say(describe_table(outcomes))
+    elif reports and not quiet:
+        say(describe(reports[0], everything=everything))
+    else:
+        for outcome in outcomes:
+            if isinstance(outcome, Unusable):
+                click.echo(f"Error: {outcome.message}", err=True)
+    if interrupted:
+        done = f"{len(outcomes)} of {models} models"
+        click.echo(f"Interrupted. What is known by now was reported ({done}, the last one in part).", err=True)
+    elif unused := describe_unused(unused_suppressions(rules, reports)):
+        click.echo(unused, err=True)
+
+
+def _task(given: dict[str, Any], files: dict[str, Path], package_dirs: tuple[Path, ...]) -> TaskRequest | None:
+    """Return what the options ask of a robot; it is read once, so that what is wrong with it is said at once.
+
+    Raises:
+        InputError: There is no such robot, tool or gripper.
+        OutputError: Films cannot be written where they should go.
+    """
+    kind, into = given["task"], given["into"]
+    if kind is None:
+        for name in ("robot", "tool", "gripper", "grasp", "base", "scale", "films", "into"):
+            if given[name]:
+                raise click.UsageError(f"--{name} belongs to a task. Give --task pull with it.")
+        return None
+    if kind == "pour" and (given["grasp"] or given["base"]):
+        raise click.UsageError("--grasp and --base belong to --task pull. Leave them out.")
+    if (into is None) == (kind == "pour"):
+        raise click.UsageError("--task pour and --into, which names the container, belong together.")
+    if into is not None and not into.is_file():
+        raise InputError(f"--into {into} is no file. Give the URDF of the container that is poured into.")
+    beside = next((path.absolute().parent for path in files.values()), None)
+    films = beside if given["films"] is None else given["films"].absolute()
+    if films is not None and not films.is_dir():
+        raise OutputError(f"--films {films} is no folder. Give a folder that exists.")
+    from kinematify.manipulation.manipulator import robot_of
+    from kinematify.manipulation.plan_request import TaskRequest
+
+    request = TaskRequest(
+        kind=kind,
+        robot=given["robot"] and given["robot"].absolute(),
+        tool=given["tool"],
+        gripper=listed(given["gripper"]),
+        package_dirs=package_dirs,
+        grasp=given["grasp"] or None,
+        base=given["base"] or None,
+        scale=given["scale"],
+        into=into and into.absolute(),
+        films=films,
+    )
+    with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
+        robot_of(request, Path(folder))
+    return request
+
+
+def _task_of(task: TaskRequest | None, model: Path, *, several: bool) -> TaskRequest | None:
+    """The task with names of films that distinguish the models."""
+    stem = f"{model.absolute().parent.name}_{model.stem}" if several else model.stem
+    return None if task is None else replace(task, stem=f"{stem}_{task.kind}")
 
 
 def _existing(folders: Sequence[Path]) -> tuple[Path, ...]:
-    from kinematify.errors import InputError
-
     for folder in folders:
         if not folder.is_dir():
             raise InputError(f"--package-dir {folder} is no folder. Give the folder of a package, or of packages.")
@@ -260,7 +364,6 @@ def _engines(words: str | None) -> tuple[str, ...]:
 
 def _settings(config: str, *, budget: float | None, seed: int | None, quick: bool) -> ValidationSettings:
     from kinematify.config.validation import load_settings
-    from kinematify.errors import ConfigError
 
     settings = load_settings(config)
     changes: dict[str, object] = {} if seed is None else {"seed": seed}

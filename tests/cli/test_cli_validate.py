@@ -14,7 +14,6 @@ from typing import Any
 import pytest
 from lxml import etree
 
-from kinematify.cli import validation_run
 from kinematify.cli.app import run
 from kinematify.errors import InputError
 from kinematify.validation.checks import CHECKS
@@ -71,7 +70,7 @@ def answered(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
             raise what
         return report(*what.checks, model=str(path), interrupted=bool(what.environment["interrupted"]))
 
-    monkeypatch.setattr(validation_run, "validate", answer)
+    monkeypatch.setattr("kinematify.validation.run.validate", answer)
     return answers
 
 
