@@ -209,7 +209,7 @@ def loadable(urdf: Path, folder: Path) -> Path:
     editor.carve(robot, frozenset(solid), config, settings)
     editor.set_inertia(robot, solid, settings.prepare)
     weighed_links = tuple(replace(link, inertial=inertials[link.name]) for link in robot.links)
-    editor.set_friction(replace(robot, links=weighed_links), config.dynamics)
+    editor.set_friction(replace(robot, links=weighed_links))
     return editor.write()
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from kinematify.config import load_config
+from kinematify.model.dynamics import HAND_FORCE, HAND_TORQUE
 
 if TYPE_CHECKING:
     from kinematify.robot.robot import Joint, Robot
@@ -16,8 +16,7 @@ if TYPE_CHECKING:
 
 def hand(joint: Joint) -> float:
     """Torque or force of a hand [N m or N]."""
-    config = load_config().dynamics
-    return config.hand_torque if joint.kind.turns else config.hand_force
+    return HAND_TORQUE if joint.kind.turns else HAND_FORCE
 
 
 def wanted(joint: Joint) -> float:

@@ -36,7 +36,7 @@ from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects
 from kinematify.evaluation.result_record import grouped, table
 from kinematify.refinement import refine
 from kinematify.refinement.candidates import CandidateJoints, is_same
-from kinematify.refinement.choose import Chooser
+from kinematify.refinement.choose import MARGIN, Chooser
 from kinematify.refinement.joint_plan import Plan
 from kinematify.refinement.simulate import Simulator
 
@@ -136,7 +136,7 @@ def mistakes(mechanism: TrueMechanism) -> list[Record]:
         if name not in wrong:
             continue
         best = joint.alternatives[0].score
-        near = [item for item in joint.alternatives if item.score >= best - answer.config.refine.margin]
+        near = [item for item in joint.alternatives if item.score >= best - MARGIN]
         others = [chooser.candidates.realise(answer.trees[0], joint, item) for item in near if not is_same(joint, item)]
         right = [other for other in others if name not in mechanism.wrong(plan.with_joint(other).inference)]
         tried = [chooser.trial(other, 0.0).against for other in (joint, *right)]

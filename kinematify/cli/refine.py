@@ -35,7 +35,9 @@ _HEADINGS = ("part", "what", "before", "after", "why")
 @click.option(
     "-o", "--out", type=click.Path(path_type=Path), help="Folder to make for the refined model; FOLDER if not given."
 )
-@click.option("--rounds", type=click.IntRange(min=0), help="Rounds at most; 3 if not given. 0 only simulates.")
+@click.option(
+    "--rounds", type=click.IntRange(min=0), default=3, show_default=True, help="Rounds at most; 0 only simulates."
+)
 @click.option("--base", metavar="NAME", help="Part that the tree is rooted at, if the choice made is wrong.")
 @collision_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder; without -o, the model in FOLDER.")
@@ -46,7 +48,7 @@ def command(
     *,
     folder: Path,
     out: Path | None,
-    rounds: int | None,
+    rounds: int,
     base: str | None,
     collision: str | None,
     force: bool,

@@ -25,7 +25,7 @@ from kinematify.config.joint_settings import (
     RockersConfig,
     SweepConfig,
 )
-from kinematify.config.output_settings import CollisionConfig, DynamicsConfig, LinkageConfig, ModelConfig, PreviewConfig
+from kinematify.config.output_settings import CollisionConfig, ModelConfig, PreviewConfig
 from kinematify.config.services import RodinConfig, ServiceConfig, SourcesConfig, VisionConfig
 from kinematify.config.shapes import (
     AssemblyConfig,
@@ -36,7 +36,7 @@ from kinematify.config.shapes import (
     SeamConfig,
     SurfaceConfig,
 )
-from kinematify.config.tree_settings import BaseConfig, FeedbackConfig, RefineConfig, RewardWeights, TopologyConfig
+from kinematify.config.tree_settings import RewardWeights, TopologyConfig
 from kinematify.errors import ConfigError
 from kinematify.versions import is_installed, not_installed
 
@@ -46,7 +46,6 @@ if TYPE_CHECKING:
 __all__ = [
     "CONFIG_FOLDER",
     "AssemblyConfig",
-    "BaseConfig",
     "BearingConfig",
     "CavlConfig",
     "ClearanceConfig",
@@ -55,8 +54,6 @@ __all__ = [
     "ConfidenceConfig",
     "Config",
     "ContactConfig",
-    "DynamicsConfig",
-    "FeedbackConfig",
     "FramesConfig",
     "FrontCuesConfig",
     "GateConfig",
@@ -64,14 +61,12 @@ __all__ = [
     "JointsConfig",
     "JournalConfig",
     "LimitsConfig",
-    "LinkageConfig",
     "ModelConfig",
     "NeuralSdfConfig",
     "PanelsConfig",
     "PreviewConfig",
     "RailConfig",
     "RailsConfig",
-    "RefineConfig",
     "RewardWeights",
     "RockersConfig",
     "RodinConfig",
@@ -106,14 +101,11 @@ class Config(StageConfig):
     bearing: BearingConfig = section()
     model: ModelConfig = section()
     collision: CollisionConfig = section()
-    dynamics: DynamicsConfig = section()
-    linkages: LinkageConfig = section()
     preview: PreviewConfig = section()
     joints: JointsConfig = section()
     topology: TopologyConfig = section()
     sdf: SdfConfig = section()
     cavl: CavlConfig = section()
-    refine: RefineConfig = section()
     sources: SourcesConfig = section()
     vision: VisionConfig = section()
 

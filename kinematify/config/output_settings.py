@@ -53,19 +53,6 @@ class ModelConfig(StageConfig):
     """Longer model names are cut [characters]."""
 
 
-class LinkageConfig(StageConfig):
-    """Closed chains of the model that is written."""
-
-    parallel_deg: float = 3.0  # axes of fitted bearings are off by 0.02 deg in the median, rough pins by 1 or 2
-    """Axes of a chain that differ by less are made parallel [deg]."""
-    exact: float = 5.0e-4  # half of what a closed loop may open
-    """Joints follow by a fixed multiple where no pin opens by more."""
-    mimic_deg: float = 1.0  # the gap decides; this only finds the multiple
-    """How far a joint may be from a fixed multiple [deg]."""
-    least: float = 0.02  # 1 deg: less is play
-    """A linkage that is free over less than this is not judged by what it meets [rad or m]."""
-
-
 class CollisionConfig(StageConfig):
     """Collision geometry of the model that is written."""
 
@@ -99,37 +86,6 @@ class CollisionConfig(StageConfig):
     """How far beyond their limits joints that turn are kept free [rad]."""
     slide_slack: float = 2.0e-3
     """The same for joints that slide [m]."""
-
-
-class DynamicsConfig(StageConfig):
-    """Friction, damping and weight of the model that is written."""
-
-    hand_force: float = 60.0  # half of what standards of furniture allow for a drawer
-    """What a hand pulls a drawer with [N]."""
-    hand_torque: float = 15.0  # 40 N at a handle 40 cm from the hinge
-    """What a hand turns a door with [N m]."""
-    motor_torque: float = 8.0e3  # limits of PyBullet give way at three times as much
-    """The most that the motor of a joint that turns is given [N m]."""
-    motor_force: float = 8.0e3
-    """The same for one that slides [N]."""
-    hand_share: float = 0.8  # the rest accelerates
-    """Weight and friction take at most this share of it."""
-    holding: float = 1.3  # a lid that was given half open stays there
-    """Friction over the weight that pulls at a joint where it rests."""
-    rubbing: float = 0.05  # hinges; drawers on rollers have 0.02 to 0.1
-    """Friction of bearings and slides over the weight on them."""
-    most_friction: float = 0.5
-    """Friction is at most this share of a hand's force."""
-    settling_time: float = 0.3  # a door that is let go does not swing on
-    """A part that was pushed comes to rest in about this time [s]: inertia over damping."""
-    opening_time: float = 2.0
-    """A hand moves it over its whole range in at most about this time [s]."""
-    effort_margin: float = 5.0  # a hand that jerks, contacts that rub: a flap of 1 g needs no 100 N m
-    """Effort limits are so many times what moves a joint over its range in that time."""
-    least_effort: float = 0.1  # a finger
-    """Lower effort limits are raised to this [N m or N]."""
-    shortest_time: float = 0.25  # a button that is struck
-    """Velocity limits are not above the range over this time [s]."""
 
 
 class PreviewConfig(StageConfig):

@@ -16,7 +16,6 @@ from kinematify.robot.robot import forward_kinematics, joint_ends, rest_configur
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
-    from kinematify.config import DynamicsConfig
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Inertial, Joint, Robot
 
@@ -31,6 +30,34 @@ _MOST_DECAY = 1.0
 """Of a speed by its damping in one step; what decays by more than twice its size grows."""
 _VALUES = 33
 """Values of a joint at which its weight is looked at."""
+
+
+HAND_FORCE = 60.0  # half of what standards of furniture allow for a drawer
+"""What a hand pulls a drawer with [N]."""
+HAND_TORQUE = 15.0  # 40 N at a handle 40 cm from the hinge
+"""What a hand turns a door with [N m]."""
+MOTOR_TORQUE = 8.0e3  # limits of PyBullet give way at three times as much
+"""The most that the motor of a joint that turns is given [N m]."""
+MOTOR_FORCE = 8.0e3
+"""The same for one that slides [N]."""
+HAND_SHARE = 0.8  # the rest accelerates
+"""Weight and friction take at most this share of it."""
+HOLDING = 1.3  # a lid that was given half open stays there
+"""Friction over the weight that pulls at a joint where it rests."""
+RUBBING = 0.05  # hinges; drawers on rollers have 0.02 to 0.1
+"""Friction of bearings and slides over the weight on them."""
+MOST_FRICTION = 0.5
+"""Friction is at most this share of a hand's force."""
+SETTLING_TIME = 0.3  # a door that is let go does not swing on
+"""A part that was pushed comes to rest in about this time [s]: inertia over damping."""
+OPENING_TIME = 2.0
+"""A hand moves it over its whole range in at most about this time [s]."""
+EFFORT_MARGIN = 5.0  # a hand that jerks, contacts that rub: a flap of 1 g needs no 100 N m
+"""Effort limits are so many times what moves a joint over its range in that time."""
+LEAST_EFFORT = 0.1  # a finger
+"""Lower effort limits are raised to this [N m or N]."""
+SHORTEST_TIME = 0.25  # a button that is struck
+"""Velocity limits are not above the range over this time [s]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,7 +76,7 @@ class JointLoad:
     """Length of the range [rad or m]."""
 
 
-def with_dynamics(robot: Robot, config: DynamicsConfig, *, measured: bool = False) -> Robot:
+def with_dynamics(robot: Robot, *, measured: bool = False) -> Robot:
     """Return the robot with damping and friction for every joint that has none, and with parts that can be moved.
 
     Friction holds what rests in the middle of its range against its weight; damping lets a hand's force move it over
@@ -60,18 +87,17 @@ def with_dynamics(robot: Robot, config: DynamicsConfig, *, measured: bool = Fals
 
     Args:
         robot: Links with mass properties; zero is their pose as given.
-        config: Forces of a hand, friction, times.
         measured: Masses and efforts stay; friction and damping leave motors enough to move.
     """
     for joint in () if measured else reversed(robot.joints_downward):
         if joint.leads:
-            robot = _lightened(robot, joint, config)
+            robot = _lightened(robot, joint)
     joints = tuple(
         joint
         if joint.kind is JointType.FIXED or joint.damping is not None or joint.friction is not None
-        else _with_dynamics(robot, joint, config, measured=measured)
+        else _with_dynamics(robot, joint, measured=measured)
         if moved_by_hand(robot, joint)
-        else _with_motor(robot, joint, config, measured=measured)
+        else _with_motor(robot, joint, measured=measured)
         for joint in robot.joints
     )
     return _steady(replace(robot, joints=joints), given=robot)
@@ -155,14 +181,14 @@ def _longest_below(robot: Robot, link: str) -> int:
     return max((_longest_below(robot, item.child) + (item.kind is not JointType.FIXED) for item in below), default=0)
 
 
-def _lightened(robot: Robot, joint: Joint, config: DynamicsConfig) -> Robot:
+def _lightened(robot: Robot, joint: Joint) -> Robot:
     """Scale the masses that a joint carries so that a hand, or a motor, moves them against weight and friction."""
     load = joint_load(robot, joint)
     if moved_by_hand(robot, joint):
-        needed, max_safe_force = load.largest + _rubbing(load, config), config.hand_share * _hand(joint, config)
+        needed, max_safe_force = load.largest + _rubbing(load), HAND_SHARE * _hand(joint)
     else:
-        needed = _Motor.of(load, config).effort
-        max_safe_force = _motor(joint, config)
+        needed = _Motor.of(load).effort
+        max_safe_force = _motor(joint)
     if needed <= max_safe_force:
         return robot
     scale = max_safe_force / needed
@@ -181,25 +207,25 @@ def _lightened(robot: Robot, joint: Joint, config: DynamicsConfig) -> Robot:
     )
 
 
-def _with_dynamics(robot: Robot, joint: Joint, config: DynamicsConfig, *, measured: bool) -> Joint:
-    load, hand = joint_load(robot, joint), _hand(joint, config)
-    friction = min(_rubbing(load, config), config.most_friction * hand)
-    left = max(hand - load.largest - friction, (1.0 - config.hand_share) * hand)
-    damping = min(load.inertia / config.settling_time, left * config.opening_time / max(load.travel, 1e-9))
+def _with_dynamics(robot: Robot, joint: Joint, *, measured: bool) -> Joint:
+    load, hand = joint_load(robot, joint), _hand(joint)
+    friction = min(_rubbing(load), MOST_FRICTION * hand)
+    left = max(hand - load.largest - friction, (1.0 - HAND_SHARE) * hand)
+    damping = min(load.inertia / SETTLING_TIME, left * OPENING_TIME / max(load.travel, 1e-9))
     if joint.effort is None or joint.velocity is None or measured:
         return _stated(joint, damping, friction)
-    needed = max(config.effort_margin * _effort(robot, joint, config), config.least_effort)
-    fastest = max(load.travel, 1e-3) / config.shortest_time
+    needed = max(EFFORT_MARGIN * _effort(robot, joint), LEAST_EFFORT)
+    fastest = max(load.travel, 1e-3) / SHORTEST_TIME
     fitted = replace(
         joint, effort=float(f"{min(joint.effort, needed):.3g}"), velocity=float(f"{min(joint.velocity, fastest):.3g}")
     )
     return _stated(fitted, damping, friction)
 
 
-def _effort(robot: Robot, joint: Joint, config: DynamicsConfig) -> float:
+def _effort(robot: Robot, joint: Joint) -> float:
     """Effort at a joint that moves it and all that follow it [N m or N]."""
     moved = ((robot.joint_by_name[name], ratio) for name, ratio in _moved(robot, joint).items())
-    return sum(ratio * _Motor.of(joint_load(robot, other), config).effort for other, ratio in moved)
+    return sum(ratio * _Motor.of(joint_load(robot, other)).effort for other, ratio in moved)
 
 
 def _moved(robot: Robot, joint: Joint) -> dict[str, float]:
@@ -230,24 +256,24 @@ class _Motor:
     """That and friction and damping, over the share of it that is used [N m or N]."""
 
     @classmethod
-    def of(cls, load: JointLoad, config: DynamicsConfig) -> _Motor:
-        pace = load.travel / config.opening_time
-        friction = _rubbing(load, config)
+    def of(cls, load: JointLoad) -> _Motor:
+        pace = load.travel / OPENING_TIME
+        friction = _rubbing(load)
         # More would make chains swing in engines that apply damping as a force of the last step.
-        damping = load.inertia / config.settling_time
-        lifting = load.largest + load.inertia * pace / config.opening_time
-        effort = (lifting + friction + damping * pace) / config.hand_share
+        damping = load.inertia / SETTLING_TIME
+        lifting = load.largest + load.inertia * pace / OPENING_TIME
+        effort = (lifting + friction + damping * pace) / HAND_SHARE
         return cls(friction=friction, damping=damping, lifting=lifting, effort=effort)
 
 
-def _with_motor(robot: Robot, joint: Joint, config: DynamicsConfig, *, measured: bool) -> Joint:
-    needed = _Motor.of(joint_load(robot, joint), config)
-    if joint.effort is not None and not measured and joint.effort < (most := _effort(robot, joint, config)):
-        joint = replace(joint, effort=float(f"{min(most, _motor(joint, config)):.3g}"))
+def _with_motor(robot: Robot, joint: Joint, *, measured: bool) -> Joint:
+    needed = _Motor.of(joint_load(robot, joint))
+    if joint.effort is not None and not measured and joint.effort < (most := _effort(robot, joint)):
+        joint = replace(joint, effort=float(f"{min(most, _motor(joint)):.3g}"))
     if joint.effort is None or not measured or needed.effort <= joint.effort:
         return _stated(joint, needed.damping, needed.friction)
-    left = max(config.hand_share * joint.effort - needed.lifting, 0.0)
-    share = left / (config.hand_share * needed.effort - needed.lifting)
+    left = max(HAND_SHARE * joint.effort - needed.lifting, 0.0)
+    share = left / (HAND_SHARE * needed.effort - needed.lifting)
     return _stated(joint, share * needed.damping, share * needed.friction)
 
 
@@ -255,16 +281,16 @@ def _stated(joint: Joint, damping: float, friction: float) -> Joint:
     return replace(joint, damping=float(f"{damping:.3g}"), friction=float(f"{friction:.3g}"))
 
 
-def _rubbing(load: JointLoad, config: DynamicsConfig) -> float:
-    return max(config.holding * load.at_rest, config.rubbing * load.press)
+def _rubbing(load: JointLoad) -> float:
+    return max(HOLDING * load.at_rest, RUBBING * load.press)
 
 
-def _hand(joint: Joint, config: DynamicsConfig) -> float:
-    return config.hand_torque if joint.kind.turns else config.hand_force
+def _hand(joint: Joint) -> float:
+    return HAND_TORQUE if joint.kind.turns else HAND_FORCE
 
 
-def _motor(joint: Joint, config: DynamicsConfig) -> float:
-    return config.motor_torque if joint.kind.turns else config.motor_force
+def _motor(joint: Joint) -> float:
+    return MOTOR_TORQUE if joint.kind.turns else MOTOR_FORCE
 
 
 def carried_links(robot: Robot, link: str) -> list[str]:

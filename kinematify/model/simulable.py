@@ -77,7 +77,7 @@ def _rounded_inertial(inertial: Inertial | None) -> Inertial | None:
 
 def simulable_model(model: KinematicModel, config: Config) -> SimulableModel:
     """Return the model with friction, damping, liftable parts and collision geometry that leaves the motion free."""
-    robot = with_dynamics(rounded(model_robot(model)), config.dynamics)
+    robot = with_dynamics(rounded(model_robot(model)))
     if config.collision.mode == "mesh":
         return SimulableModel(robot=robot, collision=None)
     settings = load_settings()

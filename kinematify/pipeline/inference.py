@@ -157,7 +157,7 @@ class Inference:
             return tree, ()
         pins = [SharedAxis(links=chain.parts, axis=chain.line.axis, pivot=chain.line.pivot) for chain in chains]
         twins = [[self.assembly.names[part] for part in cluster] for cluster in self.graph.clusters]
-        model, closings = close_chains(tree, pins, twins, self.assembly.diagonal, self.config.linkages)
+        model, closings = close_chains(tree, pins, twins, self.assembly.diagonal)
         closed = (replace(chain, closing=closing) for chain, closing in zip(chains, closings, strict=True))
         return model, tuple(closed)
 

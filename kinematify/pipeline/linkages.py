@@ -26,7 +26,6 @@ from kinematify.robot.robot import LoopJoint, Mimic
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.config import LinkageConfig
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.linkage import Linkage
@@ -42,6 +41,16 @@ _SHARED = 0.3
 """Congruent linkages whose ranges have less than this in common stand differently."""
 _SAMPLES = 41
 """Of a linkage's motion, where the gap of its pins is measured."""
+
+
+_PARALLEL_DEG = 3.0  # axes of fitted bearings are off by 0.02 deg in the median, rough pins by 1 or 2
+"""Axes of a chain that differ by less are made parallel [deg]."""
+_EXACT = 5.0e-4  # half of what a closed loop may open
+"""Joints follow by a fixed multiple where no pin opens by more."""
+_MIMIC_DEG = 1.0  # the gap decides; this only finds the multiple
+"""How far a joint may be from a fixed multiple [deg]."""
+_LEAST = 0.02  # 1 deg: less is play
+"""A linkage that is free over less than this is not judged by what it meets [rad or m]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -74,7 +83,6 @@ def close_chains(
     pins: Sequence[SharedAxis],
     twins: Sequence[Sequence[str]],
     diagonal: float,
-    config: LinkageConfig,
 ) -> tuple[KinematicModel, tuple[Closing, ...]]:
     """Write a loop joint for every shared pin that leaves its chain a motion, and make the chain's joints agree.
 
@@ -91,17 +99,17 @@ def close_chains(
     names: list[str | None] = []
     for pin in pins:
         loop = _loop(model, pin)
-        tried = _parallel(replace(model, loops=(*model.loops, loop)), pins, config)
+        tried = _parallel(replace(model, loops=(*model.loops, loop)), pins)
         rigid = any(loop.name in found.loops and found.mobility < 1 for found in linkages(_unlimited(tried, diagonal)))
         names.append(None if rigid else loop.name)
         model = model if rigid else tried
     moving = [found for found in linkages(_unlimited(model, diagonal)) if found.driver is not None]
     model = _same_way(model, moving, twins)
     moving = [found for found in linkages(_unlimited(model, diagonal)) if found.driver is not None]
-    ranges = _alike(model, moving, [_range(model, found, diagonal, config) for found in moving], twins)
+    ranges = _alike(model, moving, [_range(model, found, diagonal) for found in moving], twins)
     closing: dict[str, Closing] = {}
     for linkage, ends in zip(moving, ranges, strict=True):
-        model, found = _moving_as_one(model, linkage, ends, diagonal, config)
+        model, found = _moving_as_one(model, linkage, ends, diagonal)
         closing |= dict.fromkeys(linkage.loops, found)
     done = tuple(
         Closing() if name is None else replace(closing.get(name, Closing(loop=name)), loop=name) for name in names
@@ -135,7 +143,7 @@ def _unlimited(model: KinematicModel, diagonal: float) -> Robot:
     )
 
 
-def _parallel(model: KinematicModel, pins: Sequence[SharedAxis], config: LinkageConfig) -> KinematicModel:
+def _parallel(model: KinematicModel, pins: Sequence[SharedAxis]) -> KinematicModel:
     """Make the axes of a chain exactly parallel where they are nearly so: else a plane linkage would be rigid."""
     for loops in [found.joints for found in linkages(model.robot)]:
         turning = [joint for joint in model.joints if joint.name in loops and joint.kind.turns]
@@ -144,7 +152,7 @@ def _parallel(model: KinematicModel, pins: Sequence[SharedAxis], config: Linkage
         first = turning[0].axis
         directions = [joint.axis for joint in turning] + [pin.axis for pin in pins if _of(model, pin, loops)]
         cosines = [abs(float(axis @ first)) for axis in directions]
-        if min(cosines) < math.cos(math.radians(config.parallel_deg)):
+        if min(cosines) < math.cos(math.radians(_PARALLEL_DEG)):
             continue
         mean = np.sum([np.copysign(1.0, float(axis @ first)) * axis for axis in directions], axis=0)
         mean = snapped(mean / np.linalg.norm(mean))
@@ -204,18 +212,18 @@ def _kind(model: KinematicModel, linkage: Linkage, label: Mapping[str, int]) -> 
 
 
 def _moving_as_one(
-    model: KinematicModel, linkage: Linkage, ends: tuple[float, float], diagonal: float, config: LinkageConfig
+    model: KinematicModel, linkage: Linkage, ends: tuple[float, float], diagonal: float
 ) -> tuple[KinematicModel, Closing]:
     """Give all joints of a linkage the limits of one motion, and <mimic> where that is exact."""
-    exact = _with_limits(model, linkage, ends, 0.0, config)
+    exact = _with_limits(model, linkage, ends, 0.0)
     # In this range another joint, nearer the root, may drive as well.
     linkage = next(found for found in linkages(exact.robot) if found.loops == linkage.loops)
     if linkage.driver is None:
         return exact, Closing(loop="")
     at = linkage.curve[:, linkage.joints.index(linkage.driver)]
     ends = float(at[0]), float(at[-1])
-    model = _with_limits(model, linkage, ends, _SLACK, config)
-    multiples = _multiples(model, linkage, ends, diagonal, config)
+    model = _with_limits(model, linkage, ends, _SLACK)
+    multiples = _multiples(model, linkage, ends, diagonal)
     joints = tuple(
         replace(
             joint,
@@ -231,9 +239,7 @@ def _moving_as_one(
     return replace(model, joints=joints), Closing(loop="", driver=linkage.driver, by=by, range=ends)
 
 
-def _with_limits(
-    model: KinematicModel, linkage: Linkage, ends: tuple[float, float], slack: float, config: LinkageConfig
-) -> KinematicModel:
+def _with_limits(model: KinematicModel, linkage: Linkage, ends: tuple[float, float], slack: float) -> KinematicModel:
     """Make every joint of a linkage go as far as the driver takes it between two values.
 
     Args:
@@ -245,7 +251,7 @@ def _with_limits(
     """
     driver = linkage.curve[:, linkage.joints.index(linkage.driver or "")]
     at = np.unique([*ends, *driver[(driver > ends[0]) & (driver < ends[1])]])
-    endless = linkage.turns_around and ends[1] - ends[0] >= 2.0 * math.pi - config.least
+    endless = linkage.turns_around and ends[1] - ends[0] >= 2.0 * math.pi - _LEAST
     joints = {joint.name: joint for joint in model.joints}
     for name in linkage.joints:
         values = at if name == linkage.driver else linkage.closure(name).follow(at)
@@ -261,7 +267,7 @@ def _limited(joint: Joint, lower: float, upper: float, *, endless: bool) -> Join
     return replace(joint, kind=JointType.REVOLUTE if joint.kind.turns else joint.kind, lower=lower, upper=upper)
 
 
-def _range(model: KinematicModel, linkage: Linkage, diagonal: float, config: LinkageConfig) -> tuple[float, float]:
+def _range(model: KinematicModel, linkage: Linkage, diagonal: float) -> tuple[float, float]:
     """Values of the driver between which nothing is met, and that one joint of the linkage was thought to reach."""
     column = linkage.joints.index(linkage.driver or "")
     at = linkage.curve[:, column]
@@ -279,7 +285,7 @@ def _range(model: KinematicModel, linkage: Linkage, diagonal: float, config: Lin
     leader, travel = next(item for item in enumerate(scene.travels) if item[1].joint == linkage.driver)
     sweeper = Sweeper.of(scene)
     free = sweeper.free_end(leader, travel.lower), sweeper.free_end(leader, travel.upper)
-    if free[1] - free[0] < config.least:  # its parts are in each other as they are: the motion cannot be judged
+    if free[1] - free[0] < _LEAST:  # its parts are in each other as they are: the motion cannot be judged
         return max(low, float(at[0])), min(high, float(at[-1]))
     return free
 
@@ -302,19 +308,19 @@ def _thought(model: KinematicModel, linkage: Linkage, at: FloatArray) -> tuple[f
 
 
 def _multiples(
-    model: KinematicModel, linkage: Linkage, ends: tuple[float, float], diagonal: float, config: LinkageConfig
+    model: KinematicModel, linkage: Linkage, ends: tuple[float, float], diagonal: float
 ) -> Mapping[str, float]:
     """Multiples of the driver by which joints follow it, where all pins stay closed that way."""
     driver = linkage.driver or ""
     values = np.linspace(*ends, _SAMPLES)
-    reach = config.exact * diagonal
+    reach = _EXACT * diagonal
     found = {}
     for name in linkage.joints:
         joint = model.robot.joint_by_name[name]
         if name == driver or joint.kind.turns is not model.robot.joint_by_name[driver].kind.turns:
             continue
         own = linkage.closure(name).follow(values)
-        slack = config.mimic_deg if joint.kind.turns else reach
+        slack = _MIMIC_DEG if joint.kind.turns else reach
         errors = {multiple: float(np.abs(own - multiple * values).max()) for multiple in _MULTIPLES}
         best = min(errors, key=lambda multiple: errors[multiple])
         if errors[best] < (math.radians(slack) if joint.kind.turns else slack):

@@ -26,6 +26,19 @@ if TYPE_CHECKING:
     from kinematify.refinement.simulate import Simulator
     from kinematify.validation.run.feedback import Feedback, RangeSignal
 
+MARGIN = 3.0  # one to twenty: what is less likely is not saved by a sweep
+"""Candidates this far below the best are near-best and are simulated; where the chosen joint is farther below, its
+shape alone speaks against it [log odds]."""
+NEAR_BEST = 4  # on most edges fewer differ
+"""So many of them at most."""
+LEAD = 0.3  # a tie stays with the inference
+"""A candidate replaces the chosen one if it leads by more [log odds]."""
+LEAD_ELSEWHERE = 1.2  # less than any error weighs (3.0): half of the doubted axes are right
+"""The same for a candidate of another type or direction [log odds]."""
+LEAST_TRAVEL = 0.5  # what is blocked earlier has a wrong line or mesh; a shorter range would hide that
+"""A range that is blocked may not be cut below this share of what the inference saw free."""
+LEAST_KEPT = 0.05  # what has left its parent has no joint any more: all that is kept is all there is
+"""The same of a range beyond which the part has left its parent."""
 _SAME_WAY = np.cos(np.radians(10.0))  # as `kinematify bench` separates wrong axes from right ones
 
 
@@ -62,10 +75,6 @@ class Chooser:
     gained: dict[str, float] = field(default_factory=dict)
     """What joints that were chosen again have before the old ones, by part [log odds]."""
 
-    def __post_init__(self) -> None:
-        """Read the settings."""
-        self.config = self.plan.inference.config.refine
-
     def choose_again(self, feedback: Feedback) -> None:
         """Take decisions about joints again, one part after the other, those that most speaks against first.
 
@@ -83,7 +92,7 @@ class Chooser:
             if HINTED in joint.evidence:
                 if child in suspected:
                     self.refused.append(f"{child}: a hint asked for its joint; without the hint others are tried")
-            elif -score > self.config.margin or (child in suspected and (feedback.has_error(child) or score < 0.0)):
+            elif -score > MARGIN or (child in suspected and (feedback.has_error(child) or score < 0.0)):
                 odds[child] = score - feedback.against(child)
         for child in sorted(odds, key=lambda child: (odds[child], child)):
             against = feedback.against(child)
@@ -102,9 +111,7 @@ class Chooser:
         tried = self.plan.with_joint(joint)
         child = tried.inference.assembly.names[joint.child]
         verdict = self.simulator.judge(tried.model, child)
-        feedback = feedback_from(
-            verdict.findings, verdict.joints, tried.model.robot.joint_by_name, self.config.feedback
-        )
+        feedback = feedback_from(verdict.findings, verdict.joints, tried.model.robot.joint_by_name)
         blocked = any(signal.check == "KV310" for signal in feedback.lines)
         return Trial(joint=joint, score=score, against=feedback.against(child), blocked=blocked)
 
@@ -114,7 +121,7 @@ class Chooser:
         best = max((candidate.score for candidate in joint.alternatives), default=0.0)
         blocked = first.blocked
         for number, candidate in enumerate(self._near_best(joint, best)):
-            if number >= self.config.near_best and not blocked:
+            if number >= NEAR_BEST and not blocked:
                 return
             trial = self.trial(self.candidates.realise(tree, joint, candidate), candidate.score - best)
             blocked &= trial.blocked
@@ -122,11 +129,11 @@ class Chooser:
 
     def _near_best(self, joint: JointEstimate, best: float) -> list[JointCandidate]:
         """Candidates within the margin that are not the chosen one, the best of either type among the first."""
-        least = best - self.config.margin
+        least = best - MARGIN
         near = [item for item in joint.alternatives if item.score >= least and not is_same(joint, item)]
         tops = {item.kind.turns: item for item in reversed(near)}.values()
         rest = [item for item in near if all(item is not top for top in tops)]
-        some = max(self.config.near_best - len(tops), 0)
+        some = max(NEAR_BEST - len(tops), 0)
         return [*sorted((*tops, *rest[:some]), key=lambda item: -item.score), *rest[some:]]
 
     def _again(self, child: str, against: float) -> None:
@@ -153,10 +160,10 @@ class Chooser:
     def _lead_of(self, trial: Trial, first: Trial) -> float:
         """Return the lead that a candidate needs: more if it moves otherwise, most if it fixes no failure."""
         if first.against == 0.0 or trial.against > 0.0:
-            return self.config.margin
+            return MARGIN
         joint, old = trial.joint, first.joint
         alike = abs(float(joint.axis @ old.axis)) > _SAME_WAY and joint.kind.turns == old.kind.turns
-        return self.config.lead if alike else self.config.lead_elsewhere
+        return LEAD if alike else LEAD_ELSEWHERE
 
     def _take(self, joint: JointEstimate, what: str, why: str) -> None:
         """Put a joint into the plan, and note it."""
@@ -170,7 +177,7 @@ class Chooser:
         """End a range where the way ends, unless that leaves less than the stated share of it."""
         old = self.plan.joint(signal.child)
         new = shortened(old, signal)
-        share = self.config.least_kept if signal.lost else self.config.least_travel
+        share = LEAST_KEPT if signal.lost else LEAST_TRAVEL
         if new is None:
             return
         if new.upper - new.lower < share * (old.upper - old.lower):

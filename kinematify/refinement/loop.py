@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.config.validation import load_settings
 from kinematify.refinement.candidates import CandidateJoints, ranged
-from kinematify.refinement.choose import Chooser, shortened
+from kinematify.refinement.choose import LEAST_TRAVEL, Chooser, shortened
 from kinematify.refinement.hints import HINTED
 from kinematify.refinement.joint_plan import History, Plan, PlanChange, Round
 from kinematify.refinement.simulate import Simulator
@@ -45,7 +45,7 @@ class Refinement:
 def refine(
     inference: Inference,
     *,
-    rounds: int | None = None,
+    rounds: int = 3,  # nothing new fails after two rounds on nearly every object
     base: str | None = None,
     settings: ValidationSettings | None = None,
     progress: Progress | None = None,
@@ -54,7 +54,7 @@ def refine(
 
     Args:
         inference: What `infer` returned.
-        rounds: Rounds at most after the first; those of the configuration if absent.
+        rounds: Rounds at most after the first.
         base: Name of the part that is the base link, where it is known.
         settings: Of the validation; the shipped ones if absent.
         progress: Called with what is being done and the share done.
@@ -64,7 +64,7 @@ def refine(
     """
     loop = _Loop(
         inference,
-        inference.config.refine.rounds if rounds is None else rounds,
+        rounds,
         None if base is None else inference.assembly.names.index(base),
         settings or load_settings(),
         progress or (lambda stage, share: None),
@@ -110,7 +110,6 @@ def _ended(plan: Plan, verdict: MotionVerdict) -> tuple[Plan, list[PlanChange]]:
     """Ranges that end in another body end before it, where most of the range stays: no failure is hidden by that."""
     changes: list[PlanChange] = []
     free = {joint.joint: joint.free_travel for joint in verdict.joints}
-    least = plan.inference.config.refine.least_travel
     for finding in verdict.findings:
         ends = free.get(finding.joint or "")
         if finding.check not in _INTO_BODIES or finding.severity is Severity.NOTE or ends is None:
@@ -120,7 +119,7 @@ def _ended(plan: Plan, verdict: MotionVerdict) -> tuple[Plan, list[PlanChange]]:
         lower, upper = max(ends[0], old.lower), min(ends[1], old.upper)
         signal = RangeSignal(child=child, lower=lower, upper=upper, lost=False, check="contact", reason=finding.message)
         new = shortened(old, signal)
-        if HINTED in old.evidence or new is None or upper - lower < least * (old.upper - old.lower):
+        if HINTED in old.evidence or new is None or upper - lower < LEAST_TRAVEL * (old.upper - old.lower):
             continue
         plan = plan.with_joint(new)
         changes.append(
@@ -204,9 +203,7 @@ class _Loop:
         """One round: what fails on a plan, and what that means."""
         start, given = time.perf_counter(), plan.inference
         verdict = self.simulator.judge(plan.model)
-        feedback = feedback_from(
-            verdict.findings, verdict.joints, plan.model.robot.joint_by_name, given.config.refine.feedback
-        )
+        feedback = feedback_from(verdict.findings, verdict.joints, plan.model.robot.joint_by_name)
         names, pool = given.assembly.names, self._candidates_of(given)
         for signal in feedback.edges:
             edge = names.index(signal.parent), names.index(signal.child)

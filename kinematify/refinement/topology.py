@@ -24,9 +24,19 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.assembly.part import Assembly
-    from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.geometry.surface import PartSurface
+
+_CONTACT_TOLERANCE = 0.0025  # that of the contact stage, measured again from the meshes
+"""Gap up to which two parts are held to touch when contacts are measured again, fraction of the diagonal."""
+_HOVERING_SHARE = 0.5  # single parts hang on bearings that are not modelled; half of all do not
+"""If so many parts touch nothing, the tolerance is wrong, not the tree."""
+_HOVERING_REACH = 1.5  # gaps within one object are alike
+"""The tolerance then is this multiple of the median gap to the nearest part."""
+_WIDEST_TOLERANCE = 0.03  # farther apart are parts of different things
+"""And at most this, fraction of the diagonal."""
+_SURVIVAL_WEIGHT = 0.5  # half of what the quality of joints weighs
+"""Weight of R_sim, the mean survival of a tree's edges, in the reward of the tree search."""
 
 
 def measured_again(plan: Plan, *, base: int | None) -> tuple[Plan, list[PlanChange]]:
@@ -39,7 +49,7 @@ def measured_again(plan: Plan, *, base: int | None) -> tuple[Plan, list[PlanChan
     given = plan.inference
     assembly, config = given.assembly, given.config
     surfaces = part_surfaces(assembly, config=config.surface)
-    missing, spurious, tolerance = audit_contacts(assembly, surfaces, given.graph, config)
+    missing, spurious, tolerance = audit_contacts(assembly, surfaces, given.graph)
     if not missing | spurious:
         return plan, []
     contact = config.contact.model_copy(update={"tolerance": tolerance})
@@ -60,7 +70,7 @@ def measured_again(plan: Plan, *, base: int | None) -> tuple[Plan, list[PlanChan
 
 
 def audit_contacts(
-    assembly: Assembly, surfaces: Sequence[PartSurface], graph: ContactGraph, config: Config
+    assembly: Assembly, surfaces: Sequence[PartSurface], graph: ContactGraph
 ) -> tuple[set[Pair], set[Pair], float]:
     """Hold a contact graph against the exact distances of its parts.
 
@@ -71,17 +81,16 @@ def audit_contacts(
         Pairs that touch and have no edge, edges between parts that do not touch, and the gap up to which parts are
         held to touch, fraction of the diagonal.
     """
-    refine = config.refine
-    widest = refine.widest_tolerance * assembly.diagonal
+    widest = _WIDEST_TOLERANCE * assembly.diagonal
     gaps = {pair: exact_gap(surfaces, pair) for pair in near_pairs(assembly, widest)}
-    tolerance = refine.contact_tolerance * assembly.diagonal
+    tolerance = _CONTACT_TOLERANCE * assembly.diagonal
     nearest = [
         min((gap for pair, gap in gaps.items() if part in pair), default=np.inf) for part in range(len(surfaces))
     ]
     apart = np.array(nearest) > tolerance
-    if apart.mean() > refine.hovering_share and np.isfinite(nearest).any():
+    if apart.mean() > _HOVERING_SHARE and np.isfinite(nearest).any():
         typical = float(np.median([gap for gap in nearest if np.isfinite(gap)]))
-        tolerance = min(max(tolerance, refine.hovering_reach * typical), widest)
+        tolerance = min(max(tolerance, _HOVERING_REACH * typical), widest)
     touching = {pair for pair, gap in gaps.items() if gap <= tolerance}
     known = {(edge.a, edge.b) for edge in graph.edges if not edge.bridge}
     return touching - known, known - touching, tolerance / assembly.diagonal
@@ -99,7 +108,7 @@ def hung_again(
     """
     given = plan.inference
     survival = {edge: float(np.exp(-weight)) for edge, weight in against.items()}
-    simulated = SimulatedEdges(survival=survival, weight=given.config.refine.survival_weight)
+    simulated = SimulatedEdges(survival=survival, weight=_SURVIVAL_WEIGHT)
     trees = find_trees(
         given.assembly, given.graph, given.bearings, given.config, base=base, simulated=simulated, warm=given.trees
     )

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from kinematify.config import Config, DynamicsConfig
+    from kinematify.config import Config
     from kinematify.config.validation import PrepareSettings, ValidationSettings
     from kinematify.model.collision import FittedCollision
     from kinematify.robot.raw_mesh import RawMesh
@@ -262,9 +262,9 @@ class UrdfEditor:
             f"{name}: centre of mass at {' '.join(f'{value:.4g}' for value in center)}, in its geometry"
         )
 
-    def set_friction(self, robot: Robot, config: DynamicsConfig) -> None:
+    def set_friction(self, robot: Robot) -> None:
         """Write friction and damping for joints that have none."""
-        moved = with_dynamics(robot, config, measured=True)
+        moved = with_dynamics(robot, measured=True)
         for before, after in zip(robot.joints, moved.joints, strict=True):
             if after.damping != before.damping or after.friction != before.friction:
                 values = {"damping": repr(after.damping), "friction": repr(after.friction)}

@@ -19,11 +19,52 @@ from kinematify.contact.graph import pair
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from kinematify.config import BaseConfig
     from kinematify.contact.graph import Pair
     from kinematify.geometry.part_stats import PartStats
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.topology.edge_evidence import EdgeEvidence
+
+
+# Weights of the cues for the base link; each cue is in [0, 1], each weight the score it can reach. With these 61 of 64
+# robots are right in three poses each, and 47 of 48 everyday objects; +-40 % changes little.
+BULK_DECADES = 2.0  # feet and fingers are about 1 % of a trunk
+"""A part this many powers of ten smaller than the largest has no bulk left."""
+VERTICAL = 0.95  # 18 deg: turntables of tilted objects still count
+"""Axes with a larger vertical component stand upright [cosine]."""
+STAND_BAND = 0.03  # gaps under doors and lids are wider
+"""Parts that begin this far above the lowest point do not stand on the ground, in diagonals."""
+STAND_FLAT = 0.4  # feet of lamps, plates of taps; wheels and tips lie on a line or point
+"""Share of its footprint with which what stands alone must lie on the ground."""
+STAND_WEIGHT = 1.0  # right on all 30 objects and robots where it spoke
+"""Score of what alone stands on the ground, and of what alone lies under the ceiling with all else below."""
+HANG_FLAT = 0.1  # rings, and plates with feet, lie on little of their footprint
+"""Nothing hangs where something lies on the ground with more than this share of its footprint."""
+BODY_SHARE = 0.5  # half of the doors and drawers may hang on other parts
+"""Share of all other parts that the largest part must carry directly to be the body of an object."""
+BODY_WEIGHT = 0.95
+"""Score of the body of an object."""
+TWIN_DISCOUNT = 0.7  # identical parts are limbs; two halves of a laptop still win
+"""Factor on a body that has a congruent twin."""
+PEDESTAL_RISE = 0.5  # bases of arms lie in the lower half whatever the arm does
+"""Height above the lowest point at which the end of a chain is no pedestal any more, in diagonals."""
+PEDESTAL_BULK = 0.3
+"""Share of size in the score of a pedestal."""
+PEDESTAL_LOW = 0.3
+"""Share of lowness in the score of a pedestal."""
+PEDESTAL_FLAT = 0.2  # feet of bases may be rounded or in three points
+"""Share of a level bottom in the score of a pedestal."""
+PEDESTAL_UPRIGHT = 0.2  # the first axis of most arms is vertical, that of a gripper may be
+"""Share of a vertical first axis in the score of a pedestal."""
+JUNCTION_WEIGHT = 0.5  # above a hub: a pelvis wins over a torso
+"""Score of the part where the lowest congruent limbs meet, whatever its size."""
+JUNCTION_BULK = 0.35
+"""What its size can add."""
+GROUND_BAND = 0.05  # uneven floors, wheels that reach below the chassis
+"""Parts that begin this far above the lowest point reach the ground, in diagonals."""
+HEAVY_WEIGHT = 0.8
+"""Score of the largest part where it reaches the ground."""
+HUB_WEIGHT = 0.5  # for what stands on nothing: hands
+"""Score of the part in which most long chains meet."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +83,6 @@ def rank_bases(
     stats: Sequence[PartStats],
     clusters: Sequence[Sequence[int]],
     evidence: Mapping[Pair, EdgeEvidence],
-    config: BaseConfig,
 ) -> tuple[BaseCandidate, ...]:
     """Rank all parts by how well they would serve as base link, best first.
 
@@ -51,12 +91,11 @@ def rank_bases(
         stats: Size and support of every part, world frame, z up.
         clusters: Groups of congruent parts.
         evidence: Best joint of each edge, keyed (a, b) with a < b; its axis tells a turntable from a hinge.
-        config: Weights and limits of the cues.
 
     Returns:
         One candidate per part. Ties go to the larger part, then to the lower index.
     """
-    skeleton = Skeleton(edges, stats, clusters, evidence, config)
+    skeleton = Skeleton(edges, stats, clusters, evidence)
     cues = (
         ("It alone touches the ground.", stand(skeleton)),
         ("It alone reaches the ceiling, and all the rest hangs below.", canopy(skeleton)),
@@ -83,10 +122,8 @@ class Skeleton:
         stats: Sequence[PartStats],
         clusters: Sequence[Sequence[int]],
         evidence: Mapping[Pair, EdgeEvidence],
-        config: BaseConfig,
     ) -> None:
         """Measure the tree once."""
-        self.config = config
         self.clusters = clusters
         self.n = len(stats)
         self.neighbours: list[list[int]] = [[] for _ in stats]
@@ -105,7 +142,7 @@ class Skeleton:
         upper = np.max([item.bounds[1] for item in stats], axis=0)
         self.bottom = np.array([item.bottom for item in stats])
         self.rise = (self.bottom - lower[2]) / max(float(np.linalg.norm(upper - lower)), 1e-12)
-        self.low = self.rise <= config.stand_band
+        self.low = self.rise <= STAND_BAND
         self.upright = np.array([self._upright_share(i, evidence) for i in range(self.n)])
         self.twin = np.zeros(self.n, dtype=bool)
         self.twin[[part for cluster in clusters for part in cluster]] = True
@@ -121,20 +158,20 @@ class Skeleton:
 
     def relative_bulk(self) -> FloatArray:
         """Hull volume on a logarithmic scale: 1 for the largest part, 0 at `bulk_decades` below it, shape (n,)."""
-        share: FloatArray = np.clip(1 + np.log10(self.bulk) / self.config.bulk_decades, 0, 1)
+        share: FloatArray = np.clip(1 + np.log10(self.bulk) / BULK_DECADES, 0, 1)
         return share
 
     def _upright_share(self, part: int, evidence: Mapping[Pair, EdgeEvidence]) -> float:
         """Share of a part's joints whose axis is vertical."""
         axes = [item.axis for other in self.neighbours[part] if (item := evidence.get(pair(part, other))) is not None]
-        return float(np.mean([axis is not None and abs(axis[2]) > self.config.vertical for axis in axes] or [0.0]))
+        return float(np.mean([axis is not None and abs(axis[2]) > VERTICAL for axis in axes] or [0.0]))
 
 
 def stand(skeleton: Skeleton) -> FloatArray:
     """Globes, taps, lamps, staplers: what alone reaches the ground, and lies flat on it, carries all the rest."""
-    flat = skeleton.flat > skeleton.config.stand_flat
+    flat = skeleton.flat > STAND_FLAT
     alone = skeleton.low & flat & ~skeleton.twin & (skeleton.low.sum() == 1)
-    return np.where(alone, skeleton.config.stand_weight, 0.0)
+    return np.where(alone, STAND_WEIGHT, 0.0)
 
 
 def canopy(skeleton: Skeleton) -> FloatArray:
@@ -142,10 +179,10 @@ def canopy(skeleton: Skeleton) -> FloatArray:
     highest = int(skeleton.top.argmax())
     others = np.delete(skeleton.top, highest)
     hangs = len(others) > 0 and others.max() < skeleton.middle[highest]
-    flat = skeleton.flat_above[highest] > skeleton.config.stand_flat and not skeleton.twin[highest]
-    stands = (skeleton.flat[skeleton.low] > skeleton.config.hang_flat).any()
+    flat = skeleton.flat_above[highest] > STAND_FLAT and not skeleton.twin[highest]
+    stands = (skeleton.flat[skeleton.low] > HANG_FLAT).any()
     score = np.zeros(skeleton.n)
-    score[highest] = skeleton.config.stand_weight * float(hangs and flat and not stands)
+    score[highest] = STAND_WEIGHT * float(hangs and flat and not stands)
     return score
 
 
@@ -153,9 +190,9 @@ def body(skeleton: Skeleton) -> FloatArray:
     """Furniture, appliances, tools: one large body carries doors, drawers and knobs, most of them directly."""
     reach = skeleton.distance.max(axis=1)
     share = skeleton.degree / max(skeleton.n - 1, 1)
-    compact = reach.min() <= 2 and share[int(skeleton.bulk.argmax())] >= skeleton.config.body_share
-    alone = np.where(skeleton.twin, skeleton.config.twin_discount, 1.0)
-    score: FloatArray = skeleton.config.body_weight * skeleton.bulk * alone * compact
+    compact = reach.min() <= 2 and share[int(skeleton.bulk.argmax())] >= BODY_SHARE
+    alone = np.where(skeleton.twin, TWIN_DISCOUNT, 1.0)
+    score: FloatArray = BODY_WEIGHT * skeleton.bulk * alone * compact
     return score
 
 
@@ -164,13 +201,12 @@ def pedestal(skeleton: Skeleton) -> FloatArray:
 
     Fingers end chains too, but come as congruent twins; a tool is small and has no flat bottom near the ground.
     """
-    weights = skeleton.config
-    low = np.clip(1 - skeleton.rise / weights.pedestal_rise, 0, 1)
+    low = np.clip(1 - skeleton.rise / PEDESTAL_RISE, 0, 1)
     score = (
-        weights.pedestal_bulk * skeleton.relative_bulk()
-        + weights.pedestal_low * low
-        + weights.pedestal_flat * skeleton.flat
-        + weights.pedestal_upright * skeleton.upright
+        PEDESTAL_BULK * skeleton.relative_bulk()
+        + PEDESTAL_LOW * low
+        + PEDESTAL_FLAT * skeleton.flat
+        + PEDESTAL_UPRIGHT * skeleton.upright
     )
     return np.where((skeleton.degree == 1) & ~skeleton.twin, score, 0.0)
 
@@ -182,24 +218,23 @@ def limb_junction(skeleton: Skeleton) -> FloatArray:
     for cluster in skeleton.clusters:
         if lowest in cluster:
             junction = _steiner_centre(skeleton, np.asarray(cluster))
-            weights = skeleton.config
-            strength = weights.junction_weight + weights.junction_bulk * skeleton.relative_bulk()[junction]
+            strength = JUNCTION_WEIGHT + JUNCTION_BULK * skeleton.relative_bulk()[junction]
             score[junction] = strength * _limbs_carry(skeleton, junction) * (junction not in cluster)
     return score
 
 
 def heavy_foot(skeleton: Skeleton) -> FloatArray:
     """Mobile bases and stands: a large part on the ground that is not one of several alike."""
-    grounded = skeleton.rise <= skeleton.config.ground_band
+    grounded = skeleton.rise <= GROUND_BAND
     stands = 0.5 + 0.5 * skeleton.flat
-    return np.where(grounded & ~skeleton.twin, skeleton.config.heavy_weight * skeleton.bulk * stands, 0.0)
+    return np.where(grounded & ~skeleton.twin, HEAVY_WEIGHT * skeleton.bulk * stands, 0.0)
 
 
 def hub(skeleton: Skeleton) -> FloatArray:
     """Hands touch no ground: the palm is where most chains of two or more links meet."""
     counts = np.array([skeleton.long_branches(part) for part in range(skeleton.n)])
     chains = np.where(counts >= 3, counts / max(counts.max(), 1), 0.0)
-    return skeleton.config.hub_weight * chains * (0.5 + 0.5 * skeleton.relative_bulk())
+    return HUB_WEIGHT * chains * (0.5 + 0.5 * skeleton.relative_bulk())
 
 
 def _limbs_carry(skeleton: Skeleton, junction: int) -> float:

@@ -362,7 +362,7 @@ def plausible_bases(reward: TreeReward) -> tuple[BaseCandidate, ...]:
     """Base links worth a search, best first: those whose score is near the best."""
     config = reward.config
     edges = spanning_edges(reward.quality, reward.centroids)
-    ranked = rank_bases(edges, reward.stats, reward.graph.clusters, reward.evidence, config.base)
+    ranked = rank_bases(edges, reward.stats, reward.graph.clusters, reward.evidence)
     near = [item for item in ranked if item.score >= ranked[0].score - config.base_margin]
     return tuple(near[: config.max_bases])
 

@@ -8,12 +8,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from kinematify.config import load_config
-from kinematify.model.dynamics import joint_load, mass_matrix, with_dynamics
+from kinematify.model.dynamics import HAND_TORQUE, joint_load, mass_matrix, with_dynamics
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Inertial, Joint, Link, Mimic, Robot
-
-CONFIG = load_config().dynamics
 
 
 def body(name: str, mass: float, center: tuple[float, float, float]) -> Link:
@@ -64,11 +61,11 @@ def test_a_limit_holds_what_stands_on_its_head_on_one_side_alone(aside: float) -
 @pytest.mark.parametrize("mass", [0.5, 5.0, 200.0])
 @pytest.mark.parametrize("lower", [0.0, -0.5])
 def test_a_hand_lifts_what_friction_holds(mass: float, lower: float) -> None:
-    made = with_dynamics(lid(mass, lower), CONFIG)
+    made = with_dynamics(lid(mass, lower))
     load, joint = joint_load(made, made.joints[0]), made.joints[0]
     assert joint.friction is not None
     assert joint.friction >= load.at_rest
-    assert load.largest + joint.friction < CONFIG.hand_torque
+    assert load.largest + joint.friction < HAND_TORQUE
 
 
 def test_what_leads_others_has_the_effort_to_move_them() -> None:
@@ -77,7 +74,7 @@ def test_what_leads_others_has_the_effort_to_move_them() -> None:
         hinge("other", "base", (0.0, -1.0, 0.0), 0.0, 1.5), mimic=Mimic(joint="lid_joint", multiplier=2.0, offset=0.0)
     )
     both = replace(alone, links=(*alone.links, body("other", 0.5, (0.5, 0.0, 0.0))), joints=(*alone.joints, other))
-    single, leader = (with_dynamics(robot, CONFIG).joints[0].effort for robot in (alone, both))
+    single, leader = (with_dynamics(robot).joints[0].effort for robot in (alone, both))
     assert single is not None
     assert single < 100.0
     assert leader == pytest.approx(min(3.0 * single, 100.0), rel=0.01), "its own load, and twice that of its follower"
@@ -96,7 +93,7 @@ def test_damping_of_a_long_chain_stays_stable_where_it_is_that_of_the_last_step(
             for parent, child in pairwise(names)
         ),
     )
-    made = with_dynamics(chain, CONFIG)
+    made = with_dynamics(chain)
     damping = np.diag([joint.damping or 0.0 for joint in made.joints])
     decay = np.linalg.eigvals(np.linalg.solve(mass_matrix(made), damping)) / 240.0
     assert np.abs(decay).max() < 1.05

@@ -21,7 +21,7 @@ from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.record import file_hashes, write_inference
 from kinematify.refinement import loop, refine
-from kinematify.refinement.choose import Chooser, Trial
+from kinematify.refinement.choose import LEAD_ELSEWHERE, Chooser, Trial
 from kinematify.refinement.folder import open_model_folder, read_record
 from kinematify.refinement.hints import parse_hints, with_hints
 from kinematify.refinement.joint_plan import Plan
@@ -92,7 +92,7 @@ def test_a_joint_that_nothing_speaks_against_but_the_shape_is_measured_and_repla
     tilted = right.axis + np.array([0.0, 0.6, 0.0])
     refinement = refine(with_joint(inferred("edge_door"), "door", axis=tilted, upper=0.1))
     assert not {"door: axis", "door: type"} & set(refinement.history.rounds[0].suspected)
-    assert refinement.history.rounds[0].score < -load_config().refine.lead_elsewhere
+    assert refinement.history.rounds[0].score < -LEAD_ELSEWHERE
     found = joint_above(refinement.inference, "door")
     assert abs(float(found.axis @ right.axis)) == pytest.approx(1.0, abs=1e-3)
 
@@ -114,7 +114,7 @@ def test_a_hint_is_kept_against_failures_and_both_are_reported() -> None:
     assert any("a hint asked for" in refused for item in refinement.history.rounds for refused in item.refused)
 
 
-@pytest.mark.parametrize("short", [-50.0, CONFIG.refine.lead_elsewhere - 0.2])
+@pytest.mark.parametrize("short", [-50.0, LEAD_ELSEWHERE - 0.2])
 def test_evidence_of_shape_can_outweigh_the_simulation(short: float) -> None:
     """Blocked both ways is not enough for another direction to lead by less than it has to."""
     blocked = max(shipped_rates().weight("KV310", Severity.ERROR, wrong) for wrong in (LINE, TYPE))

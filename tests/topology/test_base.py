@@ -6,13 +6,10 @@ import numpy as np
 import pytest
 
 from kinematify.assembly.part import Part
-from kinematify.config import load_config
 from kinematify.geometry.part_stats import part_stats
 from kinematify.paper.trees import base_by_degree
 from kinematify.topology.base_link import rank_bases
 from tests.topology.topology_objects import Machine, X, Y, Z, box, graph_of
-
-CONFIG = load_config().topology.base
 
 
 def arm(machine: Machine, start: int, foot: np.ndarray, side: np.ndarray, length: int = 5) -> int:
@@ -91,7 +88,7 @@ MACHINES["quadruped_with_arm"] = lambda: quadruped(with_arm=True)
 @pytest.mark.parametrize("name", MACHINES)
 def test_base_of_a_machine(name: str) -> None:
     machine = MACHINES[name]()
-    ranked = rank_bases(machine.edges, machine.stats, machine.clusters, machine.evidence, CONFIG)
+    ranked = rank_bases(machine.edges, machine.stats, machine.clusters, machine.evidence)
     assert ranked[0].part == 0, ranked[:3]
     assert sorted(item.part for item in ranked) == list(range(len(machine.parts)))
     assert all(0 <= item.score <= 1 for item in ranked)
@@ -102,7 +99,7 @@ def test_what_alone_stands_on_the_ground_is_the_base_however_small_it_is() -> No
     machine = Machine()
     machine.add((0, 0, 0.02), (0.2, 0.2, 0.04))
     machine.add((0, 0, 0.4), (0.5, 0.5, 0.5), 0, Z)
-    ranked = rank_bases(machine.edges, machine.stats, machine.clusters, machine.evidence, CONFIG)
+    ranked = rank_bases(machine.edges, machine.stats, machine.clusters, machine.evidence)
     assert ranked[0].part == 0
     assert "alone" in ranked[0].reason
 
@@ -134,7 +131,7 @@ def ceiling_fan(*, pillar: bool = False) -> Machine:
 @pytest.mark.parametrize(("pillar", "base"), [(False, 0), (True, 2)])
 def test_what_hangs_has_its_base_at_the_ceiling_unless_something_stands(pillar: bool, base: int) -> None:
     machine = ceiling_fan(pillar=pillar)
-    ranked = rank_bases(machine.edges, machine.stats, machine.clusters, machine.evidence, CONFIG)
+    ranked = rank_bases(machine.edges, machine.stats, machine.clusters, machine.evidence)
     assert ranked[0].part == base
 
 

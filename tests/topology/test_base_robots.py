@@ -33,7 +33,7 @@ def test_base_of_a_real_robot(name: str) -> None:
             assembly = Assembly(parts=tuple(parts), source=name)
             surfaces = [PartSurface(part, crease_angle=np.radians(30)) for part in parts]
             clusters = find_clusters(assembly, surfaces, config=CONFIG.contact, seed=0)
-        ranked = rank_bases(sorted(evidence), [*map(part_stats, parts)], clusters, evidence, CONFIG.topology.base)
+        ranked = rank_bases(sorted(evidence), [*map(part_stats, parts)], clusters, evidence)
         assert ranked[0].part == root, [(names[item.part], item.score, item.reason) for item in ranked[:3]]
 
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from kinematify.config import load_config
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Joint
 from kinematify.validation.checks import CHECKS
@@ -25,7 +24,6 @@ from tests.validation.test_geometry import SELECTED, beam, block, request_for
 if TYPE_CHECKING:
     from pathlib import Path
 
-CONFIG = load_config().refine.feedback
 RATES = FailureRates(
     joints={"right": 1000} | dict.fromkeys(CLASSES[1:], 100),
     failures={
@@ -62,7 +60,7 @@ def fed_back(model: Model, folder: Path, *more: Finding) -> Feedback:
     run(request_for(model, folder), Recorder(reported.append, SELECTED))
     findings = [finding for item in reported if isinstance(item, CheckResult) for finding in item.findings]
     summaries = [item for item in reported if isinstance(item, JointSummary)]
-    return feedback_from([*findings, *more], summaries, declared(model), CONFIG, rates=RATES)
+    return feedback_from([*findings, *more], summaries, declared(model), rates=RATES)
 
 
 def engine(check: str, joint: str = "drawer_joint", **changes: object) -> Finding:

@@ -22,11 +22,18 @@ from kinematify.validation.finding import Cause, Severity
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from kinematify.config import FeedbackConfig
     from kinematify.robot.robot import Joint
     from kinematify.validation.failure_rates import FailureRates
     from kinematify.validation.finding import Finding
     from kinematify.validation.summary import JointSummary
+
+
+_OPEN_SHARE = 0.9  # a side that is free for half of the range only is no side to open to: a suitcase
+"""A side that is free over this share of the range is the one that opens."""
+_BACK_SHARE = 0.5  # drawers are modelled half open
+"""A slide that leaves its guide, and whose way back is free over this share of its range, stands open."""
+_FULL_TURN = 1.5708  # doors open by a right angle
+"""Ranges of turning joints count up to this [rad]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,7 +122,6 @@ def feedback_from(
     findings: Sequence[Finding],
     summaries: Iterable[JointSummary],
     joints: Mapping[str, Joint],
-    config: FeedbackConfig,
     *,
     rates: FailureRates | None = None,
 ) -> Feedback:
@@ -125,7 +131,6 @@ def feedback_from(
         findings: All of them, in any order; suppressed ones do not count.
         summaries: Free travel of the joints, where it was measured.
         joints: The joints of the model by name.
-        config: How failures are read.
         rates: How often each failure occurs, which is what it weighs; the shipped ones if absent.
     """
     travel = {item.joint: item.free_travel for item in summaries if item.free_travel is not None}
@@ -133,7 +138,6 @@ def feedback_from(
         findings=findings,
         travel=travel,
         joints=joints,
-        config=config,
         rates=rates or shipped_rates(),
     )
     for finding in findings:
@@ -154,7 +158,6 @@ class _Case:
     findings: Sequence[Finding]
     travel: Mapping[str, tuple[float, float]]
     joints: Mapping[str, Joint]
-    config: FeedbackConfig
     rates: FailureRates
     edges: list[EdgeSignal] = field(default_factory=list)
     lines: list[JointSignal] = field(default_factory=list)
@@ -226,8 +229,8 @@ def _into_parent(case: _Case, finding: Finding, joint: Joint) -> None:
     low, high = _free(case, finding)
     way = joint.upper - joint.lower
     if joint.kind.turns:
-        way = min(way, case.config.full_turn)
-    if max(-low, high) >= case.config.open_share * way:
+        way = min(way, _FULL_TURN)
+    if max(-low, high) >= _OPEN_SHARE * way:
         ends = max(low, -way), min(high, way)
         case.end(finding, joint, ends, "to the other side it is free: it opens there")
     else:  # blocked to both sides at once
@@ -278,7 +281,7 @@ def _out_of_guide(case: _Case, finding: Finding, joint: Joint) -> None:
     way = joint.upper - joint.lower
     upwards = _upwards(finding)
     back = low if upwards else high
-    stands_open = abs(back) >= case.config.back_share * way
+    stands_open = abs(back) >= _BACK_SHARE * way
     reason = "beyond it the guide has ended" + ("; it is open, and the range back is free" if stands_open else "")
     other = min(abs(back), way) if stands_open else None
     if upwards:
