@@ -20,7 +20,7 @@ import tempfile
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import trimesh
@@ -78,7 +78,7 @@ class PiecesOptions(Options):
     weights: str | None = Field(None, description="Folder of held-out weights that `benchmarks.fit.pieces` wrote.")
     pieces: Literal["auto", "keep", "group"] = Field("auto", description="As `infer` takes it.")
     nodes: Literal["none", "part", "link"] = Field("none", description="A node for each, in place of one mesh.")
-    answers: str | None = Field(None, description="JSON file of recorded answers by set/object.")
+    answers: tuple[str, ...] = Field((), description="JSON files of recorded answers by set/object.")
     voter: float | None = Field(None, ge=0.0, le=1.0, description="Share of parts of an answer that stay as they are.")
     seconds: float = Field(240.0, gt=0.0, description="Wall time for one object.")
 
@@ -100,7 +100,9 @@ def measure(options: PiecesOptions, work: Work) -> Measured:
     """Merge every object and infer it."""
     folder = bench_folder()
     asked = {}
-    answers = {} if options.answers is None else json.loads(Path(options.answers).read_text(encoding="utf-8"))
+    answers: dict[str, Any] = {}
+    for file in options.answers:
+        answers |= json.loads(Path(file).read_text(encoding="utf-8"))
     for data in options.data:
         place = folder / data if (folder / data).is_dir() else Path(data)
         found = find_objects(place)
@@ -143,7 +145,7 @@ def run_case(case: MergedObject) -> Record:
             pieces = len(given.parts)
             if case.answer is not None:
                 vote = _vote(case, piece_question(given, config))
-                named = {"named": len(vote.answer.parts), "hit": _hits(erased.parts, given, vote.answer.parts)}
+                named = {"named": len(vote.answer.parts), "hit": _hits(erased, given, vote.answer.parts)}
                 found = vote.applied(infer(vote.grouping(config), config=config, base=vote.base))
             elif not given.segmented:
                 weights = None if case.weights is None else HeldOut(Path(case.weights)).weights_of(category)
@@ -174,8 +176,9 @@ def _vote(case: MergedObject, question: PieceQuestion) -> PieceVote:
     return PieceVote(voter="simulated", question=question, answer=replace(answer, parts=tuple(kept)), record=record)
 
 
-def _hits(parts: Sequence[Part], given: Assembly, named: Sequence[NamedPart]) -> int:
-    """Number of named sets of pieces that are a true part, by IoU of triangles; the first part is the body."""
+def _hits(erased: ErasedModel, given: Assembly, named: Sequence[NamedPart]) -> int:
+    """Number of named sets of pieces that are a true moving part, by IoU of triangles."""
+    parts = [erased.parts[k] for k in sorted({joint.child for joint in erased.truth.joints})]
     centres = np.concatenate([part.vertices[part.faces].mean(axis=1) for part in given.parts])
     owner = np.repeat(np.arange(len(given.parts)), [len(part.faces) for part in given.parts])
     tree = cKDTree(centres)
