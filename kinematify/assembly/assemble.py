@@ -15,8 +15,8 @@ from scipy.spatial import cKDTree
 from kinematify.assembly.part import Assembly, ExcludedPart, Part
 from kinematify.errors import AssemblyError
 from kinematify.robot.appearance import MAX_MATERIALS
-from kinematify.robot.arrays import used_vertices
 from kinematify.robot.densities import density_of
+from kinematify.robot.vectors import referenced
 from kinematify.robot.weld import snapped, weld, welded
 
 if TYPE_CHECKING:
@@ -142,8 +142,7 @@ def check_finite(mesh: RawMesh, source: str) -> None:
     Raises:
         AssemblyError: There is one; the message names the mesh.
     """
-    used = mesh.vertices[used_vertices(mesh.faces, len(mesh.vertices))]
-    bad = int((~np.isfinite(used).all(axis=1)).sum())
+    bad = int((~np.isfinite(referenced(mesh.vertices, mesh.faces)).all(axis=1)).sum())
     if bad:
         raise AssemblyError(
             f"The part {mesh.name!r} of {source} has {bad} vertices whose coordinates are not finite numbers (NaN or "
@@ -204,7 +203,7 @@ def _degenerate_reason(part: Part, diagonal: float, config: AssemblyConfig) -> s
         return "It holds no triangle."
     if part.area == 0.0:
         return "Its surface has no area."
-    distinct = int(used_vertices(part.faces, len(part.vertices)).sum())
+    distinct = len(referenced(part.vertices, part.faces))
     if distinct < config.min_vertices:
         return f"It has {distinct} distinct vertices; {config.min_vertices} are needed."
     extent = float(np.ptp(part.bounds, axis=0).max())

@@ -22,6 +22,7 @@ from kinematify.assembly.pieces import baked
 from kinematify.assembly.truth import GroundTruth, TrueJoint
 from kinematify.errors import DescriptionError, OutputError
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.linkage import sides
 from kinematify.robot.obj_file import write_obj
 from kinematify.robot.robot import Robot, forward_kinematics, joint_values, rest_configuration, rigid_groups
 from kinematify.robot.transforms import rotation_about
@@ -34,6 +35,9 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.raw_mesh import RawMesh
     from kinematify.robot.robot import Joint, RigidGroup
+
+    _Way = tuple[str, list[tuple[Joint, bool]]]
+    """Top link of the group that a way begins at, and its joints: False where it leads from child to parent link."""
 
 
 __all__ = ["ErasedModel", "GroundTruth", "TrueJoint", "erase", "truth_path", "write_erased"]
@@ -57,24 +61,6 @@ class ErasedModel:
     def assembly(self) -> Assembly:
         """The parts alone."""
         return Assembly(parts=self.parts, source="erased model")
-
-
-@dataclass(frozen=True)
-class _Way:
-    """From one part to another."""
-
-    start: str
-    """Top link of the parent part's group."""
-    steps: tuple[_Step, ...]
-
-
-@dataclass(frozen=True)
-class _Step:
-    """One joint on the way from one part to another."""
-
-    joint: Joint
-    downward: bool
-    """False where the way leads from the child link to the parent link."""
 
 
 def erase(
@@ -199,28 +185,28 @@ def _true_joints(
     """Joints between parts; `index` is the part of a group's top link."""
     seen: Counter[str] = Counter()
     joints = []
-    for top, way in ways.items():
-        for serial, step in enumerate(way.steps):
+    for top, (start, steps) in ways.items():
+        for serial, (described, downward) in enumerate(steps):
             # A joint between empty links that several parts hang on stands in several chains.
-            seen[step.joint.name] += 1
-            copy = seen[step.joint.name]
-            joint = _true_joint(step, q[step.joint.name], T_world_link)
+            seen[described.name] += 1
+            copy = seen[described.name]
+            joint = _true_joint(described, q[described.name], T_world_link, downward=downward)
             joints.append(
                 replace(
                     joint,
                     name=joint.source if copy == 1 else f"{joint.source}#{copy}",
-                    parent=index[way.start],
+                    parent=index[start],
                     child=index[top],
                     serial=serial,
-                    chain_length=len(way.steps),
+                    chain_length=len(steps),
                 )
             )
     return tuple(joints)
 
 
-def _true_joint(step: _Step, value: float, T_world_link: Mapping[str, FloatArray]) -> TrueJoint:
+def _true_joint(joint: Joint, value: float, T_world_link: Mapping[str, FloatArray], *, downward: bool) -> TrueJoint:
     """The joint in the world frame, ends still open; walked against its direction, its axis points the other way."""
-    joint, sign = step.joint, 1.0 if step.downward else -1.0
+    sign = 1.0 if downward else -1.0
     # The child's frame moves about or along the axis, so that its origin and the axis in it stay on the line.
     T_world_child = T_world_link[joint.child]
     return TrueJoint(
@@ -241,35 +227,23 @@ def _true_joint(step: _Step, value: float, T_world_link: Mapping[str, FloatArray
 def _ways(robot: Robot, groups: Sequence[RigidGroup]) -> dict[str, _Way]:
     """The way to every group with geometry but the first, from its parent group; keyed by the group's top link."""
     top_of = {link: group.top for group in rigid_groups(robot) for link in group.links}
-    upward = {group.top: _movable_upward(robot, top_of, group.top) for group in groups}
-    root = groups[0].top
-    return {group.top: _way(upward[group.top], upward[root], root, top_of, set(upward)) for group in groups[1:]}
+    root, *others = (group.top for group in groups)
+    return {top: _way(robot, top, root, top_of, {root, *others}) for top in others}
 
 
-def _movable_upward(robot: Robot, top_of: Mapping[str, str], top: str) -> list[Joint]:
-    """Movable joints from a rigid group up to the root link, nearest first."""
-    found: list[Joint] = []
-    while top in robot.joint_above:
-        found.append(robot.joint_above[top])
-        top = top_of[found[-1].parent]
-    return found
-
-
-def _way(
-    upward: Sequence[Joint],
-    root_upward: Sequence[Joint],
-    root: str,
-    top_of: Mapping[str, str],
-    solid: Container[str],
-) -> _Way:
+def _way(robot: Robot, top: str, root: str, top_of: Mapping[str, str], solid: Container[str]) -> _Way:
     """The way from the nearest group with geometry above, or from the root part where all above is empty."""
-    for k, joint in enumerate(upward):
-        if top_of[joint.parent] in solid:
-            return _Way(top_of[joint.parent], tuple(_Step(item, True) for item in reversed(upward[: k + 1])))
-    shared = {joint.name for joint in upward} & {joint.name for joint in root_upward}
-    climb = [_Step(joint, False) for joint in root_upward if joint.name not in shared]
-    descent = [_Step(joint, True) for joint in reversed(upward) if joint.name not in shared]
-    return _Way(root, (*climb, *descent))
+    steps: list[tuple[Joint, bool]] = []
+    start = top
+    while start in robot.joint_above:
+        joint = robot.joint_above[start]
+        steps.insert(0, (joint, True))
+        start = top_of[joint.parent]
+        if start in solid:
+            return start, steps
+    climb, descent = sides(robot, (root, top))
+    steps = [*((joint, False) for joint in reversed(climb)), *((joint, True) for joint in descent)]
+    return root, [step for step in steps if step[0].kind is not JointType.FIXED]
 
 
 TRUTH_SUFFIX = ".truth.json"

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from kinematify.robot.raw_mesh import RawMesh, merged
-from kinematify.robot.vectors import referenced
+from kinematify.robot.vectors import box_gaps, referenced
 from kinematify.robot.weld import weld
 
 if TYPE_CHECKING:
@@ -99,8 +99,7 @@ def _have_own_materials(meshes: Sequence[RawMesh]) -> bool:
 def _touch(meshes: Sequence[RawMesh], everything: Sequence[RawMesh]) -> bool:
     """Whether the boxes of meshes hang together."""
     boxes, scale = _boxes(meshes), np.linalg.norm(np.ptp(_boxes(everything).reshape(-1, 3), axis=0))
-    low, high = boxes[:, 0], boxes[:, 1]
-    gaps = np.maximum(low[:, None] - high[None], low[None] - high[:, None]).max(axis=2)
+    gaps = box_gaps(boxes[:, 0], boxes[:, 1])
     return bool(connected_components(gaps <= _TOUCH * scale, directed=False)[0] == 1)
 
 

@@ -22,7 +22,7 @@ from kinematify.errors import AssemblyError, InputError
 from kinematify.robot.description import SUFFIXES, form_of
 from kinematify.robot.lengths import length_text
 from kinematify.robot.mesh_file import read_meshes
-from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES
+from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES, MESH_SUFFIXES
 from kinematify.robot.raw_mesh import RawMesh, merged
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
@@ -47,7 +47,7 @@ _TO_Z_UP = {
 """Axis that points up in the input -> rotation that turns it to z."""
 UP_CHOICES = ("auto", *_TO_Z_UP)
 PIECES_CHOICES = ("auto", "group", "cut", "keep")
-PART_SUFFIXES = (".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".3mf", ".dae", *CAD_SUFFIXES)
+PART_SUFFIXES = (*MESH_SUFFIXES, *CAD_SUFFIXES)
 """Files that an assembly can be given as."""
 _SILENT_SUFFIXES = (".mtl", ".bin", ".png", ".jpg", ".jpeg", ".json", ".txt", ".md")
 """Files beside meshes that nobody takes for a part."""

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from kinematify.robot.arrays import read_only, used_vertices
-from kinematify.robot.vectors import crossed, highest, lengths_of, lowest
+from kinematify.robot.arrays import read_only
+from kinematify.robot.vectors import crossed, highest, lengths_of, lowest, referenced
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -58,7 +58,7 @@ class Part:
     @cached_property
     def bounds(self) -> FloatArray:
         """Axis-aligned bounds in the world frame [m], shape (2, 3): lower corner, upper corner."""
-        used = self.vertices[used_vertices(self.faces, len(self.vertices))]
+        used = referenced(self.vertices, self.faces)
         return read_only(np.stack([lowest(used), highest(used)]), np.float64)
 
     @property
@@ -143,7 +143,7 @@ class Assembly:
         when the object is turned about z.
         """
         height = float(self.bounds[1, 2] - self.bounds[0, 2])
-        plan = [part.vertices[used_vertices(part.faces, len(part.vertices)), :2] for part in self.parts]
+        plan = [referenced(part.vertices, part.faces)[:, :2] for part in self.parts]
         return math.hypot(height, _smallest_rectangle(np.concatenate(plan)))
 
 

@@ -11,8 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from kinematify.errors import AssemblyError
-from kinematify.robot.appearance import joined
-from kinematify.robot.raw_mesh import RawMesh, compacted
+from kinematify.robot.raw_mesh import RawMesh, compacted, merged
 from kinematify.robot.vectors import crossed, lengths_of
 from kinematify.robot.weld import weld
 
@@ -41,22 +40,16 @@ def baked(robot: Robot, group: RigidGroup, T_world_link: Mapping[str, FloatArray
         T_world_link: Pose of every link, shape (4, 4).
     """
     name = next(link for link in group.links if robot.link_by_name[link].has_geometry)
-    vertices, faces, looks, count = [], [], [], 0
+    found = []
     for link in group.links:
         transform = T_world_link[link]
         for mesh in robot.link_by_name[link].meshes:
             # Welded in the link frame, where equal vertices are still equal to the last digit.
             points, triangles, kept = weld(mesh.vertices, mesh.faces, _WELD)
-            vertices.append(points @ transform[:3, :3].T + transform[:3, 3])
-            faces.append(triangles + count)
-            looks.append(None if mesh.appearance is None else mesh.appearance.of_faces(kept))
-            count += len(points)
-    return RawMesh(
-        name=name,
-        vertices=np.concatenate(vertices),
-        faces=np.concatenate(faces),
-        appearance=joined(looks, [len(part) for part in faces]),
-    )
+            looks = mesh.appearance and mesh.appearance.of_faces(kept)
+            welded = RawMesh(name=name, vertices=points, faces=triangles, appearance=looks)
+            found.append(welded.moved(transform[:3, :3], transform[:3, 3]))
+    return merged(found, name)
 
 
 def labelled_parts(mesh: RawMesh, labels: Path) -> tuple[RawMesh, ...]:

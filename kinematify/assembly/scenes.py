@@ -9,6 +9,7 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from kinematify.errors import AssemblyError
+from kinematify.robot.vectors import box_gaps
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,8 +73,7 @@ def _floor(bounds: FloatArray) -> int | None:
 def _objects(bounds: FloatArray, gap: float) -> list[IntArray]:
     """Pieces of every object, from left to right; boxes that are nearer than `gap` [m] are of one."""
     low, high = bounds[:, 0], bounds[:, 1]
-    apart = np.maximum(low[:, None] - high[None], low[None] - high[:, None]).max(axis=2)
-    label = connected_components(apart <= gap, directed=False)[1]
+    label = connected_components(box_gaps(low, high) <= gap, directed=False)[1]
     groups = [np.flatnonzero(label == number) for number in range(int(label.max()) + 1)]
     sizes = np.array([np.linalg.norm(high[group].max(axis=0) - low[group].min(axis=0)) for group in groups])
     large = [group for group, size in zip(groups, sizes, strict=True) if size >= _SMALL * sizes.max()]

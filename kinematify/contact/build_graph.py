@@ -19,6 +19,7 @@ from scipy.spatial import cKDTree
 from kinematify.contact.graph import ContactEdge, ContactGraph, ContactSamples, Pair
 from kinematify.geometry.surface import FACETED
 from kinematify.robot.arrays import read_only
+from kinematify.robot.vectors import box_gaps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -92,8 +93,7 @@ def near_pairs(assembly: Assembly, margin: float) -> list[Pair]:
     """Pairs (a < b) of parts whose bounding boxes come within `margin` [m] of each other."""
     lower = np.array([part.bounds[0] for part in assembly.parts])
     upper = np.array([part.bounds[1] for part in assembly.parts])
-    apart = np.maximum(lower[:, None] - upper[None], lower[None] - upper[:, None]).max(axis=2)
-    rows, columns = np.nonzero(np.triu(apart <= margin, k=1))
+    rows, columns = np.nonzero(np.triu(box_gaps(lower, upper) <= margin, k=1))
     return list(zip(rows.tolist(), columns.tolist(), strict=True))
 
 

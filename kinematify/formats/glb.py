@@ -11,6 +11,7 @@ from PIL import Image
 from kinematify.formats.content import shown_surfaces
 from kinematify.robot.appearance import linear_of
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.mesh_file import TO_Z_UP
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Joint
 
 _OUTSIDE = "y up"  # node above the root link, which may well be named "world"
-_UP = np.array([[1.0, 0, 0, 0], [0, 0, 1.0, 0], [0, -1.0, 0, 0], [0, 0, 0, 1.0]])
-"""From z up to glTF's y up."""
 
 
 def write_glb(content: Content, out: Path, *, free: bool) -> None:
@@ -29,7 +28,9 @@ def write_glb(content: Content, out: Path, *, free: bool) -> None:
     del free  # nothing is fixed where nothing is simulated
     scene = trimesh.Scene(base_frame=_OUTSIDE)
     graph: Any = scene.graph
-    graph.update(frame_from=_OUTSIDE, frame_to=content.robot.root, matrix=_UP)
+    T_outside_root = np.eye(4)
+    T_outside_root[:3, :3] = TO_Z_UP["Y_UP"].T
+    graph.update(frame_from=_OUTSIDE, frame_to=content.robot.root, matrix=T_outside_root)
     for joint in content.robot.joints_downward:
         extras = {"kinematify": _described(joint)}
         graph.update(frame_from=joint.parent, frame_to=joint.child, matrix=joint.T_parent_child, metadata=extras)
@@ -49,7 +50,7 @@ def _described(joint: Joint) -> dict[str, object]:
     extras: dict[str, object] = {"joint": joint.name, "type": joint.kind.value}
     if joint.kind is not JointType.FIXED:
         extras["axis"] = joint.axis.tolist()
-    if np.isfinite([joint.lower, joint.upper]).all() and joint.kind is not JointType.FIXED:
+    if joint.is_limited and joint.kind is not JointType.FIXED:
         extras |= {"lower": float(joint.lower), "upper": float(joint.upper)}
     return extras
 

@@ -6,8 +6,6 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -47,7 +45,7 @@ def _is_dressed(shape: Shape) -> bool:
 
 _COUNTS: Mapping[str, Callable[[Content], int]] = {
     "joints that move": _moving(lambda joint: True),
-    "limits": _moving(lambda joint: bool(np.isfinite([joint.lower, joint.upper]).all())),
+    "limits": _moving(lambda joint: joint.is_limited),
     "followers (mimic)": _moving(lambda joint: joint.mimic is not None),
     "closed loops": lambda content: len(content.robot.loops),
     "friction": _moving(lambda joint: bool(joint.friction)),

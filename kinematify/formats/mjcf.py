@@ -80,12 +80,11 @@ class _MjcfWriter:
         T = joint.T_parent_child
         child = add(parent, "body", name=joint.child, pos=T[:3, 3], quat=quaternion_of(T[:3, :3]))
         if joint.kind is not JointType.FIXED:
-            limited = np.isfinite([joint.lower, joint.upper]).all()
             stiffness, rest = self._content.extensions.springs.get(joint.name, (None, None))
             add(
                 child, "joint", name=joint.name, type="hinge" if joint.kind.turns else "slide", axis=joint.axis,
                 # MuJoCo takes a range without width for none.
-                range=[joint.lower, max(joint.upper, joint.lower + _LEAST_RANGE)] if limited else None,
+                range=[joint.lower, max(joint.upper, joint.lower + _LEAST_RANGE)] if joint.is_limited else None,
                 damping=joint.damping, frictionloss=joint.friction, stiffness=stiffness, springref=rest,
             )  # fmt: skip
         return child

@@ -11,11 +11,10 @@ from lxml import etree
 
 from kinematify.errors import DescriptionError, ExportError
 from kinematify.formats.content import with_names
+from kinematify.robot.description import read_here
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Joint, Link, Robot, forward_kinematics
-from kinematify.robot.sdf_reader import read_sdf
-from kinematify.robot.urdf_geometry import geometry_source
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -54,18 +53,12 @@ def check_target(content: Content, to: str, out: Path) -> None:
 
 def _opened(to: str, out: Path) -> Robot:
     """Read a file by the library of its format."""
-    if to == "mjcf":
-        from kinematify.robot.mjcf_reader import read_mjcf  # noqa: PLC0415 - MuJoCo
-
-        return read_mjcf(out)
-    if to == "usd":
-        from kinematify.robot.usd_reader import read_usd  # noqa: PLC0415 - USD
-
-        return read_usd(out)
+    if to in ("urdf", "glb"):
+        return read_robot(out, geometry="none") if to == "urdf" else _open_glb(out)
     if to == "sdf":
         _check_siblings(out)
-        return read_sdf(out, geometry_source(out, ()))
-    return read_robot(out, geometry="none") if to == "urdf" else _open_glb(out)
+    robot: Robot = read_here(out, to)
+    return robot
 
 
 def _check_siblings(out: Path) -> None:

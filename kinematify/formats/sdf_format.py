@@ -111,8 +111,7 @@ def _add_axis(element: _Element, joint: Joint, spring: Sequence[float | None]) -
         add(mimic, "multiplier", joint.mimic.multiplier)
         add(mimic, "offset", joint.mimic.offset)
         add(mimic, "reference", 0.0)
-    limited = bool(np.isfinite([joint.lower, joint.upper]).all())
-    ends = (joint.lower, joint.upper) if limited else (-_ENDLESS, _ENDLESS)
+    ends = (joint.lower, joint.upper) if joint.is_limited else (-_ENDLESS, _ENDLESS)
     drive = {"effort": joint.effort, "velocity": joint.velocity}
     _add_texts(axis, "limit", {"lower": ends[0], "upper": ends[1], **drive})
     stiffness, rest = spring

@@ -12,7 +12,7 @@ from kinematify.robot.appearance import linear_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.material_files import write_texture
 from kinematify.robot.robot import forward_kinematics
-from kinematify.robot.transforms import quaternion_of, rotation_from_x, rpy_of
+from kinematify.robot.transforms import quaternion_of, rotation_from_x
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -127,9 +127,7 @@ class _UsdWriter:
 
     def _frame(self, path: Any, T: FloatArray) -> Any:
         """A frame of its own around one geometry; returns the path of the geometry."""
-        xform = UsdGeom.Xform.Define(self.stage, path)
-        xform.AddTranslateOp().Set(Gf.Vec3d(*map(float, T[:3, 3])))
-        xform.AddRotateXYZOp().Set(_vector(np.degrees(rpy_of(T[:3, :3]))))
+        _place(UsdGeom.Xform.Define(self.stage, path), T)
         return path.AppendChild("geometry")
 
     def _add_mass(self, prim: Any, link: Link) -> None:
@@ -183,9 +181,7 @@ class _UsdWriter:
         found = UsdShade.Material.Define(self.stage, path)
         shader = UsdShade.Shader.Define(self.stage, path.AppendChild("surface"))
         shader.CreateIdAttr("UsdPreviewSurface")
-        values = {"opacity": material.color[3], "metallic": material.metallic, "roughness": material.roughness}
-        for name, value in values.items():
-            shader.CreateInput(name, Sdf.ValueTypeNames.Float).Set(float(value))
+        _inputs(shader, "Float", opacity=material.color[3], metallic=material.metallic, roughness=material.roughness)
         color = shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f)
         light = linear_of(np.array(material.color[:3]))
         if material.texture is None:
@@ -204,14 +200,13 @@ class _UsdWriter:
         write_texture(file, texture)
         reader = UsdShade.Shader.Define(self.stage, path.AppendChild("places"))
         reader.CreateIdAttr("UsdPrimvarReader_float2")
-        reader.CreateInput("varname", Sdf.ValueTypeNames.String).Set("st")
+        _inputs(reader, "String", varname="st")
         picture = UsdShade.Shader.Define(self.stage, path.AppendChild("texture"))
         picture.CreateIdAttr("UsdUVTexture")
-        picture.CreateInput("file", Sdf.ValueTypeNames.Asset).Set(f"{folder.name}/{file.name}")
-        picture.CreateInput("sourceColorSpace", Sdf.ValueTypeNames.Token).Set("sRGB")
-        picture.CreateInput("scale", Sdf.ValueTypeNames.Float4).Set(Gf.Vec4f(*map(float, light), 1.0))
-        for side in ("wrapS", "wrapT"):
-            picture.CreateInput(side, Sdf.ValueTypeNames.Token).Set("repeat")
+        _inputs(picture, "Asset", file=f"{folder.name}/{file.name}")
+        _inputs(picture, "Token", sourceColorSpace="sRGB")
+        _inputs(picture, "Float4", scale=Gf.Vec4f(*light.tolist(), 1.0))
+        _inputs(picture, "Token", wrapS="repeat", wrapT="repeat")
         picture.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(reader.ConnectableAPI(), "result")
         color.ConnectToSource(picture.CreateOutput("rgb", Sdf.ValueTypeNames.Float3))
 
@@ -220,8 +215,7 @@ class _UsdWriter:
         found = kind.get(joint.kind, UsdPhysics.RevoluteJoint).Define(self.stage, path)
         self._joints[joint.name] = found.GetPrim()
         found.GetPrim().SetDisplayName(shown)
-        found.CreateBody0Rel().SetTargets([self._paths[joint.parent]])
-        found.CreateBody1Rel().SetTargets([self._paths[joint.child]])
+        self._connect(found, joint.parent, joint.child)
         turn = np.eye(3) if joint.kind is JointType.FIXED else rotation_from_x(joint.axis)
         T = joint.T_parent_child
         found.CreateLocalPos0Attr(_vector(T[:3, 3]))
@@ -231,11 +225,15 @@ class _UsdWriter:
         if joint.kind is JointType.FIXED:
             return
         found.CreateAxisAttr(UsdGeom.Tokens.x)
-        if np.isfinite([joint.lower, joint.upper]).all():
+        if joint.is_limited:
             unit = np.degrees if joint.kind.turns else np.asarray
             found.CreateLowerLimitAttr(float(unit(joint.lower)))
             found.CreateUpperLimitAttr(float(unit(joint.upper)))
         self._add_drive(found.GetPrim(), joint)
+
+    def _connect(self, joint: Any, first: str, second: str) -> None:
+        joint.CreateBody0Rel().SetTargets([self._paths[first]])
+        joint.CreateBody1Rel().SetTargets([self._paths[second]])
 
     def _add_followers(self) -> None:
         """Joints that follow: Newton's schema, whose offset is in the unit of the follower as all angles of USD."""
@@ -275,8 +273,7 @@ class _UsdWriter:
 
     def _add_loop(self, loop: LoopJoint, path: Any) -> None:
         found = UsdPhysics.SphericalJoint.Define(self.stage, path)
-        found.CreateBody0Rel().SetTargets([self._paths[loop.links[0]]])
-        found.CreateBody1Rel().SetTargets([self._paths[loop.links[1]]])
+        self._connect(found, *loop.links)
         found.CreateLocalPos0Attr(_vector(loop.points[0]))
         found.CreateLocalPos1Attr(_vector(loop.points[1]))
         found.CreateExcludeFromArticulationAttr(True)  # an articulation is a tree
@@ -351,6 +348,12 @@ def _author(prim: Any, schema: str, **values: tuple[Any, Any]) -> None:
     prim.AddAppliedSchema(schema)
     for name, (kind, value) in values.items():
         prim.CreateAttribute(f"newton:{name}", kind).Set(value)
+
+
+def _inputs(shader: Any, kind: str, **values: Any) -> None:
+    """Set inputs of one type."""
+    for name, value in values.items():
+        shader.CreateInput(name, getattr(Sdf.ValueTypeNames, kind)).Set(value)
 
 
 def _place(xform: Any, T: FloatArray) -> None:

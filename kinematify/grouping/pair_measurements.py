@@ -9,6 +9,7 @@ import numpy as np
 
 from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
 from kinematify.grouping.lattice import Lattice, lattice, square_turn
+from kinematify.robot.vectors import box_gaps
 from kinematify.robot.weld import is_closed
 
 if TYPE_CHECKING:
@@ -71,8 +72,7 @@ def measure_pieces(parts: Sequence[Part]) -> MeasuredPieces:
 
 def _contacts(parts: Sequence[Part], grid: Lattice, sizes: FloatArray) -> tuple[IntArray, dict[str, FloatArray]]:
     """Pairs of neighbours, the smaller one first, and how they touch."""
-    low, high = grid.bounds[:, 0], grid.bounds[:, 1]
-    apart = np.maximum(low[:, None] - high[None], low[None] - high[:, None]).max(axis=2)
+    apart = box_gaps(grid.bounds[:, 0], grid.bounds[:, 1])
     rows, columns = np.nonzero(np.triu(apart <= _NEAR, k=1))
     probes = _probes(grid)
     turn, offset, scale = _frame(parts)

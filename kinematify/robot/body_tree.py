@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -10,19 +11,21 @@ import numpy as np
 from kinematify.errors import DescriptionError
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.linkage import with_closures
-from kinematify.robot.robot import Joint, LinkMesh, LoopJoint, Robot
+from kinematify.robot.robot import Joint, Link, LinkMesh, LoopJoint, Robot
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.robot import Link, Shape
+    from kinematify.robot.robot import Shape
 
 WORLD = "world"
 """The link that represents the outside where a format fixes bodies to it."""
 _UPRIGHT = 1e-9
 _SHOWN = 4
+Losses = defaultdict[str, list[str]]
+"""Names of what a file holds and a robot does not, by its kind."""
 Edge = tuple[Joint, "FloatArray"]
 """A joint whose `T_parent_child` is the joint's frame in the parent body, with its frame in the child body; its axis is
 in the joint's frame."""
@@ -37,6 +40,7 @@ def tree_of(
     poses: Mapping[str, FloatArray],
     loops: Iterable[LoopJoint] = (),
     notes: Sequence[str] = (),
+    losses: Losses,
 ) -> Robot:
     """Return a robot whose link frames have the axes of the bodies and lie at the joints above them.
 
@@ -47,18 +51,21 @@ def tree_of(
     Args:
         name: Of the robot.
         path: The file.
-        bodies: With shapes and masses in their own frames; `WORLD` among them if joints name it.
+        bodies: With shapes and masses in their own frames; `WORLD` among them if it has shapes.
         edges: The joints, the tree's before those that close loops.
-        poses: T_world_body of each body.
+        poses: T_world_body of each body but `WORLD`.
         loops: Points that two bodies share, in their own frames.
-        notes: What the format holds and a robot does not, one sentence each.
+        notes: What is read with another meaning, one sentence each.
+        losses: What is not read.
 
     Raises:
         DescriptionError: There is no body.
     """
     if not any(body.name != WORLD or body.visuals or body.collisions for body in bodies):
         raise DescriptionError(f"The description {path} holds no body. Give a model with at least one.")
-    notes = list(notes)
+    notes = [*notes, *_sentences(losses)]
+    if all(body.name != WORLD for body in bodies) and any(WORLD in (joint.parent, joint.child) for joint, _ in edges):
+        bodies = [Link(name=WORLD), *bodies]
     bodies, edges = _without_empty_world(bodies, edges)
     children = {joint.child for joint, _ in edges}
     order = sorted((body.name for body in bodies), key=lambda body: (body != WORLD, body in children))
@@ -91,7 +98,7 @@ def tree_of(
     links = [_moved(body, offsets[body.name]) for body in bodies]
     if len(roots) > 1:
         notes.append(f"Bodies that nothing holds are read as fixed where they are: {', '.join(roots[1:])}.")
-        T_root_world = np.linalg.inv(poses[roots[0]])
+        T_root_world = np.linalg.inv(poses[roots[0]]) if roots[0] != WORLD else np.eye(4)
         joints |= {f"{body}_free": _free(roots[0], body, T_root_world @ poses[body]) for body in roots[1:]}
     in_file = {joint.name: number for number, (joint, _) in enumerate(edges)}
     robot = Robot(
@@ -108,8 +115,8 @@ def tree_of(
     return with_closures(robot) if robot.loops else robot
 
 
-def sentences(losses: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return one sentence for each kind of thing that a file holds and a robot does not, with some of their names."""
+def _sentences(losses: Mapping[str, Sequence[str]]) -> list[str]:
+    """One sentence for each kind of thing that a file holds and a robot does not, with some of their names."""
     found = []
     for what, names in losses.items():
         shown = ", ".join(name for name in names[:_SHOWN] if name)

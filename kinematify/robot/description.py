@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import importlib
 import json
 import os
 import pickle
@@ -128,24 +129,23 @@ def _bound() -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
 
 
-def _read(path: Path, form: str, package_dirs: Sequence[Path], arguments: Mapping[str, str]) -> Any:
-    if form == "xacro":
-        from kinematify.robot.xacro_text import expand_xacro  # noqa: PLC0415 - one library a format
+_READERS = {
+    "xacro": ("kinematify.robot.xacro_text", "expand_xacro"),
+    "mjcf": ("kinematify.robot.mjcf_reader", "read_mjcf"),
+    "sdf": ("kinematify.robot.sdf_reader", "read_sdf"),
+    "usd": ("kinematify.robot.usd_reader", "read_usd"),
+}
+"""Module and function of every format, which loads its library when a file needs it."""
 
-        return expand_xacro(path, package_dirs, arguments)
-    if form == "mjcf":
-        from kinematify.robot.mjcf_reader import read_mjcf  # noqa: PLC0415
 
-        return read_mjcf(path)
+def read_here(
+    path: Path, form: str, package_dirs: Sequence[Path] = (), arguments: Mapping[str, str] | None = None
+) -> Any:
+    """Return what `read_foreign` does, in this process and without its bounds: for files that are trusted."""
     if form == "usd":
         require("Reading USD", "usd-core")
-        from kinematify.robot.usd_reader import read_usd  # noqa: PLC0415
-
-        return read_usd(path)
-    from kinematify.robot.sdf_reader import read_sdf  # noqa: PLC0415
-    from kinematify.robot.urdf_geometry import geometry_source  # noqa: PLC0415
-
-    return read_sdf(path, geometry_source(path, package_dirs, appearance=True))
+    module, function = _READERS[form]
+    return getattr(importlib.import_module(module), function)(path, package_dirs, arguments or {})
 
 
 def open_description(
@@ -275,7 +275,7 @@ def _main() -> None:
     out = os.dup(1)
     os.dup2(2, 1)  # libraries print
     try:
-        answer = _read(Path(path), form, [Path(item) for item in package_dirs], arguments)
+        answer = read_here(Path(path), form, [Path(item) for item in package_dirs], arguments)
     except (DescriptionError, EnvironmentFault) as error:
         answer = error
     except RecursionError:

@@ -20,6 +20,7 @@ import numpy as np
 from kinematify.robot.appearance import Appearance, Material, joined, linear_of, painted, srgb_of
 from kinematify.robot.exact_faces import ExactFaces, joined_faces
 from kinematify.robot.raw_mesh import RawMesh, compacted, merged
+from kinematify.robot.transforms import rotation_from_quaternion
 from kinematify.versions import require
 
 if TYPE_CHECKING:
@@ -410,15 +411,7 @@ def _roots(document: dict[str, Any]) -> list[int]:
 def _local_transform(node: dict[str, Any]) -> FloatArray:
     if "matrix" in node:
         return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
-    x, y, z, w = np.array(node.get("rotation", (0.0, 0.0, 0.0, 1.0)), dtype=np.float64)
-    n = 2.0 / (x * x + y * y + z * z + w * w)
-    turn = np.array(
-        [
-            [1 - n * (y * y + z * z), n * (x * y - z * w), n * (x * z + y * w)],
-            [n * (x * y + z * w), 1 - n * (x * x + z * z), n * (y * z - x * w)],
-            [n * (x * z - y * w), n * (y * z + x * w), 1 - n * (x * x + y * y)],
-        ]
-    )
+    turn = rotation_from_quaternion(np.roll(np.array(node.get("rotation", (0.0, 0.0, 0.0, 1.0)), dtype=np.float64), 1))
     transform = np.eye(4)
     transform[:3, :3] = turn * np.array(node.get("scale", (1.0, 1.0, 1.0)), dtype=np.float64)
     transform[:3, 3] = node.get("translation", (0.0, 0.0, 0.0))

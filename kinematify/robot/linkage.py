@@ -107,7 +107,7 @@ def _sharing(robot: Robot) -> list[list[LoopJoint]]:
     """Loops in groups that share leading joints."""
     groups: list[tuple[set[str], list[LoopJoint]]] = []
     for loop in robot.loops:
-        joints = {_led(robot, joint)[0] for side in _sides(robot, loop) for joint in side if _moves(joint)}
+        joints = {_led(robot, joint)[0] for side in sides(robot, loop.links) for joint in side if _moves(joint)}
         apart = [group for group in groups if not group[0] & joints]
         shared = [group for group in groups if group[0] & joints]
         merged = set().union(joints, *(names for names, _ in shared)), [*(i for _, g in shared for i in g), loop]
@@ -115,10 +115,10 @@ def _sharing(robot: Robot) -> list[list[LoopJoint]]:
     return [loops for _, loops in groups]
 
 
-def _sides(robot: Robot, loop: LoopJoint) -> tuple[list[Joint], list[Joint]]:
-    """Joints from where both ways part to each end of a loop, fixed ones included."""
+def sides(robot: Robot, links: tuple[str, str]) -> tuple[list[Joint], list[Joint]]:
+    """Return the joints from where the ways to two links part to each of them, fixed ones included."""
     ways = []
-    for link in loop.links:
+    for link in links:
         way: list[Joint] = []
         while (above := robot.joint_above.get(way[-1].parent if way else link)) is not None:
             way.append(above)
@@ -156,7 +156,7 @@ class _Chain:
         self._ends = [
             _Side(joints=[(joint, *_led(robot, joint)) for joint in side], point=point)
             for loop in loops
-            for side, point in zip(_sides(robot, loop), loop.points, strict=True)
+            for side, point in zip(sides(robot, loop.links), loop.points, strict=True)
         ]
         moved = {leader for side in self._ends for joint, leader, *_ in side.joints if _moves(joint)}
         self.joints = tuple(joint.name for joint in robot.joints if joint.name in moved and _moves(joint))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.linkage import sides
 from kinematify.robot.robot import forward_kinematics, joint_ends, joint_values, rest_configuration, rigid_groups
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ class LeaderMechanism:
             Travel(
                 joint=joint.name,
                 turns=joint.kind.turns,
-                limited=not joint.endless and bool(np.isfinite([joint.lower, joint.upper]).all()),
+                limited=joint.is_limited and not joint.endless,
                 lower=float(low),
                 rest=rest[joint.name],
                 upper=float(high),
@@ -239,14 +240,5 @@ def widest_opening(robot: Robot, links: tuple[str, str], point: FloatArray) -> L
 
 def joints_between(robot: Robot, links: tuple[str, str]) -> tuple[str, ...]:
     """Return the joints of the tree on the way from one link to another, fixed ones omitted."""
-    ways = []
-    for link in links:
-        way, above = [], robot.joint_above.get(link)
-        while above is not None:
-            way.append(above)
-            above = robot.joint_above.get(above.parent)
-        ways.append(way)
-    first, second = ways
-    shared = {joint.name for joint in first} & {joint.name for joint in second}
-    between = [joint for joint in [*first, *second[::-1]] if joint.name not in shared]
-    return tuple(joint.name for joint in between if joint.kind is not JointType.FIXED)
+    first, second = sides(robot, links)
+    return tuple(joint.name for joint in (*first[::-1], *second) if joint.kind is not JointType.FIXED)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -9,22 +10,20 @@ import mujoco
 import numpy as np
 
 from kinematify.errors import DescriptionError
-from kinematify.robot.body_tree import WORLD, sentences, tree_of
+from kinematify.robot.body_tree import WORLD, tree_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Inertial, Joint, Link, LoopJoint, Mimic
 from kinematify.robot.transforms import joint_motion, rotation_from_quaternion
-from kinematify.robot.urdf_geometry import mesh_shape, primitive
+from kinematify.robot.urdf_geometry import ellipsoid, mesh_shape, primitive
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.body_tree import Edge
+    from kinematify.robot.body_tree import Edge, Losses
     from kinematify.robot.robot import Robot, Shape
 
-Losses = dict[str, list[str]]
-"""Names of what is not read, by its kind."""
 _SEEN_GROUPS = 3
 """MuJoCo's viewer shows groups below it."""
 _GEOMS = mujoco.mjtGeom
@@ -37,8 +36,8 @@ _UNHELD = {
 """What a specification lists that a robot does not hold."""
 
 
-def read_mjcf(path: Path) -> Robot:
-    """Read an MJCF; a body with several joints becomes a chain of links.
+def read_mjcf(path: Path, *_: Any) -> Robot:
+    """Read an MJCF, whatever is given beside it; a body with several joints becomes a chain of links.
 
     Raises:
         DescriptionError: MuJoCo does not open it.
@@ -52,11 +51,10 @@ def read_mjcf(path: Path) -> Robot:
     mujoco.mj_kinematics(model, data)
     names = [_called(model.body(k).name, "body", k) if k else WORLD for k in range(model.nbody)]
     lines = {kind: {item.id: _line(item) for item in getattr(spec, kind)} for kind in ("bodies", "joints", "geoms")}
-    losses = {
-        what: [str(getattr(item, "name", "")) for item in found]
-        for kind, what in _UNHELD.items()
-        if (found := getattr(spec, kind, ()))
-    }
+    losses: Losses = defaultdict(list)
+    for kind, what in _UNHELD.items():
+        if found := getattr(spec, kind, ()):
+            losses[what] = [str(getattr(item, "name", "")) for item in found]
     bodies: list[Link] = []
     edges: list[Edge] = []
     notes = _joint_notes(model, losses)
@@ -74,7 +72,7 @@ def read_mjcf(path: Path) -> Robot:
         ]
     poses = {name: _pose(data.xpos[k], data.xquat[k]) for k, name in enumerate(names)}
     title = spec.modelname or path.stem
-    return tree_of(title, path, bodies, edges, poses=poses, loops=loops, notes=[*notes, *sentences(losses)])
+    return tree_of(title, path, bodies, edges, poses=poses, loops=loops, notes=notes, losses=losses)
 
 
 def _called(name: str, kind: str, number: int) -> str:
@@ -127,7 +125,7 @@ def _joint_notes(model: Any, losses: Losses) -> list[str]:
         if kind in _FREE:
             notes.append(f"The {_FREE[kind]} joint {name} is read as fixed.")
         elif model.jnt_stiffness[k].any():
-            losses.setdefault("springs of joints", []).append(name)
+            losses["springs of joints"].append(name)
     several = [_called(model.body(k).name, "body", k) for k in range(model.nbody) if model.body_jntnum[k] > 1]
     if several:
         notes.append(f"Bodies with several joints are chains of links without mass: {', '.join(several)}.")
@@ -199,7 +197,7 @@ def _shapes(model: Any, lines: dict[int, int], losses: Losses) -> list[tuple[tup
         shape = _shape(model, k, tuple(map(float, color)), lines.get(k, 0))
         if shape is None:
             kind = _GEOMS(int(model.geom_type[k])).name.removeprefix("mjGEOM_").lower()
-            losses.setdefault(f"geoms of the type {kind}", []).append(model.geom(k).name)
+            losses[f"geoms of the type {kind}"].append(model.geom(k).name)
             continue
         seen, felt = found[int(model.geom_bodyid[k])]
         collides = bool(model.geom_contype[k] or model.geom_conaffinity[k])
@@ -222,8 +220,7 @@ def _shape(model: Any, k: int, color: tuple[float, ...], line: int) -> Shape | N
     if kind in sizes:
         return primitive(*sizes[kind], T, rgba, line)
     if kind == int(_GEOMS.mjGEOM_ELLIPSOID):
-        ball = primitive("sphere", (1.0,), np.eye(4)).mesh
-        return mesh_shape(ball.vertices * size, ball.faces, T, rgba, line)
+        return ellipsoid(size, T, rgba, line)
     if kind != int(_GEOMS.mjGEOM_MESH):
         return None
     mesh = int(model.geom_dataid[k])
@@ -245,7 +242,7 @@ def _followers(model: Any, losses: Losses) -> dict[str, Mimic]:
         offset, slope, *curved = model.eq_data[k, :5].tolist()
         name = _called(model.joint(follower).name, "joint", follower)
         if leader < 0 or any(curved) or name in found:
-            losses.setdefault("equalities of joints that are no line", []).append(name)
+            losses["equalities of joints that are no line"].append(name)
             continue
         start = _reference(model, follower) + offset - slope * _reference(model, leader)
         found[name] = Mimic(joint=_called(model.joint(leader).name, "joint", leader), multiplier=slope, offset=start)
@@ -258,12 +255,12 @@ def _loops(model: Any, names: list[str], losses: Losses) -> list[LoopJoint]:
     for k in _equalities(model, mujoco.mjtEq.mjEQ_CONNECT):
         called = _called(model.equality(k).name, "equality", k)
         if int(model.eq_objtype[k]) != int(mujoco.mjtObj.mjOBJ_BODY):
-            losses.setdefault("equalities between sites", []).append(called)
+            losses["equalities between sites"].append(called)
             continue
         links = (names[model.eq_obj1id[k]], names[model.eq_obj2id[k]])
         points = (model.eq_data[k, :3].copy(), model.eq_data[k, 3:6].copy())
         found.append(LoopJoint(name=called, links=links, points=points))
     others = (mujoco.mjtEq.mjEQ_WELD, mujoco.mjtEq.mjEQ_TENDON, mujoco.mjtEq.mjEQ_FLEX)
     for k in (k for kind in others for k in _equalities(model, kind)):
-        losses.setdefault("equalities that weld bodies or hold tendons", []).append(model.equality(k).name)
+        losses["equalities that weld bodies or hold tendons"].append(model.equality(k).name)
     return found

@@ -14,7 +14,6 @@ from kinematify.robot.description import form_of, read_foreign
 from kinematify.robot.joint_type import FREE_KINDS, JointType
 from kinematify.robot.linkage import with_closures
 from kinematify.robot.robot import (
-    Inertial,
     Joint,
     Link,
     LoopJoint,
@@ -22,10 +21,11 @@ from kinematify.robot.robot import (
     Robot,
     UpAxis,
     forward_kinematics,
+    inertial_of,
     rest_configuration,
 )
 from kinematify.robot.urdf_geometry import geometry_source
-from kinematify.robot.urdf_numbers import line_of, number, optional_number, origin_transform, vector
+from kinematify.robot.urdf_numbers import MOMENTS, line_of, number, optional_number, origin_transform, vector
 from kinematify.robot.urdf_text import parse_description, parse_text
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from kinematify.robot.urdf_geometry import GeometrySource
 
     Geometry = Literal["all", "shown", "none"]
-    from kinematify.robot.robot import LinkMesh
+    from kinematify.robot.robot import Inertial, LinkMesh
 
 
 def read_robot(
@@ -149,19 +149,9 @@ def _inertial(link: _Element) -> Inertial | None:
         return None
     where = f"link {link.get('name')}"
     mass, inertia = element.find("mass"), element.find("inertia")
-    ixx, ixy, ixz, iyy, iyz, izz = (
-        0.0 if inertia is None else number(inertia, key, 0.0, where)
-        for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-    )
-    T_link_inertial = origin_transform(element, where)
-    rotation = T_link_inertial[:3, :3]
-    tensor = np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
-    return Inertial(
-        mass=0.0 if mass is None else number(mass, "value", 0.0, where),
-        center_of_mass=T_link_inertial[:3, 3],
-        tensor=rotation @ tensor @ rotation.T,
-        line=line_of(element),
-    )
+    moments = (0.0 if inertia is None else number(inertia, key, 0.0, where) for key in MOMENTS)
+    stated = 0.0 if mass is None else number(mass, "value", 0.0, where)
+    return inertial_of(stated, origin_transform(element, where), moments, line_of(element))
 
 
 def _joint(element: _Element) -> Joint:

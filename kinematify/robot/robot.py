@@ -16,7 +16,7 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import joint_motion
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from kinematify.robot.appearance import Appearance
     from kinematify.robot.arrays import FloatArray, IntArray
@@ -107,6 +107,13 @@ class Inertial:
     def __post_init__(self) -> None:
         object.__setattr__(self, "center_of_mass", read_only(self.center_of_mass, np.float64))
         object.__setattr__(self, "tensor", read_only(self.tensor, np.float64))
+
+
+def inertial_of(mass: float, T_link_inertial: FloatArray, moments: Iterable[float], line: int) -> Inertial:
+    """Return mass properties from xx, xy, xz, yy, yz and zz [kg m^2] in the axes of a frame at the centre of mass."""
+    xx, xy, xz, yy, yz, zz = moments
+    turn, tensor = T_link_inertial[:3, :3], np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    return Inertial(mass=mass, center_of_mass=T_link_inertial[:3, 3], tensor=turn @ tensor @ turn.T, line=line)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -208,6 +215,11 @@ class Joint:
     def leads(self) -> bool:
         """True if it moves by itself: neither fixed, nor mimic, nor driven by another joint of a closed chain."""
         return self.kind is not JointType.FIXED and self.mimic is None and self.closure is None
+
+    @property
+    def is_limited(self) -> bool:
+        """True if both of its limits are finite; a fixed one's are."""
+        return bool(np.isfinite([self.lower, self.upper]).all())
 
     @property
     def endless(self) -> bool:

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from lxml import etree
 
 from kinematify.errors import DescriptionError
-from kinematify.robot.body_tree import WORLD, sentences, tree_of
+from kinematify.robot.body_tree import WORLD, tree_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_paths import mesh_candidates
-from kinematify.robot.robot import Inertial, Joint, Link, Mimic
-from kinematify.robot.transforms import rotation_from_quaternion, rotation_from_rpy, rpy_of
-from kinematify.robot.urdf_geometry import mesh_shape, primitive
-from kinematify.robot.urdf_numbers import line_of
+from kinematify.robot.robot import Joint, Link, Mimic, inertial_of
+from kinematify.robot.transforms import rotation_from_quaternion, rotation_from_rpy
+from kinematify.robot.urdf_geometry import SIZES, NoShape, ellipsoid, geometry_source, primitive
+from kinematify.robot.urdf_numbers import MOMENTS, line_of
 from kinematify.robot.urdf_text import parse_description
-from kinematify.robot.write import numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -25,9 +25,10 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
+    from kinematify.robot.appearance import Rgba
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.body_tree import Edge
-    from kinematify.robot.robot import Robot, Shape
+    from kinematify.robot.body_tree import Edge, Losses
+    from kinematify.robot.robot import Inertial, Robot, Shape
     from kinematify.robot.urdf_geometry import GeometrySource
 
 _ENDLESS = 1e15
@@ -52,13 +53,8 @@ class _Model:
     joints: dict[str, _Element] = field(default_factory=dict)
     frames: dict[str, tuple[FloatArray, str | None, str]] = field(default_factory=dict)
     """Pose of a frame, the frame that it is relative to (None: the top), and what it is attached to."""
-    losses: dict[str, list[str]] = field(default_factory=dict)
-    """Names of what is not read, by its kind."""
+    losses: Losses = field(default_factory=lambda: defaultdict(list))
     notes: list[str] = field(default_factory=list)
-
-    def lose(self, what: str, name: str) -> None:
-        """Keep that something is not read."""
-        self.losses.setdefault(what, []).append(name)
 
     def scope(self, name: str) -> str:
         """The model that something is in, with ``::`` at its end."""
@@ -87,16 +83,17 @@ class _Model:
         return T
 
 
-def read_sdf(path: Path, source: GeometrySource) -> Robot:
+def read_sdf(path: Path, package_dirs: Sequence[Path] = (), *_: Any) -> Robot:
     """Read an SDF.
 
     Args:
         path: The file.
-        source: Where its meshes and models are looked up.
+        package_dirs: Where its meshes and models are looked up besides.
 
     Raises:
         DescriptionError: It is no SDF with a model, or a number or a frame cannot be used.
     """
+    source = geometry_source(path, package_dirs, appearance=True)
     document = parse_description(path, roots=("sdf", "gazebo"))
     candidates = list(document.iterfind("model")) + list(document.iterfind("world/model"))
     candidates += [
@@ -113,14 +110,12 @@ def read_sdf(path: Path, source: GeometrySource) -> Robot:
     bodies = [_link(model, name, element) for name, element in model.links.items()]
     known = {body.name for body in bodies}
     bodies += [Link(name=joint.child) for joint, _ in edges if joint.child not in known]
-    if WORLD not in model.links and any(joint.parent == WORLD for joint, _ in edges):
-        bodies.insert(0, Link(name=WORLD))
-    poses = {WORLD: np.eye(4)} | {name: model.placed(name) for name in model.links}
+    poses = {name: model.placed(name) for name in model.links}
     for tag in ("sensor", "plugin", "light", "gripper"):
         for item in chosen.iter(tag):
-            model.lose(f"{tag}s", item.get("name") or "")
-    notes = [*model.notes, *sentences(model.losses), *source.omitted]
-    return tree_of(chosen.get("name") or path.stem, path, bodies, edges, poses=poses, notes=notes)
+            model.losses[f"{tag}s"].append(item.get("name") or "")
+    notes, title = [*model.notes, *source.omitted], chosen.get("name") or path.stem
+    return tree_of(title, path, bodies, edges, poses=poses, notes=notes, losses=model.losses)
 
 
 def _version(document: _Element) -> tuple[int, ...]:
@@ -140,7 +135,7 @@ def _collect(model: _Model, element: _Element, scope: str, depth: int) -> None:
         inner = _included(item, model.source, depth) if item.tag == "include" else item
         name = scope + ((item.findtext("name") if item.tag == "include" else None) or item.get("name") or "")
         if inner is None:
-            model.lose("included models that are not there", item.findtext("uri") or "")
+            model.losses["included models that are not there"].append(item.findtext("uri") or "")
             continue
         if item.tag == "include" and name == scope:
             name += inner.get("name") or "included"
@@ -215,7 +210,7 @@ def _edges(model: _Model, name: str, element: _Element) -> Iterator[Edge]:
     scope, declared = model.scope(name), element.get("type") or ""
     stated = [(element.findtext(tag) or "").strip() for tag in ("parent", "child")]
     if declared == "gearbox" or not all(stated):
-        model.lose(f"joints of the type {declared!r}", name)
+        model.losses[f"joints of the type {declared!r}"].append(name)
         return
     parent, child = (model.body(WORLD if end == WORLD else scope + end) for end in stated)
     kind = _KINDS.get(declared, JointType.FIXED)
@@ -264,7 +259,7 @@ def _turning(model: _Model, joint: Joint, axis: _Element, T_top_joint: FloatArra
     )
     limited = max(-lower, upper) < _ENDLESS and joint.declared_kind != "continuous"
     if any(_values(axis.find("dynamics/spring_stiffness"), 1, (0.0,))):
-        model.lose("springs of joints", joint.name)
+        model.losses["springs of joints"].append(joint.name)
     mimic = None
     if (follows := axis.find("mimic")) is not None:
         slope, offset, start = (
@@ -302,18 +297,13 @@ def _inertial(link: _Element) -> Inertial | None:
     element = link.find("inertial")
     if element is None:
         return None
-    T = _pose(element.find("pose"))
-    xx, xy, xz, yy, yz, zz = (
-        _values(element.find(f"inertia/{key}"), 1, (float(key in ("ixx", "iyy", "izz")),))[0]
-        for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-    )
-    tensor = T[:3, :3] @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ T[:3, :3].T
-    mass = _values(element.find("mass"), 1, (1.0,))[0]
-    return Inertial(mass=mass, center_of_mass=T[:3, 3], tensor=tensor, line=line_of(element))
+    moments = [_values(element.find(f"inertia/{key}"), 1, (float(key[1] == key[2]),))[0] for key in MOMENTS]
+    (mass,) = _values(element.find("mass"), 1, (1.0,))
+    return inertial_of(mass, _pose(element.find("pose")), moments, line_of(element))
 
 
 def _shape(model: _Model, link: str, element: _Element) -> Shape | None:
-    """A visual or collision, by the reader of URDF; None, with a note, for what is none."""
+    """A visual or collision; None, with a note, for what is none."""
     geometry, T, line = element.find("geometry"), _pose(element.find("pose")), line_of(element)
     relative = "" if (pose := element.find("pose")) is None else pose.get("relative_to") or ""
     if relative:
@@ -322,39 +312,32 @@ def _shape(model: _Model, link: str, element: _Element) -> Shape | None:
     kind = "nothing" if shape is None else str(shape.tag)
     color = _color(element)
     if shape is not None and kind == "ellipsoid":
-        ball = primitive("sphere", (1.0,), np.eye(4)).mesh
-        return mesh_shape(ball.vertices * _values(shape.find("radii"), 3, (1.0, 1.0, 1.0)), ball.faces, T, color, line)
-    sizes: dict[str, tuple[str, ...]] = {
-        "box": ("size",),
-        "sphere": ("radius",),
-        "cylinder": ("radius", "length"),
-        "capsule": ("radius", "length"),
-    }
-    if shape is None or kind not in (*sizes, "mesh") or shape.find("submesh") is not None:
+        return ellipsoid(_values(shape.find("radii"), 3, (1.0, 1.0, 1.0)), T, color, line)
+    if shape is None or kind not in (*SIZES, "mesh") or shape.find("submesh") is not None:
         what = f"{kind} with a submesh" if kind == "mesh" else kind
-        model.lose(f"{element.tag}s of the shape {what}", f"{link}, line {line}")
+        model.losses[f"{element.tag}s of the shape {what}"].append(f"{link}, line {line}")
         return None
-    made = etree.Element(str(element.tag))
-    etree.SubElement(made, "origin", xyz=numbers(T[:3, 3]), rpy=numbers(rpy_of(T[:3, :3])))
-    if kind == "mesh":
-        scale = numbers(_values(shape.find("scale"), 3, (1.0, 1.0, 1.0)))
-        known = {"filename": (shape.findtext("uri") or "").strip(), "scale": scale}
-    else:
-        known = {key: (shape.findtext(key) or "").strip() for key in sizes[kind]}
-    etree.SubElement(etree.SubElement(made, "geometry"), kind, known)
-    if color is not None:
-        etree.SubElement(etree.SubElement(made, "material"), "color", rgba=numbers(color))
-    made.sourceline = line  # type: ignore[assignment]
-    holder = etree.Element("link", name=link)
-    holder.append(made)
-    return next(iter(model.source.shapes(holder, str(element.tag))), None)
+    if kind != "mesh":
+        count = 3 if kind == "box" else 1
+        size = [value for key in SIZES[kind] for value in _values(shape.find(key), count, (1.0,) * count)]
+        if min(size) < 0.0:
+            raise DescriptionError(
+                f"The {kind} in line {line} of the SDF has the size {size}. No length is below zero."
+            )
+        return primitive(kind, tuple(size), T, color, line) if min(size) > 0.0 else None
+    name, scale = (shape.findtext("uri") or "").strip(), _values(shape.find("scale"), 3, (1.0, 1.0, 1.0))
+    try:
+        return model.source.mesh(name, np.array(scale), T, f"link {link}", color=color, line=line)
+    except NoShape as error:
+        model.source.omit(element, error)
+        return None
 
 
-def _color(element: _Element) -> tuple[float, float, float, float] | None:
+def _color(element: _Element) -> Rgba | None:
     material = element.find("material")
     stated = None if material is None else material.find("diffuse")
     if stated is None:
         return None
-    words = (stated.text or "").split()
-    red, green, blue, opacity = _values(stated, len(words), ()) if len(words) == 4 else [*_values(stated, 3, ()), 1.0]
+    count = 3 + (len((stated.text or "").split()) == 4)
+    red, green, blue, opacity = [*_values(stated, count, ()), 1.0][:4]
     return red, green, blue, opacity

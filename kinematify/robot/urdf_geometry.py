@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
+    from kinematify.robot.appearance import Rgba
     from kinematify.robot.arrays import FloatArray, IntArray
 
 SIZES = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length"), "capsule": ("radius", "length")}
@@ -76,8 +77,12 @@ class GeometrySource:
         try:
             return self._shape(element, where)
         except NoShape as error:
-            self.omitted[f"A {element.tag} is omitted (line {line_of(element)}). {error}"] = None
+            self.omit(element, error)
             return None
+
+    def omit(self, element: _Element, error: NoShape) -> None:
+        """Note why an element has no shape."""
+        self.omitted[f"A {element.tag} is omitted (line {line_of(element)}). {error}"] = None
 
     def is_usable(self, element: _Element) -> bool:
         """True if a visual or collision has geometry that can be read, or is of a size of zero."""
@@ -98,34 +103,39 @@ class GeometrySource:
             if min(size) <= 0.0:
                 return None
             built = primitive(str(shape.tag), size, transform, color, line)
-            looks = plain(color, len(built.mesh.faces)) if self.appearance and color else None
-            return replace(built, mesh=replace(built.mesh, appearance=looks))
-        mesh = self._mesh_file(shape, where)
+            return built if self.appearance else replace(built, mesh=replace(built.mesh, appearance=None))
         scale = vector(shape, "scale", (1.0, 1.0, 1.0), where)
-        # A mirroring scale turns the triangles inside out.
-        mirrored = np.prod(scale) < 0
-        order = [0, 2, 1] if mirrored else [0, 1, 2]
-        looks = mesh.appearance if mesh.appearance is None or not mirrored else mesh.appearance.mirrored()
+        made = self.mesh(shape.get("filename") or "", scale, transform, where, color=color, line=line)
+        return replace(made, concave=element.get("concave") in ("yes", "true", "1"))
+
+    def mesh(
+        self, filename: str, scale: FloatArray, T_link_shape: FloatArray, where: str, *, color: Rgba | None, line: int
+    ) -> Shape:
+        """Return a mesh file as a shape; a mirroring scale does not turn it inside out.
+
+        Args:
+            filename: As the document names it.
+            scale: Shape (3,).
+            T_link_shape: Shape (4, 4).
+            where: The link, for messages.
+            color: As for `Shape`.
+            line: The same.
+
+        Raises:
+            NoShape: It is nowhere, or cannot be read.
+        """
+        path = self.resolved(filename, where)
+        mesh = self._mesh_file(path, where)
+        if self.heeds_up_axis and mesh.up:
+            mesh = mesh.moved(TO_Z_UP[mesh.up])
+        mesh = mesh.placed(np.diag([*scale, 1.0])).moved(T_link_shape[:3, :3], T_link_shape[:3, 3])
+        looks = mesh.appearance
         if looks is None and color is not None and self.appearance:
             looks = plain(color, len(mesh.faces))
-        turned = self.heeds_up_axis and mesh.up
-        vertices = mesh.vertices @ TO_Z_UP[mesh.up].T if turned else mesh.vertices
-        return Shape(
-            mesh=LinkMesh(
-                vertices=(vertices * scale) @ transform[:3, :3].T + transform[:3, 3],
-                faces=mesh.faces[:, order],
-                appearance=looks,
-            ),
-            file=self.resolved(shape.get("filename") or "", where),
-            scale=scale,
-            T_link_shape=transform,
-            color=color,
-            concave=element.get("concave") in ("yes", "true", "1"),
-            line=line,
-        )
+        shown = LinkMesh(vertices=mesh.vertices, faces=mesh.faces, appearance=looks)
+        return Shape(mesh=shown, file=path, scale=scale, T_link_shape=T_link_shape, color=color, line=line)
 
-    def _mesh_file(self, shape: _Element, where: str) -> RawMesh:
-        path = self.resolved(shape.get("filename") or "", where)
+    def _mesh_file(self, path: Path, where: str) -> RawMesh:
         if path not in self.cache:
             try:
                 self.cache[path] = merged(read_meshes(path, appearance=self.appearance), path.stem)
@@ -163,27 +173,26 @@ def primitive(
     kind: str,
     size: tuple[float, ...],
     T_link_shape: FloatArray,
-    color: tuple[float, float, float, float] | None = None,
+    color: Rgba | None = None,
     line: int = 0,
 ) -> Shape:
     """Return a box, cylinder, sphere or capsule with its triangles; the arguments are fields of `Shape`."""
     mesh = _tessellated(kind, size)
-    vertices = mesh.vertices @ T_link_shape[:3, :3].T + T_link_shape[:3, 3]
-    return Shape(
-        kind=kind,
-        mesh=LinkMesh(vertices=vertices, faces=mesh.faces),
-        size=size,
-        T_link_shape=T_link_shape,
-        color=color,
-        line=line,
-    )
+    shape = mesh_shape(mesh.vertices, mesh.faces, T_link_shape, color, line)
+    return replace(shape, kind=kind, size=size, T_link_shape=T_link_shape)
+
+
+def ellipsoid(radii: Sequence[float], T_link_shape: FloatArray, color: Rgba | None, line: int) -> Shape:
+    """Return an ellipsoid, which is a mesh here; the arguments are fields of `Shape`."""
+    ball = _tessellated("sphere", (1.0,))
+    return mesh_shape(ball.vertices * radii, ball.faces, T_link_shape, color, line)
 
 
 def mesh_shape(
     vertices: FloatArray,
     faces: IntArray,
     T_link_shape: FloatArray,
-    color: tuple[float, float, float, float] | None = None,
+    color: Rgba | None = None,
     line: int = 0,
 ) -> Shape:
     """Return a mesh that comes from no file of its own, of one colour; vertices in the frame of the shape, (V, 3)."""
@@ -236,7 +245,7 @@ def _cylinder(radius: float, height: float) -> RawMesh:
     return RawMesh(name="", vertices=vertices, faces=np.stack(faces, axis=1).reshape(-1, 3))
 
 
-def _color(material: _Element | None) -> tuple[float, float, float, float] | None:
+def _color(material: _Element | None) -> Rgba | None:
     """Colour of a material, looked up by its name in the document where it states none itself."""
     if material is None:
         return None
@@ -249,7 +258,7 @@ def _color(material: _Element | None) -> tuple[float, float, float, float] | Non
     return found
 
 
-def _stated_color(material: _Element) -> tuple[float, float, float, float] | None:
+def _stated_color(material: _Element) -> Rgba | None:
     color = material.find("color")
     try:
         values = [float(word) for word in (color.get("rgba") or "").split()] if color is not None else []

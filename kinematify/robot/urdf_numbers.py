@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 
+MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+"""Names of the moments of inertia, in URDF and SDF."""
 _COUNTS = {3: "three", 4: "four"}
 _SELF_COLLISION = ("selfCollide", "self_collide")
 """Elements by which Gazebo's extensions say whether a link collides with its own model."""

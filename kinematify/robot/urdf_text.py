@@ -157,9 +157,11 @@ def has_doctype(root: _Element) -> bool:
 def with_plain_declaration(text: bytes) -> bytes:
     """Return the text with an XML declaration that parsers take.
 
-    Files with ``<?xml version="0.0" ?>``, or with a comment before the declaration, are common, because the readers of
-    ROS and PyBullet never look at it. Lines keep their numbers.
+    Files with ``<?xml version="0.0" ?>``, with a comment before the declaration, or with a zero byte at their end are
+    common, because the readers of ROS, MuJoCo and PyBullet never look at it. Lines keep their numbers.
     """
+    if b"\x00" not in (whole := text.rstrip(b"\x00")):
+        text = whole
     declaration = _DECLARATION.search(text[:4096])
     if declaration is None:
         return text

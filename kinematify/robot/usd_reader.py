@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,20 +12,22 @@ import numpy as np
 from pxr import Usd, UsdGeom, UsdPhysics, UsdUtils
 
 from kinematify.errors import DescriptionError
-from kinematify.robot.body_tree import WORLD, sentences, tree_of
+from kinematify.robot.appearance import srgb_of
+from kinematify.robot.body_tree import WORLD, tree_of
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.mesh_file import TO_Z_UP
+from kinematify.robot.polygons import triangle_places
 from kinematify.robot.robot import Inertial, Joint, Link, Mimic
 from kinematify.robot.transforms import rotation_from_quaternion
 from kinematify.robot.urdf_geometry import mesh_shape, primitive
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.body_tree import Edge
+    from kinematify.robot.body_tree import Edge, Losses
     from kinematify.robot.robot import Robot, Shape
 
 _MOST_FILES = 500
 _AXES = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
-_Y_UP = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
 _SAME = 1e-9
 _DEFINED = re.compile(r'^\s*(?:def|over)\s+(?:\w+\s+)?"([^"]+)"')
 
@@ -34,8 +37,10 @@ class _Stage:
     """A stage with its bodies, all lengths in metres and z up."""
 
     stage: Any
+    unit: float
+    """Length of the stage's unit [m]."""
     T_world_stage: FloatArray
-    """With the length of the stage's unit [m] as its scale."""
+    """With `unit` as its scale."""
     kilograms: float
     bodies: dict[Any, str]
     """Names by the path of the prim."""
@@ -43,8 +48,7 @@ class _Stage:
     """The same of joints."""
     lines: dict[str, int]
     cache: Any = field(default_factory=lambda: UsdGeom.XformCache(Usd.TimeCode.Default()))
-    losses: dict[str, list[str]] = field(default_factory=dict)
-    """Names of what is not read, by its kind."""
+    losses: Losses = field(default_factory=lambda: defaultdict(list))
     notes: list[str] = field(default_factory=list)
 
     def scaled_pose(self, prim: Any) -> FloatArray:
@@ -62,13 +66,9 @@ class _Stage:
             prim = prim.GetParent()
         return prim or None
 
-    def lose(self, what: str, name: str) -> None:
-        """Keep that something is not read."""
-        self.losses.setdefault(what, []).append(name)
 
-
-def read_usd(path: Path) -> Robot:
-    """Read a USD, binary, text or zipped.
+def read_usd(path: Path, *_: Any) -> Robot:
+    """Read a USD, binary, text or zipped, whatever is given beside it.
 
     Raises:
         DescriptionError: USD does not open it, it refers to files outside of its folder, or it holds no rigid body.
@@ -80,41 +80,39 @@ def read_usd(path: Path) -> Robot:
         raise
     except Exception as error:  # pxr.Tf.ErrorException, which mypy does not know
         raise DescriptionError(f"USD does not open {path}: {' '.join(str(error).split())[:300]}") from error
-    prims = [prim for prim in stage.Traverse(Usd.TraverseInstanceProxies()) if prim.HasAPI(UsdPhysics.RigidBodyAPI)]
+    everything = list(stage.Traverse(Usd.TraverseInstanceProxies()))
+    prims = [prim for prim in everything if prim.HasAPI(UsdPhysics.RigidBodyAPI)]
+    hinges = [prim for prim in everything if prim.IsA(UsdPhysics.Joint)]
     if not prims:
         raise DescriptionError(f"The USD {path} has no rigid body (UsdPhysicsRigidBodyAPI). Give a model with physics.")
-    unit, up = UsdGeom.GetStageMetersPerUnit(stage), UsdGeom.GetStageUpAxis(stage)
+    unit, T_world_stage = UsdGeom.GetStageMetersPerUnit(stage), np.eye(4)
+    lies = UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.y
+    T_world_stage[:3, :3] = unit * (TO_Z_UP["Y_UP"] if lies else np.eye(3))
     read = _Stage(
         stage=stage,
-        T_world_stage=(_Y_UP if up == UsdGeom.Tokens.y else np.eye(4)) @ np.diag([unit, unit, unit, 1.0]),
+        unit=unit,
+        T_world_stage=T_world_stage,
         kilograms=UsdPhysics.GetStageKilogramsPerUnit(stage),
         bodies=_names(prims),
-        joints=_names([prim for prim in stage.Traverse(Usd.TraverseInstanceProxies()) if prim.IsA(UsdPhysics.Joint)]),
+        joints=_names(hinges),
         lines=_lines(path),
     )
     bodies = [_link(read, prim) for prim in prims]
-    edges: list[tuple[bool, Edge]] = []
-    for prim in stage.Traverse(Usd.TraverseInstanceProxies()):
-        if prim.IsA(UsdPhysics.Joint):
-            made = _edge(read, prim)
-            if made is not None:
-                edges.append((bool(UsdPhysics.Joint(prim).GetExcludeFromArticulationAttr().Get()), made))
-    ordered = [edge for _, edge in sorted(edges, key=lambda item: item[0])]
+    hinges.sort(key=lambda prim: bool(UsdPhysics.Joint(prim).GetExcludeFromArticulationAttr().Get()))
+    ordered = [edge for prim in hinges if (edge := _edge(read, prim)) is not None]
     joints = {joint.name for joint, _ in ordered}
     ordered = [
         (joint if joint.mimic is None or joint.mimic.joint in joints else replace(joint, mimic=None), T)
         for joint, T in ordered
     ]
-    if any(WORLD in (joint.parent, joint.child) for joint, _ in ordered):
-        bodies.insert(0, Link(name=WORLD))
-    poses = {read.bodies[prim.GetPath()]: read.pose(prim) for prim in prims} | {WORLD: np.eye(4)}
+    poses = {read.bodies[prim.GetPath()]: read.pose(prim) for prim in prims}
     top = stage.GetDefaultPrim()
     lost = ("Camera", "PhysicsDistanceJoint")
-    for prim in stage.Traverse(Usd.TraverseInstanceProxies()):
+    for prim in everything:
         if prim.GetTypeName() in lost or prim.GetTypeName().endswith("Light"):
-            read.lose(f"prims of the type {prim.GetTypeName()}", prim.GetName())
-    notes = [*read.notes, *sentences(read.losses)]
-    return tree_of(top.GetName() if top else path.stem, path, bodies, ordered, poses=poses, notes=notes)
+            read.losses[f"prims of the type {prim.GetTypeName()}"].append(prim.GetName())
+    title = top.GetName() if top else path.stem
+    return tree_of(title, path, bodies, ordered, poses=poses, notes=read.notes, losses=read.losses)
 
 
 def _check_references(path: Path) -> None:
@@ -182,7 +180,7 @@ def _link(read: _Stage, prim: Any) -> Link:
         elif item.IsA(UsdGeom.Gprim):
             shape = _shape(read, item, T_body_world @ read.scaled_pose(item), line)
             if shape is None:
-                read.lose(f"geometries of the type {item.GetTypeName()}", name)
+                read.losses[f"geometries of the type {item.GetTypeName()}"].append(name)
                 continue
             if _collides(item, prim):
                 felt.append(shape)
@@ -207,7 +205,7 @@ def _inertial(read: _Stage, prim: Any, line: int) -> Inertial | None:
     api = UsdPhysics.MassAPI(prim) if prim.HasAPI(UsdPhysics.MassAPI) else None
     mass = float(api.GetMassAttr().Get() or 0.0) if api else 0.0
     if api is None or not mass > 0.0:
-        read.lose("masses that engines compute from density and colliders", read.bodies[prim.GetPath()])
+        read.losses["masses that engines compute from density and colliders"].append(read.bodies[prim.GetPath()])
         return None
     diagonal = np.array(api.GetDiagonalInertiaAttr().Get() or (0.0, 0.0, 0.0), dtype=np.float64)
     scaled, rigid = read.scaled_pose(prim), read.pose(prim)
@@ -216,11 +214,10 @@ def _inertial(read: _Stage, prim: Any, line: int) -> Inertial | None:
         center = np.zeros(3)
     turn = api.GetPrincipalAxesAttr().Get()
     axes = np.eye(3) if turn is None or not turn.GetLength() else rotation_from_quaternion(_quaternion(turn))
-    unit = float(np.cbrt(abs(np.linalg.det(read.T_world_stage[:3, :3]))))
     return Inertial(
         mass=mass * read.kilograms,
         center_of_mass=(np.linalg.inv(rigid) @ scaled @ np.append(center, 1.0))[:3],
-        tensor=axes @ np.diag(diagonal) @ axes.T * read.kilograms * unit**2,
+        tensor=axes @ np.diag(diagonal) @ axes.T * read.kilograms * read.unit**2,
         line=line,
     )
 
@@ -237,9 +234,8 @@ def _shape(read: _Stage, prim: Any, T: FloatArray, line: int) -> Shape | None:
     )
     color = None
     if colors:
-        linear = np.clip(np.array(colors[0], dtype=np.float64), 0.0, 1.0)
-        srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1.0 / 2.4) - 0.055).tolist()
-        color = (srgb[0], srgb[1], srgb[2], float(opacities[0]) if opacities else 1.0)
+        red, green, blue = srgb_of(np.array(colors[0])).tolist()
+        color = (red, green, blue, float(opacities[0]) if opacities else 1.0)
     if prim.IsA(UsdGeom.Mesh):
         vertices, faces = _triangles(UsdGeom.Mesh(prim))
         if not len(faces):
@@ -286,18 +282,14 @@ def _along(axis: str) -> FloatArray:
 
 
 def _triangles(mesh: Any) -> tuple[FloatArray, IntArray]:
-    """Vertices and triangles of a mesh, faces cut into fans."""
+    """Vertices and triangles of a mesh, which lie inside of its faces."""
     vertices = np.array(mesh.GetPointsAttr().Get() or [], dtype=np.float64).reshape(-1, 3)
     counts = np.array(mesh.GetFaceVertexCountsAttr().Get() or [], dtype=np.int64)
     corners = np.array(mesh.GetFaceVertexIndicesAttr().Get() or [], dtype=np.int64)
     if counts.sum() != len(corners) or (len(corners) and not 0 <= corners.min() <= corners.max() < len(vertices)):
         raise DescriptionError(f"The faces of the mesh {mesh.GetPath()} do not fit its points. Export it again.")
-    starts, fans = np.cumsum(counts) - counts, []
-    for count in np.unique(counts[counts > 2]):
-        first = starts[counts == count]
-        for corner in range(1, count - 1):
-            fans.append(np.stack([corners[first], corners[first + corner], corners[first + corner + 1]], axis=1))
-    faces = np.concatenate(fans) if fans else np.zeros((0, 3), dtype=np.int64)
+    faces = corners[np.repeat(counts > 2, counts)]
+    faces = faces[triangle_places(vertices[faces], counts[counts > 2])]
     if mesh.GetOrientationAttr().Get() == UsdGeom.Tokens.leftHanded:
         faces = faces[:, ::-1]
     return vertices, faces
@@ -347,8 +339,7 @@ def _edge(read: _Stage, prim: Any) -> Edge | None:
 def _moving(read: _Stage, joint: Joint, schema: Any, kind: JointType) -> Joint:
     """A hinge or slide with its limits, its drive, and what Newton, MuJoCo and PhysX add."""
     prim, turns = schema.GetPrim(), kind.turns
-    length = float(np.cbrt(abs(np.linalg.det(read.T_world_stage[:3, :3]))))
-    unit = np.pi / 180.0 if turns else length
+    unit = np.pi / 180.0 if turns else read.unit
     lower, upper = (
         -np.inf if low is None else float(low) * unit
         for low in (schema.GetLowerLimitAttr().Get(), schema.GetUpperLimitAttr().Get())

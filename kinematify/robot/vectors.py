@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.robot.arrays import used_vertices
+
 if TYPE_CHECKING:
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
@@ -49,6 +51,9 @@ def all_three(flags: BoolArray) -> BoolArray:
 
 def referenced(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """Return the vertices (V, 3) that a face (F, 3) uses, each once, in their order, shape (k, 3)."""
-    used = np.zeros(len(vertices), dtype=bool)
-    used[faces.reshape(-1)] = True  # much faster than `np.unique`
-    return vertices[used]
+    return vertices[used_vertices(faces, len(vertices))]
+
+
+def box_gaps(low: FloatArray, high: FloatArray) -> FloatArray:
+    """Return the largest gap along an axis between upright boxes, below zero where they overlap, (n, 3) -> (n, n)."""
+    return np.asarray(np.maximum(low[:, None] - high[None], low[None] - high[:, None]).max(axis=2))

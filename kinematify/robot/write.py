@@ -11,6 +11,7 @@ from lxml import etree
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rpy_of
 from kinematify.robot.urdf_geometry import SIZES
+from kinematify.robot.urdf_numbers import MOMENTS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -87,7 +88,7 @@ def _add_link(robot: _Element, link: Link) -> None:
 
 def moments(inertial: Inertial) -> dict[str, float]:
     """Return the moments of inertia [kg m^2] under the names that URDF and SDFormat have for them."""
-    return {f"i{'xyz'[i]}{'xyz'[j]}": float(inertial.tensor[i, j]) for i in range(3) for j in range(i, 3)}
+    return dict(zip(MOMENTS, inertial.tensor[np.triu_indices(3)].tolist(), strict=True))
 
 
 def _add_shape(link: _Element, tag: str, shape: Shape, name: str) -> _Element:

@@ -17,7 +17,7 @@ from kinematify.robot.urdf_text import has_doctype, parse_text, with_plain_decla
     [b'<?xml version="0.0" ?>', b"<?xml version='9'?>", b'\n<!-- made by hand -->\n<?xml version="1.0"?>'],
 )
 def test_declarations_that_other_readers_skip_do_no_harm(declaration: bytes) -> None:
-    robot = parse_text(declaration + b'\n<robot name="a"/>')
+    robot = parse_text(declaration + b'\n<robot name="a"/>\n\x00')
     assert robot.get("name") == "a"
     assert robot.sourceline == declaration.count(b"\n") + 2, "lines must keep their numbers"
 
@@ -26,6 +26,7 @@ def test_a_sound_declaration_and_its_encoding_are_kept() -> None:
     text = '<?xml version="1.0" encoding="iso-8859-1"?><robot name="Tür"/>'.encode("latin-1")
     assert with_plain_declaration(text) == text
     assert parse_text(text).get("name") == "Tür"
+    assert parse_text('<robot name="Tür"/>'.encode("utf-16")).get("name") == "Tür"
 
 
 def test_a_doctype_is_seen_and_its_entities_stay_closed() -> None:
