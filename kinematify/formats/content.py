@@ -21,8 +21,6 @@ from kinematify.model.masses import prepared_inertials
 from kinematify.model.simulable import lacks_drive, unless_negative
 from kinematify.robot.appearance import Material, plain, surfaces
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.material_files import write_texture
-from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Link, Shape, joint_values
 
@@ -32,7 +30,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import PrepareSettings, ValidationSettings
     from kinematify.model.masses import PreparedInertial
-    from kinematify.robot.appearance import Surface, Texture
+    from kinematify.robot.appearance import Surface
     from kinematify.robot.robot import Joint, Robot
 
 
@@ -258,53 +256,10 @@ def _visuals(link: Link) -> tuple[Shape, ...]:
         for shape in link.visuals or link.collisions
         if shape.kind != "mesh" or len(np.unique(shape.mesh.faces)) >= _LEAST_VERTICES
     ]
-    return tuple(Shape(mesh=shape.mesh, color=shape.color) if shape.kind == "mesh" else shape for shape in shown)
+    return tuple(Shape(mesh=shape.mesh, color=shape.plain_color) if shape.kind == "mesh" else shape for shape in shown)
 
 
 def shown_surfaces(shape: Shape) -> tuple[Surface, ...]:
     """Return what is seen of a shape, cut into its materials; one that states none has its colour, or grey."""
     appearance = shape.mesh.appearance or plain(shape.color or GREY, len(shape.mesh.faces))
     return surfaces(shape.mesh.vertices, shape.mesh.faces, appearance)
-
-
-class MeshFiles:
-    """A folder beside the exported file; every mesh is written once, under a name of its own."""
-
-    def __init__(self, out: Path) -> None:
-        """Create the folder ``<stem>_meshes`` beside `out`.
-
-        Raises:
-            OSError: It cannot be created.
-        """
-        self.folder = out.parent / f"{out.stem}_meshes"
-        self.folder.mkdir(exist_ok=True)
-        self._count = 0
-        self._textures: dict[Texture, str] = {}
-
-    def write(self, shape: Shape, link: str) -> str:
-        """Write a mesh in its link's frame, with its materials beside it, and return its file name."""
-        name = self._name(link, "obj")
-        appearance = shape.mesh.appearance
-        says_more = appearance is not None and (len(appearance.materials) > 1 or appearance.is_textured)
-        write_obj(
-            self.folder / name, shape.mesh.vertices, shape.mesh.faces, OBJ_DIGITS, appearance if says_more else None
-        )
-        return name
-
-    def write_surface(self, surface: Surface, link: str) -> str:
-        """Write the faces of one material, with their places in its texture but without the material."""
-        name = self._name(link, "obj")
-        write_obj(self.folder / name, surface.vertices, surface.faces, OBJ_DIGITS, uv=surface.uv)
-        return name
-
-    def write_texture(self, texture: Texture) -> str:
-        """Write a picture once and return its file name."""
-        if texture not in self._textures:
-            self._textures[texture] = self._name("texture", "png")
-            write_texture(self.folder / self._textures[texture], texture)
-        return self._textures[texture]
-
-    def _name(self, link: str, suffix: str) -> str:
-        name = f"{self._count:03d}_{re.sub(r'[^A-Za-z0-9_-]', '_', link)[:60]}.{suffix}"
-        self._count += 1
-        return name

@@ -38,11 +38,6 @@ def _shapes(has: Callable[[Shape], bool], of: Callable[[Link], tuple[Shape, ...]
     return lambda content: sum(has(shape) for link in content.robot.links for shape in of(link))
 
 
-def _is_dressed(shape: Shape) -> bool:
-    look = shape.mesh.appearance
-    return look is not None and (len(look.materials) > 1 or look.is_textured)
-
-
 _COUNTS: Mapping[str, Callable[[Content], int]] = {
     "joints that move": _moving(lambda joint: True),
     "limits": _moving(lambda joint: joint.is_limited),
@@ -59,7 +54,7 @@ _COUNTS: Mapping[str, Callable[[Content], int]] = {
     "capsules": _shapes(lambda shape: shape.kind == "capsule", lambda link: (*link.visuals, *link.collisions)),
     "links that overlap at rest": lambda content: len(content.apart),
     "surface friction (mu1, mu2)": lambda content: len(content.extensions.surfaces),
-    "materials and textures": _shapes(_is_dressed, lambda link: link.visuals),
+    "materials and textures": _shapes(lambda shape: shape.mesh.is_dressed, lambda link: link.visuals),
 }
 """What a model may have, and how many of its joints, links or shapes have it."""
 OTHERS = "all else that a URDF states (gazebo, transmission, ros2_control, safety_controller)"

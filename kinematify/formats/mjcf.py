@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from lxml import etree
 
-from kinematify.formats.content import GREY, MeshFiles, shown_surfaces
+from kinematify.formats.content import GREY, shown_surfaces
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.mesh_folder import MeshFiles
 from kinematify.robot.transforms import quaternion_of
 from kinematify.robot.write import add
 from kinematify.simulation.configurations import PIN_SOLIMP, PIN_SOLREF

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.formats.content import GREY, WORLD, MeshFiles
+from kinematify.formats.content import GREY, WORLD
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.mesh_folder import MeshFiles
 from kinematify.robot.transforms import rpy_of
 from kinematify.robot.write import add, moments
 
@@ -71,7 +72,7 @@ def _add_link(
         _add_texts(inertial, "inertia", moments(link.inertial))
     for number, shape in enumerate(link.visuals):
         block = _add_shape(element, f"visual_{number}", shape, link.name, meshes)
-        if not (shape.mesh.appearance and len(shape.mesh.appearance.materials) > 1):
+        if not shape.mesh.is_dressed:
             material = add(block, "material")
             for name in ("ambient", "diffuse"):
                 add(material, name, shape.color or GREY)

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from copy import deepcopy
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lxml import etree
 
-from kinematify.formats.content import MeshFiles
 from kinematify.model.simulable import prepared_joint
-from kinematify.robot.robot import Shape
+from kinematify.robot.mesh_folder import MeshFiles, with_files
 from kinematify.robot.write import robot_element
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from kinematify.formats.content import Content
-    from kinematify.robot.robot import Link
 
 
 def write_urdf(content: Content, out: Path, *, free: bool) -> None:
@@ -35,7 +34,8 @@ def write_urdf(content: Content, out: Path, *, free: bool) -> None:
     """
     del free
     meshes = MeshFiles(out)
-    links = tuple(_link(link, meshes) for link in content.robot.links)
+    # URDF has no capsule: its triangles represent it.
+    links = tuple(with_files(link, meshes, ("mesh", "capsule")) for link in content.robot.links)
     joints = tuple(prepared_joint(joint, content.settings) for joint in content.robot.joints)
     document = robot_element(replace(content.robot, links=links, joints=joints))
     owners = {(str(element.tag), element.get("name")): element for element in document}
@@ -43,18 +43,3 @@ def write_urdf(content: Content, out: Path, *, free: bool) -> None:
         (document if tag == "robot" else owners[tag, name]).append(deepcopy(element))
     etree.indent(document)
     etree.ElementTree(document).write(out, pretty_print=True, xml_declaration=True, encoding="utf-8")
-
-
-def _link(link: Link, meshes: MeshFiles) -> Link:
-    return replace(
-        link,
-        visuals=tuple(_shape(shape, link.name, meshes) for shape in link.visuals),
-        collisions=tuple(_shape(shape, link.name, meshes) for shape in link.collisions),
-    )
-
-
-def _shape(shape: Shape, link: str, meshes: MeshFiles) -> Shape:
-    """URDF has no capsule: its triangles represent it."""
-    if shape.kind not in ("mesh", "capsule"):
-        return shape
-    return Shape(mesh=shape.mesh, file=Path(meshes.folder.name, meshes.write(shape, link)), color=shape.color)

@@ -21,8 +21,8 @@ import numpy as np
 from lxml import etree
 
 from kinematify.errors import DescriptionError, EnvironmentFault, KinematifyError
+from kinematify.robot.mesh_folder import MeshFiles, with_files
 from kinematify.robot.mesh_paths import find_mesh
-from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
 from kinematify.robot.urdf_text import MAX_URDF_BYTES, calls_xacro, parse_text
 from kinematify.robot.write import write_robot
 from kinematify.versions import require
@@ -30,7 +30,7 @@ from kinematify.versions import require
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.robot.robot import Joint, Link, Robot, Shape
+    from kinematify.robot.robot import Joint, Robot
 
 SUFFIXES = (".urdf", ".xacro", ".mjcf", ".sdf", ".usd", ".usda", ".usdc", ".usdz")
 """Names of descriptions; an MJCF is often a mere ``.xml``."""
@@ -181,7 +181,8 @@ def open_description(
     if changed:
         made_up = f"{_EFFORT:g}, {_VELOCITY:g} and {_SLIDE:g} m"
         notes.append(f"No effort, speed or end is stated by {changed} of the joints; the URDF says {made_up}.")
-    links = tuple(_with_files(link, number, folder) for number, link in enumerate(robot.links))
+    meshes = MeshFiles(urdf)
+    links = tuple(with_files(link, meshes) for link in robot.links)
     write_robot(replace(robot, links=links, joints=joints), urdf)
     lines = {("link", link.name): link.line for link in robot.links}
     lines |= {("joint", joint.name): joint.line for joint in robot.joints}
@@ -219,24 +220,6 @@ def _complete(joint: Joint) -> Joint:
     velocity = _VELOCITY if joint.velocity is None else joint.velocity
     same = (lower, upper, effort, velocity) == (joint.lower, joint.upper, joint.effort, joint.velocity)
     return joint if same else replace(joint, lower=lower, upper=upper, effort=effort, velocity=velocity)
-
-
-def _with_files(link: Link, number: int, folder: Path) -> Link:
-    """A link whose meshes are files in the folder, in the frame of the link."""
-
-    def written(tag: str, index: int, shape: Shape) -> Shape:
-        if shape.kind != "mesh":
-            return shape
-        name = Path("meshes", f"{number}_{tag}_{index}.obj")
-        (folder / "meshes").mkdir(exist_ok=True)
-        write_obj(folder / name, shape.mesh.vertices, shape.mesh.faces, OBJ_DIGITS, shape.mesh.appearance)
-        return replace(shape, file=name, scale=np.ones(3), T_link_shape=np.eye(4))
-
-    return replace(
-        link,
-        visuals=tuple(written("visual", index, shape) for index, shape in enumerate(link.visuals)),
-        collisions=tuple(written("collision", index, shape) for index, shape in enumerate(link.collisions)),
-    )
 
 
 def _with_whole_paths(text: str, folder: Path, package_dirs: Sequence[Path]) -> str:

@@ -18,7 +18,7 @@ from kinematify.robot.transforms import joint_motion
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from kinematify.robot.appearance import Appearance
+    from kinematify.robot.appearance import Appearance, Rgba
     from kinematify.robot.arrays import FloatArray, IntArray
 
 _UNLIMITED_TURN = np.pi
@@ -48,6 +48,12 @@ class LinkMesh:
         object.__setattr__(self, "vertices", read_only(self.vertices, np.float64))
         object.__setattr__(self, "faces", read_only(self.faces, np.int64))
 
+    @property
+    def is_dressed(self) -> bool:
+        """True if it has several materials or a texture."""
+        look = self.appearance
+        return look is not None and (len(look.materials) > 1 or look.is_textured)
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Shape:
@@ -65,7 +71,7 @@ class Shape:
     """Box: x, y, z; cylinder and capsule: radius, length; sphere: radius [m]; empty for a mesh."""
     T_link_shape: FloatArray = field(default_factory=lambda: np.eye(4))
     """The element's origin, shape (4, 4). Read-only."""
-    color: tuple[float, float, float, float] | None = None
+    color: Rgba | None = None
     """Red, green, blue, opacity in [0, 1]; None where the file states none."""
     concave: bool = False
     """Whether the file asks engines to collide its surface, not its hull (``concave="yes"``, respected by PyBullet)."""
@@ -75,6 +81,12 @@ class Shape:
     def __post_init__(self) -> None:
         object.__setattr__(self, "scale", read_only(self.scale, np.float64))
         object.__setattr__(self, "T_link_shape", read_only(self.T_link_shape, np.float64))
+
+    @property
+    def plain_color(self) -> Rgba | None:
+        """The colour that the document states, else that of the mesh file where it has one; None where neither does."""
+        look = self.mesh.appearance
+        return look.materials[0].color if self.color is None and look and not self.mesh.is_dressed else self.color
 
 
 @dataclass(frozen=True, kw_only=True)

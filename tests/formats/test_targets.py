@@ -18,6 +18,9 @@ from kinematify.errors import ExportError
 from kinematify.formats.content import read_content
 from kinematify.formats.export_model import export
 from kinematify.formats.reopen import check_target
+from kinematify.robot.appearance import plain
+from kinematify.robot.obj_file import write_obj
+from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
     from kinematify.formats.export_model import Exported
@@ -63,6 +66,16 @@ def test_a_follower_of_a_fixed_joint_is_held_at_its_offset(tmp_path: Path, to: s
     if to == "mjcf":
         model = mujoco.MjModel.from_xml_path(str(done.path))
         assert model.body("d").quat == pytest.approx([np.cos(0.075), 0.0, np.sin(0.075), 0.0])
+
+
+@pytest.mark.parametrize("to", ["mjcf", "sdf", "usd", "urdf"])
+def test_the_only_color_of_a_mesh_file_is_kept(tmp_path: Path, to: str) -> None:
+    red, faces = (0.75, 0.0, 0.25, 1.0), np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    write_obj(tmp_path / "a.obj", np.eye(4)[:, :3], faces, appearance=plain(red, 4))
+    shown = BOX.replace('<box size="0.1 0.1 0.1"/>', '<mesh filename="a.obj"/>')
+    done = exported(tmp_path, to, f'<link name="a"><visual>{shown}</visual></link>')
+    (shape,) = read_robot(done.path).link_by_name["a"].visuals
+    assert shape.color == pytest.approx(red, abs=1e-6)
 
 
 def test_siblings_in_sdf_have_names_of_their_own(tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.description import form_of, open_description
 from kinematify.robot.mesh_paths import near_mesh
 from kinematify.robot.read import read_robot
-from kinematify.robot.robot import Robot, forward_kinematics, joint_values, rest_configuration
+from kinematify.robot.robot import Robot, forward_kinematics, joint_values
 from kinematify.robot.transforms import rotation_from_rpy
 from kinematify.validation.run import validate
 
@@ -175,14 +175,10 @@ def test_an_export_reads_back_with_the_same_motion(tmp_path: Path, form: str) ->
     assert form_of(out) == form
     again = read_robot(out)
     assert [joint.name for joint in again.leaders] == [joint.name for joint in given.leaders]
-    for share in (0.0, 0.3):
-        q = {name: value + share * 0.2 for name, value in rest_configuration(given).items()}
-        one, other = forward_kinematics(given, q), forward_kinematics(again, q)
-        first = next(name for name in one if name in other)
-        for name in set(one) & set(other):
-            np.testing.assert_allclose(
-                np.linalg.inv(other[first]) @ other[name], np.linalg.inv(one[first]) @ one[name], atol=1e-6
-            )
+    q = {"a_b": 0.2, "b_c": 0.1}
+    one, other = forward_kinematics(given, q), forward_kinematics(again, q)
+    for name in "bcd":
+        np.testing.assert_allclose(np.linalg.solve(other["a"], other[name]), one[name], atol=1e-6)
     opened = open_description(out, tmp_path)
     assert len(read_robot(opened.urdf).joints) == len(again.joints)
 
