@@ -18,7 +18,7 @@ from kinematify.simulation.engines import DEFAULT_ENGINES, load_file
 from kinematify.validation.as_loaded_context import AsLoadedContext
 from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
+from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.run import validate
 from kinematify.validation.run.loaded_findings import (
     across_engines,
@@ -329,6 +329,9 @@ def test_what_works_in_another_engine_is_a_warning_unless_the_engine_was_named()
     (finding,) = across_engines(one, DEFAULT_ENGINES)[2].findings
     assert (finding.severity, finding.message) == (Severity.WARNING, "It jams. It works in PyBullet.")
     assert across_engines(one, ENGINES) == one
+    late = replace(right, status=Status.SKIPPED, reason=not_finished("time ran out"))
+    (finding,) = across_engines([*opened, jam("mujoco"), late], DEFAULT_ENGINES)[2].findings
+    assert (finding.severity, finding.message) == (Severity.WARNING, "It jams. PyBullet did not finish.")
     both = [*opened, jam("mujoco"), jam("pybullet")]
     assert across_engines(both, DEFAULT_ENGINES) == both
     assert as_loaded_words(one) == "as loaded: MuJoCo 1 of 2 joints move, PyBullet 2 of 2"

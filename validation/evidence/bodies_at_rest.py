@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from kinematify.assembly.assemble import simplified
 from kinematify.assembly.erasure import erase
 from kinematify.assembly.part import Assembly
-from kinematify.contact.build_graph import build_contact_graph, exact_gap
+from kinematify.contact.build_graph import build_contact_graph
 from kinematify.contact.tree import KinematicTree
 from kinematify.geometry.part_stats import assembly_stats
 from kinematify.geometry.surface import part_surfaces
@@ -62,11 +62,6 @@ class Bodies:
         """Return how good each contact is for the tree, in [0, 1] (`joints.choice.edges`)."""
         pins = find_pins(self.assembly, self.graph, self.bearings, self.config)
         return edge_qualities(self.graph, assembly_stats(self.assembly), self.bearings, pins)
-
-    def gap(self, pair: Pair) -> float:
-        """Exact distance of two bodies [m]."""
-        edge = self.graph.by_pair.get(pair)
-        return exact_gap(self.surfaces, pair) if edge is None else edge.gap
 
     def score_line(self, pair: Pair, line: Line) -> BearingLine:
         """Return how well the contact of two bodies, which must touch, turns into itself about a line."""

@@ -12,7 +12,6 @@ from kinematify.joints.bearings.line import Line
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration
 from kinematify.robot.transforms import joint_motion
-from kinematify.validation.summary import JointSummary
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -292,20 +291,7 @@ def _written(vector: FloatArray) -> str:
     return " ".join(f"{value + 0.0:.4g}" for value in np.round(vector, 6))
 
 
-def summary_of(robot: Robot, case: JointCase) -> JointSummary:
-    """Return what the report shows of the joint besides its checks."""
-    joint = case.measures.joint
-    declared = robot.joint_by_name[joint.source]
-    limited = declared.kind in (JointType.REVOLUTE, JointType.PRISMATIC)
-    return JointSummary(
-        joint=joint.source,
-        kind=declared.kind.value,
-        declared_limits=(declared.lower, declared.upper) if limited else None,
-        best_alternative=_better_joint(robot, case),
-    )
-
-
-def _better_joint(robot: Robot, case: JointCase) -> dict[str, Any] | None:
+def better_joint(robot: Robot, case: JointCase) -> dict[str, Any] | None:
     """Return the joint that the geometry speaks for instead; None where its line and its type are not in doubt.
 
     Its line is in the world frame at zero, where the parent carries it from its place at rest.

@@ -50,8 +50,6 @@ class ParentEvidence:
 
     touches: bool
     """The declared parent touches the child."""
-    gap: float
-    """Distance of the two, fraction of the model's diagonal."""
     quality: float
     """How good their contact is for the tree, in [0, 1]; 0 where they do not touch, or the child touches no other."""
     best: int | None
@@ -238,7 +236,6 @@ def _parent_evidence(bodies: Bodies, joint: TrueJoint) -> ParentEvidence:
     edge = bodies.graph.by_pair.get(_pair(joint.child, joint.parent))
     return ParentEvidence(
         touches=edge is not None and not edge.bridge,
-        gap=bodies.gap(_pair(joint.child, joint.parent)) / bodies.diagonal,
         quality=quality.get(joint.parent, 0.0),
         best=best,
         best_quality=0.0 if best is None else quality[best],

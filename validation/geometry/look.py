@@ -75,6 +75,16 @@ class GeometryContext:
         return GeometryContext(scene) if same else None
 
     @cached_property
+    def whole(self) -> Sweeper:
+        """Sweeps of the visible geometry with all of its triangles: with fewer, parts that fit closely meet."""
+        return Sweeper.of(read_scene(self.scene.model, self.scene.settings, visible_shapes))
+
+    def thinned(self, pair: Pair) -> bool:
+        """True if one of two bodies may be measured with fewer triangles than it has: about two a vertex."""
+        most = self.scene.settings.most_faces
+        return any(2 * len(points) > most for body in pair for points in self.scene.bodies[body].shapes)
+
+    @cached_property
     def bare(self) -> frozenset[int]:
         """Bodies without collision geometry in a model that has some: they are judged by what is visible of them."""
         links = self.scene.model.link_by_name
@@ -390,11 +400,12 @@ class JointMotion:
 
     def seen(self, meeting: Meeting) -> float:
         """Return the depth that the visible geometry of two reaches on that side [m], 0 where it stays clear."""
-        if self.look.visible is None:
-            return meeting.depth
+        visible = self.look.visible
         key = meeting.pair, -1.0 if meeting.at < self.sweep.travel.rest else 1.0
         if key not in self._seen:
-            seen = self.look.visible.sweeper.meeting(self.sweep.leader, *key)
+            seen = meeting if visible is None else visible.sweeper.meeting(self.sweep.leader, *key)
+            if seen is not None and (visible or self.look).thinned(meeting.pair):
+                seen = self.look.whole.meeting(self.sweep.leader, *key)
             self._seen[key] = 0.0 if seen is None else seen.depth
         return self._seen[key]
 

@@ -126,18 +126,16 @@ def _across(
         for other in errors
         if other.joint in (None, finding.joint) and (other.check == _ENERGY) <= (finding.check == _ENERGY)
     }
-    works = [entry.title for name, entry in ENGINES.items() if name in ran.get(finding.check, set()) - failing]
     if finding.severity is not Severity.ERROR:
         return finding
+    works = [entry.title for name, entry in ENGINES.items() if name in ran.get(finding.check, set()) - failing]
+    unknown = [entry.title for name, entry in ENGINES.items() if name in late.get(finding.check, set())]
     alone = finding.cause is Cause.ENGINE and not any(
         other.check == finding.check and other.engine != finding.engine for other in errors
     )
-    unknown = [entry.title for name, entry in ENGINES.items() if name in late.get(finding.check, set())]
-    if unknown and not works:
-        message = f"{finding.message} {' and '.join(unknown)} did not finish."
-        return replace(finding, severity=Severity.WARNING, message=message)
-    if not (works or named):
-        return replace(finding, severity=Severity.WARNING, message=f"{finding.message} No other engine was asked.")
+    if not works and (unknown or not named):
+        why = f"{' and '.join(unknown)} did not finish" if unknown else "No other engine was asked"
+        return replace(finding, severity=Severity.WARNING, message=f"{finding.message} {why}.")
     if not works:
         return replace(finding, severity=Severity.WARNING) if alone else finding
     return replace(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.validation.checks import checks_of
+from kinematify.validation.summary import summary_of
 
 if TYPE_CHECKING:
     from kinematify.validation.stage import Recorder, StageRequest
@@ -17,7 +18,7 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     """Judge every joint between two bodies with geometry; see `kinematify.validation.stage`."""
     from kinematify.config import load_config
     from kinematify.validation.evidence.bodies_at_rest import read_bodies
-    from kinematify.validation.evidence.case import JointCase, summary_of
+    from kinematify.validation.evidence.case import JointCase, better_joint
     from kinematify.validation.evidence.loop_pins import shared_pins
     from kinematify.validation.evidence.measure import measure_joints
     from kinematify.validation.model_cache import model_of
@@ -54,4 +55,5 @@ def run(request: StageRequest, recorder: Recorder) -> None:
             if left:
                 result.leave("the pins, and before that some of the joints")
     for case in cases:
-        recorder.summarise(summary_of(robot, case))
+        joint = robot.joint_by_name[case.measures.joint.source]
+        recorder.summarise(summary_of(joint, best_alternative=better_joint(robot, case)))

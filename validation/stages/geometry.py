@@ -7,13 +7,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.robot.joint_type import JointType
 from kinematify.validation.checks import checks_of
-from kinematify.validation.summary import JointSummary
+from kinematify.validation.summary import summary_of
 
 if TYPE_CHECKING:
-    from kinematify.geometry.scene import Scene
-    from kinematify.geometry.sweep import JointSweep
     from kinematify.validation.check import Check
     from kinematify.validation.geometry.look import GeometryContext
     from kinematify.validation.stage import Recorder, StageRequest
@@ -46,7 +43,8 @@ def run(request: StageRequest, recorder: Recorder) -> None:
         recorder.skip((*IN_MOTION, *TOGETHER), "no joint moves")
         return
     for sweep in look.sweeps:
-        recorder.summarise(_summary(scene, sweep))
+        joint = scene.model.joint_by_name[sweep.travel.joint]
+        recorder.summarise(summary_of(joint, free_travel=sweep.free))
     for entry in IN_MOTION:
         _tell_motion(entry, look, recorder)
     recorder.summarise(look.pair_table())
@@ -64,14 +62,3 @@ def _tell_motion(entry: Check, look: GeometryContext, recorder: Recorder) -> Non
         result.measured["joints"] = len(look.sweeps)
         for motion in look.motions:
             entry.run(result, motion)
-
-
-def _summary(scene: Scene, sweep: JointSweep) -> JointSummary:
-    joint = scene.model.joint_by_name[sweep.travel.joint]
-    limited = joint.kind in (JointType.REVOLUTE, JointType.PRISMATIC)
-    return JointSummary(
-        joint=joint.name,
-        kind=joint.kind.value,
-        declared_limits=(joint.lower, joint.upper) if limited else None,
-        free_travel=sweep.free,
-    )
