@@ -27,6 +27,8 @@ _SHAPES = ("KV138", "KV139", "KV151", "KV152")
 """Checks after whose errors a model is read without the shape that they name."""
 _JOINTS = ("KV130", "KV131", "KV134", "KV136", "KV137")
 """The same with a fixed joint in place of the one that they name."""
+_NUMBERS = "KV132"
+"""The same with spaces for the commas between numbers, which only some readers take."""
 _MIMICS = ("KV127", "KV128")
 """The same with a joint that follows no other one, as most engines read it."""
 _NO_LIMIT = "KV136"
@@ -69,6 +71,9 @@ def readable_copy(request: StageRequest, errors: Iterable[Finding], name: str) -
             for joint in _named(robot, finding.joint):
                 for mimic in joint.findall("mimic"):
                     _blank(mimic)
+        elif finding.check == _NUMBERS:
+            if not _drop_commas(robot, finding.line):
+                return None
         elif finding.check in _JOINTS and finding.joint is not None:
             _fix_joint(robot, finding.joint)
             joints.add(finding.joint)
@@ -123,6 +128,17 @@ def _turns(robot: _Element, name: str | None) -> bool:
 
 def _named(robot: _Element, name: str | None) -> list[_Element]:
     return [joint for joint in robot.findall("joint") if joint.get("name") == name]
+
+
+def _drop_commas(robot: _Element, line: int | None) -> bool:
+    """Write spaces for commas in the elements of a line; False if there are none."""
+    found = [
+        item for item in robot.iter() if str(item.sourceline) == str(line) and "," in "".join(map(str, item.values()))
+    ]
+    for element in found:
+        for key, text in element.items():
+            element.set(key, str(text).replace(",", " "))
+    return bool(found)
 
 
 def _fix_joint(robot: _Element, name: str) -> None:

@@ -423,6 +423,14 @@ def test_an_object_that_keeps_the_contract_rests_on_a_floor(tmp_path: Path, chan
     assert contract_words([report.checks]) == f"contract: {'failed' if found else 'kept'}"
 
 
+def test_what_mujoco_does_not_build_keeps_no_contract(tmp_path: Path) -> None:
+    urdf = Model(parts=(Part(name="frame", boxes=()), Part(name="tip", boxes=(), parent="frame"))).write(tmp_path)
+    urdf.write_text(urdf.read_text().replace("inertial", "none"))
+    report = validate(urdf, engines=("mujoco",), selected=CONTRACT, workers=1)
+    assert contract_words([report.checks]) == "contract: blocked"
+    assert "mass" in next(check.reason or "" for check in report.checks if check.check == "KV820")
+
+
 @pytest.mark.parametrize(("effort", "found"), [(1000.0, []), (1.0, ["drawer_joint"]), (0.0, [])])
 def test_a_motor_moves_its_joint_by_no_more_than_its_effort(tmp_path: Path, effort: float, found: list[str]) -> None:
     model = cabinet().with_part("drawer", effort=effort, axis=(0.0, 0.0, 1.0), limits=(0.0, 0.005))

@@ -92,8 +92,15 @@ def test_a_missing_mesh_is_one_finding_and_the_rest_is_judged(
 MIMIC = '<mimic joint="gone"/></joint>'
 
 
-@pytest.mark.parametrize(("fault", "check"), [((BOX, mesh("nan.obj")), "KV151"), (("</joint>", MIMIC), "KV127")])
-def test_a_broken_mesh_or_mimic_blocks_nothing_else(tmp_path: Path, fault: tuple[str, str], check: str) -> None:
+@pytest.mark.parametrize(
+    ("fault", "check"),
+    [
+        ((BOX, mesh("nan.obj")), "KV151"),
+        (("</joint>", MIMIC), "KV127"),
+        (('"0 0 0.1"', '"0, 0, 0.1"'), "KV132"),
+    ],
+)
+def test_a_broken_mesh_mimic_or_number_blocks_nothing_else(tmp_path: Path, fault: tuple[str, str], check: str) -> None:
     (tmp_path / "nan.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 nan 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n")
     path = tmp_path / "model.urdf"
     path.write_text(robot().replace(*fault, 1))

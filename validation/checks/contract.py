@@ -40,9 +40,9 @@ def rests_on_floor(result: OpenCheck, context: AsLoadedContext) -> None:
     """
     from kinematify.simulation.mujoco_floor import stand  # noqa: PLC0415 - reading the checks loads no engine
 
-    request = context.request
+    request, values = context.request, {} if isinstance(context.loading, Unloadable) else context.values
     try:
-        run = stand(request.native or request.resolved or request.urdf, context.values, _SECONDS)
+        run = stand(request.native or request.resolved or request.urdf, values, _SECONDS)
     except Unloadable as error:
         result.block(f"MuJoCo does not set it on a floor: {error}")
         return

@@ -183,23 +183,13 @@ def tolerated(result: OpenCheck, look: GeometryContext) -> None:
         by_reason[reason].append(pair)
     for reason, pairs in by_reason.items():
         pairs.sort(key=allowance.at_rest, reverse=True)
+        listed = [
+            f"{' - '.join(in_document_order(scene.model, *scene.name(pair)))} "
+            f"({length(allowance.at_rest(pair) + allowance.tolerance(pair))})"
+            for pair in pairs[: scene.settings.listed]
+        ]
         result.find(
             f"Pairs that are {reason.value} ({len(pairs)}); this much overlap is tolerated, and more is reported: "
-            + _listed([_tolerated(look, pair) for pair in pairs], scene.settings.listed)
-            + ".",
+            f"{', '.join(listed)}{', ...' if len(listed) < len(pairs) else ''}.",
             "Nothing to do; the table says what later checks do not report.",
         )
-    result.measured["bodies"] = len(scene.bodies)
-    result.measured["tolerated_pairs"] = len(reasons)
-    result.measured["deepest_at_rest"] = max((allowance.at_rest(pair) for pair in reasons), default=0.0)
-
-
-def _tolerated(look: GeometryContext, pair: Pair) -> str:
-    first, second = in_document_order(look.scene.model, *look.scene.name(pair))
-    return f"{first} - {second} ({length(look.allowance.at_rest(pair) + look.allowance.tolerance(pair))})"
-
-
-def _listed(names: list[str], most: int) -> str:
-    """The first names, and how many more there are."""
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return ", ".join(names[:most]) + more

@@ -59,8 +59,9 @@ def contract_words(reports: Sequence[Sequence[CheckResult]]) -> str:
     Args:
         reports: All results of each model.
     """
-    asked = [[check for check in checks if check.check.startswith(CONTRACT)] for checks in reports]
-    states = [_contract_state({check.status for check in checks}) for checks in asked if checks]
+    asked = [{check.status for check in checks if check.check.startswith(CONTRACT)} for checks in reports]
+    order = {Status.FAIL: "failed", Status.BLOCKED: "blocked", Status.PASS: "kept", Status.SKIPPED: "not applicable"}
+    states = [next(name for status, name in order.items() if status in found) for found in asked if found]
     if not states:
         return ""
     if len(states) == 1:
@@ -71,12 +72,6 @@ def contract_words(reports: Sequence[Sequence[CheckResult]]) -> str:
     spread = math.sqrt(part * share * (1.0 - share) + part**2 / 4.0)
     low, high = ((share + part / 2.0 + sign * spread) / (1.0 + part) for sign in (-1, 1))
     return f"contract: kept by {kept} of {count} ({share:.0%}, 95 % interval {low:.0%} to {high:.0%}); {others}"
-
-
-def _contract_state(found: set[Status]) -> str:
-    if Status.FAIL in found:
-        return "failed"
-    return "blocked" if Status.BLOCKED in found else "kept" if Status.PASS in found else "not applicable"
 
 
 def across_engines(checks: Sequence[CheckResult], engines: Sequence[str], *, named: bool = True) -> list[CheckResult]:
