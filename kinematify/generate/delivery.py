@@ -41,6 +41,13 @@ _SIDES = {"left": (0, -1), "right": (0, 1), "front": (1, -1), "back": (1, 1), "t
 _PICKED = {**_SIDES, "rear": (1, 1), "upper": (2, 1), "lower": (2, -1)}
 _JOINTS = {"hinge": True, "slide": False}
 """Nouns that mean what moves so where no part is called so -> whether it turns."""
+_ALIKE = (
+    "wheel caster|backrest back|canopy hood|bonnet hood|hood bonnet|trunk tailgate|boot tailgate|cover lid cap|cap lid|"
+    "cab cabin house|cabin cab house|boom jib|sail blade rotor|wing leaf|screen display lid|display screen|dial knob|"
+    "handle lever|lever handle|hand needle pointer|needle hand pointer|window pane sash vent|pane sash leaf|spout neck|"
+    "rack tray shelf|tray rack|armrest arm|stem column|shade head|turntable plate|plate turntable|cymbal top|swing seat"
+)
+"""Nouns, each with what it may be where no part is called so."""
 _ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 
 
@@ -112,6 +119,9 @@ def _called(family: Family, blueprint: Blueprint, noun: str) -> list[Part]:
     stems = {part.name: stem_of(part.name) for part in blueprint.parts}
     exact = [part for part in blueprint.parts if _joined(stems[part.name]) in meant]
     ends = [part for part in blueprint.parts if key_of(stems[part.name].replace("_", " "))[-1:] == key_of(noun)]
+    if not (exact or ends):
+        others = next((group.split()[1:] for group in _ALIKE.split("|") if group.split()[0] == wanted), [])
+        ends = [part for part in blueprint.parts if _joined(stems[part.name]) in others]
     if exact or ends or wanted not in _JOINTS:
         return exact or ends
     moving = [joint for joint in blueprint.joints if joint.mimic is None and joint.kind is not JointType.FIXED]
@@ -329,10 +339,11 @@ def mirrored(blueprint: Blueprint) -> Blueprint:
 
 def _mirror_helps(family: Family, made: Blueprint, request: Request) -> bool:
     """True if all that is to be on the left is on the right, or the other way round."""
+    sides = ("left", "right")
     held = [
-        _is_at(made, names, part.side) if part.side in ("left", "right") else _is_hinged(made, names, part.hinge or "")
+        _is_at(made, names, part.side) if part.side in sides else _is_hinged(made, names, part.hinge or "")
         for noun, part in request.parts.items()
-        if (part.side in ("left", "right") or part.hinge) and (names := names_called(family, made, noun))
+        if (part.side in sides or part.hinge in sides) and (names := names_called(family, made, noun))
     ]
     return bool(held) and not any(held) and len(made.parts) > 1
 
@@ -459,9 +470,10 @@ def part_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str]
     """
     parameter = _count_parameter(family, noun)
     there = len(names)
-    if parameter and (not names or (part.count and there > part.count and there % part.count == 0)):
+    if parameter and (there < 2 or (part.count and there > part.count and there % part.count == 0)):
         there = int(made.parameters[parameter.name])  # slots are no parts, and a leg may be two
-    exact = parameter or any(_joined(stem_of(name)) == _joined(noun) for name in names)
+    stems = {stem_of(name).replace("_", " ") for name in names}
+    exact = parameter or any(_joined(stem) == _joined(noun) or key_of(stem)[-1] != key_of(noun)[-1] for stem in stems)
     if part.count not in (None, there) and (exact or (names and there < (part.count or 1))):
         yield f"{part.count} asked for, there {'is' if there == 1 else 'are'} {there}"
     if part.at_least and names and there < part.at_least:
@@ -479,7 +491,7 @@ def part_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str]
     if part.hinge and not _is_hinged(made, names, part.hinge):
         yield f"not hinged on the {part.hinge}"
     joints = [made.joint_above[name] for name in names if name in made.joint_above]
-    if part.motion and not (joints and all(_moves(joint, part.motion) for joint in joints)):
+    if part.motion and not (joints and all(moves_so(joint, part.motion) for joint in joints)):
         kinds = listed(sorted({joint.kind.value for joint in joints} or {"part of the base"}))
         yield f"{part.motion} was asked for, it is {kinds}"
     leading = [joint for joint in joints if joint.mimic is None and joint.kind is not JointType.FIXED]
@@ -516,13 +528,16 @@ def _is_at(made: Blueprint, names: Sequence[str], side: str) -> bool:
 def _is_hinged(made: Blueprint, names: Sequence[str], side: str) -> bool:
     shut = closed(made)
     joints = [shut.joint_above[name] for name in names if name in shut.joint_above]
-    middle = {part.name: part.bounds.mean(axis=0)[0] for part in shut.parts}
+    axis, sign = _SIDES[side]
+    middle = {part.name: part.bounds.mean(axis=0)[axis] for part in shut.parts}
     return bool(joints) and all(
-        (joint.pivot[0] < middle[joint.child]) == (side == "left") and abs(joint.axis[2]) > _UPRIGHT for joint in joints
+        joint.kind.turns and sign * (joint.pivot[axis] - middle[joint.child]) > 0.0 and abs(joint.axis[axis]) < _LEVEL
+        for joint in joints
     )
 
 
-def _moves(joint: BlueprintJoint, motion: str) -> bool:
+def moves_so(joint: BlueprintJoint, motion: str) -> bool:
+    """Return True if a joint moves as `PartRequest.motion` says."""
     upright = abs(float(joint.axis[2]))
     return {
         "move": joint.kind is not JointType.FIXED,

@@ -24,7 +24,7 @@ _BRITISH = {
 """British or rarer spelling -> the one that names are compared in."""
 _IRREGULAR = {
     "leaves": "leaf", "shelves": "shelf", "knives": "knife", "feet": "foot", "halves": "half", "axes": "axis",
-    "teeth": "tooth", "sashes": "sash",
+    "teeth": "tooth", "sashes": "sash", "lens": "lens", "lenses": "lens",
 }  # fmt: skip
 _SAME = (
     "car automobile vehicle sedan hatchback van taxi jeep ambulance truck lorry bus pickup|"

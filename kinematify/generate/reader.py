@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError
 
 from kinematify.errors import InputError
-from kinematify.generate.delivery import BuildResult, deliver, nouns_of
+from kinematify.generate.delivery import BuildResult, deliver, moves_so, nouns_of
 from kinematify.generate.kind_search import (
     key_of,
     kind_called,
@@ -56,7 +56,7 @@ _ABOVE, _BELOW = words_of("above over"), words_of("below under beneath")
 _VERBS = (
     "move open opens opening close closes closing move moves moving lift lifts lifting raise raises go goes going come "
     "comes travel travels travelling traveling adjust adjusts press presses extend extends movable moveable|"
-    "slide slide slides sliding telescope telescopes telescopic telescoping retract retracts retractable|"
+    "slide slide slides sliding pull pulls telescope telescopes telescopic telescoping retract retracts retractable|"
     "hinge hinge hinges hinged swing swings swinging pivot pivots pivoting pivoted fold folds folding foldable flip "
     "flips flipping turn turns turning rotate rotates rotating rotatable drop tip tips tipping|"
     "spin spin spins spinning revolve revolves revolving|tilt tilt tilts tilting recline reclines reclining|"
@@ -81,7 +81,8 @@ _SAYS_NOTHING = words_of(
     "a an the of and to in on at by for from is are be been being can may could must i we you like want need "
     "please make build create generate give show draw design get me us my our your some one any this these those "
     "there made out into as so would will let have standing side hand end object item thing model piece set also "
-    "then kind type sort hi hello hey thanks where when while itself own"
+    "then kind type sort hi hello hey thanks where when while itself own u about approximately roughly approx around "
+    "exactly inside along wants wanted"
 )
 _PLAIN = words_of(
     "modern sleek contemporary minimalist vintage retro rustic antique classic elegant stylish fancy cute cosy "
@@ -91,12 +92,14 @@ _PLAIN = words_of(
     "shiny painted lacquered big large huge small little tiny mini narrow short slim compact shallow quite very "
     "really just portable electric electrical household kitchen garden office bathroom bedroom living room hallway "
     "workshop hotel home commercial domestic outdoor indoor style styled wall identical matching freestanding free "
-    "mounted"
+    "mounted independently endlessly freely smoothly easily continuously gently slowly quickly separately individually "
+    "daughter son wife husband mother father grandmother child kid friend"
 )
 """Looks, sizes without a number and places of use, which ask for no shape and no motion that could be measured."""
 _OF_SOME = re.compile(
     r"\b(?:(?:of|except) (?:which|them|these|those)|other|another|except|only|instead|alternat\w+|respectively|others"
-    r"|every (?:second|other)|half of|(?:the|while) (?:\w+ )?(?:left|right|top|bottom|first|second|third|fourth|last|"
+    r"|every (?:second|other)|half of|cant|cannot|dont|doesnt|isnt|not|never"
+    r"|(?:the|while) (?:\w+ )?(?:left|right|top|bottom|first|second|third|fourth|last|"
     r"middle|upper|lower|front|rear|back) (?:one|half))\b"
 )
 """Clauses about some of the parts, which are not read."""
@@ -106,11 +109,14 @@ _PARTS = words_of(
     "cover hatch panel key roller fan gear pulley spring rope bulb stand foot mast boom bucket propeller wing sail "
     "visor brake clamp jaw spout tap valve plunger piston rod nozzle hose cable plug socket cap drum turntable "
     "platform ramp step armrest headrest footrest backrest handlebar tailgate hood trunk bonnet gripper camera "
-    "antenna pull grip"
+    "antenna grip"
 )
 """Nouns of parts that many kinds have."""
 _NO_PARTS = words_of("hinge joint front bottom back axle motor bearing floor")
 """Nouns of which nobody can tell that an object has none."""
+_NO_NOUNS = words_of("row column rows columns line middle center")
+_AT = words_of("on at along under to of from into through behind beside near by around inside")
+"""Before *the* and a noun they say a place."""
 _AMBIGUOUS = words_of("none yes no top bottom left right side plain one two four off fixed beside below within")
 _NUMBER = r"\d+(?:[.,]\d+)?"
 _UNIT = "|".join(sorted((re.escape(word) for word in (*UNITS, *ANGLES) if word != "in"), key=len, reverse=True))
@@ -122,6 +128,11 @@ _TOKENS = re.compile(
     rf"|(?P<both>(?:±|\+/-|plus or minus) ?{_NUMBER} ?(?:{_UNIT}))(?![a-z])"
     rf"|(?P<quantity>[-−]?{_NUMBER} ?(?:{_UNIT}))(?![a-z])|(?P<number>{_NUMBER})|(?P<word>[a-z]+)|(?P<sign>[^\sa-z0-9])"
 )
+_BARE = re.compile(
+    rf"(?<![\dx×.-] )\b{_NUMBER}(?= (?:wide|deep|high|tall|long|broad|thick)\b)"
+    rf"|from [-−]?{_NUMBER} to ([-−]?{_NUMBER})(?! ?(?:{_UNIT}))\b"
+)
+"""A size or a range without a unit."""
 _SYMMETRIC = re.compile(r"(?:to|in|on) (?:either|each|both) (?:sides?|directions?|way)|each way|either way")
 _PURPOSE = re.compile(
     r"\b(?:for|to (?:store|keep|hold|put|carry|hang|serve|sort|collect|display)) [^,;.:]*?"
@@ -148,6 +159,8 @@ class Sentence:
     notes: tuple[str, ...]
     guessed: Mapping[str, str]
     """Nouns that may be parts -> the words that say it; words not read where the object has none."""
+    moves: tuple[tuple[str, str], ...] = ()
+    """Motions of the whole with their words, which are not read unless all that moves moves so."""
 
     @property
     def family(self) -> str:
@@ -163,10 +176,15 @@ class Sentence:
         made = deliver(self.request, seed=seed)
         lost = [noun for noun in made.missing if noun in self.guessed]
         listed = [why for why in made.differences if not any(why.startswith(f"{noun}: a") for noun in lost)]
+        unread = [*self.unread, *(self.guessed[noun] for noun in lost)]
+        joints = [joint for joint in made.blueprint.joints if joint.mimic is None]
+        unread += [said for motion, said in self.moves if not all(moves_so(joint, motion) for joint in joints)]
+        own = {key for part in made.blueprint.parts for key in key_of(part.name.replace("_", " "))} - {*_SIDES}
+        own |= {key for word in self.request.family.words for key in key_of(word)}
         return replace(
             made,
             differences=(*self.faults, *listed),
-            unread=(*self.unread, *(self.guessed[noun] for noun in lost)),
+            unread=tuple(words for words in unread if not set(key_of(words)) <= own),
             harmless=self.harmless,
             notes=self.notes,
             facts={"text": self.text, **made.facts},
@@ -189,7 +207,8 @@ def read_sentence(text: str, *, nearest: bool = False) -> Sentence:
     _refuse_unreadable(text, plain)
     plain = re.sub(r"(?<=\d),(?=\d{3}\b)", "", plain)
     plain = re.sub(rf"\b({'|'.join(_NUMBERS)}) (?=(?:{_UNIT})\b)", lambda found: f"{_NUMBERS[found[1]]} ", plain)
-    plain = re.sub(r"^((?:an? |the )?)built in ", r"\1", plain)
+    plain = re.sub(r"^((?:an? |the )?)built in ", r"\1", re.sub(r"^for (?:my|our|the) \w+,? (?=an? )", "", plain))
+    plain = _BARE.sub(lambda found: _with_unit(found, plain), plain)
     purposes = [item[0].strip() for item in _PURPOSE.finditer(plain)]
     purposes = [
         item for item in purposes if not (set(key_of(item)) & {*_PARTS, *_MOTIONS, *_NUMBERS} or re.search(r"\d", item))
@@ -206,6 +225,16 @@ def read_sentence(text: str, *, nearest: bool = False) -> Sentence:
         first = error.errors()[0]
         where = " of ".join(map(str, reversed(first["loc"])))
         raise InputError(f"The text {text!r} cannot be built: {where}: {first['msg']}.") from error
+
+
+def _with_unit(found: re.Match[str], text: str) -> str:
+    """Return a size or a range with the unit of the one before it: 1600 mm wide and 750 high."""
+    units = [
+        unit
+        for unit in re.findall(rf"\d ?({_UNIT})(?![a-z])", text[: found.start()])
+        if (unit in ANGLES) is bool(found[1])
+    ]
+    return f"{found[0]} {units[-1]}" if units else found[0]
 
 
 def _refuse_unreadable(text: str, plain: str) -> None:
@@ -243,6 +272,8 @@ class _Parser:
     unread: list[str] = field(default_factory=list)
     harmless: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    moves: list[tuple[str, str]] = field(default_factory=list)
+    """Motions of the whole, with the words that say it."""
     copies: int = 1
     waiting: dict[str, Any] = field(default_factory=dict)
     said: list[str] = field(default_factory=list)
@@ -364,7 +395,7 @@ class _Parser:
         if token.kind == "sign":
             if word in ",;:.()":
                 self._settle(self._owner())
-                self.fresh = True
+                self.fresh, self.times = True, 1
             elif word not in "\"'?!":
                 self.unread.append(word)
             return k + 1
@@ -385,14 +416,15 @@ class _Parser:
         for length in range(min(4, end - k), 0, -1):
             key = tuple(lemma(item.text) if item.kind == "word" else "" for item in self.tokens[k : k + length])
             meanings = self.words.get(key, {})
-            if meanings and not (length == 1 and self._is_adverb(k)):
+            if meanings and not (length == 1 and self._is_adverb(k, meanings)):
                 return self._known(k, length, meanings)
         return self._plain_word(k, end)
 
-    def _is_adverb(self, k: int) -> bool:
+    def _is_adverb(self, k: int, meanings: Mapping[str, tuple[str, str]]) -> bool:
         """True for a verb, for a word such as back behind one, and for a side behind a preposition."""
         word, before = self.tokens[k].text, self._text(k - 1)
-        if word in _MOTIONS and before in _VERBAL:
+        several = before != lemma(before) and (lemma(before),) in self.words and "choice" not in meanings
+        if word in _MOTIONS and (before in _VERBAL or several):
             return True
         return (word in _WHERE_TO and (before in _MOTIONS or before in _DONE)) or (
             word in _SIDES and self._is_placed(k)
@@ -400,7 +432,8 @@ class _Parser:
 
     def _is_placed(self, k: int) -> bool:
         before = self._text(k - 1)
-        return before in ("on", "at") or (before in ("the", "its", "their") and self._text(k - 2) in ("on", "at"))
+        places = ("on", "at", "along")
+        return before in places or (before in ("the", "its", "their") and self._text(k - 2) in places)
 
     def _known(self, k: int, length: int, meanings: Mapping[str, tuple[str, str]]) -> int:
         words = " ".join(item.text for item in self.tokens[k : k + length])
@@ -437,8 +470,16 @@ class _Parser:
             self._settle(self._owner())
             self.subject, self.fresh = " ".join(key_of(words)), False
             return after
-        self._noun(" ".join(key_of(words)), words)
+        follows = after < len(self.tokens) and "part" in self.words.get((lemma(self._text(after)),), {})
+        if follows and words == lemma(words) and self._text(after) not in _MOTIONS:  # a burner knob
+            self.harmless.append(words)
+        else:
+            self._noun(" ".join(key_of(words)), words, guessed=(place := self._says_place(k)), is_place=place)
         return after
+
+    def _says_place(self, k: int) -> bool:
+        """True for a noun that is only there to say where something else is: on the panel."""
+        return "count" not in self.waiting and self._text(k - 1) in ("the", "its", "their") and self._text(k - 2) in _AT
 
     def _plain_word(self, k: int, end: int) -> int:
         readers = (self._look, self._having, self._state, self._place, self._filler)
@@ -497,9 +538,12 @@ class _Parser:
         if word in _ABOVE or word in _BELOW:
             return self._relate(k)
         if word in ("hinged", "hinges", "hinge"):
-            if place := re.match(r"(?:on|at) the (left|right)", self._rest(k + 1)):
-                self._wait("hinge", word, place[1])
-                return k + 4 + (self._text(k + 4) == "side")
+            if place := re.match(
+                r"(?:(?:on|at|along|from|to) )?(?:(?:the|its) )?(left|right|top|bottom|front|back)\b", self._rest(k + 1)
+            ):
+                self._wait("hinge", f"{word} {place[0]}", place[1])
+                after = k + 1 + len(place[0].split())
+                return after + (self._text(after) in ("side", "edge"))
             self._wait("motion", word, "hinge")
             return k + 1
         if word in _SIDES or word in _ORDINALS:
@@ -516,7 +560,12 @@ class _Parser:
                 self._settle(self._owner())
             if word in ("a", "an"):
                 self.waiting.setdefault("article", True)
+            if word in ("whose", "which", "that"):
+                self._settle(self._owner())
             self.fresh = self.fresh and word not in _REFERS - {"all"}
+        elif word in _NO_NOUNS:
+            self.unread += [f"{self.waiting.pop('count')} {word}"] if "count" in self.waiting else []
+            self.waiting.pop("article", None)
         elif word in _PLAIN:
             self.harmless.append(word)
         else:
@@ -540,7 +589,7 @@ class _Parser:
         )
         follows = last < end and "part" in self.words.get((lemma(self.tokens[last].text),), {})
         if expected and not follows and before not in _VERBAL and k >= self.stop:
-            self._noun(" ".join(key_of(words)), words, guessed=True)
+            self._noun(" ".join(key_of(words)), words, guessed=True, is_place=self._says_place(k))
         else:
             self.unread.append(words)
         return last
@@ -557,7 +606,7 @@ class _Parser:
     # ---- attributes ------------------------------------------------------------------------------------------------
 
     def _wait(self, what: str, words: str, value: Any) -> None:
-        if self.waiting.setdefault(what, value) != value:
+        if self.waiting.setdefault(what, value) != value and value != "move":
             self.unread.append(words)
         else:
             self.said.append(words)
@@ -600,6 +649,8 @@ class _Parser:
         elif what == "hinge":
             sided = any(item.name == "hinge_side" for item in self.family.parameters)
             self._add("door", {what: value}, said) if not sided else self._take("hinge_side", value, said)
+        elif what == "motion":
+            self.moves.append((value, said))
         elif what == "range":
             self._add("hinge" if "deg" in said or "rad" in said or "°" in said else "slide", {what: value}, said)
         else:
@@ -621,10 +672,10 @@ class _Parser:
         for name, value in facts.items():
             if name == "size":
                 own["size"] = {**own.get("size", {}), **value}
-            elif own.setdefault(name, value) != value:
+            elif own.setdefault(name, value) != value and "move" not in (own[name], value):
                 self.unread.append(said)
 
-    def _noun(self, noun: str, words: str, *, guessed: bool = False) -> None:
+    def _noun(self, noun: str, words: str, *, guessed: bool = False, is_place: bool = False) -> None:
         facts, said = self.waiting, " ".join([*self.said, words])
         self.waiting, self.said = {}, []
         before_name = self.is_before
@@ -662,7 +713,7 @@ class _Parser:
         if self.relation is not None:
             self._rows(self.relation[0], noun, self.relation[1])
             self.relation = None
-        if not before_name:
+        if not before_name and not (is_place and self.subject):
             self.subject, self.fresh = noun, False
 
     def _dimension(self, k: int) -> int:
@@ -890,6 +941,7 @@ class _Parser:
             harmless=tuple(self.harmless),
             notes=tuple(self.notes),
             guessed=self.guessed,
+            moves=tuple(self.moves),
         )
 
     def _text(self, k: int) -> str:

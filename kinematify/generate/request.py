@@ -116,7 +116,9 @@ class PartRequest(_Fields):
         description="How they move: at all, by turning, sliding, turning without end, turning about an upright or a "
         "level axis, sliding upwards, or not.",
     )
-    hinge: Literal["left", "right"] | None = Field(None, description="Side of the part on which its hinge is.")
+    hinge: Literal["left", "right", "front", "back", "top", "bottom"] | None = Field(
+        None, description="Side of the part on which its hinge is."
+    )
     range: Annotated[tuple[float, float] | None, BeforeValidator(_pair)] = Field(
         None, description="Of the joint [rad or m], signed, from the closed pose; or text: -30 to 90 deg."
     )
