@@ -251,9 +251,9 @@ def _requested(
     nearest: bool,
 ) -> Requested:
     if blueprint is not None:
-        from kinematify.generate.procedural.blueprint_file import WrittenBlueprint
+        from kinematify.generate.procedural.blueprint_file import read_blueprint
 
-        return WrittenBlueprint(blueprint)
+        return read_blueprint(blueprint)
     if text is not None:
         from kinematify.generate.reader import read_sentence
 

@@ -25,12 +25,11 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.evaluation.metrics import ObjectScore
     from kinematify.generate.procedural.blueprint import Blueprint
-    from kinematify.generate.procedural.blueprint_file import WrittenBlueprint
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline.inference import Inference
     from kinematify.validation.run.report import ValidationReport
 
-    Requested = Sentence | Request | WrittenBlueprint
+    Requested = Sentence | Request | Blueprint
 
 
 _INFERRED, _WRITTEN = 0.4, 0.6  # shares of the time at which these are done, for five joints that are inferred
@@ -107,7 +106,7 @@ class Generation:
             if made.missing:  # a sentence may name what is not there; a request says exactly what is
                 raise InputError(f"{made.differences[0][0].upper()}{made.differences[0][1:]}.")
             return made
-        return BuildResult(blueprint=self.request.build())
+        return BuildResult(blueprint=self.request)
 
     @property
     def blueprint(self) -> Blueprint:

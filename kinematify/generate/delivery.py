@@ -16,6 +16,7 @@ from kinematify.generate.kind_search import key_of
 from kinematify.generate.procedural.clearance import may_go
 from kinematify.generate.procedural.family import build, checked
 from kinematify.generate.procedural.materials import MATERIALS, of_one_material, surface_of
+from kinematify.generate.procedural.parameter import pairs
 from kinematify.generate.request import listed, request_of, with_settings
 from kinematify.robot.joint_type import JointType
 
@@ -41,13 +42,13 @@ _SIDES = {"left": (0, -1), "right": (0, 1), "front": (1, -1), "back": (1, 1), "t
 _PICKED = {**_SIDES, "rear": (1, 1), "upper": (2, 1), "lower": (2, -1)}
 _JOINTS = {"hinge": True, "slide": False}
 """Nouns that mean what moves so where no part is called so -> whether it turns."""
-_ALIKE = (
+_ALIKE = pairs(
     "wheel caster|backrest back|canopy hood|bonnet hood|hood bonnet|trunk tailgate|boot tailgate|cover lid cap|cap lid|"
     "cab cabin house|cabin cab house|boom jib|sail blade rotor|wing leaf|screen display lid|display screen|dial knob|"
     "handle lever|lever handle|hand needle pointer|needle hand pointer|window pane sash vent|pane sash leaf|spout neck|"
     "rack tray shelf|tray rack|armrest arm|stem column|shade head|turntable plate|plate turntable|cymbal top|swing seat"
 )
-"""Nouns, each with what it may be where no part is called so."""
+"""Noun -> what it may be where no part is called so."""
 _ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 
 
@@ -120,7 +121,7 @@ def _called(family: Family, blueprint: Blueprint, noun: str) -> list[Part]:
     exact = [part for part in blueprint.parts if _joined(stems[part.name]) in meant]
     ends = [part for part in blueprint.parts if key_of(stems[part.name].replace("_", " "))[-1:] == key_of(noun)]
     if not (exact or ends):
-        others = next((group.split()[1:] for group in _ALIKE.split("|") if group.split()[0] == wanted), [])
+        others = _ALIKE.get(wanted, "").split()
         ends = [part for part in blueprint.parts if _joined(stems[part.name]) in others]
     if exact or ends or wanted not in _JOINTS:
         return exact or ends

@@ -15,12 +15,11 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.family import Family
 
 _ORDER = (
-    "cabinet", "serial_arm", "scara", "gantry", "gripper", "hand", "quadruped", "snake", "oven", "fridge", "table",
-    "microwave", "dishwasher", "washing_machine", "safe", "laptop", "box", "window", "door", "switch_panel",
-    "button_panel", "desk_lamp", "fan", "toaster", "coffee_machine", "trash_can", "toilet", "faucet",
-    "office_chair", "folding_chair", "scissors", "pliers", "hexapod", "humanoid", "stapler", "bottle", "bucket",
-    "pen", "clock", "excavator", "crane", "tracked_tree", "globe", "umbrella", "suitcase", "eyeglasses",
-)  # fmt: skip
+    "cabinet serial_arm scara gantry gripper hand quadruped snake oven fridge table microwave dishwasher "
+    "washing_machine safe laptop box window door switch_panel button_panel desk_lamp fan toaster coffee_machine "
+    "trash_can toilet faucet office_chair folding_chair scissors pliers hexapod humanoid stapler bottle bucket pen "
+    "clock excavator crane tracked_tree globe umbrella suitcase eyeglasses"
+)
 """In which corpora draw them."""
 
 
@@ -32,5 +31,5 @@ def all_kinds() -> Mapping[str, Family]:
     return {name: item for name, item in KINDS.items() if not item.like}
 
 
-FAMILIES: Mapping[str, Family] = {name: all_kinds()[name] for name in _ORDER}
+FAMILIES: Mapping[str, Family] = {name: all_kinds()[name] for name in _ORDER.split()}
 """Keyed by name."""

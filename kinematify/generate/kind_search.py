@@ -8,24 +8,23 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from kinematify.generate.described import known_families
+from kinematify.generate.procedural.parameter import pairs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from kinematify.generate.procedural.family import Family
 
-_BRITISH = {
-    "aluminium": "aluminum", "tyre": "tire", "castor": "caster", "jewellery": "jewelry", "vice": "vise",
-    "gray": "grey", "metre": "meter", "centimetre": "centimeter", "millimetre": "millimeter", "centre": "center",
-    "mould": "mold", "plough": "plow", "colour": "color", "kerb": "curb",
-    "catalogue": "catalog", "draught": "draft", "grille": "grill",
-    "organiser": "organizer", "swivelling": "swiveling", "motorised": "motorized",
-}  # fmt: skip
+_BRITISH = pairs(
+    "aluminium aluminum|tyre tire|castor caster|jewellery jewelry|vice vise|gray grey|metre meter|"
+    "centimetre centimeter|millimetre millimeter|centre center|mould mold|plough plow|colour color|kerb curb|"
+    "catalogue catalog|draught draft|grille grill|organiser organizer|swivelling swiveling|motorised motorized"
+)
 """British or rarer spelling -> the one that names are compared in."""
-_IRREGULAR = {
-    "leaves": "leaf", "shelves": "shelf", "knives": "knife", "feet": "foot", "halves": "half", "axes": "axis",
-    "teeth": "tooth", "sashes": "sash", "lens": "lens", "lenses": "lens",
-}  # fmt: skip
+_IRREGULAR = pairs(
+    "leaves leaf|shelves shelf|knives knife|feet foot|halves half|axes axis|teeth tooth|sashes sash|lens lens|"
+    "lenses lens"
+)
 _SAME = (
     "car automobile vehicle sedan hatchback van taxi jeep ambulance truck lorry bus pickup|"
     "bed cot crib bunk couch sofa settee futon|chair seat stool bench armchair throne|"

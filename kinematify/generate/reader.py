@@ -146,51 +146,6 @@ class _Token:
     text: str
 
 
-@dataclass(frozen=True, kw_only=True)
-class Sentence:
-    """A sentence that was read."""
-
-    text: str
-    request: Request
-    faults: tuple[str, ...]
-    """Values that the kind cannot have."""
-    unread: tuple[str, ...]
-    harmless: tuple[str, ...]
-    notes: tuple[str, ...]
-    guessed: Mapping[str, str]
-    """Nouns that may be parts -> the words that say it; words not read where the object has none."""
-    moves: tuple[tuple[str, str], ...] = ()
-    """Motions of the whole with their words, which are not read unless all that moves moves so."""
-
-    @property
-    def family(self) -> str:
-        """Return the kind."""
-        return self.request.kind
-
-    def made(self, *, seed: int | None = None) -> BuildResult:
-        """Build the object and measure it.
-
-        Raises:
-            InputError: Nothing can be built.
-        """
-        made = deliver(self.request, seed=seed)
-        lost = [noun for noun in made.missing if noun in self.guessed]
-        listed = [why for why in made.differences if not any(why.startswith(f"{noun}: a") for noun in lost)]
-        unread = [*self.unread, *(self.guessed[noun] for noun in lost)]
-        joints = [joint for joint in made.blueprint.joints if joint.mimic is None]
-        unread += [said for motion, said in self.moves if not all(moves_so(joint, motion) for joint in joints)]
-        own = {key for part in made.blueprint.parts for key in key_of(part.name.replace("_", " "))} - {*_SIDES}
-        own |= {key for word in self.request.family.words for key in key_of(word)}
-        return replace(
-            made,
-            differences=(*self.faults, *listed),
-            unread=tuple(words for words in unread if not set(key_of(words)) <= own),
-            harmless=self.harmless,
-            notes=self.notes,
-            facts={"text": self.text, **made.facts},
-        )
-
-
 def read_sentence(text: str, *, nearest: bool = False) -> Sentence:
     """Read a sentence; nothing is built.
 
@@ -215,12 +170,13 @@ def read_sentence(text: str, *, nearest: bool = False) -> Sentence:
     ]
     for purpose in purposes:
         plain = plain.replace(purpose, " ")
-    parser = _Parser(text=text, tokens=[_Token(str(found.lastgroup), found[0]) for found in _TOKENS.finditer(plain)])
-    parser.harmless += purposes
-    parser.find_kind(nearest=nearest)
-    parser.read()
+    tokens = [_Token(str(found.lastgroup), found[0]) for found in _TOKENS.finditer(plain)]
+    sentence = Sentence(text=text, tokens=tokens, harmless=purposes)
+    sentence.find_kind(nearest=nearest)
+    sentence.read()
     try:
-        return parser.sentence()
+        sentence.fill()
+        return sentence
     except ValidationError as error:
         first = error.errors()[0]
         where = " of ".join(map(str, reversed(first["loc"])))
@@ -251,11 +207,12 @@ def _refuse_unreadable(text: str, plain: str) -> None:
 
 
 @dataclass(kw_only=True)
-class _Parser:
-    """A sentence while it is read, clause by clause: attributes wait for their noun, else go to the last one."""
+class Sentence:
+    """A sentence that is read clause by clause: attributes wait for their noun, else go to the last one."""
 
     text: str
     tokens: list[_Token]
+    request: Request = field(init=False)
     family: Family = field(init=False)
     usual: Mapping[str, Any] = field(init=False)
     start: int = 0
@@ -268,7 +225,9 @@ class _Parser:
     implied: set[str] = field(default_factory=set)
     """Nouns whose number is only said by an article."""
     guessed: dict[str, str] = field(default_factory=dict)
+    """Nouns that may be parts -> the words that say it; words not read where the object has none."""
     faults: list[str] = field(default_factory=list)
+    """Values that the kind cannot have."""
     unread: list[str] = field(default_factory=list)
     harmless: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -692,10 +651,8 @@ class _Parser:
         if without:
             facts["count"] = 0
         elif "count" not in facts and not pick and noun not in self.parts:
-            if (
-                words != lemma(words.rsplit(maxsplit=1)[-1])
-                and lemma(words.rsplit(maxsplit=1)[-1]) != words.rsplit(maxsplit=1)[-1]
-            ):
+            head = words.rsplit(maxsplit=1)[-1]
+            if lemma(head) != head:
                 facts["at_least"] = 2
                 counted = _counted(self.family, noun)
                 facts |= {"count": 2} if counted is not None and not counted.default else {}
@@ -908,8 +865,8 @@ class _Parser:
 
     # ---- the end ---------------------------------------------------------------------------------------------------
 
-    def sentence(self) -> Sentence:
-        """Return what was read.
+    def fill(self) -> None:
+        """Make the request of what was read.
 
         Raises:
             InputError: It contradicts itself.
@@ -933,15 +890,29 @@ class _Parser:
             copies=self.copies,
             instead_of=self.instead_of,
         )
-        return Sentence(
-            text=self.text,
-            request=request.checked(),
-            faults=tuple(self.faults),
-            unread=tuple(filter(None, self.unread)),
+        self.request = request.checked()
+
+    def made(self, *, seed: int | None = None) -> BuildResult:
+        """Build the object and measure it.
+
+        Raises:
+            InputError: Nothing can be built.
+        """
+        made = deliver(self.request, seed=seed)
+        lost = [noun for noun in made.missing if noun in self.guessed]
+        listed = [why for why in made.differences if not any(why.startswith(f"{noun}: a") for noun in lost)]
+        joints = [joint for joint in made.blueprint.joints if joint.mimic is None]
+        unread = [*self.unread, *(self.guessed[noun] for noun in lost)]
+        unread += [said for motion, said in self.moves if not all(moves_so(joint, motion) for joint in joints)]
+        names = (*self.family.words, *(part.name.replace("_", " ") for part in made.blueprint.parts))
+        own = {key for name in names for key in key_of(name)} - {*_SIDES}
+        return replace(
+            made,
+            differences=(*self.faults, *listed),
+            unread=tuple(words for words in unread if words and not set(key_of(words)) <= own),
             harmless=tuple(self.harmless),
             notes=tuple(self.notes),
-            guessed=self.guessed,
-            moves=tuple(self.moves),
+            facts={"text": self.text, **made.facts},
         )
 
     def _text(self, k: int) -> str:

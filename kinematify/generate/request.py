@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import difflib
-import json
 import math
 import re
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-import yaml
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from kinematify.errors import InputError
 from kinematify.generate.described import known_families
 from kinematify.generate.kind_search import words_of
+from kinematify.generate.procedural.blueprint_file import read_values
 from kinematify.generate.procedural.family import checked
 from kinematify.generate.procedural.materials import COLOR_WORDS, COLORS, MATERIALS
 
@@ -220,11 +219,7 @@ def read_request(path: Path) -> dict[str, Any]:
     Raises:
         InputError: It cannot be read, or is no mapping.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-        values = json.loads(text) if path.suffix.lower() == ".json" else yaml.safe_load(text)
-    except (OSError, ValueError, yaml.YAMLError, RecursionError) as error:
-        raise InputError(f"The file {path} cannot be read as JSON or YAML: {error}.") from error
+    values = read_values(path)
     if not isinstance(values, dict):
         raise InputError(f"The file {path} holds no request: a mapping with kind, parameters, size and parts.")
     return values

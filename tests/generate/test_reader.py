@@ -70,14 +70,14 @@ def test_what_was_asked_for_and_is_otherwise_is_listed():
 
 
 def test_a_slip_of_the_pen_is_repaired_with_a_word():
-    assert read_sentence("a cabnet").notes == ("Read 'cabnet' as 'cabinet'.",)
-    assert read_sentence("a bycicle").notes == ("Read 'bycicle' as 'bicycle'.",)
+    assert read_sentence("a cabnet").notes == ["Read 'cabnet' as 'cabinet'."]
+    assert read_sentence("a bycicle").notes == ["Read 'bycicle' as 'bicycle'."]
 
 
 def test_sizes_toys_and_shares_of_parts_are_read_as_they_are_written():
     assert read_sentence("a desk 1400x700mm").request.size["width"] == pytest.approx(1.4)
     assert (toy := read_sentence("a dump truck toy, yellow")).request.kind == "dump_truck"
-    assert toy.unread == ("toy",)
+    assert toy.unread == ["toy"]
     gate = read_sentence("a garden gate, two leaves, seven vertical pickets per leaf")
     assert gate.request.parts["leaf"].count == 2
     assert gate.unread

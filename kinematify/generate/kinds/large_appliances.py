@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     ),
     title="oven or stove",
     material="metal",
+    details={"burner": 4},
     width=length(0.35, 1.2, default=0.6, usual=(0.5, 0.9), help="Outer width."),
     height=length(0.45, 1.2, default=0.85, usual=(0.6, 0.95), help="Outer height."),
     depth=length(0.35, 0.9, default=0.6, usual=(0.5, 0.65), help="Outer depth of the body."),

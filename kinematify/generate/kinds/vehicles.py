@@ -436,7 +436,7 @@ def trailer(b: ObjectBuilder, length: float, width: float, radius: float, height
     b.spin("jockey_wheel", parent="jockey", axis=Y, pivot=(x, 0.07, 0.07))
 
 
-@kind("windmill", words="dutch windmill, grain windmill, toy windmill", height=length(1.0, 8.0))
+@kind("windmill", words="dutch windmill, grain windmill, toy windmill", details={"sail": 4}, height=length(1.0, 8.0))
 def windmill(b: ObjectBuilder, height: float) -> None:
     """Sails on a cap that turns on a tower, a door below."""
     r = 0.0
@@ -480,6 +480,7 @@ def wind_turbine(b: ObjectBuilder, height: float) -> None:
 @kind(
     "mailbox",
     words="letter box, post box, letterbox, postbox, mail box",
+    part_words={"door": "flap"},
     width=length(0.15, 0.25),
     length=length(0.35, 0.55),
     height=length(0.9, 1.2),

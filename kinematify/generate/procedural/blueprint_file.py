@@ -26,8 +26,6 @@ import math
 import re
 from abc import abstractmethod
 from collections import Counter
-from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -547,48 +545,28 @@ def described_blueprint(values: Mapping[str, Any], *, source: str = "blueprint")
     return workshop.finish(described.name, {}, style="clean", clearance=0.0, rng=np.random.default_rng(0))
 
 
+def read_values(path: Path) -> Any:
+    """Read a YAML or JSON file.
+
+    Raises:
+        InputError: It cannot be read.
+    """
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise InputError(f"The file {path} is larger than {LARGEST_FILE // 10**6} MB, which is too large.")
+        text = path.read_text(encoding="utf-8")
+        return json.loads(text) if path.suffix.lower() == ".json" else yaml.safe_load(text)
+    except (OSError, ValueError, yaml.YAMLError, RecursionError) as error:
+        raise InputError(f"The file {path} cannot be read as JSON or YAML: {error}.") from error
+
+
 def read_blueprint(path: Path) -> Blueprint:
     """Read a YAML or JSON file and build what it says.
 
     Raises:
         InputError: It cannot be read or does not fit.
     """
-    try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise InputError(f"The file {path} is larger than {LARGEST_FILE // 10**6} MB, too large for a blueprint.")
-        text = path.read_text(encoding="utf-8")
-        values = json.loads(text) if path.suffix.lower() == ".json" else yaml.safe_load(text)
-    except (OSError, ValueError, yaml.YAMLError, RecursionError) as error:
-        raise InputError(f"The file {path} cannot be read as {'JSON or YAML'}: {error}.") from error
-    return described_blueprint(values, source=f"blueprint {path}")
-
-
-@dataclass(frozen=True)
-class WrittenBlueprint:
-    """An object that a file describes, as a request."""
-
-    path: Path
-    ignored: tuple[str, ...] = ()
-    """Nothing of it is a sentence."""
-    unused: tuple[str, ...] = ()
-
-    @cached_property
-    def _built(self) -> Blueprint:
-        return read_blueprint(self.path)
-
-    @property
-    def family(self) -> str:
-        """Its category."""
-        return self._built.family
-
-    def build(self, *, seed: int | None = None) -> Blueprint:
-        """Build it; a file leaves nothing to draw.
-
-        Raises:
-            InputError: It cannot be read or does not fit.
-        """
-        del seed
-        return self._built
+    return described_blueprint(read_values(path), source=f"blueprint {path}")
 
 
 def parents_first(joints: Sequence[BlueprintJoint]) -> tuple[BlueprintJoint, ...]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 import math
 from dataclasses import dataclass, field
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -117,13 +116,8 @@ def build(family: Family, given: Mapping[str, Value], *, seed: int | None = None
     Raises:
         InputError: A parameter is unknown or out of its bounds; the message names the nearest or the bounds.
     """
-    return _built(family, tuple(given.items()), seed, name)
-
-
-@lru_cache(maxsize=8)  # a sentence asks for the same object several times while it is compared with it
-def _built(family: Family, given: tuple[tuple[str, Value], ...], seed: int | None, name: str) -> Blueprint:
     rng = np.random.default_rng(seed)
-    asked = {key: checked(family, key, value) for key, value in given}
+    asked = {key: checked(family, key, value) for key, value in given.items()}
     values = {p.name: _drawn(p, rng) if seed is not None and p.drawn else p.default for p in family.all_parameters}
     values.update(asked)
     workshop = Workshop(

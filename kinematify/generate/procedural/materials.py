@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.generate.procedural.parameter import pairs
 from kinematify.robot.appearance import Appearance, Material, Texture
 
 if TYPE_CHECKING:
@@ -148,12 +149,11 @@ COLORS: dict[str, RGB] = _PLAIN | {
     for name, (red, green, blue) in _PLAIN.items()
 }
 """Keyed by name, `red` or `dark red`."""
-_ALSO = (
+COLOR_WORDS = {name: name for name in COLORS} | pairs(
     "golden gold|gray grey|navy dark blue|mint light green|cream beige|ivory white|crimson dark red|scarlet red|"
     "burgundy dark red|maroon dark red|teal turquoise|cyan turquoise|aqua turquoise|violet purple|lilac light purple|"
     "charcoal dark grey|anthracite dark grey|olive dark green|tan light brown|khaki beige|bronze brown|rose pink"
 )
-COLOR_WORDS: dict[str, str] = {name: name for name in COLORS} | dict(item.split(" ", 1) for item in _ALSO.split("|"))
 COLOR_WORDS |= {f"{said} {COLOR_WORDS[said].split()[-1]}": COLOR_WORDS[said] for said in ("navy", "mint", "olive")}
 """Every word for a colour -> its name."""
 

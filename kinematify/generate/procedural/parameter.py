@@ -102,6 +102,11 @@ def phrases(text: Words) -> tuple[str, ...]:
     return tuple(text.split(", ") if isinstance(text, str) else text) if text else ()
 
 
+def pairs(text: str) -> dict[str, str]:
+    """Return words, each with what is behind it, of a text with a bar between the pairs."""
+    return dict(item.split(" ", 1) for item in text.split("|"))
+
+
 PARAMETER_HEADINGS = ("parameter", "default", "values", "what it is")
 
 

@@ -60,37 +60,13 @@ Conventions:
 - "checklist" lists each thing that the user asks for as a fact that can be measured: how many, how large, where, how
   it moves and how far. "parts" are names of parts of the blueprint, or nouns such as "drawer" of a request.
 """
-_EXAMPLE = {
-    "blueprint": {
-        "name": "toolbox",
-        "parts": [
-            {
-                "name": "body",
-                "material": "steel",
-                "shapes": [{"kind": "box", "size": [0.4, 0.2, 0.15], "xyz": [0, 0, 0.075]}],
-                "subtract": [{"kind": "box", "size": [0.39, 0.19, 0.15], "xyz": [0, 0, 0.08]}],
-            },
-            {
-                "name": "lid",
-                "color": "red",
-                "shapes": [{"kind": "box", "size": [0.4, 0.2, 0.01], "xyz": [0, 0, 0.156]}],
-            },
-        ],
-        "joints": [
-            {
-                "type": "revolute", "parent": "body", "child": "lid", "axis": [-1, 0, 0], "pivot": [0, 0.1, 0.151],
-                "lower": 0, "upper": 1.57,
-            },
-        ],
-    },
-    "checklist": [
-        {"phrase": "40 cm wide", "size": {"width": 0.4}},
-        {
-            "phrase": "a red lid that opens by 90 degrees", "parts": ["lid"], "count": 1, "color": "red",
-            "motion": "tilt", "range": [0, 1.57],
-        },
-    ],
-}  # fmt: skip
+_EXAMPLE = """\
+{"blueprint":{"name":"toolbox","parts":[{"name":"body","material":"steel","shapes":[{"kind":"box","size":[0.4,0.2,\
+0.15],"xyz":[0,0,0.075]}],"subtract":[{"kind":"box","size":[0.39,0.19,0.15],"xyz":[0,0,0.08]}]},{"name":"lid",\
+"color":"red","shapes":[{"kind":"box","size":[0.4,0.2,0.01],"xyz":[0,0,0.156]}]}],"joints":[{"type":"revolute",\
+"parent":"body","child":"lid","axis":[-1,0,0],"pivot":[0,0.1,0.151],"lower":0,"upper":1.57}]},"checklist":[{\
+"phrase":"40 cm wide","size":{"width":0.4}},{"phrase":"a red lid that opens by 90 degrees","parts":["lid"],\
+"count":1,"color":"red","motion":"tilt","range":[0,1.57]}]}"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -274,7 +250,7 @@ def question(prompt: Prompt) -> list[dict[str, Any]]:
         f"loop: {_fields(blueprint_file.LoopDescription)}.\n"
         f"Shapes, by kind: {_shapes()}.\n"
         f"Materials: {', '.join(MATERIALS)}. Colours: {', '.join(name for name in COLORS if ' ' not in name)}, dark "
-        f"or light before them.\nExample: {json.dumps(_EXAMPLE, separators=(',', ':'))}"
+        f"or light before them.\nExample: {_EXAMPLE}"
     )
     return [
         {"role": "system", "content": system},
