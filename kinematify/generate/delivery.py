@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.generate.kind_search import key_of
+from kinematify.generate.kind_search import key_of, words_of
 from kinematify.generate.procedural.clearance import may_go
 from kinematify.generate.procedural.family import build, checked
 from kinematify.generate.procedural.materials import MATERIALS, of_one_material, surface_of
@@ -49,6 +49,8 @@ _ALIKE = pairs(
     "rack tray shelf|tray rack|armrest arm|stem column|shade head|turntable plate|plate turntable|cymbal top|swing seat"
 )
 """Noun -> what it may be where no part is called so."""
+_APART = words_of("door drawer wheel lid flap window knob button shelf tray seat")
+"""Nouns of parts that are bodies of their own, each; several pedals, legs or tines may be one."""
 _ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 
 
@@ -107,6 +109,8 @@ def names_called(family: Family, blueprint: Blueprint, noun: str) -> list[str]:
             axis, sign = _PICKED[word]
             places = [sign * float(part.bounds.mean(axis=0)[axis]) for part in found]
             middle = 0.5 * (min(places) + max(places))
+            if max(places) - min(places) < _ASIDE:
+                middle = sign * float(blueprint.assembly.bounds.mean(axis=0)[axis])
             found = [part for part, at in zip(found, places, strict=True) if at > middle]
     return [part.name for part in found]
 
@@ -477,7 +481,7 @@ def part_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str]
     exact = parameter or any(_joined(stem) == _joined(noun) or key_of(stem)[-1] != key_of(noun)[-1] for stem in stems)
     if part.count not in (None, there) and (exact or (names and there < (part.count or 1))):
         yield f"{part.count} asked for, there {'is' if there == 1 else 'are'} {there}"
-    if part.at_least and names and there < part.at_least:
+    if part.at_least and names and there < part.at_least and (parameter or noun.rsplit(maxsplit=1)[-1] in _APART):
         yield f"several asked for, there is {there}"
     if not names and part.count != 0:
         asked = part.model_dump(exclude_defaults=True).keys() - {"count", "at_least"}

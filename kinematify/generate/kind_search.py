@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.family import Family
 
 _BRITISH = pairs(
-    "aluminium aluminum|tyre tire|castor caster|jewellery jewelry|vice vise|gray grey|metre meter|"
+    "aluminium aluminum|tyre tire|castor caster|jewellery jewelry|jewelery jewelry|vice vise|gray grey|metre meter|"
     "centimetre centimeter|millimetre millimeter|centre center|mould mold|plough plow|colour color|kerb curb|"
     "catalogue catalog|draught draft|grille grill|organiser organizer|swivelling swiveling|motorised motorized"
 )

@@ -55,7 +55,8 @@ _ORDINALS = words_of("first second third fourth fifth sixth")
 _ABOVE, _BELOW = words_of("above over"), words_of("below under beneath")
 _VERBS = (
     "move open opens opening close closes closing move moves moving lift lifts lifting raise raises go goes going come "
-    "comes travel travels travelling traveling adjust adjusts press presses extend extends movable moveable|"
+    "comes travel travels travelling traveling adjust adjusts press presses extend extends movable moveable adjustable "
+    "raisable raising drops|"
     "slide slide slides sliding pull pulls telescope telescopes telescopic telescoping retract retracts retractable|"
     "hinge hinge hinges hinged swing swings swinging pivot pivots pivoting pivoted fold folds folding foldable flip "
     "flips flipping turn turns turning rotate rotates rotating rotatable drop tip tips tipping|"
@@ -82,7 +83,7 @@ _SAYS_NOTHING = words_of(
     "please make build create generate give show draw design get me us my our your some one any this these those "
     "there made out into as so would will let have standing side hand end object item thing model piece set also "
     "then kind type sort hi hello hey thanks where when while itself own u about approximately roughly approx around "
-    "exactly inside along wants wanted"
+    "exactly inside along wants wanted do must plain stacked colour color"
 )
 _PLAIN = words_of(
     "modern sleek contemporary minimalist vintage retro rustic antique classic elegant stylish fancy cute cosy "
@@ -163,6 +164,7 @@ def read_sentence(text: str, *, nearest: bool = False) -> Sentence:
     plain = re.sub(r"(?<=\d),(?=\d{3}\b)", "", plain)
     plain = re.sub(rf"\b({'|'.join(_NUMBERS)}) (?=(?:{_UNIT})\b)", lambda found: f"{_NUMBERS[found[1]]} ", plain)
     plain = re.sub(r"^((?:an? |the )?)built in ", r"\1", re.sub(r"^for (?:my|our|the) \w+,? (?=an? )", "", plain))
+    plain = re.sub(r"(?<=\d) in (?=(?:wide|deep|high|tall|long|thick)\b)", " inch ", plain)
     plain = _BARE.sub(lambda found: _with_unit(found, plain), plain)
     purposes = [item[0].strip() for item in _PURPOSE.finditer(plain)]
     purposes = [
@@ -369,9 +371,6 @@ class Sentence:
             else:
                 self._wait("count", word, int(value))
             return k + 1 + (self._text(k + 1) == "of")
-        if "count" in self.waiting and word.endswith("ed") and not _material(word) and word not in _DONE:  # four-bladed
-            noun = next((stem for stem in (word[:-2], word[:-1], word[:-3]) if (lemma(stem),) in self.words), "")
-            self.tokens[k] = _Token("word", f"{noun}s") if noun else token
         for length in range(min(4, end - k), 0, -1):
             key = tuple(lemma(item.text) if item.kind == "word" else "" for item in self.tokens[k : k + length])
             meanings = self.words.get(key, {})
@@ -379,11 +378,23 @@ class Sentence:
                 return self._known(k, length, meanings)
         return self._plain_word(k, end)
 
+    def _has_such(self, k: int) -> int:
+        """Read a word such as four-bladed or orange-handled."""
+        word = self.tokens[k].text
+        stems = (word[:-2], word[:-1], word[:-3]) if word.endswith("ed") and word not in _DONE else ()
+        noun = next((stem for stem in stems if (lemma(stem),) in self.words), "")
+        if not noun or not self.waiting.keys() & {"count", "color", "material"} or _material(word):
+            return 0
+        self.waiting.pop("article", None)
+        self._add(lemma(noun), self.waiting, " ".join([*self.said, word]))
+        self.waiting, self.said = {}, []
+        return k + 1
+
     def _is_adverb(self, k: int, meanings: Mapping[str, tuple[str, str]]) -> bool:
         """True for a verb, for a word such as back behind one, and for a side behind a preposition."""
         word, before = self.tokens[k].text, self._text(k - 1)
         several = before != lemma(before) and (lemma(before),) in self.words and "choice" not in meanings
-        if word in _MOTIONS and (before in _VERBAL or several):
+        if f"{word} {self._text(k + 1)}" in COLOR_WORDS or (word in _MOTIONS and (before in _VERBAL or several)):
             return True
         return (word in _WHERE_TO and (before in _MOTIONS or before in _DONE)) or (
             word in _SIDES and self._is_placed(k)
@@ -422,7 +433,7 @@ class Sentence:
             if "count" in self.waiting and name != "handle":
                 self.guessed[noun := " ".join(key_of(words))] = f"{self.waiting['count']} {words}"
                 self._add(noun, {"count": self.waiting.pop("count")}, words)
-            self.unread += [str(self.waiting.pop("count"))] if "count" in self.waiting else []
+            self.unread += [str(count)] if (count := self.waiting.pop("count", 1)) != 1 else []
             for look in ("color", "material") if name == "handle" else ():
                 if look in self.waiting:
                     self.values[f"handle_{look}"] = self.waiting.pop(look)
@@ -433,15 +444,18 @@ class Sentence:
         if follows and words == lemma(words) and self._text(after) not in _MOTIONS:  # a burner knob
             self.harmless.append(words)
         else:
-            self._noun(" ".join(key_of(words)), words, guessed=(place := self._says_place(k)), is_place=place)
+            self._place_or_noun(k, words, guessed=False)
         return after
 
-    def _says_place(self, k: int) -> bool:
-        """True for a noun that is only there to say where something else is: on the panel."""
-        return "count" not in self.waiting and self._text(k - 1) in ("the", "its", "their") and self._text(k - 2) in _AT
+    def _place_or_noun(self, k: int, words: str, *, guessed: bool) -> None:
+        """Read a noun, which may only say where something else is: on the panel."""
+        place = "count" not in self.waiting and self._text(k - 1) in ("the", "its", "their")
+        if place := place and self._text(k - 2) in _AT and bool(self.subject):
+            self._settle(self.subject)
+        self._noun(" ".join(key_of(words)), words, guessed=guessed or place, is_place=place)
 
     def _plain_word(self, k: int, end: int) -> int:
-        readers = (self._look, self._having, self._state, self._place, self._filler)
+        readers = (self._has_such, self._look, self._having, self._state, self._place, self._filler)
         return next((after for read in readers if (after := read(k))), 0) or self._unknown(k, end)
 
     def _look(self, k: int) -> int:
@@ -450,6 +464,9 @@ class Sentence:
         if color in COLOR_WORDS:
             self._wait("color", color, COLOR_WORDS[color])
             return k + len(color.split())
+        if word in ("dark", "light") and _material(self._text(k + 1)):
+            self.harmless.append(word)
+            return k + 1
         if not _material(word) or (word in ("mirror", "iron", "paper") and not self._noun_follows(k + 1)):
             return 0
         self._wait("material", word, _material(word))
@@ -482,7 +499,11 @@ class Sentence:
             if not self._then_measured(k + 1):
                 self._wait("open", word, _DONE[word])
             return k + 1 + (after in _WHERE_TO)
-        elif word in ("tilt", "pan", "lift", "swing") and self._text(k - 1) in ("whose", "its", "the", "a"):
+        elif (
+            word in ("tilt", "pan", "lift", "swing")
+            and self._text(k - 1) in ("whose", "its", "the", "a")
+            and after not in _WHERE_TO
+        ):
             self._noun(word, word, guessed=True)
         elif word in _MOTIONS and word not in ("hinged", "hinges", "hinge"):
             self._wait("motion", word, _MOTIONS[word])
@@ -548,7 +569,7 @@ class Sentence:
         )
         follows = last < end and "part" in self.words.get((lemma(self.tokens[last].text),), {})
         if expected and not follows and before not in _VERBAL and k >= self.stop:
-            self._noun(" ".join(key_of(words)), words, guessed=True, is_place=self._says_place(k))
+            self._place_or_noun(k, words, guessed=True)
         else:
             self.unread.append(words)
         return last
@@ -617,6 +638,8 @@ class Sentence:
 
     def _add(self, noun: str, facts: Mapping[str, Any], said: str) -> None:
         own = self.parts.setdefault(noun, {})
+        if noun in self.guessed and said not in self.guessed[noun]:
+            self.guessed[noun] += f" {said}"
         if noun in self.implied and "count" in facts:
             self.implied.discard(noun)
             own.pop("count", None)
@@ -670,7 +693,7 @@ class Sentence:
         if self.relation is not None:
             self._rows(self.relation[0], noun, self.relation[1])
             self.relation = None
-        if not before_name and not (is_place and self.subject):
+        if not before_name and not is_place:
             self.subject, self.fresh = noun, False
 
     def _dimension(self, k: int) -> int:

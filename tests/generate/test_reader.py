@@ -34,6 +34,13 @@ QUARTER, EIGHTH = math.pi / 2, math.pi / 4
          {"parameters.handle_material": "brass", "parts.door.color": "red"}),
         ("a pair of nightstands", {"copies": 2}),
         ("a pair of scissors", {"kind": "scissors", "copies": 1}),
+        ("a pepper mill in dark walnut", {"parameters.material": "walnut"}),
+        ("a pair of orange-handled scissors", {"parts.handle.color": "orange"}),
+        ("a sideboard 160 cm wide, 45 deep and 75 high", {"size": {"width": 1.6, "depth": 0.45, "height": 0.75}}),
+        ("an excavator whose cab rotates 360 degrees on its tracks", {"parts.cab.range": (0.0, 4 * QUARTER)}),
+        ("a stand mixer in light green whose head tilts", {"parameters.color": "light green"}),
+        ("a piano with a lid hinged at the back", {"parts.lid.hinge": "back"}),
+        ("a toolbox, 18 in long", {"size": {"length": 0.4572}}),
         ("a dollhouse style doll's cupboard", {"kind": "cabinet"}),
     ],
 )  # fmt: skip
@@ -54,6 +61,8 @@ def test_a_sentence_fills_a_request(text, expected):
         ("a filing cabinet with four drawers, the second one from the top red", ["the second one from the top red"]),
         ("a rocking cupboard", ["rocking"]),
         ("a modern cupboard for my grandmother", []),
+        ("a standing desk that goes up and down", []),
+        ("a washing machine with one knob on the panel", ["panel"]),
     ],
 )
 def test_words_that_are_not_read_are_listed_and_never_as_something_that_lacks(text, unread):

@@ -181,22 +181,22 @@ class ObjectBuilder:
     ) -> None:
         """Make a part turn within limits [rad]; `rest` is where it is unless it is drawn `ajar`, which it may be."""
         shown = self._shown(child, lower, upper, rest, ajar=ajar)
-        self._hang(JointType.REVOLUTE, child, parent, axis, pivot, shown)
+        self._add_joint(JointType.REVOLUTE, child, parent, axis, pivot, shown)
 
     def spin(self, child: str, parent: str, axis: Point, pivot: Point) -> None:
         """Make a part turn without end."""
-        self._hang(JointType.CONTINUOUS, child, parent, axis, pivot, (-math.inf, math.inf, 0.0))
+        self._add_joint(JointType.CONTINUOUS, child, parent, axis, pivot, (-math.inf, math.inf, 0.0))
 
     def slide(
         self, child: str, parent: str, axis: Point, upper: float, lower: float = 0.0, *, ajar: bool = True
     ) -> None:
         """Make a part slide within limits [m]."""
         shown = self._shown(child, lower, upper, 0.0, ajar=ajar)
-        self._hang(JointType.PRISMATIC, child, parent, axis, (0.0, 0.0, 0.0), shown)
+        self._add_joint(JointType.PRISMATIC, child, parent, axis, (0.0, 0.0, 0.0), shown)
 
     def fix(self, child: str, parent: str) -> None:
         """A part of its own that does not move."""
-        self._hang(JointType.FIXED, child, parent, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        self._add_joint(JointType.FIXED, child, parent, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
     def follow(self, child: str, leader: str, multiplier: float = 1.0) -> None:
         """Make the joint of a part follow that of another one."""
@@ -216,7 +216,7 @@ class ObjectBuilder:
             raise ValueError(f"{child} would stand at {value:g} and move from {lower:g} to {upper:g}")
         return lower, upper, value
 
-    def _hang(self, kind: JointType, child: str, parent: str, axis: Point, pivot: Point, motion: _Motion) -> None:
+    def _add_joint(self, kind: JointType, child: str, parent: str, axis: Point, pivot: Point, motion: _Motion) -> None:
         lower, upper, value = map(float, motion)
         joint = BlueprintJoint(
             parent=parent, child=child, kind=kind, lower=lower, upper=upper, value=value,
@@ -265,7 +265,7 @@ def drawn_on(workshop: Workshop, clearance: float, rest: float = 0.0) -> Iterato
         if part.cuts:
             workshop.cut(name, *part.cuts)
     for joint in builder.joints:
-        workshop.hang(joint, rest)
+        workshop.add_joint(joint, rest)
 
 
 def spread(count: int, low: float, high: float) -> Sequence[float]:

@@ -230,4 +230,4 @@ def put_together(
         asked = (values.choice("material"), values.choice("color")) if looks[name] == base else ("", "")
         workshop.body(name, solid, material=None if asked[0] else material, color=asked[1] or color)
     for joint in parents_first(joints):
-        workshop.hang(joint, values.number("open"))
+        workshop.add_joint(joint, values.number("open"))

@@ -539,7 +539,7 @@ def described_blueprint(values: Mapping[str, Any], *, source: str = "blueprint")
             raise InputError(f"The {source} cannot be built. {reason}")
         workshop.body(part.name, solid, material=part.material, color=part.color)
     for joint in parents_first([joint.joint() for joint in described.joints]):
-        workshop.hang(joint)
+        workshop.add_joint(joint)
     for loop in described.loops:
         workshop.closes(*loop.parts, loop.pivot)
     return workshop.finish(described.name, {}, style="clean", clearance=0.0, rng=np.random.default_rng(0))

@@ -70,13 +70,6 @@ def beam(wide: float, high: float, start: Point, end: Point, side: Point = Z) ->
     return Manifold.cube((length, wide, high), True).transform(frame)
 
 
-def rounded_box(lower: Point, upper: Point, radius: float) -> Manifold:
-    """Return the box between two corners with its upright edges rounded."""
-    (x0, y0, z0), (x1, y1, z1) = lower, upper
-    corners = [(x, y) for x in (x0 + radius, x1 - radius) for y in (y0 + radius, y1 - radius)]
-    return hull(*(cylinder(radius, (x, y, z0), (x, y, z1), segments=24) for x, y in corners))
-
-
 def cylinder(radius: float, start: Point, end: Point, *, segments: int = SEGMENTS) -> Manifold:
     """Return the cylinder whose circular faces are centred at `start` and `end`."""
     return cone(radius, radius, start, end, segments=segments)

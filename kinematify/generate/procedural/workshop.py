@@ -124,41 +124,31 @@ class Workshop:
         self._rest: dict[str, float] = {}
         self._loops: list[BlueprintLoop] = []
         self._frame: FloatArray | None = None
-        self._look_of_all: tuple[str | None, str | None] = None, None
 
-    def from_frame(self, T_frame: FloatArray, *, material: str | None = None, color: str | None = None) -> Workshop:
+    def from_frame(self, T_frame: FloatArray) -> Workshop:
         """Return the workshop as it is seen from a frame; what is built there stands there in the object.
 
         Args:
             T_frame: The frame in this workshop's own, shape (3, 4).
-            material: Of all bodies that are built there, whatever they name; their own if None.
-            color: The same.
         """
         seen = copy(self)
         own = _UNMOVED if self._frame is None else self._frame
         seen._frame = np.column_stack([own[:, :3] @ T_frame[:, :3], own @ np.append(T_frame[:, 3], 1.0)])
-        before = self._look_of_all
-        seen._look_of_all = material or before[0], color or before[1]
         return seen
 
     def body(self, name: str, *solids: Solids, material: str | None = None, color: str | RGB | None = None) -> str:
         """Add a rigid part made of solids that overlap or touch; returns its name."""
         if name in self._solids:
             raise ValueError(f"The family {self._family} makes two bodies named {name}.")
-        material, color = self._look_of_all[0] or material, self._look_of_all[1] or color
         self._solids[name] = union(*self._placed(flat(solids)))
         self._looks[name] = material or self._material, color or (None if material else self._color)
         return name
 
-    def painted(self, *solids: Manifold, material: str, color: str | RGB | None = None) -> Sequence[Manifold]:
-        """Make solids look other than the body that they become part of; returns them."""
-        for solid in solids:
-            self._painted.update(dict.fromkeys(solid.to_mesh64().run_original_id, (material, color)))
-        return solids
-
     def as_handle(self, *solids: Manifold) -> Sequence[Manifold]:
-        """Make solids look like the handles of this object; returns them."""
-        return self.painted(*solids, material=self._handles[0], color=self._handles[1])
+        """Make solids look like the handles of this object, whatever they become part of; returns them."""
+        for solid in solids:
+            self._painted.update(dict.fromkeys(solid.to_mesh64().run_original_id, self._handles))
+        return solids
 
     @property
     def looks(self) -> Mapping[str, Look]:
@@ -211,7 +201,7 @@ class Workshop:
             parent=parent, child=child, kind=kind, axis=np.asarray(axis), pivot=np.asarray(pivot), lower=lower,
             upper=upper, mimic=follows,
         )  # fmt: skip
-        self.hang(joint, rest)
+        self.add_joint(joint, rest)
 
     def slides(
         self,
@@ -228,7 +218,7 @@ class Workshop:
             parent=parent, child=child, kind=JointType.PRISMATIC, axis=np.asarray(axis), pivot=np.asarray(pivot),
             lower=limits[0], upper=limits[1],
         )  # fmt: skip
-        self.hang(joint, rest)
+        self.add_joint(joint, rest)
 
     def closes(self, one: str, other: str, pivot: Point) -> None:
         """Say that two bodies share a pin at `pivot` [m] besides the joints of the tree."""
@@ -241,7 +231,7 @@ class Workshop:
     def _point(self, point: Point) -> FloatArray:
         return np.asarray(point if self._frame is None else self._frame @ np.append(point, 1.0))
 
-    def hang(self, joint: BlueprintJoint, rest: float = 0.0) -> None:
+    def add_joint(self, joint: BlueprintJoint, rest: float = 0.0) -> None:
         """Hang a body on another one as a joint says.
 
         Args:

@@ -13,7 +13,7 @@ import json
 import os
 import re
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -92,15 +92,11 @@ def built_answer(values: Mapping[str, Any]) -> BuildResult:
     if isinstance(asked := values.get("request"), dict):
         request = request_of(asked)
         made = deliver(request)
-        return _with_faults(made, [*made.differences, *broken_facts(made.blueprint, facts, request.family)])
+        return replace(made, differences=(*made.differences, *broken_facts(made.blueprint, facts, request.family)))
     if not isinstance(drawn := values.get("blueprint"), dict):
         raise InputError('The answer has neither a "request" nor a "blueprint".')
     blueprint = blueprint_file.described_blueprint(drawn)
-    return _with_faults(BuildResult(blueprint=blueprint), broken_facts(blueprint, facts))
-
-
-def _with_faults(made: BuildResult, faults: Sequence[str]) -> BuildResult:
-    return BuildResult(blueprint=made.blueprint, request=made.request, differences=tuple(faults), facts=made.facts)
+    return BuildResult(blueprint=blueprint, differences=tuple(broken_facts(blueprint, facts)))
 
 
 @dataclass(frozen=True)
@@ -151,7 +147,7 @@ class LanguageModel:
                     made = built_answer(values)
                     problems = (*made.differences, *judge(made))
                     if best is None or len(problems) < len(best[1].differences):
-                        best = values, _with_faults(made, problems)
+                        best = values, replace(made, differences=problems)
                 except InputError as error:
                     problems = (str(error),)
                 if not problems:
