@@ -39,6 +39,8 @@ class Part:
     """Materials of the faces where the source knows more than one colour."""
     density: float | None = None
     """[kg/m^3] where the source knows it."""
+    walls: float | None = None
+    """Mass of its walls, if it is hollow, over their surface [kg/m^2], where the source knows it."""
     exact: ExactFaces | None = None
     """Cylinders and planes, world frame [m], where a CAD file states them."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import replace
 from functools import cache, cached_property
@@ -24,7 +23,6 @@ from kinematify.generate.procedural.blueprint_file import (
 from kinematify.generate.procedural.family import Family, Values
 from kinematify.generate.procedural.parameter import Parameter, details_of, number, parse_table
 from kinematify.generate.procedural.workshop import Workshop
-from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -45,8 +43,6 @@ class CopyDescription(BaseModel):
     """One more for each [m]."""
     mirrored: Literal["x", "y", "z"] | None = None
     """One more across the plane through the world's origin that this axis is normal to."""
-    around: int = Field(1, ge=1, le=60)
-    """So many in all, evenly about the world's z axis."""
     repeated: Repetition | None = None
     """How often it stands there in all; the first one moves where it is repeated over a way."""
 
@@ -57,9 +53,6 @@ class CopyDescription(BaseModel):
         if self.mirrored:
             normal = np.array(MIRRORS[self.mirrored])
             found.append(np.column_stack([np.eye(3) - 2.0 * np.outer(normal, normal), np.zeros(3)]))
-        for k in range(1, self.around):
-            turn = rotation_about(np.array([0.0, 0.0, 1.0]), 2.0 * math.pi * k / self.around)
-            found.append(np.column_stack([turn, np.zeros(3)]))
         return found
 
 
@@ -77,6 +70,9 @@ class CountParameters(BaseModel):
     details: dict[str, int] = Field({})
     """Word for what belongs to a part -> how many of it there are."""
 
+    walls: float | None = None
+    """Of `Family`."""
+
     category: Name
     counts: dict[str, dict[str, Any]] = Field({})
     """Word for what repeats -> how often it may; named where a shape or a copy is repeated."""
@@ -89,6 +85,7 @@ class CountParameters(BaseModel):
             words=self.words,
             parameters=details_of(self.details) + tuple(_repeated(word, said) for word, said in self.counts.items()),
             material=material,
+            walls=self.walls,
             part_words=self.part_words,
             build=build,
         )

@@ -68,9 +68,9 @@ def inertial_of(part: Part, origin: FloatArray, *, thickness: float, config: Mod
         solid, density, source = hull, part.density or config.hull_density, "hull"
     if config.density is not None:
         return _weighed_solid(solid, config.density, source, origin, config)
-    shell = _walls(part)
-    if density * solid.volume > config.wall_weight * shell.volume > 0.0 and _sturdy(shell):
-        return _weighed_solid(shell, config.wall_weight, "shell", origin, config)
+    shell, weight = _walls(part), part.walls or config.wall_weight
+    if density * solid.volume > weight * shell.volume > 0.0 and _sturdy(shell):
+        return _weighed_solid(shell, weight, "shell", origin, config)
     return _weighed_solid(solid, density, source, origin, config)
 
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 @kind(
     "disc brake",
+    walls=60,
     words="disk brake, brake disc, brake caliper",
     part_words={"disc": "disk, rotor", "pad": "brake pad, piston"},
     radius=length(0.08, 0.18),

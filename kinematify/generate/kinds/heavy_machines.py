@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 @kind(
     "excavator",
+    walls=180,
     words=(
         "digger, backhoe, mini excavator, power shovel, toy excavator, backhoe loader, toy digger, trencher, "
         "crawler excavator"

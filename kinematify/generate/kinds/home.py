@@ -489,6 +489,7 @@ def butterfly_valve(b: ObjectBuilder, radius: float) -> None:
 
 @kind(
     "fire hydrant",
+    walls=100,
     words="hydrant, standpipe, garden hydrant",
     size=length(0.9, 1.1),
 )

@@ -268,6 +268,7 @@ def butter_dish(b: ObjectBuilder, width: float, depth: float) -> None:
 
 @kind(
     "travel mug",
+    walls=5,
     words="thermo mug, insulated mug, beer stein, tankard, coffee mug with lid",
     radius=length(0.035, 0.05),
     height=length(0.13, 0.2),

@@ -611,6 +611,7 @@ def hemostat(b: ObjectBuilder, size: float) -> None:
 
 @kind(
     "ct scanner",
+    walls=50,
     words="mri scanner, mri machine, tomograph, x ray scanner",
     size=length(0.9, 1.1),
 )
@@ -641,6 +642,7 @@ def ct_scanner(b: ObjectBuilder, size: float) -> None:
 
 @kind(
     "c arm",
+    walls=45,
     words="x ray machine, x-ray machine, mobile x ray",
     size=length(0.9, 1.1),
 )

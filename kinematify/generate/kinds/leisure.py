@@ -227,6 +227,7 @@ def mixing_console(b: ObjectBuilder, width: float, depth: float, number: int) ->
 
 @kind(
     "weight machine",
+    walls=60,
     words="weight stack, cable machine, gym machine",
     height=length(1.6, 2.0),
     number=whole(1, 3, words="plate, weight"),
@@ -395,7 +396,9 @@ def camera_on_tripod(b: ObjectBuilder, height: float) -> None:
     b.spin("lens", parent="camera", axis=-Y, pivot=(0, -0.06, height + 0.155))
 
 
-@kind("dentist treatment chair", words="treatment chair, dentist unit, examination chair", z=length(0.45, 0.6))
+@kind(
+    "dentist treatment chair", walls=40, words="treatment chair, dentist unit, examination chair", z=length(0.45, 0.6)
+)
 def dentist_chair(b: ObjectBuilder, z: float) -> None:
     """A seat on a column, a back, a head rest that slides, a lamp on an arm."""
     b.part(

@@ -131,6 +131,7 @@ def dumbwaiter(b: ObjectBuilder, height: float) -> None:
 
 @kind(
     "cherry picker",
+    walls=120,
     words="aerial work platform, boom lift, bucket truck, aerial lift, sky lift",
     part_words={
         "basket": "bucket, cage, platform",

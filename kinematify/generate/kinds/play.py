@@ -411,7 +411,7 @@ def trumpet(b: ObjectBuilder, size: float) -> None:
         b.slide(f"valve_{k}", parent="body", axis=-Z, upper=0.014)
 
 
-@kind("trombone", words="slide trombone", size=length(0.9, 1.1))
+@kind("trombone", walls=4.5, words="slide trombone", size=length(0.9, 1.1))
 def trombone(b: ObjectBuilder, size: float) -> None:
     p = scaled(size)
     b.part(

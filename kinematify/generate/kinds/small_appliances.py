@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 @kind(
     "toaster",
+    walls=8,
     words="bread toaster, pop up toaster, retro toaster, toy toaster",
     material="metal",
     width=length(0.14, 0.5, default=0.19, usual=(0.16, 0.32), help="Outer width."),

@@ -446,6 +446,7 @@ def segway(b: ObjectBuilder, size: float) -> None:
 
 @kind(
     "stroller",
+    walls=4,
     words="baby stroller, pram, baby carriage, pushchair, buggy for babies, baby buggy, doll carriage",
     size=length(0.9, 1.1),
 )

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 @kind(
     "box car",
+    walls=38,
     words="car, automobile, toy car, sedan, passenger car, hatchback",
     length=length(2.5, 4.5),
     width=length(1.4, 1.9),
@@ -84,6 +85,7 @@ def box_car(b: ObjectBuilder, length: float, width: float, radius: float) -> Non
 
 @kind(
     "pickup truck",
+    walls=47,
     words="pickup, lorry, truck, flatbed truck, toy truck",
     length=length(4.0, 5.5),
     width=length(1.7, 2.0),
@@ -132,6 +134,7 @@ def pickup_truck(b: ObjectBuilder, length: float, width: float, radius: float) -
 
 @kind(
     "van",
+    walls=35,
     words=(
         "delivery van, minivan, camper van, ambulance, transporter van, minibus, campervan, cargo van, "
         "transporter, camper, motorhome, mail van, post van, police van, food truck, panel van, rv, bakery "
@@ -179,6 +182,7 @@ def van(b: ObjectBuilder, length: float, width: float, height: float) -> None:
 
 @kind(
     "bus",
+    walls=65,
     words=(
         "tram, city bus, coach, streetcar, trolley bus, school bus, subway car, train car, railway carriage, "
         "tour bus, trolleybus, shuttle bus, airport shuttle, tram car, monorail"

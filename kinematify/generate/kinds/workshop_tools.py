@@ -353,6 +353,7 @@ def mechanics_creeper(b: ObjectBuilder, width: float, length: float) -> None:
 
 @kind(
     "engine hoist",
+    walls=40,
     words="shop crane, floor crane",
     size=length(0.8, 1.1),
 )

@@ -110,6 +110,7 @@ def kind(
     details: Mapping[str, int] | None = None,
     usual: Mapping[str, Mapping[str, Value]] | None = None,
     styles: bool = True,
+    walls: float | None = None,
     **parameters: Parameter,
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Return a decorator that registers the function that draws a kind of object.
@@ -124,6 +125,7 @@ def kind(
         details: Word for what belongs to a part -> how many of it there are.
         usual: Names, split at their commas -> what is usual of those that are called so.
         styles: It may be modelled in any of `MODELING`; of what is drawn alone.
+        walls: Of `Family`.
         parameters: What may be asked for, under its name.
     """
     asked = tuple(replace(item, name=name) for name, item in parameters.items())
@@ -147,6 +149,7 @@ def kind(
             ),
             build=_carver(draw, taken) if carves else _drawer(draw, taken, name),
             material=material,
+            walls=walls,
             kinds={word: what for group, what in (usual or {}).items() for word in phrases(group)},
             part_words={part: phrases(said) for part, said in (part_words or {}).items()},
             like=like,

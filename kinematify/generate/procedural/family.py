@@ -38,6 +38,8 @@ class Family:
     """Adds bodies and joints to the workshop."""
     material: str = "wood"
     """Of its base, if nothing is asked for."""
+    walls: float | None = None
+    """Mass of the walls of what is hollow [kg/m^2]: thin sheet has 5, armour 700; as configured if None."""
     kinds: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
     """What is usual of those that are called by one of the words, where a sentence says nothing else."""
     part_words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -125,6 +127,7 @@ def build(family: Family, given: Mapping[str, Value], *, seed: int | None = None
         material=str(values["material"]) or family.material,
         color=str(values["color"]) or None,
         handles=(str(values["handle_material"]), str(values["handle_color"]) or None),
+        walls=family.walls,
     )
     far = {kind: float(values[key]) for kind, key in _FAR.items() if values[key]}
     # What opens at all is asked of the family by opening it; how far, is set on the joints.

@@ -102,7 +102,13 @@ class Workshop:
     """
 
     def __init__(
-        self, family: str, *, material: str, color: str | None = None, handles: Look = ("metal", None)
+        self,
+        family: str,
+        *,
+        material: str,
+        color: str | None = None,
+        handles: Look = ("metal", None),
+        walls: float | None = None,
     ) -> None:
         """Begin an object.
 
@@ -111,10 +117,12 @@ class Workshop:
             material: Of bodies that name none.
             color: Of bodies that name none; the material's own if absent.
             handles: Material and colour of handles.
+            walls: Of `Part`.
         """
         self._family = family
         self._material = material
         self._color = color
+        self._walls = walls
         self._solids: dict[str, Manifold] = {}
         self._handles = handles
         self._looks: dict[str, Look] = {}
@@ -308,6 +316,7 @@ class Workshop:
                 uv=grain_coordinates(vertices, faces, shift=shift) if any(item.texture for item in materials) else None,
             ),
             density=MATERIALS[material].density,
+            walls=self._walls,
         )
 
 

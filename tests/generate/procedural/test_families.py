@@ -124,9 +124,3 @@ def test_unknown_parameters_and_values_out_of_bounds_are_refused_with_a_hint():
         build(FAMILIES["cabinet"], {"width": 3000})
     with pytest.raises(InputError, match="bar, knob"):
         build(FAMILIES["cabinet"], {"handle": "rope"})
-
-
-def test_a_seed_draws_no_gripper():
-    assert not any(
-        "finger" in part.name for seed in range(5) for part in build(FAMILIES["serial_arm"], {}, seed=seed).parts
-    )

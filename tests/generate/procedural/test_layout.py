@@ -8,10 +8,6 @@ from kinematify.errors import InputError
 from kinematify.generate.procedural.layout import parse_layout
 
 
-def kinds(text: str) -> list[str]:
-    return [cell.kind for cell in parse_layout(text)]
-
-
 def test_doors_stand_side_by_side_and_drawers_are_stacked():
     cells = parse_layout("2*door / 3*drawer")
     assert [cell.kind for cell in cells] == ["door"] * 2 + ["drawer"] * 3
@@ -20,12 +16,6 @@ def test_doors_stand_side_by_side_and_drawers_are_stacked():
     assert doors[0].right == doors[1].left == 0.5
     assert [cell.left for cell in drawers] == [0.0] * 3
     assert drawers[0].bottom == pytest.approx(drawers[1].top)
-
-
-def test_brackets_group_columns():
-    cells = parse_layout("(3*drawer) | door")
-    assert [cell.right for cell in cells[:3]] == [0.5] * 3
-    assert (cells[3].left, cells[3].bottom, cells[3].top) == (0.5, 0.0, 1.0)
 
 
 @pytest.mark.parametrize("text", ["door", "2*door | drawer", "(door / drawer) | (2*drawer / shelf)", "3*(2*door)"])
