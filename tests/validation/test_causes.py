@@ -73,6 +73,14 @@ def test_a_note_explains_nothing_that_counts() -> None:
     assert [len(item.consequences) for item in report.groups] == [0, 0]
 
 
+def test_an_inertia_for_which_an_engine_refuses_the_file_is_the_cause_of_that() -> None:
+    rounded, refused = found("KV205", Severity.NOTE, link="shoulder"), found("KV801", link="shoulder")
+    (item,) = report_of(rounded, refused, found("KV806")).groups
+    assert (item.finding.check, item.finding.severity) == ("KV205", Severity.WARNING)
+    assert [finding.check for finding in item.consequences] == ["KV801", "KV806"]
+    assert len(report_of(rounded, found("KV801", link="wrist")).groups) == 2
+
+
 def test_causes_of_causes_are_the_ones_that_are_reported() -> None:
     pair = ("base", "wrist")
     report = report_of(found("KV301", pair=pair), found("KV802", pair=pair), found("KV804", joint="roll", pair=pair))

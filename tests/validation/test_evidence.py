@@ -74,7 +74,7 @@ def test_an_axis_turned_by_20_deg_is_off_every_direction(
     assert (finding.joint, finding.cause) == (f"{child}_joint", Cause.KINEMATICS)
     if finding.check != "KV349":
         assert (finding.check, finding.severity) == ("KV344", Severity.NOTE)
-        assert finding.value == pytest.approx(20.0, abs=1.0)  # the line of two barrels is measured from drawn points
+        assert re.search("(19|20)[.].* deg off", finding.message)  # lines of two barrels are measured from drawn points
 
 
 @pytest.mark.parametrize(

@@ -83,47 +83,37 @@ def shapes_suggest_another(result: OpenCheck, case: JointCase) -> None:
     """
     found = _suggested(case) if case.examined else None
     if found is not None:
-        message, remedy, value, limit, unit = found
-        said = f"The shapes suggest otherwise, though nothing measured does: {message}"
-        _doubt(result, case, said, remedy, value=value, limit=limit, unit=unit)
+        joint = case.measures.joint
+        said = f"The shapes suggest otherwise, though nothing measured does: {found[0]}"
+        result.find(said, found[1], joint=joint.source, q={joint.source: joint.value})
 
 
-_Suggested = tuple[str, str, float, float, str | None]
-"""Message, remedy, value, limit and unit."""
-
-
-def _suggested(case: JointCase) -> _Suggested | None:
-    measures, settings, child, parent = case.measures, case.settings, case.child, case.parent
+def _suggested(case: JointCase) -> tuple[str, str] | None:
+    """Return what the shapes hold against the joint, and what to do."""
+    measures, child, parent = case.measures, case.child, case.parent
     if case.hangs_elsewhere and measures.parent.best is not None:
         other, share = case.bodies.links[measures.parent.best], case.share_of_contact
-        message = f"{child} touches {other} far better than {parent}, which carries it ({share:.0%} of the quality)."
-        remedy = f"Make {other} the parent, or fix the pose or the meshes of {child} and {parent}."
-        return message, remedy, share, settings.weak_contact, None
+        return (
+            f"{child} touches {other} far better than {parent}, which carries it ({share:.0%} of the quality).",
+            f"Make {other} the parent, or fix the pose or the meshes of {child} and {parent}.",
+        )
     if case.doubts_line and case.opened is None:
-        return _better_line(case)
+        size, shown = measures.scene.frame.diagonal, f"{child} and {parent} show"
+        away = measures.distance * size if np.isfinite(measures.distance) else size
+        if case.unexplained:
+            message = f"the axis runs {measures.angle:.1f} deg off every direction that {shown}."
+        elif case.misplaced:
+            message = f"the axis runs {away:.3g} m beside every line along its direction that {shown} as a hinge."
+        else:
+            message = f"another line is {min(np.exp(measures.deficit), 1e4):.0f} times as likely by what {shown}."
+        return message, case.instead
     if case.doubts_type:
         declared, other = ("slide", "turn") if measures.slides else ("turn", "slide")
         return (
             f"{child} is declared to {declared} on {parent}, but its shape and room speak for a part that {other}s.",
             "Check the type. The report names the joint that fits best.",
-            measures.odds_against,
-            settings.type_odds,
-            "log odds",
         )
     return None
-
-
-def _better_line(case: JointCase) -> _Suggested:
-    line, bodies, size = case.measures, f"{case.child} and {case.parent} show", case.measures.scene.frame.diagonal
-    if case.unexplained:
-        message = f"the axis runs {line.angle:.1f} deg off every direction that {bodies}."
-        return message, case.instead, line.angle, case.settings.unknown_deg, "deg"
-    if case.misplaced:
-        away = line.distance * size if np.isfinite(line.distance) else size
-        message = f"the axis runs {away:.3g} m beside every line along its direction that {bodies} as a hinge."
-        return message, case.instead, away, case.farthest * size, "m"
-    message = f"another line is {min(np.exp(line.deficit), 1e4):.0f} times as likely by what {bodies}."
-    return message, case.instead, line.deficit, case.usual_deficit, None
 
 
 @check(

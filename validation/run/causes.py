@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from kinematify.robot.robot import rigid_groups
 from kinematify.validation.check import CauseScope
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Severity
+from kinematify.validation.finding import Severity, Status
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from kinematify.validation.finding import CheckResult, Finding
 
 _ORDER = tuple(Severity)
+_OPENS = "KV801"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,14 +48,15 @@ def group_by_cause(findings: Iterable[Finding]) -> tuple[FindingGroup, ...]:
 def with_causes(results: Sequence[CheckResult], robot: Robot | None) -> tuple[CheckResult, ...]:
     """Name the cause of every finding that follows from another one.
 
-    A cause is as bad as the worst that follows from it, and where it is suppressed, so is what follows.
+    A cause is as bad as the worst that follows from it, and where it is suppressed, so is what follows. A note is the
+    cause of notes alone, unless it is about the link for which an engine refuses the file.
 
     Args:
         results: Of all checks of a run, suppressed findings marked.
         robot: The model, which tells what is one body; None if it cannot be read, and every link is one.
     """
     findings = [finding for result in results for finding in result.findings]
-    subjects = _Subjects(robot)
+    subjects = _Subjects(robot, frozenset(item.link for item in findings if item.check == _OPENS and item.link))
     above = {id(item): cause for item in findings if (cause := _cause(item, findings, subjects)) is not None}
     roots: dict[int, Finding] = {}
     for finding in findings:
@@ -72,11 +74,17 @@ def with_causes(results: Sequence[CheckResult], robot: Robot | None) -> tuple[Ch
         if id(finding) in above:
             cause = final[id(roots[id(finding)])]
             final[id(finding)] = replace(finding, follows_from=cause, suppressed=finding.suppressed or cause.suppressed)
-    return tuple(replace(result, findings=tuple(final[id(item)] for item in result.findings)) for result in results)
+
+    def finished(result: CheckResult) -> CheckResult:
+        found = tuple(final[id(item)] for item in result.findings)
+        counted = any(item.severity is not Severity.NOTE for item in found)
+        return replace(result, findings=found, status=Status.FAIL if counted else result.status)
+
+    return tuple(map(finished, results))
 
 
 def _cause(finding: Finding, findings: Sequence[Finding], subjects: _Subjects) -> Finding | None:
-    """Return the worst finding that a finding directly follows from; a note explains nothing worse than a note.
+    """Return the worst finding that a finding directly follows from.
 
     What several engines find alike follows from the first of them.
     """
@@ -88,14 +96,19 @@ def _cause(finding: Finding, findings: Sequence[Finding], subjects: _Subjects) -
         for other in (earlier if check == finding.check else findings)
         if other.check == check and subjects.share(other, finding, shared)
     ]
-    fits = [item for item in fits if item.severity is not Severity.NOTE or finding.severity is Severity.NOTE]
+    fits = [
+        item
+        for item in fits
+        if item.severity is not Severity.NOTE or finding.severity is Severity.NOTE or item.link in subjects.refused
+    ]
     return min(fits, key=lambda item: _ORDER.index(item.severity), default=None)
 
 
 class _Subjects:
     """Subjects of findings, by bodies: engines and checks name different links of one body."""
 
-    def __init__(self, robot: Robot | None) -> None:
+    def __init__(self, robot: Robot | None, refused: frozenset[str]) -> None:
+        self.refused = refused
         groups = () if robot is None else rigid_groups(robot)
         self._body = {link: group.links[0] for group in groups for link in group.links}
         self._joints = {} if robot is None else robot.joint_by_name
