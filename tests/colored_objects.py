@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 
 from kinematify.errors import KinematifyError
 from kinematify.robot.appearance import Appearance, Material, Texture, plain, srgb_of
-from kinematify.robot.mesh_file import TO_Z_UP, read_meshes
+from kinematify.robot.mesh_file import read_meshes, to_z_up
 from kinematify.robot.raw_mesh import RawMesh, merged
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
@@ -98,7 +98,7 @@ def _places(mesh: RawMesh) -> tuple[FloatArray, FloatArray]:
 def seen_of_glb(path: Path) -> RawMesh:
     """What is seen of a GLB file, z up."""
     mesh = merged(read_meshes(path, appearance=True), path.name)
-    return mesh.moved(TO_Z_UP["Y_UP"])
+    return mesh.moved(to_z_up("y"))
 
 
 def seen_of_urdf(path: Path) -> RawMesh:

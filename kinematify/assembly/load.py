@@ -21,7 +21,7 @@ from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
 from kinematify.robot.description import SUFFIXES, form_of
 from kinematify.robot.lengths import length_text
-from kinematify.robot.mesh_file import read_meshes
+from kinematify.robot.mesh_file import read_meshes, to_z_up
 from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES, MESH_SUFFIXES
 from kinematify.robot.raw_mesh import RawMesh, merged
 from kinematify.robot.read import read_robot
@@ -36,23 +36,12 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 
-_TO_Z_UP = {
-    "x": ((0, 0, -1), (0, 1, 0), (1, 0, 0)),
-    "y": ((1, 0, 0), (0, 0, -1), (0, 1, 0)),
-    "z": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
-    "-x": ((0, 0, 1), (0, 1, 0), (-1, 0, 0)),
-    "-y": ((1, 0, 0), (0, 0, 1), (0, -1, 0)),
-    "-z": ((1, 0, 0), (0, -1, 0), (0, 0, -1)),
-}
-"""Axis that points up in the input -> rotation that turns it to z."""
-UP_CHOICES = ("auto", *_TO_Z_UP)
+UP_CHOICES = ("auto", "x", "y", "z", "-x", "-y", "-z")
 PIECES_CHOICES = ("auto", "group", "cut", "keep")
 PART_SUFFIXES = (*MESH_SUFFIXES, *CAD_SUFFIXES)
 """Files that an assembly can be given as."""
 _SILENT_SUFFIXES = (".mtl", ".bin", ".png", ".jpg", ".jpeg", ".json", ".txt", ".md")
 """Files beside meshes that nobody takes for a part."""
-_STATED_UP = {"X_UP": "x", "Y_UP": "y"}
-"""What a COLLADA file says -> a key of `_TO_Z_UP`."""
 _ON_GROUND, _BELOW_GROUND = 0.005, 0.1
 """Of the object's diagonal: what is nearer lies on the ground, what is lower is under it."""
 _STANDS, _LIES = 0.5, 0.1
@@ -331,14 +320,12 @@ def _read(path: Path, reading: _Reading, *, empty_ok: bool) -> tuple[RawMesh, ..
     if reading.up != "auto":
         return tuple(_upright(mesh, reading.up) for mesh in meshes)
     usual = "y" if path.suffix.lower() in GLTF_SUFFIXES else "z"
-    return tuple(_upright(mesh, _STATED_UP.get(mesh.up, usual)) for mesh in meshes)
+    return tuple(_upright(mesh, mesh.up or usual) for mesh in meshes)
 
 
 def _upright(mesh: RawMesh, up: str) -> RawMesh:
     """Turn the axis that points up to z; from y a quarter turn about x, so that the front stays in front."""
-    if up == "z":
-        return mesh
-    return mesh.moved(np.array(_TO_Z_UP[up], dtype=np.float64))
+    return mesh if up == "z" else mesh.moved(to_z_up(up))
 
 
 def _near_origin(meshes: Sequence[RawMesh]) -> tuple[Sequence[RawMesh], list[str]]:

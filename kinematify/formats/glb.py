@@ -11,7 +11,7 @@ from PIL import Image
 from kinematify.formats.content import shown_surfaces
 from kinematify.robot.appearance import linear_of
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.mesh_file import TO_Z_UP
+from kinematify.robot.mesh_file import to_z_up
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -29,7 +29,7 @@ def write_glb(content: Content, out: Path, *, free: bool) -> None:
     scene = trimesh.Scene(base_frame=_OUTSIDE)
     graph: Any = scene.graph
     T_outside_root = np.eye(4)
-    T_outside_root[:3, :3] = TO_Z_UP["Y_UP"].T
+    T_outside_root[:3, :3] = to_z_up("y").T
     graph.update(frame_from=_OUTSIDE, frame_to=content.robot.root, matrix=T_outside_root)
     for joint in content.robot.joints_downward:
         extras = {"kinematify": _described(joint)}

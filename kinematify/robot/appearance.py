@@ -156,7 +156,12 @@ class Appearance:
 
 def plain(color: Rgba, faces: int) -> Appearance:
     """Return the appearance of a mesh of one colour, sRGB and opacity."""
-    return Appearance(materials=(Material(color=color),), material_of_face=np.zeros(faces, dtype=np.int64))
+    return of_one(Material(color=color), faces)
+
+
+def of_one(material: Material, faces: int, uv: FloatArray | None = None, notes: tuple[str, ...] = ()) -> Appearance:
+    """Return the appearance of so many faces of one material; other arguments as in `Appearance`."""
+    return Appearance(materials=(material,), material_of_face=np.zeros(faces, dtype=np.int64), uv=uv, notes=notes)
 
 
 def painted(colors: FloatArray, notes: tuple[str, ...] = ()) -> Appearance:

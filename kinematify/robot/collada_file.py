@@ -19,7 +19,7 @@ from collada.scene import ControllerNode, GeometryNode, Node
 from collada.triangleset import TriangleSet
 from lxml import etree
 
-from kinematify.robot.appearance import Appearance, Material, painted
+from kinematify.robot.appearance import Appearance, Material, of_one, painted
 from kinematify.robot.polygons import triangle_places
 from kinematify.robot.raw_mesh import RawMesh, merged
 
@@ -111,9 +111,7 @@ def _piece(
         uv = None
         if material.texture is not None and piece.texcoordset:
             uv = piece.texcoordset[0][np.asarray(piece.texcoord_indexset[0]).reshape(-1)[places]][..., :2]
-        found = Appearance(
-            materials=(material,), material_of_face=np.zeros(len(faces), dtype=np.int64), uv=uv, notes=notes
-        )
+        found = of_one(material, len(faces), uv, notes)
     elif looks is not None and colors and len(faces):
         rows = np.asarray(piece.index).reshape(len(corners), -1)[:, colors[0][0]]
         stated = np.asarray(colors[0][4].data)[rows[places]].mean(axis=1)

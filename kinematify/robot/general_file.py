@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.errors import AssemblyError
-from kinematify.robot.appearance import Appearance, Material, painted
+from kinematify.robot.appearance import Appearance, Material, of_one, painted
 from kinematify.robot.polygons import triangle_places
 from kinematify.robot.raw_mesh import RawMesh
 
@@ -101,7 +101,7 @@ def _appearance(visual: Any, faces: IntArray) -> Appearance | None:
 
         material = Material(color=(1.0, 1.0, 1.0, 1.0), texture=texture_of("texture", picture))
         uv = np.asarray(visual.uv, dtype=np.float64)[faces][..., :2]
-        return Appearance(materials=(material,), material_of_face=np.zeros(len(faces), dtype=np.int64), uv=uv)
+        return of_one(material, len(faces), uv)
     if visual.kind == "face":
         return painted(np.asarray(visual.face_colors, dtype=np.float64) / 255.0)
     if visual.kind == "vertex":

@@ -17,7 +17,7 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from kinematify.robot.appearance import Appearance, Material, joined, linear_of, painted, srgb_of
+from kinematify.robot.appearance import Appearance, Material, joined, linear_of, of_one, painted, srgb_of
 from kinematify.robot.exact_faces import ExactFaces, joined_faces
 from kinematify.robot.raw_mesh import RawMesh, compacted, merged
 from kinematify.robot.transforms import rotation_from_quaternion
@@ -237,8 +237,7 @@ class _Materials:
         uv = None if index is None or material.texture is None else self._places(primitive, index, corners)
         notes = (self._notes[index],) if index in self._notes else ()
         kept = material if uv is not None else replace(material, texture=None)
-        zeros = np.zeros(len(corners), dtype=np.int64)
-        return Appearance(materials=(kept,), material_of_face=zeros, uv=uv, notes=notes)
+        return of_one(kept, len(corners), uv, notes)
 
     def _painted(self, accessor: int, corners: IntArray, material: Material) -> Appearance:
         """Colours of vertices, which are linear light, times that of the material, a mean for each face."""

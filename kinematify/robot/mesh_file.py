@@ -15,17 +15,24 @@ from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES, MESH_SUFFIX
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from kinematify.robot.arrays import FloatArray
     from kinematify.robot.raw_mesh import RawMesh
 
 # Without a handler of its own the logger of trimesh would write to the user's terminal; a program that sets up
 # logging still hears it.
 logging.getLogger("trimesh").addHandler(logging.NullHandler())
 
-TO_Z_UP = {
-    "X_UP": np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]]),
-    "Y_UP": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
-}
-"""Axis that a COLLADA file may state as the one that points up -> rotation that turns it to z."""
+_UPRIGHT = {
+    "x": "-z +y +x", "y": "+x -z +y", "z": "+x +y +z", "-x": "+z +y -x", "-y": "+x +z -y", "-z": "+x -y -z",
+    "X_UP": "-y -z +x", "Y_UP": "+x -z +y",
+}  # fmt: skip
+"""Axis that points up, by its name or by that of COLLADA -> axes that become x, y and z."""
+
+
+def to_z_up(up: str) -> FloatArray:
+    """Return the rotation, shape (3, 3), that turns an axis to z: ``x``, ``-y``, ``X_UP``."""
+    signs = [[int(f"{word[0]}1") * (word[1] == axis) for axis in "xyz"] for word in _UPRIGHT[up].split()]
+    return np.array(signs, dtype=np.float64)
 
 
 def read_meshes(path: Path, *, empty_ok: bool = False, appearance: bool = False) -> tuple[RawMesh, ...]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from kinematify.errors import AssemblyError, DescriptionError
 from kinematify.robot.appearance import plain
-from kinematify.robot.mesh_file import TO_Z_UP, read_meshes
+from kinematify.robot.mesh_file import read_meshes, to_z_up
 from kinematify.robot.mesh_paths import find_mesh
 from kinematify.robot.raw_mesh import RawMesh, merged
 from kinematify.robot.robot import LinkMesh, Shape
@@ -127,7 +127,7 @@ class GeometrySource:
         path = self.resolved(filename, where)
         mesh = self._mesh_file(path, where)
         if self.heeds_up_axis and mesh.up:
-            mesh = mesh.moved(TO_Z_UP[mesh.up])
+            mesh = mesh.moved(to_z_up(mesh.up))
         mesh = mesh.placed(np.diag([*scale, 1.0])).moved(T_link_shape[:3, :3], T_link_shape[:3, 3])
         looks = mesh.appearance
         if looks is None and color is not None and self.appearance:

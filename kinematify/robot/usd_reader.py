@@ -15,7 +15,7 @@ from kinematify.errors import DescriptionError
 from kinematify.robot.appearance import srgb_of
 from kinematify.robot.body_tree import WORLD, tree_of
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.mesh_file import TO_Z_UP
+from kinematify.robot.mesh_file import to_z_up
 from kinematify.robot.polygons import triangle_places
 from kinematify.robot.robot import Inertial, Joint, Link, Mimic
 from kinematify.robot.transforms import rotation_from_quaternion
@@ -87,7 +87,7 @@ def read_usd(path: Path, *_: Any) -> Robot:
         raise DescriptionError(f"The USD {path} has no rigid body (UsdPhysicsRigidBodyAPI). Give a model with physics.")
     unit, T_world_stage = UsdGeom.GetStageMetersPerUnit(stage), np.eye(4)
     lies = UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.y
-    T_world_stage[:3, :3] = unit * (TO_Z_UP["Y_UP"] if lies else np.eye(3))
+    T_world_stage[:3, :3] = unit * (to_z_up("y" if lies else "z"))
     read = _Stage(
         stage=stage,
         unit=unit,
