@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from kinematify.robot.arrays import read_only
-from kinematify.robot.vectors import crossed, highest, lengths_of, lowest, referenced
+from kinematify.robot.vectors import highest, lengths_of, lowest, referenced, triangle_normals
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -71,8 +71,7 @@ class Part:
     @cached_property
     def face_areas(self) -> FloatArray:
         """Area of every triangle [m^2], shape (F,)."""
-        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
-        return read_only(0.5 * lengths_of(crossed(b - a, c - a)), np.float64)
+        return read_only(0.5 * lengths_of(triangle_normals(self.vertices[self.faces])), np.float64)
 
     @property
     def area(self) -> float:

@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from kinematify.errors import AssemblyError
 from kinematify.robot.raw_mesh import RawMesh, compacted, merged
-from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.vectors import crossed, lengths_of, triangle_normals
 from kinematify.robot.weld import weld
 
 if TYPE_CHECKING:
@@ -185,7 +185,7 @@ def sheet_of_faces(vertices: FloatArray, faces: IntArray, *, cut: bool = False) 
     pairs = starts[counts == 2]
     sheet = _components(face[pairs], face[pairs + 1], len(single))
     corners = vertices[single]
-    normals = crossed(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = triangle_normals(corners)
     areas = 0.5 * lengths_of(normals)
     folds = pairs[_inward(corners, normals, sheet, face[pairs], face[pairs + 1])] if cut else pairs[:0]
     sheet = _components(face[np.setdiff1d(pairs, folds)], face[np.setdiff1d(pairs, folds) + 1], len(single))

@@ -20,7 +20,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from kinematify.geometry.convex import ConvexPiece, convex_hull
 from kinematify.robot.transforms import rotation_about
-from kinematify.robot.vectors import all_three, crossed, lengths_of
+from kinematify.robot.vectors import all_three, crossed, lengths_of, triangle_normals
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -120,8 +120,7 @@ class _Polytope:
     @cached_property
     def planes(self) -> tuple[FloatArray, FloatArray]:
         """Distinct outward unit normals (P, 3) of the faces and offsets (P,): inside where `normal @ x <= offset`."""
-        a, b, c = (self.vertices[self.piece.faces[:, k]] for k in range(3))
-        normals = crossed(b - a, c - a)
+        normals = triangle_normals(self.vertices[self.piece.faces])
         areas = lengths_of(normals)
         normals = normals[areas > 0.0] / areas[areas > 0.0, None]
         x, y, z = np.round(normals.T * 500.0).astype(np.int64) + 500

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError, cKDTree
 
-from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.vectors import crossed, lengths_of, triangle_normals
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
@@ -34,8 +34,7 @@ def convex_hull(points: FloatArray) -> tuple[FloatArray, IntArray]:
     index[hull.vertices] = np.arange(len(hull.vertices))
     faces = index[hull.simplices]
     vertices: FloatArray = points[hull.vertices]
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    inward = np.einsum("ij,ij->i", crossed(b - a, c - a), hull.equations[:, :3]) < 0
+    inward = np.einsum("ij,ij->i", triangle_normals(vertices[faces]), hull.equations[:, :3]) < 0
     faces[inward] = faces[inward][:, ::-1]
     return vertices, faces.astype(np.int64)
 
@@ -111,8 +110,7 @@ class ConvexPiece:
     @cached_property
     def area(self) -> float:
         """[m^2]."""
-        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
-        return float(0.5 * lengths_of(crossed(b - a, c - a)).sum())
+        return float(0.5 * lengths_of(triangle_normals(self.vertices[self.faces])).sum())
 
 
 def convex_piece(points: FloatArray, *, thickness: float, directions: int) -> ConvexPiece:
@@ -157,8 +155,7 @@ def plain_piece(piece: ConvexPiece) -> ConvexPiece:
     """
     vertices = piece.vertices
     near = cKDTree(vertices).query_pairs(_BESIDE * float(np.linalg.norm(piece.high - piece.low)), output_type="ndarray")
-    a, b, c = (vertices[piece.faces[:, k]] for k in range(3))
-    normals = crossed(b - a, c - a)
+    normals = triangle_normals(vertices[piece.faces])
     normals /= np.maximum(lengths_of(normals), 1e-300)[:, None]
     spread = np.zeros((len(vertices), 3, 3))
     for k in range(3):
@@ -201,8 +198,7 @@ def signed_volume(vertices: FloatArray, faces: IntArray) -> float:
 
 def enclosed_volume(vertices: FloatArray, faces: IntArray) -> float | None:
     """Volume inside a surface [m^3]; None where it is open or encloses nothing."""
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    areas = 0.5 * crossed(b - a, c - a)
+    areas = 0.5 * triangle_normals(vertices[faces])
     if np.linalg.norm(areas.sum(axis=0)) > _CLOSED * float(lengths_of(areas).sum()):
         return None
     return abs(signed_volume(vertices, faces)) or None
@@ -217,7 +213,7 @@ def surface_points(vertices: FloatArray, faces: IntArray, count: int) -> FloatAr
         count: How many.
     """
     corners = vertices[faces]
-    areas = lengths_of(crossed(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+    areas = lengths_of(triangle_normals(corners))
     ends = np.cumsum(areas)
     number = np.arange(count)
     face = np.minimum(np.searchsorted(ends, (number + 0.5) * (ends[-1] / count)), len(faces) - 1)

@@ -18,7 +18,7 @@ import numpy as np
 
 from kinematify.geometry.convex import ConvexPiece, convex_piece, outermost, surface_points
 from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
-from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.vectors import lengths_of, triangle_normals
 from kinematify.robot.weld import snapped
 
 if TYPE_CHECKING:
@@ -79,8 +79,7 @@ class CutSurface:
         _, count = np.unique(sides[:, 0] * len(self.vertices) + sides[:, 1], return_counts=True)
         if np.count_nonzero(count == 1) > _HOLES * len(count):
             return False
-        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
-        areas = crossed(b - a, c - a)
+        areas = triangle_normals(self.vertices[self.faces])
         return bool(np.linalg.norm(areas.sum(axis=0)) <= _HOLES * lengths_of(areas).sum())
 
     @cached_property
@@ -145,7 +144,7 @@ class Concave:
     def axes(self) -> FloatArray:
         """Rows across which to cut: those of the frame or the principal ones, whichever more faces lie across."""
         triangles = self.triangles
-        normals = crossed(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+        normals = triangle_normals(triangles)
         middles = triangles.mean(axis=1)
         weights = lengths_of(normals) + 1e-300
         centred = middles - np.average(middles, axis=0, weights=weights)
@@ -301,7 +300,7 @@ def _offsets(triangles: FloatArray, heights: FloatArray, axis: FloatArray, *, cl
     rind = _RIND * (high - low)
     if rind == 0.0:
         return np.empty(0)
-    normals = crossed(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    normals = triangle_normals(triangles)
     areas = lengths_of(normals)
     across = (np.abs(normals @ axis) > _ALONG * areas) & (areas > 0.0)
     levels = heights[across].mean(axis=1)

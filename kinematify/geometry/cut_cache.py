@@ -16,7 +16,7 @@ from scipy.sparse.csgraph import connected_components
 
 from kinematify.geometry.convex import ConvexPiece
 from kinematify.geometry.cut import Chunk, cut_worst_first, split
-from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.vectors import lengths_of, triangle_normals
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -93,14 +93,14 @@ def split_by_boards(body: Concave, most: int) -> list[Chunk] | None:
 
 
 def _share_across(triangles: FloatArray, axes: FloatArray) -> float:
-    normals = crossed(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    normals = triangle_normals(triangles)
     across = (np.abs(normals @ axes.T) > _ALONG * lengths_of(normals)[:, None]).any(axis=1)
     areas = lengths_of(normals)
     return float(areas[across].sum() / max(float(areas.sum()), 1e-300))
 
 
 def _areas(triangles: FloatArray) -> FloatArray:
-    return 0.5 * lengths_of(crossed(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]))
+    return 0.5 * lengths_of(triangle_normals(triangles))
 
 
 def _largest_board(body: Concave, triangles: FloatArray, least: float) -> tuple[Chunk, FloatArray] | None:
@@ -130,7 +130,7 @@ def _planes(triangles: FloatArray, heights: FloatArray, axis: FloatArray) -> Ite
     extent = high - low
     if extent <= 0.0:
         return
-    normals = crossed(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    normals = triangle_normals(triangles)
     areas = lengths_of(normals)
     across = (np.abs(normals @ axis) > _ALONG * areas) & (areas > 0.0)
     levels = heights[across].mean(axis=1)

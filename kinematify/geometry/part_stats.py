@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from kinematify.robot.arrays import read_only
-from kinematify.robot.vectors import referenced
+from kinematify.robot.vectors import referenced, triangle_normals
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, Part
@@ -95,7 +95,7 @@ def _hull_measures(part: Part) -> tuple[float, float, float]:
     except QhullError:
         return 0.0, 0.0, 0.0
     sides = points[hull.simplices]
-    areas = 0.5 * np.linalg.norm(np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0]), axis=1)
+    areas = 0.5 * np.linalg.norm(triangle_normals(sides), axis=1)
     up = hull.equations[:, 2]
     footprint = 0.5 * float((areas * np.abs(up)).sum())
     if footprint <= 0.0:
@@ -112,7 +112,7 @@ def _rests(corners: FloatArray, diagonal: float, footprint: float) -> bool:
     The hull of blades around a small cap is nearly level below, and there is nothing but the cap.
     """
     height = corners[:, :, 2] - corners[:, :, 2].min()
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = triangle_normals(corners)
     level = np.abs(normals[:, 2]) > _LEVEL * np.linalg.norm(normals, axis=1)
     lying = level & (height.max(axis=1) < _NEAR * diagonal)
     touching = np.concatenate([corners[lying].reshape(-1, 3), corners[height < _TOUCHES * diagonal]])[:, :2]

@@ -10,6 +10,8 @@ import numpy as np
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 
+from kinematify.robot.vectors import triangle_normals
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -136,8 +138,7 @@ class RayScene:
 
     @cached_property
     def _face_cross(self) -> FloatArray:
-        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
-        return np.asarray(np.cross(b - a, c - a), dtype=np.float64)
+        return np.asarray(triangle_normals(self.vertices[self.faces]), dtype=np.float64)
 
     @cached_property
     def face_normals(self) -> FloatArray:

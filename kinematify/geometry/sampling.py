@@ -12,6 +12,7 @@ import numpy as np
 
 from kinematify.errors import AssemblyError
 from kinematify.robot.arrays import read_only
+from kinematify.robot.vectors import triangle_normals
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Part
@@ -155,7 +156,7 @@ def _unturned(barycentric: FloatArray, corners: FloatArray) -> FloatArray:
 
 def _unit_normals(corners: FloatArray) -> FloatArray:
     """Unit normals of triangles of positive area, (n, 3, 3) -> (n, 3)."""
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = triangle_normals(corners)
     lengths: FloatArray = np.linalg.norm(normals, axis=1, keepdims=True)
     return np.asarray(normals / np.maximum(lengths, np.finfo(np.float64).tiny), dtype=np.float64)
 

@@ -18,7 +18,7 @@ from scipy.sparse.csgraph import connected_components
 from kinematify.geometry.mesh_trees import DistanceTree, WindingTree, collision_tree
 from kinematify.geometry.rays import RayScene
 from kinematify.geometry.sampling import curve_order, place_samples
-from kinematify.robot.vectors import all_three, crossed, highest, lengths_of, lowest, referenced
+from kinematify.robot.vectors import all_three, crossed, highest, lengths_of, lowest, referenced, triangle_normals
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -216,8 +216,7 @@ def _at_edges(corners: FloatArray, foot: FloatArray) -> BoolArray:
 
 def _crosses(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """Normals of faces, twice as long as the face is large, shape (F, 3)."""
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    return np.asarray(crossed(b - a, c - a))
+    return np.asarray(triangle_normals(vertices[faces]))
 
 
 def _sharp_edges(vertices: FloatArray, faces: IntArray) -> IntArray:
@@ -391,5 +390,5 @@ def _sums(index: IntArray, vectors: FloatArray, count: int) -> FloatArray:
 
 def _areas(points: FloatArray, faces: IntArray, shell: IntArray) -> FloatArray:
     corners = points[faces]
-    cross = crossed(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    cross = triangle_normals(corners)
     return np.asarray(np.bincount(shell, 0.5 * lengths_of(cross)))

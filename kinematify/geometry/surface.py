@@ -28,7 +28,7 @@ from kinematify.geometry.denoise import (
 )
 from kinematify.geometry.mesh_trees import DistanceTree, collision_tree
 from kinematify.geometry.sampling import curve_order, place_samples
-from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.vectors import crossed, lengths_of, triangle_normals
 
 if TYPE_CHECKING:
     from typing import Any
@@ -122,8 +122,7 @@ class PartSurface:
     def face_normals(self) -> tuple[FloatArray, FloatArray]:
         """Unit normals (F, 3) and areas (F,) of the welded faces; zero-area faces have a zero normal."""
         vertices, faces = self.welded
-        a, b, c = (vertices[faces[:, k]] for k in range(3))
-        cross = crossed(b - a, c - a)
+        cross = triangle_normals(vertices[faces])
         length = lengths_of(cross)
         return cross / np.maximum(length, 1e-300)[:, None], 0.5 * length
 

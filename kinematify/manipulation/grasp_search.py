@@ -18,6 +18,7 @@ from kinematify.geometry.rays import RayScene
 from kinematify.geometry.sampling import curve_order, place_samples
 from kinematify.geometry.scene import transformed
 from kinematify.robot.transforms import rotation_about
+from kinematify.robot.vectors import triangle_normals
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -109,7 +110,7 @@ class GraspSearch:
         """Points on the surface of the body, small pieces and narrow sides favoured, shape (n, 3)."""
         vertices, faces = self.meshes[self.body]
         corners = vertices[faces]
-        cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        cross = triangle_normals(corners)
         areas = 0.5 * np.linalg.norm(cross, axis=1)
         solid = areas > 0.0
         corners, areas, cross = corners[solid], areas[solid], cross[solid]
@@ -231,7 +232,7 @@ class GraspSearch:
 def main_directions(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """Three perpendicular unit directions that most of the surface of a body faces, rows, shape (3, 3)."""
     corners = vertices[faces]
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    cross = triangle_normals(corners)
     areas = np.linalg.norm(cross, axis=1)
     normals = cross[areas > 0.0] / areas[areas > 0.0, None]
     areas = areas[areas > 0.0]

@@ -12,7 +12,7 @@ from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.geometry.convex import convex_hull, thickened
 from kinematify.robot.robot import Inertial, rigid_groups
-from kinematify.robot.vectors import referenced
+from kinematify.robot.vectors import referenced, triangle_normals
 from kinematify.robot.weld import is_closed
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def inertial_of(part: Part, origin: FloatArray, *, thickness: float, config: Mod
 def _walls(part: Part) -> _Solid:
     """Moments of the surface: its area takes the place of the volume [m^2]. Exact, by the middles of the edges."""
     corners = part.vertices[part.faces]
-    crosses = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    crosses = triangle_normals(corners)
     areas = 0.5 * np.linalg.norm(crosses, axis=1)
     points = 0.5 * (corners + np.roll(corners, 1, axis=1)).reshape(-1, 3)
     weights = np.repeat(areas / 3.0, 3)

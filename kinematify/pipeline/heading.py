@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.vectors import lengths_of, triangle_normals
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, Part
@@ -67,8 +67,7 @@ def _apart(angles: FloatArray, angle: float) -> FloatArray:
 
 def _scaled_normals(part: Part) -> FloatArray:
     """Normals of the faces, as long as twice their areas, shape (F, 3)."""
-    a, b, c = (part.vertices[part.faces[:, k]] for k in range(3))
-    return crossed(b - a, c - a)
+    return triangle_normals(part.vertices[part.faces])
 
 
 def _area_within(angles: FloatArray, areas: FloatArray, reach: float) -> FloatArray:

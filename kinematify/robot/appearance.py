@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.robot.arrays import read_only
-from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.vectors import lengths_of, triangle_normals
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -137,8 +137,7 @@ class Appearance:
             vertices: Shape (V, 3).
             faces: Those that this is the appearance of, shape (F, 3).
         """
-        a, b, c = (vertices[faces[:, k]] for k in range(3))
-        areas = lengths_of(crossed(b - a, c - a))
+        areas = lengths_of(triangle_normals(vertices[faces]))
         spots = np.array([[2, 1, 1], [1, 2, 1], [1, 1, 2]]) / 4.0
         seen = [self.colors_at(np.arange(len(faces)), np.tile(spot, (len(faces), 1))) for spot in spots]
         weights = areas if areas.sum() > 0.0 else np.ones(len(faces))

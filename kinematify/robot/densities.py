@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.robot.vectors import triangle_normals
+
 if TYPE_CHECKING:
     from kinematify.robot.appearance import Appearance
     from kinematify.robot.arrays import FloatArray
@@ -39,7 +41,7 @@ def density_of(appearance: Appearance, corners: FloatArray) -> float | None:
         corners: Of the faces, shape (F, 3, 3); the mean over the area is of those whose material is known.
     """
     known = np.array([_named(material.name) for material in appearance.materials])[appearance.material_of_face]
-    crosses = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    crosses = triangle_normals(corners)
     areas = np.where(np.isnan(known), 0.0, np.linalg.norm(crosses, axis=1))
     return float(areas @ np.nan_to_num(known) / areas.sum()) if areas.sum() > 0.0 else None
 

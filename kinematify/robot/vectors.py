@@ -29,6 +29,12 @@ def dots(first: FloatArray, second: FloatArray) -> FloatArray:
     return np.asarray(product[..., 0] + product[..., 1] + product[..., 2])
 
 
+def triangle_normals(corners: FloatArray) -> FloatArray:
+    """Normals of triangles, twice as long as their areas, (..., 3, 3) -> (..., 3)."""
+    first = corners[..., 0, :]
+    return crossed(corners[..., 1, :] - first, corners[..., 2, :] - first)
+
+
 def lengths_of(vectors: FloatArray) -> FloatArray:
     """Lengths as ``np.linalg.norm(vectors, axis=-1)``, (..., 3) -> (...)."""
     return np.sqrt(dots(vectors, vectors))
