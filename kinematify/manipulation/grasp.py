@@ -9,13 +9,22 @@ import fcl
 import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.manipulation.grasp_search import GraspSearch
+from kinematify.manipulation.grasp_search import (
+    FINGER_LENGTH,
+    FINGER_THICKNESS,
+    FINGER_WIDTH,
+    KNOB_WIDTH,
+    PALM_LENGTH,
+    PLENTY,
+    POINTS_SEEN,
+    TIP,
+    GraspSearch,
+)
 from kinematify.robot.robot import forward_kinematics
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.config.task_settings import GraspSettings
     from kinematify.geometry.scene import Scene
     from kinematify.manipulation.grasp_search import Candidates, Tally
     from kinematify.robot.arrays import FloatArray
@@ -24,6 +33,35 @@ if TYPE_CHECKING:
     BoolArray = NDArray[np.bool_]
 
 HANDLE, KNOB, RIM = "handle", "knob", "rim"
+
+PALM_WIDTH = 0.15
+"""Along the closing direction [m]."""
+PALM_THICKNESS = 0.055
+"""Across approach and closing direction [m]."""
+APPROACH = 0.06
+"""The hand comes in along a straight line from so far off [m]."""
+SLACK = 0.006  # an arm arrives with an error of 1 to 2 mm
+"""Room between pad and surface on either side before the fingers close [m]."""
+SLACK_SHARE = 0.15  # small grippers are positioned the more carefully
+"""The same at most, fraction of the opening of the gripper."""
+LEVER_WEIGHT = 0.4  # the force that opens a door falls with the lever
+"""Share of the lever arm in the rank."""
+CLEARANCE_WEIGHT = 0.2
+"""Share of the room beside the fingers."""
+PULL_WEIGHT = 0.2
+"""Share of how the motion pulls: along the fingers or onto a pad, better than sideways out of them."""
+HANDLE_WEIGHT = 0.2
+"""Share of what is made to be held: handles and knobs, not rims."""
+SAME_PLACE = 0.04
+"""Grasps closer than this with nearly the same directions are one [m]."""
+SAME_DEG = 25.0
+"""The same for their directions [deg]."""
+TRIES = 800  # 0.2 ms each
+"""Candidates whose room is checked exactly, the best first."""
+MOST = 60  # all directions from which a handle can be held: not each one can be followed
+"""Grasps that are returned at most."""
+NEAR_POINT = 0.04  # half of a hand's width
+"""Grasps belong to a point that the user gave up to this distance [m]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -64,7 +102,6 @@ def search_grasps(
     joint: str,
     opening: float,
     *,
-    settings: GraspSettings,
     point: FloatArray | None = None,
     leaders: FloatArray | None = None,
     seed: int = 0,
@@ -75,7 +112,6 @@ def search_grasps(
         scene: The object, in metres, z up.
         joint: Joint that leads.
         opening: Largest gap between the pads [m].
-        settings: Sizes of the hand and weights of the rank.
         point: Hold it there, frame of the root link [m], shape (3,); anywhere if None.
         leaders: Values of all leading joints [rad or m], shape (leaders,); rest if None.
         seed: Of the places that are looked at.
@@ -83,26 +119,26 @@ def search_grasps(
     Raises:
         InputError: The object has no such leading joint, or `point` is not on what it moves.
     """
-    settings = settings.model_copy(update={"slack": min(settings.slack, settings.slack_share * opening)})
+    slack = min(SLACK, SLACK_SHARE * opening)  # small grippers are positioned the more carefully
     values = scene.mechanism.rest if leaders is None else leaders
     poses = scene.poses(values[None])[0]
     bodies, carried = moved_bodies(scene, joint)
     if point is not None:
         moved = [*bodies, *carried]
         nearest = min((distance_to(scene, poses, body, point) for body in moved), default=np.inf)
-        if nearest > settings.near_point:
+        if nearest > NEAR_POINT:
             raise InputError(
                 f"The grasp point {point.tolist()} is {nearest:.3f} m from what {joint} moves "
                 f"({', '.join(scene.bodies[body].name for body in moved) or 'nothing with geometry'}); a point on it "
-                f"is at most {settings.near_point} m off. Give it in metres in the frame of the root link."
+                f"is at most {NEAR_POINT} m off. Give it in metres in the frame of the root link."
             )
     last = GraspReport(grasps=(), reason=f"Nothing that {joint} moves has geometry.")
     for body in [*bodies, *carried]:
-        search = GraspSearch(scene, poses, body, settings)
-        places = search.places(seed) if point is None else _around(point, settings, seed)
+        search = GraspSearch(scene, poses, body, slack)
+        places = search.places(seed) if point is None else _around(point, seed)
         candidates, tally = search.candidates(places, opening)
         ranked = _Ranked(scene, joint, values, search, candidates)
-        grasps = _distinct(ranked, _Room(scene, poses, settings), scene.bodies[body].name, settings)
+        grasps = _distinct(ranked, _Room(scene, poses), scene.bodies[body].name, slack)
         last = GraspReport(grasps=tuple(grasps), reason=None if grasps else _reason(tally, opening))
         if grasps:
             break
@@ -141,7 +177,6 @@ class _Ranked:
     def __init__(
         self, scene: Scene, joint: str, leaders: FloatArray, search: GraspSearch, candidates: Candidates
     ) -> None:
-        settings = search.settings
         self.candidates, self.search = candidates, search
         values = dict(zip((t.joint for t in scene.travels), leaders.tolist(), strict=True))
         described = scene.model.joint_by_name[joint]
@@ -157,10 +192,10 @@ class _Ranked:
         largest = float(self.lever.max(initial=1e-9))
         reach = self.lever / largest if self.turns else 1.0 - self.lever / largest
         self.score = (
-            settings.lever_weight * reach
-            + settings.clearance_weight * np.minimum(candidates.clearance / settings.plenty, 1.0)
-            + settings.pull_weight * pull
-            + settings.handle_weight * ~self.plate
+            LEVER_WEIGHT * reach
+            + CLEARANCE_WEIGHT * np.minimum(candidates.clearance / PLENTY, 1.0)
+            + PULL_WEIGHT * pull
+            + HANDLE_WEIGHT * ~self.plate
         )
 
     def kind(self, row: int) -> str:
@@ -168,7 +203,7 @@ class _Ranked:
         if self.plate[row]:
             return RIM
         small = max(float(self.candidates.width[row]), float(self.extent[row]))
-        return KNOB if small <= self.search.settings.knob else HANDLE
+        return KNOB if small <= KNOB_WIDTH else HANDLE
 
     def _lever_and_pull(self) -> tuple[FloatArray, FloatArray]:
         """Lever arms [m] and how well each grasp pulls in [0, 1], shape (n,) each."""
@@ -199,8 +234,8 @@ def _pull(found: Candidates, motion: FloatArray) -> FloatArray:
 class _Room:
     """Test whether the hand and its straight way in are free of the object, exactly."""
 
-    def __init__(self, scene: Scene, poses: FloatArray, settings: GraspSettings) -> None:
-        self._settings, self._unit = settings, scene.unit
+    def __init__(self, scene: Scene, poses: FloatArray) -> None:
+        self._unit = scene.unit
         self._manager = fcl.DynamicAABBTreeCollisionManager()
         self._objects = [
             fcl.CollisionObject(
@@ -213,14 +248,13 @@ class _Room:
 
     def free(self, T_root_grasp: FloatArray, spread: float) -> bool:
         """Ask for both fingers and the palm, drawn out by the length of the approach."""
-        settings = self._settings
-        outward = 0.5 * (spread + settings.finger_thickness)
-        length = settings.finger_length + settings.approach
-        finger = np.array([settings.finger_width, settings.finger_thickness, length])
-        behind = settings.palm_length + settings.approach
-        palm = np.array([settings.palm_thickness, settings.palm_width, behind])
-        parts = [(finger, np.array([0.0, sign * outward, settings.tip - 0.5 * length])) for sign in (-1.0, 1.0)]
-        parts.append((palm, np.array([0.0, 0.0, settings.tip - settings.finger_length - 0.5 * behind])))
+        outward = 0.5 * (spread + FINGER_THICKNESS)
+        length = FINGER_LENGTH + APPROACH
+        finger = np.array([FINGER_WIDTH, FINGER_THICKNESS, length])
+        behind = PALM_LENGTH + APPROACH
+        palm = np.array([PALM_THICKNESS, PALM_WIDTH, behind])
+        parts = [(finger, np.array([0.0, sign * outward, TIP - 0.5 * length])) for sign in (-1.0, 1.0)]
+        parts.append((palm, np.array([0.0, 0.0, TIP - FINGER_LENGTH - 0.5 * behind])))
         return not any(self._meets(T_root_grasp, size, middle) for size, middle in parts)
 
     def _meets(self, T: FloatArray, size: FloatArray, middle: FloatArray) -> bool:
@@ -231,7 +265,7 @@ class _Room:
         return bool(data.result.is_collision)
 
 
-def _distinct(ranked: _Ranked, room: _Room, held: str, settings: GraspSettings) -> list[Grasp]:
+def _distinct(ranked: _Ranked, room: _Room, held: str, slack: float) -> list[Grasp]:
     """Take the best candidates with room, leaving out those that are nearly the same as a better one."""
     found, order = ranked.candidates, np.argsort(-ranked.score, kind="stable")
     alive = np.ones(len(found), dtype=bool)
@@ -240,10 +274,10 @@ def _distinct(ranked: _Ranked, room: _Room, held: str, settings: GraspSettings) 
     for row in order.tolist():
         if not alive[row]:
             continue
-        if tries == settings.tries or len(grasps) == settings.most:
+        if tries == TRIES or len(grasps) == MOST:
             break
         tries += 1
-        spread = float(found.width[row]) + 2.0 * settings.slack
+        spread = float(found.width[row]) + 2.0 * slack
         T_root_grasp = _frame(found, row)
         if not room.free(T_root_grasp, spread):
             continue
@@ -259,13 +293,13 @@ def _distinct(ranked: _Ranked, room: _Room, held: str, settings: GraspSettings) 
                 score=float(ranked.score[row]),
             )
         )
-        alive &= ~_alike(found, row, settings)
+        alive &= ~_alike(found, row)
     return grasps
 
 
-def _alike(found: Candidates, row: int, settings: GraspSettings) -> BoolArray:
-    cosine = np.cos(np.radians(settings.same_deg))
-    near = np.linalg.norm(found.center - found.center[row], axis=1) < settings.same_place
+def _alike(found: Candidates, row: int) -> BoolArray:
+    cosine = np.cos(np.radians(SAME_DEG))
+    near = np.linalg.norm(found.center - found.center[row], axis=1) < SAME_PLACE
     same = (found.approach @ found.approach[row] > cosine) & (np.abs(found.closing @ found.closing[row]) > cosine)
     return np.asarray(near & same)
 
@@ -284,21 +318,20 @@ def _inverse(T: FloatArray) -> FloatArray:
     return back
 
 
-def _around(point: FloatArray, settings: GraspSettings, seed: int) -> FloatArray:
+def _around(point: FloatArray, seed: int) -> FloatArray:
     """Places in the ball around a point, the point itself first, shape (n, 3)."""
     rng = np.random.default_rng(seed)
-    offsets = rng.normal(size=(settings.points_seen, 3))
-    offsets *= settings.near_point * rng.random((len(offsets), 1)) / np.linalg.norm(offsets, axis=1)[:, None]
+    offsets = rng.normal(size=(POINTS_SEEN, 3))
+    offsets *= NEAR_POINT * rng.random((len(offsets), 1)) / np.linalg.norm(offsets, axis=1)[:, None]
     return np.concatenate([point[None], point + offsets])
 
 
-def joint_at(scene: Scene, point: FloatArray, settings: GraspSettings) -> str:
+def joint_at(scene: Scene, point: FloatArray) -> str:
     """Find the joint whose part is nearest to a point, the last of several that move the same part.
 
     Args:
         scene: The object, in metres.
         point: Frame of the root link [m], shape (3,).
-        settings: How near is near.
 
     Raises:
         InputError: No part that moves is near.
@@ -310,11 +343,11 @@ def joint_at(scene: Scene, point: FloatArray, settings: GraspSettings) -> str:
         for travel in scene.travels
     }  # fmt: skip
     joint = min(distances, key=lambda name: distances[name])
-    if distances[joint] > settings.near_point:
+    if distances[joint] > NEAR_POINT:
         raise InputError(
             f"The grasp point {np.round(point, 4).tolist()} (in metres, at the object's real size) is "
             f"{distances[joint]:.3f} m from the nearest part that moves, that of {joint}; a point on a part is at most "
-            f"{settings.near_point} m off. Give it in the frame of the root link, in the units of the file."
+            f"{NEAR_POINT} m off. Give it in the frame of the root link, in the units of the file."
         )
     return joint
 

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.config.task_settings import GraspSettings
     from kinematify.geometry.scene import Scene
     from kinematify.robot.arrays import FloatArray, IntArray
 
@@ -33,6 +32,35 @@ if TYPE_CHECKING:
 
 _COARSE_NORMAL = 4.0  # normals in one cell of a quarter are one side of a piece
 _FLOOR = 0.01  # the hand stays so far above the lowest point of the object [m]
+
+POINTS = 6000  # of a drawer one in thirty is on the outside, of that one in ten on the handle
+"""Places on the moving part that are looked at."""
+POINTS_SEEN = 250  # 18 directions take 0.2 s
+"""Of those that are seen along an approach direction, so many are measured."""
+TIP = 0.01  # the hand is that of the built-in arm, which is like most hands for tables and kitchens
+"""Fingers reach so far beyond the grasp point [m]."""
+FINGER_LENGTH = 0.07
+"""From the tip back to the palm [m]."""
+FINGER_WIDTH = 0.02
+"""Across approach and closing direction [m]."""
+FINGER_THICKNESS = 0.014
+"""Along the closing direction [m]."""
+PALM_LENGTH = 0.12
+"""Of what stands behind the fingers, wrist included, along the approach direction [m]."""
+HIDDEN = 0.02  # the far side of a bar is met through its near side
+"""Places that lie at most so far behind the surface that is met first still count as seen [m]."""
+HOLDS = (0.006, 0.014, 0.026)  # a flat knob, a bar, and a firm hold of a board
+"""Tips reach so far behind the surface that the approach meets first [m]."""
+CLOSING_STEPS = 4  # every 45 degrees: bars stand upright, lie, or are diagonal
+"""Closing directions per approach direction, over half a turn."""
+TILT_DEG = 35.0  # friction of rubber on varnish holds up to about 0.7
+"""Angle between closing direction and surface normal at either pad at most [deg]."""
+PLENTY = 0.03
+"""More room than this beside the fingers is no better [m]."""
+KNOB_WIDTH = 0.07  # knobs of furniture measure 2 to 5 cm
+"""What is held is a knob up to this width along both directions across the approach [m]."""
+PLATE = 0.045  # handles are 1 to 4 cm deep
+"""What goes on behind the grasp point for this length is the rim of a plate, else a handle [m]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -88,16 +116,16 @@ class Tally:
 class GraspSearch:
     """Looks at one body of a scene in one configuration."""
 
-    def __init__(self, scene: Scene, poses: FloatArray, body: int, settings: GraspSettings) -> None:
+    def __init__(self, scene: Scene, poses: FloatArray, body: int, slack: float) -> None:
         """Place all bodies.
 
         Args:
             scene: The object.
             poses: Pose of every body, frame of the root link, shape (B, 4, 4).
             body: The one to hold.
-            settings: Sizes of the hand.
+            slack: Room between pad and surface on either side before the fingers close [m].
         """
-        self.settings, self.body = settings, body
+        self.slack, self.body = slack, body
         self.meshes = [
             (transformed(item.solid.shells.vertices, T), item.solid.shells.faces)
             for item, T in zip(scene.bodies, poses, strict=True)
@@ -116,7 +144,7 @@ class GraspSearch:
         corners, areas, cross = corners[solid], areas[solid], cross[solid]
         side = _sides(faces[solid], cross, len(vertices))
         weights = areas / np.sqrt(np.bincount(side, areas)[side])
-        count = self.settings.points
+        count = POINTS
         picked, barycentric = place_samples(corners, weights, curve_order(corners, weights), count, seed)
         return np.asarray(np.einsum("nk,nkd->nd", barycentric, corners[picked]))
 
@@ -133,9 +161,9 @@ class GraspSearch:
         found, tallies = [], []
         for approach in self.directions():
             seen = self._seen(places, approach)
-            seen = seen[:: max(1, -(-len(seen) // self.settings.points_seen))]
-            for hold in self.settings.holds:
-                for closing in _across(approach, self.settings.closing_steps):
+            seen = seen[:: max(1, -(-len(seen) // POINTS_SEEN))]
+            for hold in HOLDS:
+                for closing in _across(approach, CLOSING_STEPS):
                     some, tally = self._held(seen, approach, closing, opening=opening, hold=hold)
                     found.append(some)
                     tallies.append(tally)
@@ -147,16 +175,16 @@ class GraspSearch:
 
     def is_plate(self, candidates: Candidates) -> BoolArray:
         """Test whether what is held goes on with the same thickness deeper in, shape (n,)."""
-        deeper = candidates.between + self.settings.plate * candidates.approach
-        half = 0.5 * candidates.width + self.settings.slack
+        deeper = candidates.between + PLATE * candidates.approach
+        half = 0.5 * candidates.width + self.slack
         first = self._first(deeper + half[:, None] * candidates.closing, -candidates.closing)[0]
         second = self._first(deeper - half[:, None] * candidates.closing, candidates.closing)[0]
-        slack = self.settings.slack
+        slack = self.slack
         return np.asarray((first < 2.0 * slack) & (second < 2.0 * slack))
 
     def extent(self, candidates: Candidates) -> FloatArray:
         """Length of what is held across approach and closing direction [m], inf where it goes on, shape (n,)."""
-        side, half = candidates.side, self.settings.knob
+        side, half = candidates.side, KNOB_WIDTH
         first = self._first(candidates.between + half * side, -side)[0]
         second = self._first(candidates.between - half * side, side)[0]
         alone = (first > 0.0) & (second > 0.0) & (first < half) & (second < half)
@@ -166,8 +194,8 @@ class GraspSearch:
     def _seen(self, places: FloatArray, approach: FloatArray) -> FloatArray:
         """First surface points on the way to places, where they belong to the body and the hand is above the floor."""
         distance, mesh, _ = self._first(places - self._far * approach, np.broadcast_to(approach, places.shape))
-        near = (distance >= self._far - self.settings.hidden) & (distance <= self._far * (1.0 + 1e-5))
-        back = places - (self.settings.finger_length + self.settings.palm_length) * approach
+        near = (distance >= self._far - HIDDEN) & (distance <= self._far * (1.0 + 1e-5))
+        back = places - (FINGER_LENGTH + PALM_LENGTH) * approach
         above = back[:, 2] > self.rays.bounds[0, 2] + _FLOOR
         kept = near & (mesh == self.body) & (above | (abs(approach[2]) < 0.1))
         return np.asarray(places[kept] + (distance[kept] - self._far)[:, None] * approach)
@@ -176,7 +204,6 @@ class GraspSearch:
         self, surface: FloatArray, approach: FloatArray, closing: FloatArray, *, opening: float, hold: float
     ) -> tuple[Candidates, Tally]:
         """Measure halfway between the surface and the tips, which reach `hold` behind it."""
-        settings = self.settings
         reach = 0.5 * opening
         centers = surface + 0.5 * hold * approach
         along = np.broadcast_to(closing, centers.shape)
@@ -186,11 +213,11 @@ class GraspSearch:
         width = opening - first - second
         between = (first_mesh == self.body) & (second_mesh == self.body) & (width > -1e-5)
         for face in (first_face, second_face):
-            between &= np.abs(self.rays.face_normals[face] @ closing) >= np.cos(np.radians(settings.tilt_deg))
-        rows = np.flatnonzero(between & (width <= opening - 2.0 * settings.slack))
+            between &= np.abs(self.rays.face_normals[face] @ closing) >= np.cos(np.radians(TILT_DEG))
+        rows = np.flatnonzero(between & (width <= opening - 2.0 * self.slack))
         middle = centers[rows] + 0.5 * (second - first)[rows, None] * closing
         found = Candidates(
-            center=middle + (0.5 * hold - settings.tip) * approach,
+            center=middle + (0.5 * hold - TIP) * approach,
             approach=np.broadcast_to(approach, middle.shape),
             closing=along[rows],
             width=np.maximum(width[rows], 0.0),
@@ -204,24 +231,22 @@ class GraspSearch:
 
     def _lanes_free(self, found: Candidates) -> BoolArray:
         """Test whether rays along both edges of both fingers come in as far as the tips, shape (n,)."""
-        settings = self.settings
-        outward = 0.5 * found.width + settings.slack + 0.5 * settings.finger_thickness
+        outward = 0.5 * found.width + self.slack + 0.5 * FINGER_THICKNESS
         free = np.ones(len(found), dtype=bool)
         for sign in (-1.0, 1.0):
             for edge in (-0.5, 0.5):
-                beside = sign * outward[:, None] * found.closing + edge * settings.finger_width * found.side
+                beside = sign * outward[:, None] * found.closing + edge * FINGER_WIDTH * found.side
                 distance, _, _ = self._first(found.center + beside - self._far * found.approach, found.approach)
-                free &= distance >= self._far + settings.tip
+                free &= distance >= self._far + TIP
         return free
 
     def _clearance(self, found: Candidates) -> FloatArray:
-        settings = self.settings
-        outward = 0.5 * found.width + settings.slack
-        room = np.full(len(found), settings.plenty)
+        outward = 0.5 * found.width + self.slack
+        room = np.full(len(found), PLENTY)
         for sign in (-1.0, 1.0):
             start = found.center + sign * outward[:, None] * found.closing
             distance, _, _ = self._first(start, sign * found.closing)
-            room = np.minimum(room, distance - settings.finger_thickness)
+            room = np.minimum(room, distance - FINGER_THICKNESS)
         return np.asarray(np.maximum(room, 0.0))
 
     def _first(self, origins: FloatArray, directions: FloatArray) -> tuple[FloatArray, IntArray, IntArray]:

@@ -284,7 +284,7 @@ class JointPlanning:
             words = f"{free.pair[0]} meets {free.pair[1]} of the object"
             return self._ended(failure, words, stop=Stop(kind=ITSELF, words=words, pair=free.pair), fraction=free.share)
         self._grasps = search_grasps(
-            self._scene, self._joint, self._arm.robot.opening, settings=self._settings.grasp, point=self._point,
+            self._scene, self._joint, self._arm.robot.opening, point=self._point,
             seed=self._seed,
         )  # fmt: skip
         if not self._grasps.grasps:

@@ -30,7 +30,6 @@ from kinematify.robot.write import write_robot
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.config.task_settings import PourSettings
     from kinematify.config.validation import ValidationSettings
     from kinematify.geometry.scene import Scene
     from kinematify.manipulation.execute import Motion
@@ -42,6 +41,21 @@ _ROOT, _LIFTED, _CARRIED, _PIVOT = "pour_table", "pour_lifted", "pour_carried", 
 _CUP, _INTO = "cup_", "into_"
 _LIP = 0.1  # of the cup's height: its uppermost part, where it is widest towards the container
 _EXTRA = 0.1  # of range beyond what is needed [m or rad]
+
+TURNS = 4  # the handle before, behind or beside the lip
+"""Ways round of the cup that are tried, at equal angles."""
+APART = 0.12  # room for a hand
+"""Gap between cup and container at the start [m]."""
+LEAST_LIFT = 0.06
+"""The cup is lifted by no less [m]."""
+ABOVE = 0.04
+"""The lip stands so high above the container when the cup tilts [m]."""
+TILT_DEG = 110.0  # empties a cup with upright walls
+"""Angle by which the cup is tilted [deg]."""
+STEP = 0.02
+"""Of the plan, while the cup is lifted and carried [m]."""
+STEP_DEG = 5.0
+"""Of the plan, while it tilts [deg]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -91,7 +105,7 @@ def read_vessel(urdf: Path, path: Path, settings: ValidationSettings, scale: flo
     return Vessel(urdf=path, box=object_box(scene), points=np.concatenate(points))
 
 
-def write_pour(cup: Vessel, into: Vessel, yaw: float, path: Path, settings: PourSettings) -> Pour:
+def write_pour(cup: Vessel, into: Vessel, yaw: float, path: Path) -> Pour:
     """Write both as one object; the container stands in direction x from the cup.
 
     Args:
@@ -99,7 +113,6 @@ def write_pour(cup: Vessel, into: Vessel, yaw: float, path: Path, settings: Pour
         into: What is poured into.
         yaw: Turn of the cup about the upright [rad].
         path: File to write.
-        settings: Distances and the tilt.
 
     Raises:
         OSError: The file cannot be written.
@@ -110,13 +123,13 @@ def write_pour(cup: Vessel, into: Vessel, yaw: float, path: Path, settings: Pour
     upper = standing[standing[:, 2] > (1.0 - _LIP) * height]
     lip = np.array([float(upper[:, 0].max()), 0.0, height])
     half = 0.5 * float(np.ptp(into.box[:, 0]))
-    apart = float(standing[:, 0].max()) + half + settings.apart
+    apart = float(standing[:, 0].max()) + half + APART
     rim = float(into.box[1, 2] - into.box[0, 2])
     pour = Pour(
         urdf=path,
-        lift=max(settings.least_lift, rim + settings.above - height),
+        lift=max(LEAST_LIFT, rim + ABOVE - height),
         carry=apart - float(lip[0]),
-        tilt=float(np.radians(settings.tilt_deg)),
+        tilt=float(np.radians(TILT_DEG)),
     )
     hung, stood = _at_rest(cup, _CUP), _at_rest(into, _INTO)
     stand = np.eye(4)
@@ -140,12 +153,12 @@ def write_pour(cup: Vessel, into: Vessel, yaw: float, path: Path, settings: Pour
     return pour
 
 
-def pour_motion(scene: Scene, pour: Pour, settings: PourSettings) -> ObjectMotion:
+def pour_motion(scene: Scene, pour: Pour) -> ObjectMotion:
     """Lift, carry and tilt one after the other, in equal steps; the shares of the way represent values."""
     counts = [
-        max(2, round(pour.lift / settings.step)),
-        max(2, round(pour.carry / settings.step)),
-        max(2, round(pour.tilt / np.radians(settings.step_deg))),
+        max(2, round(pour.lift / STEP)),
+        max(2, round(pour.carry / STEP)),
+        max(2, round(pour.tilt / np.radians(STEP_DEG))),
     ]
     names = [travel.joint for travel in scene.travels]
     rows = [np.zeros(len(names))]
@@ -238,13 +251,12 @@ def plan_pour(
         OSError: The folder cannot be written.
     """
     begun, best = time.process_time(), None
-    turns = settings.task.pour.turns
-    for number in range(turns):
-        pour = write_pour(cup, into, 2.0 * np.pi * number / turns, folder / f"pour_{number}.urdf", settings.task.pour)
+    for number in range(TURNS):
+        pour = write_pour(cup, into, 2.0 * np.pi * number / TURNS, folder / f"pour_{number}.urdf")
         plan = _planned(arm, pour, settings, seed)
         if best is None or plan.fraction > best.fraction:
             best = plan
-        if best.failure is None or time.process_time() - begun > turns * settings.task.plan.seconds:
+        if best.failure is None or time.process_time() - begun > TURNS * settings.task.plan.seconds:
             break
     assert best is not None
     return replace(best, seconds=time.process_time() - begun)
@@ -253,7 +265,7 @@ def plan_pour(
 def _planned(arm: Arm, pour: Pour, settings: ValidationSettings, seed: int) -> PourPlan:
     """One way round of the cup; only all of its way is a success."""
     scene, started = read_scene(read_robot(pour.urdf), settings.geometry), time.process_time()
-    motion = pour_motion(scene, pour, settings.task.pour)
+    motion = pour_motion(scene, pour)
     meeting = _meeting(scene, motion)
     if meeting is not None:
         return PourPlan(motion=None, fraction=0.0, failure=Failure.STOPS, words=meeting, seconds=0.0)

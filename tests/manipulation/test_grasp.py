@@ -71,7 +71,7 @@ def test_fingers_and_what_they_hold_are_where_they_should_be(tmp_path: Path) -> 
 def test_a_flush_front_offers_nothing_and_says_why(tmp_path: Path) -> None:
     urdf = write(tmp_path / "c.urdf", furniture.box((0.02, 0.39, 0.59), (0.0, 0.0, 0.3)))
     scene = read_scene(read_robot(urdf), furniture.SETTINGS.geometry)
-    report = search_grasps(scene, "j", 0.1, settings=furniture.SETTINGS.task.grasp)
+    report = search_grasps(scene, "j", 0.1)
     assert not report.grasps
     assert report.reason
 
@@ -87,7 +87,7 @@ def test_a_part_inside_a_closed_box_is_not_seen(tmp_path: Path) -> None:
     )  # fmt: skip
     urdf = write(tmp_path / "c.urdf", furniture.box((0.03, 0.03, 0.03), (0, 0, 0)), body=body)
     scene = read_scene(read_robot(urdf), furniture.SETTINGS.geometry)
-    report = search_grasps(scene, "j", 0.1, settings=furniture.SETTINGS.task.grasp)
+    report = search_grasps(scene, "j", 0.1)
     assert not report.grasps
     assert "outside" in (report.reason or "")
 

@@ -14,7 +14,16 @@ from kinematify.manipulation.execute import execute, load
 from kinematify.manipulation.kinematics import Arm
 from kinematify.manipulation.manipulator import builtin_robot
 from kinematify.manipulation.plan_request import Failure, Hold
-from kinematify.manipulation.pour import PourPlan, Vessel, plan_pour, pour_motion, read_vessel, write_pour
+from kinematify.manipulation.pour import (
+    ABOVE,
+    TILT_DEG,
+    PourPlan,
+    Vessel,
+    plan_pour,
+    pour_motion,
+    read_vessel,
+    write_pour,
+)
 from kinematify.robot.read import read_robot
 from tests.manipulation.furniture import SETTINGS, box
 
@@ -54,9 +63,9 @@ def plan(vessels: tuple[Vessel, Vessel, Path]) -> PourPlan:
 @pytest.mark.parametrize("yaw", [0.0, 1.0])
 def test_the_lip_ends_above_the_middle_of_the_container(vessels: tuple[Vessel, Vessel, Path], yaw: float) -> None:
     cup, bowl, folder = vessels
-    pour = write_pour(cup, bowl, yaw, folder / "made.urdf", SETTINGS.task.pour)
+    pour = write_pour(cup, bowl, yaw, folder / "made.urdf")
     scene = read_scene(read_robot(pour.urdf), SETTINGS.geometry)
-    motion = pour_motion(scene, pour, SETTINGS.task.pour)
+    motion = pour_motion(scene, pour)
     names = [body.name for body in scene.bodies]
     container = scene.bodies[names.index("into_shell")]
     corners = np.concatenate(container.shapes)
@@ -64,19 +73,19 @@ def test_the_lip_ends_above_the_middle_of_the_container(vessels: tuple[Vessel, V
     low, high = (f((corners @ T[:3, :3].T + T[:3, 3]), axis=0) for f in (np.min, np.max))
     pivot = motion.link_poses[-1][:3, 3]
     assert pivot[:2] == pytest.approx(0.5 * (low + high)[:2], abs=0.01)
-    assert pivot[2] >= high[2] + SETTINGS.task.pour.above - 1e-9
+    assert pivot[2] >= high[2] + ABOVE - 1e-9
     assert low[2] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_the_cup_stays_upright_until_it_tilts(vessels: tuple[Vessel, Vessel, Path]) -> None:
     cup, bowl, folder = vessels
-    pour = write_pour(cup, bowl, 0.5, folder / "made.urdf", SETTINGS.task.pour)
+    pour = write_pour(cup, bowl, 0.5, folder / "made.urdf")
     scene = read_scene(read_robot(pour.urdf), SETTINGS.geometry)
-    poses = pour_motion(scene, pour, SETTINGS.task.pour).link_poses
+    poses = pour_motion(scene, pour).link_poses
     up = poses[:, :3, :3] @ np.array([0.0, 0.0, 1.0])
     tilting = np.flatnonzero(up[:, 2] < 1.0 - 1e-9)
     assert np.ptp(poses[tilting[0] - 1 :, :3, 3], axis=0) == pytest.approx(np.zeros(3), abs=1e-9)
-    assert np.degrees(np.arccos(up[-1, 2])) == pytest.approx(SETTINGS.task.pour.tilt_deg, abs=1e-6)
+    assert np.degrees(np.arccos(up[-1, 2])) == pytest.approx(TILT_DEG, abs=1e-6)
     assert up[-1, 0] > 0.0  # towards the container
 
 
@@ -84,7 +93,7 @@ def test_the_arm_pours(plan: PourPlan) -> None:
     assert plan.failure is None, plan.words
     assert plan.fraction == pytest.approx(1.0)
     assert plan.motion is not None
-    assert plan.motion.opened[-1] == pytest.approx(np.radians(SETTINGS.task.pour.tilt_deg))
+    assert plan.motion.opened[-1] == pytest.approx(np.radians(TILT_DEG))
 
 
 def test_engines_pour(plan: PourPlan, vessels: tuple[Vessel, Vessel, Path]) -> None:

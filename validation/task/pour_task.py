@@ -11,7 +11,7 @@ from kinematify.manipulation.film import write_film
 from kinematify.manipulation.kinematics import Arm
 from kinematify.manipulation.manipulator import robot_of
 from kinematify.manipulation.plan_request import Failure, Hold
-from kinematify.manipulation.pour import PourPlan, Vessel, plan_pour, read_vessel
+from kinematify.manipulation.pour import TILT_DEG, PourPlan, Vessel, plan_pour, read_vessel
 from kinematify.simulation.engines import ENGINES, engines_that_hold
 from kinematify.validation.finding import Severity
 
@@ -91,7 +91,7 @@ class PourTask:
             grasp = plan.motion.grasp
             result.find(
                 f"The arm lifts the cup at a {grasp.kind} that is {grasp.width * 1e3:.0f} mm thick, carries it "
-                f"upright over the container and tilts it by {self.settings.pour.tilt_deg:.0f} deg about its lip.",
+                f"upright over the container and tilts it by {TILT_DEG:.0f} deg about its lip.",
                 "Nothing to do.",
                 severity=Severity.NOTE,
                 value=plan.fraction,

@@ -89,7 +89,7 @@ class PullTask:
     @cached_property
     def _joint_at_point(self) -> str:
         assert self.point is not None
-        return joint_at(self.scene, self.point, self.settings.grasp)
+        return joint_at(self.scene, self.point)
 
     @cached_property
     def plans(self) -> list[PullPlan]:
