@@ -7,6 +7,7 @@ From the meshes of an object to a model, and from a model to a verdict:
     kinematify.write_inference(inference, "out/example")     # model.urdf, meshes, inference.json, preview.png
     report = kinematify.validate("out/example/model.urdf")   # MuJoCo, PyBullet, Pinocchio, FCL: verdict and findings
     kinematify.refine(inference)                             # simulate, use what failed, choose again
+    kinematify.fix("robot.urdf", "fixed.urdf")               # what validate finds, repaired where that is certain
     kinematify.export("out/example/model.urdf", "mjcf", "out/example.xml")
     kinematify.generate("a cabinet with two doors", "out/cabinet")
 
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph
     from kinematify.contact.tree import KinematicTree
     from kinematify.errors import KinematifyError
+    from kinematify.evaluation.nightly.run_night import nightly
     from kinematify.formats.export_model import export
     from kinematify.generate import generate
     from kinematify.joints.candidate import JointCandidate
@@ -40,6 +42,7 @@ if TYPE_CHECKING:
     from kinematify.pipeline.inference import Inference
     from kinematify.pipeline.record import write_inference
     from kinematify.refinement.loop import Refinement, refine
+    from kinematify.refinement.repair import fix
     from kinematify.validation.finding import Finding
     from kinematify.validation.run import validate
     from kinematify.validation.run.report import ValidationReport
@@ -62,11 +65,13 @@ __all__ = [
     "ValidationReport",
     "__version__",
     "export",
+    "fix",
     "generate",
     "infer",
     "load",
     "load_assembly",
     "load_config",
+    "nightly",
     "refine",
     "validate",
     "write_inference",
@@ -86,11 +91,13 @@ _HOMES = {
     "Refinement": "kinematify.refinement",
     "ValidationReport": "kinematify.validation.run.report",
     "export": "kinematify.formats.export_model",
+    "fix": "kinematify.refinement.repair",
     "generate": "kinematify.generate",
     "infer": "kinematify.pipeline.infer_assembly",
     "load": "kinematify.view.loaded",
     "load_assembly": "kinematify.assembly.load",
     "load_config": "kinematify.config",
+    "nightly": "kinematify.evaluation.nightly.run_night",
     "refine": "kinematify.refinement",
     "validate": "kinematify.validation.run",
     "write_inference": "kinematify.pipeline.record",

@@ -29,7 +29,6 @@ from pydantic import Field
 from benchmarks.expectations import load_sentences
 from benchmarks.study import Options, Study, among, explained
 from kinematify.config import load_config
-from kinematify.config.validation import load_settings
 from kinematify.evaluation.benchmark_job import erased_item, shown_parts
 from kinematify.evaluation.datasets import CONDITIONS, find_objects
 from kinematify.evaluation.metrics import score_blueprint
@@ -43,7 +42,7 @@ from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.refinement.loop import repaired
-from kinematify.refinement.repair import fix_urdf
+from kinematify.refinement.repair import fix
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.checks import checks_of
 from kinematify.validation.finding import Severity, Status
@@ -156,9 +155,7 @@ def tried_as_loaded(case: TriedFile) -> Record:
         return {**facts, **_judged(case.item.urdf, case.engines, case.item.package_dirs, run_code=True)}
     with tempfile.TemporaryDirectory() as folder:
         start = time.process_time()
-        fixed = fix_urdf(
-            case.item.urdf, Path(folder) / "model.urdf", config, load_settings(), package_dirs=case.item.package_dirs
-        )
+        fixed = fix(case.item.urdf, Path(folder) / "model.urdf", config=config, package_dirs=case.item.package_dirs)
         seconds = time.process_time() - start
         return {**facts, "seconds": seconds, **_judged(fixed.path, case.engines, case.item.package_dirs, run_code=True)}
 

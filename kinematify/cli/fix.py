@@ -73,21 +73,16 @@ def command(
     from kinematify.validation.isolation import load_imports
 
     load_imports()  # before anything loads NumPy
-    from kinematify.config import load_config
-    from kinematify.config.validation import load_settings
-    from kinematify.model.output import check_file, urdf_of
-    from kinematify.refinement.repair import fix_urdf
+    from kinematify.refinement.repair import fix
     from kinematify.robot.description import notes_of
 
-    check_file(out, overwrite=force)
-    model = urdf_of(model, package_dirs, arguments)
     with progress_reporter() as progress:
-        done = fix_urdf(
+        done = fix(
             model,
             out,
-            load_config(),
-            load_settings(),
             package_dirs=package_dirs,
+            arguments=arguments,
+            overwrite=force,
             everything=everything,
             kinematics=kinematics,
             progress=progress,
@@ -95,9 +90,10 @@ def command(
     if json_to is not None:
         write_answer(done.as_json(), json_to)
     if json_to != "-":
-        for note in notes_of(model):
+        urdf = Path(done.before.report.model)
+        for note in notes_of(urdf):
             click.echo(note)
-        _say(done, model.name)
+        _say(done, urdf.name)
     return done.exit_status
 
 

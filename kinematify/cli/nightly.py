@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -77,8 +76,7 @@ def command(
     worse than in the accepted night, or than in the night before where none was accepted; times are only reported. An
     object whose files changed is compared with its last result.
     """
-    from kinematify.config.nightly_settings import load_nightly
-    from kinematify.evaluation.nightly.run_night import SMOKE, NightRequest, accept, run_night
+    from kinematify.evaluation.nightly.run_night import accept, nightly
 
     folder = out or Path("out/nightly-smoke" if smoke else "results/nightly")
     if accepted is not None:
@@ -87,20 +85,11 @@ def command(
         return 0
     if data and folder_of_models:
         raise click.UsageError(f"DATA {folder_of_models} and --data {data} say the same. Give one of them.")
-    chosen = {"data": data or folder_of_models} if data or folder_of_models else {}
-    settings = load_nightly(config, **chosen)
-    if smoke:
-        settings = settings.model_copy(update={"conditions": ["rest"], "engines": ["mujoco"]})
-    request = NightRequest(
-        settings=settings,
-        out=folder,
-        only=patterns,
-        baseline=baseline,
-        smoke=SMOKE if smoke else (),
-        workers=jobs or os.cpu_count() or 1,
-    )
     with progress_reporter() as progress:
-        result = run_night(request, progress)
+        result = nightly(
+            data or folder_of_models, folder, config=config, objects=patterns, baseline=baseline, smoke=smoke,
+            jobs=jobs, progress=progress,
+        )  # fmt: skip
     if json_to:
         from kinematify.evaluation.nightly.comparison import CHANGES
 

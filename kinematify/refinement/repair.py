@@ -9,10 +9,14 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 from itertools import groupby
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from kinematify.config import load_config
+from kinematify.config.validation import load_settings
 from kinematify.errors import DescriptionError, ExitStatus
 from kinematify.model.collision import collides_as_it_is
+from kinematify.model.output import check_file, urdf_of
 from kinematify.refinement.engine_opening import refusals
 from kinematify.refinement.joint_edits import JointEdits
 from kinematify.refinement.urdf_editor import UrdfEditor, xml_of
@@ -26,7 +30,6 @@ from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
-    from pathlib import Path
 
     from lxml.etree import _Element
 
@@ -190,15 +193,17 @@ class Fix:
         }
 
 
-def fix_urdf(
-    model: Path,
-    out: Path,
-    config: Config,
-    settings: ValidationSettings,
+def fix(
+    model: str | Path,
+    out: str | Path,
     *,
     package_dirs: Sequence[Path] = (),
+    arguments: Mapping[str, str] | None = None,
+    overwrite: bool = False,
     everything: bool = False,
     kinematics: bool = False,
+    config: Config | None = None,
+    settings: ValidationSettings | None = None,
     workers: int | None = None,
     progress: Callable[[str, float], None] | None = None,
 ) -> Fix:
@@ -207,19 +212,25 @@ def fix_urdf(
     Where there is nothing to change, no file is written.
 
     Args:
-        model: The URDF; it is not changed.
-        out: File to write; collision meshes stand in a folder beside it.
-        config: Clearance of collision pieces.
-        settings: Of the checks.
+        model: URDF, xacro, MJCF, SDF or USD file, or a model folder; it is not changed.
+        out: File to write; collision meshes are in a folder beside it.
         package_dirs: Folders in which ``package://`` names are looked up.
+        arguments: Of a xacro.
+        overwrite: Replace `out` if it exists.
         everything: Give all links collision pieces, and all that weigh nothing a mass, findings or not.
         kinematics: Change joints, too.
+        config: Clearance of collision pieces; the default one if absent.
+        settings: Of the checks; the shipped ones if absent.
         workers: Processes at a time, as for `validate`.
         progress: Called with the stage that ended and the fraction done.
 
     Raises:
-        InputError: `model` is no URDF; `out` is `model`, or cannot be written.
+        InputError: `model` cannot be read; `out` is `model`.
+        OutputError: `out` exists and must not be replaced, or cannot be written.
     """
+    out, settings = Path(out), settings or load_settings()
+    check_file(out, overwrite=overwrite)
+    model = urdf_of(Path(model), package_dirs, arguments)
     editor = UrdfEditor(model, out, package_dirs)
 
     def look(path: Path, part: int) -> ModelSnapshot:
@@ -236,7 +247,9 @@ def fix_urdf(
 
     before = look(model, 0)
     joints = JointEdits(editor=editor, look=look_at_joints) if kinematics else None
-    repairs = _Repairs(editor=editor, config=config, settings=settings, everything=everything, joints=joints)
+    repairs = _Repairs(
+        editor=editor, config=config or load_config(), settings=settings, everything=everything, joints=joints
+    )
     unread = editor.export_gltf() if any(map(_FORMAT.search, before.refusals.values())) else []
     after, place = before, model
     for part in range(1, _ROUNDS + 1):

@@ -13,12 +13,10 @@ from lxml import etree
 from trimesh.creation import box
 
 from kinematify.cli.app import run
-from kinematify.config import load_config
-from kinematify.config.validation import load_settings
 from kinematify.errors import OutputError
 from kinematify.refinement.engine_opening import refusals
 from kinematify.refinement.joint_edits import JointEdits
-from kinematify.refinement.repair import Fix, fix_urdf
+from kinematify.refinement.repair import Fix, fix
 from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import DEFAULT_ENGINES
@@ -82,7 +80,7 @@ def cabinet(folder: Path, prefix: str, *, head: str = "", limits: str = LIMIT) -
 
 
 def fixed(model: Path, out: Path, **options: bool) -> Fix:
-    return fix_urdf(model, out, load_config(), load_settings(), workers=2, **options)
+    return fix(model, out, overwrite=True, workers=2, **options)
 
 
 @pytest.fixture(scope="module")

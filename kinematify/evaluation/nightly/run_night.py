@@ -28,6 +28,7 @@ from pydantic import ValidationError
 
 from kinematify.batch.task_pool import Pool
 from kinematify.config import load_config
+from kinematify.config.nightly_settings import load_nightly
 from kinematify.errors import InputError, OutputError
 from kinematify.evaluation.benchmark_job import INFER
 from kinematify.evaluation.datasets import find_objects, matching
@@ -54,7 +55,7 @@ _ACCURACY = 0.45  # share of the time at which all is inferred, on the benchmark
 _SHOWN = 60
 """Nights in the list of all, the latest: two months."""
 _UNFINISHED = ".unfinished"
-SMOKE = ("a cabinet with one door", "a cabinet with one drawer")
+_SMOKE = ("a cabinet with one door", "a cabinet with one drawer")
 """Objects of a night that is small enough for a test suite."""
 
 
@@ -84,6 +85,47 @@ class NightResult:
     place: Path
     notices: tuple[str, ...]
     """Sentences about what the user should know: broken folders."""
+
+
+def nightly(
+    data: str | Path | None = None,
+    out: str | Path | None = None,
+    *,
+    config: str | Path = "nightly",
+    objects: Sequence[str] = (),
+    baseline: str | None = None,
+    smoke: bool = False,
+    jobs: int | None = None,
+    progress: Progress = lambda what, share: None,
+) -> NightResult:
+    """Infer every object, validate its models, and compare with an earlier night, as `kinematify nightly` does.
+
+    Args:
+        data: As `kinematify bench` takes it; as the configuration says if absent.
+        out: Folder of all nights; ``results/nightly`` if absent, ``out/nightly-smoke`` with `smoke`.
+        config: Name or path of the settings.
+        objects: Patterns for names of objects, categories or kinds; empty for all.
+        baseline: Night to compare with instead of the accepted one.
+        smoke: Take two objects of the built-in generator, in one pose and in MuJoCo.
+        jobs: Processes at a time; as many as there are cores if absent.
+        progress: Called with what has just ended and the fraction done in [0, 1].
+
+    Raises:
+        InputError: See `run_night`.
+        OutputError: See `run_night`.
+    """
+    settings = load_nightly(config, **({} if data is None else {"data": str(data)}))
+    if smoke:
+        settings = settings.model_copy(update={"conditions": ["rest"], "engines": ["mujoco"]})
+    request = NightRequest(
+        settings=settings,
+        out=Path(out or ("out/nightly-smoke" if smoke else "results/nightly")),
+        only=tuple(objects),
+        baseline=baseline,
+        smoke=_SMOKE if smoke else (),
+        workers=jobs or os.cpu_count() or 1,
+    )
+    return run_night(request, progress)
 
 
 def run_night(request: NightRequest, progress: Progress) -> NightResult:
