@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import json
 import os
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.options import collision_option, complete_categories, examples, scale_option
+from kinematify.cli.options import collision_option, complete_categories, examples, say, scale_option, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
+from kinematify.errors import ExitStatus, InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
-    from kinematify.cli.generation import Generation, Requested
-    from kinematify.cli.provided import ProvidedGeneration
+    from kinematify.cli.progress import Reporter
+    from kinematify.generate.delivery import BuildResult
 
 _WIDTH = 100
 """Characters of a line of --list."""
@@ -121,40 +123,7 @@ _WIDTH = 100
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
 @click.option("--no-validation", is_flag=True, help="Skip the validation, which takes most of the time.")
 @json_option
-def command(
-    *,
-    words: tuple[str, ...],
-    text: str | None,
-    category: str | None,
-    settings: tuple[str, ...],
-    request_file: Path | None,
-    schema: str | None,
-    nearest: bool,
-    blueprint: Path | None,
-    corpus: int | None,
-    seed: int | None,
-    listing: bool,
-    images: tuple[Path, ...],
-    source: str | None,
-    program: str | None,
-    time_limit: float | None,
-    budget: float | None,
-    rounds: int | None,
-    record: Path | None,
-    replay: Path | None,
-    resend: bool,
-    up: str,
-    scale: float | None,
-    out: Path | None,
-    strict: bool,
-    inferred: bool,
-    collision: str | None,
-    config: str,
-    force: bool,
-    no_preview: bool,
-    no_validation: bool,
-    json_to: str | None,
-) -> int:
+def command(**given: Any) -> int:
     """Build what a sentence, a request or a blueprint asks for, with its exact joints, and validate it.
 
     A request names a kind, its parameters, sizes, and facts about named parts: count, size, colour, material, side,
@@ -177,114 +146,141 @@ def command(
     and sends back what does not hold. The job is saved beside OUT (OUT.job): the same command resumes it, and no step
     is paid for twice.
     """
+    words, text, category, out, source = (given[name] for name in ("words", "text", "category", "out", "source"))
     if words and text is not None:
         raise click.UsageError(f'The sentence is given twice: "{" ".join(words)}" and --text "{text}". Remove one.')
-    text = " ".join(words) or text
-    if schema is not None or listing:
-        _list(category if schema is None else schema or category, json_to, is_schema=schema is not None)
+    given["text"] = text = " ".join(words) or text
+    schema = given["schema"]
+    if schema is not None or given["listing"]:
+        _list(category if schema is None else schema or category, given["json_to"], is_schema=schema is not None)
         return 0
-    if corpus is not None:
-        _write_corpus(corpus, seed or 0, _needed(out), text or category)
+    if given["corpus"] is not None:
+        _write_corpus(given["corpus"], given["seed"] or 0, _needed(out), text or category)
         return 0
-    if source is not None:
-        from kinematify.cli.provided import LanguageGeneration, ProvidedGeneration, ProvidedOptions
-        from kinematify.config import load_config
-
-        if category or settings or blueprint or request_file or nearest:
-            raise click.UsageError(
-                "--category, --set, --request, --nearest and --blueprint cannot be combined with --source. Remove one."
-            )
-        asked = ProvidedOptions(
-            text=text, images=images, source=source, command=program, time_limit=time_limit, budget=budget,
-            rounds=rounds, record=record, replay=replay, resend=resend, up=up, scale=scale, seed=seed,
-            config=load_config(config),
-        )  # fmt: skip
-        place = _needed(out)
-        if source == "llm":
-            return _run(
-                LanguageGeneration(
-                    None, None, place, not no_preview, not no_validation, inferred, collision, asked.config, strict,
-                    options=asked,
-                ),
-                force,
-                json_to,
-            )  # fmt: skip
-        if inferred:
-            raise click.UsageError("Joints of this --source are always inferred. Remove --infer.")
-        return _run(ProvidedGeneration(asked, place, not no_preview, not no_validation, collision), force, json_to)
-    _refuse_without_source(images, program, time_limit, budget, rounds, record, replay, resend)
-    given = {"a sentence": text, "--category": category, "--request": request_file, "--blueprint": blueprint}
-    if sum(value is not None for value in given.values()) != 1:
-        raise click.UsageError(f"Give one of {', '.join(given)} (or --corpus, or --list for all).")
-    if blueprint is not None and (settings or seed is not None):
-        raise click.UsageError("--set and --seed have no effect on a --blueprint. Remove them.")
-    if settings and text is not None:
-        raise click.UsageError("--set belongs to --category and --request. Put the value into the sentence.")
-    if nearest and text is None:
-        raise click.UsageError("--nearest belongs to a sentence. Remove it.")
-    if strict and text is None:
-        raise click.UsageError("--strict belongs to a sentence. Remove it.")
-    from kinematify.cli.generation import Generation
+    (_check_provided if source is not None else _check_request)(given)
     from kinematify.config import load_config
+    from kinematify.processes.lock import writing
 
-    generation = Generation(
-        _requested(text, category, settings, request_file, blueprint, nearest=nearest),
-        seed,
-        _needed(out),
-        preview=not no_preview,
-        validated=not no_validation,
-        inferred=inferred,
-        collision=collision,
-        config=load_config(config),
-        strict=strict,
-    )
-    return _run(generation, force, json_to)
+    out = _needed(out)
+    config = with_collision(load_config(given["config"]), given["collision"])
+    if source in ("rodin", "command"):
+        from kinematify.cli.provided import model_of_parts
+
+        with writing(out), progress_reporter() as progress:
+            status, answer, said = model_of_parts(given, out, config, progress)
+        return _ended(status, answer, given["json_to"], lambda: say(said))
+    from kinematify.cli.generation import write_generated
+
+    ready = None if source is not None else _builder(given)
+    by: list[Any] = []
+
+    def build(progress: Reporter) -> BuildResult:
+        if ready is not None:
+            return ready()
+        from kinematify.cli.provided import model_asked, written_by
+
+        model = model_asked(given, config)
+        by[:] = [model, written_by(model, given, out, config, progress)]
+        return cast("BuildResult", by[1].made)
+
+    with writing(out), progress_reporter() as progress:
+        found = write_generated(
+            build, out, preview=not given["no_preview"], validated=not given["no_validation"],
+            inferred=given["inferred"], config=config, strict=given["strict"], overwrite=given["force"],
+            progress=progress,
+        )  # fmt: skip
+    answer = found.as_json()
+    if by:
+        written = by[1]
+        answer["language_model"] = {
+            "rounds": written.rounds, "tokens": written.tokens, "answer": str(written.path)
+        }  # fmt: skip
+
+    def told() -> None:
+        if by:
+            from kinematify.cli.provided import say_written
+
+            say_written(*by)
+        found.print()
+
+    return _ended(found.exit_status, answer, given["json_to"], told)
 
 
-def _requested(
-    text: str | None,
-    category: str | None,
-    settings: tuple[str, ...],
-    file: Path | None,
-    blueprint: Path | None,
-    *,
-    nearest: bool,
-) -> Requested:
-    if blueprint is not None:
+def _ended(status: int, answer: dict[str, Any], json_to: str | None, told: Callable[[], None]) -> int:
+    """Write the answer, print the words unless a machine reads stdout, and return the exit status."""
+    if json_to:
+        write_answer(answer, json_to)
+    if json_to != "-":
+        told()
+        if status == ExitStatus.INTERRUPTED:
+            click.echo("Interrupted. The model is complete, its validation is not.", err=True)
+    return status
+
+
+def _builder(given: dict[str, Any]) -> Callable[[], BuildResult]:
+    """Read what the options ask for, and return what builds it.
+
+    Raises:
+        InputError: It cannot be read; building raises it where a parameter is out of its bounds.
+    """
+    text, file = given["text"], given["request_file"]
+    if given["blueprint"] is not None:
+        from kinematify.generate.delivery import BuildResult
         from kinematify.generate.procedural.blueprint_file import read_blueprint
 
-        return read_blueprint(blueprint)
+        return partial(BuildResult, blueprint=read_blueprint(given["blueprint"]))
     if text is not None:
         from kinematify.generate.reader import read_sentence
 
-        return read_sentence(text, nearest=nearest)
+        return partial(read_sentence(text, nearest=given["nearest"]).made, seed=given["seed"])
+    from kinematify.generate.delivery import deliver
     from kinematify.generate.request import read_request, request_of, with_settings
 
-    values = {"kind": category} if file is None else read_request(file)
-    return request_of(with_settings(values, _pairs(settings)), source="request" if file is None else f"request {file}")
+    values = {"kind": given["category"]} if file is None else read_request(file)
+    source = "request" if file is None else f"request {file}"
+    request = request_of(with_settings(values, _pairs(given["settings"])), source=source)
+
+    def build() -> BuildResult:
+        made = deliver(request, seed=given["seed"])
+        if made.missing:  # a sentence may name what is not there; a request says exactly what is
+            raise InputError(f"{made.differences[0][0].upper()}{made.differences[0][1:]}.")
+        return made
+
+    return build
 
 
-def _run(run: Generation | ProvidedGeneration, force: bool, json_to: str | None) -> int:
-    from kinematify.processes.lock import writing
+def _check_provided(given: dict[str, Any]) -> None:
+    """Refuse options that mean nothing to another generator."""
+    if any(given[name] for name in ("category", "settings", "blueprint", "request_file", "nearest")):
+        raise click.UsageError(
+            "--category, --set, --request, --nearest and --blueprint cannot be combined with --source. Remove one."
+        )
+    if given["inferred"] and given["source"] != "llm":
+        raise click.UsageError("Joints of this --source are always inferred. Remove --infer.")
 
-    with writing(run.out), progress_reporter() as progress:
-        run.all(progress, overwrite=force)
-    if json_to:
-        write_answer(run.answer, json_to)
-    run.say(quiet=json_to == "-")
-    return run.exit_status
 
-
-def _refuse_without_source(images: tuple[Path, ...], *others: object) -> None:
-    if images:
+def _check_request(given: dict[str, Any]) -> None:
+    """Refuse options that do not go together where the library builds."""
+    if given["images"]:
         raise click.UsageError(
             "--image needs --source: rodin (a web service, needs a key) or command (your own program) makes parts, "
             "llm (a language model) writes a blueprint. Without --source, give --text or --category."
         )
-    if any(others):
+    if any(given[name] for name in ("program", "time_limit", "budget", "rounds", "record", "replay", "resend")):
         raise click.UsageError(
             "--command, --time-limit, --budget, --rounds, --record, --replay and --resend belong to --source."
         )
+    text, settings = given["text"], given["settings"]
+    asked = {"a sentence": "text", "--category": "category", "--request": "request_file", "--blueprint": "blueprint"}
+    if sum(given[name] is not None for name in asked.values()) != 1:
+        raise click.UsageError(f"Give one of {', '.join(asked)} (or --corpus, or --list for all).")
+    if given["blueprint"] is not None and (settings or given["seed"] is not None):
+        raise click.UsageError("--set and --seed have no effect on a --blueprint. Remove them.")
+    if settings and text is not None:
+        raise click.UsageError("--set belongs to --category and --request. Put the value into the sentence.")
+    for name in ("nearest", "strict"):
+        if given[name] and text is None:
+            raise click.UsageError(f"--{name} belongs to a sentence. Remove it.")
 
 
 def _needed(out: Path | None) -> Path:

@@ -1,9 +1,9 @@
-"""One call of `kinematify generate` with another generator: parts of an image or a sentence, or a written blueprint."""
+"""`kinematify generate` with another generator: parts of an image or a sentence, or a written blueprint."""
 
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
@@ -12,10 +12,9 @@ import click
 
 from kinematify.assembly.load import load_assembly
 from kinematify.cli.blueprint_feedback import in_blueprint_words
-from kinematify.cli.generation import Generation, status_of, summary_of, verdict_on, warn_if_interrupted
+from kinematify.cli.generation import report_after, status_of, summary_of, verdict_on
 from kinematify.cli.inferred import describe
-from kinematify.cli.options import say, with_collision
-from kinematify.cli.report_files import report_on
+from kinematify.cli.options import say
 from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.providers.command import CommandSource
 from kinematify.generate.providers.job import open_job
@@ -29,233 +28,157 @@ from kinematify.pipeline.record import write_inference_files
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from kinematify.cli.progress import Reporter
     from kinematify.config import Config
     from kinematify.generate.delivery import BuildResult
-    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.providers.language_model import Written
-    from kinematify.generate.providers.source import Generated, PartSource
-    from kinematify.pipeline.inference import Inference
+    from kinematify.generate.providers.source import PartSource
     from kinematify.validation.run.report import ValidationReport
 
 _MADE, _INFERRED, _WRITTEN = 0.6, 0.8, 0.85  # shares of the time at which these are done
-JOB_SUFFIX = ".job"
-
-
-@dataclass(frozen=True, kw_only=True)
-class ProvidedOptions:
-    """As they were given on the command line."""
-
-    text: str | None
-    images: tuple[Path, ...]
-    source: str
-    command: str | None
-    time_limit: float | None
-    budget: float | None
-    rounds: int | None
-    record: Path | None
-    replay: Path | None
-    resend: bool
-    up: str
-    scale: float | None
-    seed: int | None
-    config: Config
-
-    def part_source(self) -> PartSource:
-        """The generator that was asked for.
-
-        Raises:
-            click.UsageError: Options do not go together.
-        """
-        self._refuse_both()
-        if self.rounds is not None:
-            raise click.UsageError("--rounds belongs to --source llm. Leave it out.")
-        source = self._plain_source()
-        if self.record is not None:
-            return RecordingSource(source, self.record)
-        return source if self.replay is None else ReplayedSource(source, self.replay)
-
-    def language_model(self) -> LanguageModel:
-        """The language model that was asked for.
-
-        Raises:
-            click.UsageError: Options do not go together.
-            InputError: No address is set.
-        """
-        self._refuse_both()
-        if self.command is not None or self.seed is not None:
-            raise click.UsageError("--command and --seed mean nothing to a language model. Leave them out.")
-        asked = {"rounds": self.rounds, "answer_seconds": self.time_limit}
-        settings = self.config.sources.language_model.model_copy(
-            update={name: value for name, value in asked.items() if value is not None}
-        )
-        return language_model(settings, budget=self.budget, record=self.record, replay=self.replay)
-
-    def _refuse_both(self) -> None:
-        if self.record is not None and self.replay is not None:
-            raise click.UsageError("--record and --replay exclude each other.")
-
-    def _plain_source(self) -> PartSource:
-        settings = self.config.sources
-        if self.source == "command":
-            if self.command is None:
-                raise click.UsageError("--source command needs --command 'program {image} {out}'.")
-            if self.budget is not None:
-                raise click.UsageError("--budget belongs to --source rodin. Leave it out.")
-            return CommandSource(self.command, self.time_limit or settings.command_seconds)
-        if self.command is not None:
-            raise click.UsageError("--command belongs to --source command.")
-        chosen = settings.rodin
-        if self.time_limit is not None:
-            chosen = chosen.model_copy(update={"job_seconds": self.time_limit})
-        return RodinSource(chosen, self.budget)
 
 
 def job_folder(out: Path) -> Path:
     """Beside the model: it stays, so that the same request never costs anything again."""
-    return out.parent / f"{out.name}{JOB_SUFFIX}"
+    return out.parent / f"{out.name}.job"
 
 
-@dataclass
-class ProvidedGeneration:
-    """State of one generation by a provider: the request and what was built."""
+def part_source(given: Mapping[str, Any], config: Config) -> PartSource:
+    """The generator that the options ask for.
 
-    options: ProvidedOptions
-    out: Path
-    preview: bool
-    with_verdict: bool
-    collision: str | None = None
-    """``auto`` or ``mesh``; None: as the configuration says."""
-    generated: Generated = field(init=False)
-    inference: Inference = field(init=False)
-    report: ValidationReport | None = None
-
-    def all(self, progress: Reporter, *, overwrite: bool) -> None:
-        """Get the parts, infer their joints, write the folder and validate the model in it.
-
-        Raises:
-            InputError: The prompt, the key or an option cannot be used.
-            EnvironmentFault: The generator failed; the same call goes on where it stopped.
-            OutputError: The folder exists and must not be replaced, or cannot be written.
-        """
-        check_output(self.out, overwrite=overwrite)
-        self._make_parts(lambda stage, done: progress(stage, _MADE * done))
-        config = with_collision(self.options.config, self.collision)
-        progress("reading the parts", _MADE)
-        given = load_assembly(
-            self.generated.path, config=config.assembly, up=self.options.up, scale=self.options.scale,
-            labels=self.generated.labels,
-        )  # fmt: skip
-        share = _INFERRED - _MADE
-        found = infer(given, config=config, progress=lambda stage, done: progress(stage, _MADE + share * done))
-        self.inference = replace(found, provenance=self.generated.provenance.as_json())
-        write_model_folder(
-            self.out,
-            lambda folder: write_inference_files(
-                self.inference, folder, preview=self.preview,
-                progress=lambda stage, done: progress(stage, _INFERRED + (_WRITTEN - _INFERRED) * done),
-            ),
-            overwrite=overwrite,
-        )  # fmt: skip
-        if self.with_verdict:
-            rest = 1.0 - _WRITTEN
-            self.report = report_on(
-                self.out,
-                progress=lambda stage, done: progress(f"validation: {stage}", _WRITTEN + rest * done),
-            )  # fmt: skip
-
-    @property
-    def job_folder(self) -> Path:
-        """Implement `job_folder`."""
-        return job_folder(self.out)
-
-    def _make_parts(self, progress: Reporter) -> None:
-        source = self.options.part_source()
-        prompt = check_prompt(self.options.text, self.options.images, seed=self.options.seed or 0)
-        with open_job(self.job_folder, source.name, prompt.digest(source.options())) as job:
-            if self.options.resend:
-                job.resend()
-            self.generated = source.generate(prompt, job, progress)
-
-    @property
-    def exit_status(self) -> int:
-        """1 if the model has an error, 130 if the validation was interrupted, else 0."""
-        return status_of(self.report)
-
-    @property
-    def answer(self) -> dict[str, Any]:
-        """Everything as JSON values."""
-        return {
-            "schema": 1,
-            "out": str(self.out),
-            "job": str(self.job_folder),
-            "provenance": self.generated.provenance.as_json(),
-            "validation": summary_of(self.report),
-        }
-
-    def say(self, *, quiet: bool) -> None:
-        """Tell the user; nothing if a machine reads stdout."""
-        if quiet:
-            return
-        facts = self.generated.provenance
-        made = f"Parts of {facts.provider} ({facts.model}), cost: {facts.cost or 'unknown'}. Terms: {facts.licence}"
-        kept = f"{self.job_folder}: everything that the generator made; the same request is not sent again"
-        say("\n\n".join([f"{made}\n{kept}", describe(self.inference, self.out), verdict_on(self.report, self.out)]))
-        warn_if_interrupted(self.report)
+    Raises:
+        click.UsageError: Options do not go together.
+    """
+    _refuse_both(given)
+    if given["rounds"] is not None:
+        raise click.UsageError("--rounds belongs to --source llm. Leave it out.")
+    source = _plain_source(given, config)
+    if given["record"] is not None:
+        return RecordingSource(source, given["record"])
+    return source if given["replay"] is None else ReplayedSource(source, given["replay"])
 
 
-@dataclass
-class LanguageGeneration(Generation):
-    """A request that a language model fills, or an object that it draws."""
+def _plain_source(given: Mapping[str, Any], config: Config) -> PartSource:
+    program, limit = given["program"], given["time_limit"]
+    if given["source"] == "command":
+        if program is None:
+            raise click.UsageError("--source command needs --command 'program {image} {out}'.")
+        if given["budget"] is not None:
+            raise click.UsageError("--budget belongs to --source rodin. Leave it out.")
+        return CommandSource(program, limit or config.sources.command_seconds)
+    if program is not None:
+        raise click.UsageError("--command belongs to --source command.")
+    chosen = config.sources.rodin
+    return RodinSource(chosen if limit is None else chosen.model_copy(update={"job_seconds": limit}), given["budget"])
 
-    options: ProvidedOptions = field(kw_only=True)
-    model_asked: LanguageModel = field(init=False)
-    written: Written = field(init=False)
 
-    def build(self, progress: Reporter) -> BuildResult:
-        """Build what a model answers, and send back what does not hold of it.
+def _refuse_both(given: Mapping[str, Any]) -> None:
+    if given["record"] is not None and given["replay"] is not None:
+        raise click.UsageError("--record and --replay exclude each other.")
 
-        Raises:
-            InputError: See `LanguageModel.write`.
-            EnvironmentFault: The service failed.
-        """
-        self.model_asked = self.options.language_model()
-        prompt = check_prompt(self.options.text, self.options.images, seed=0)
-        with open_job(job_folder(self.out), "llm", prompt.digest(self.model_asked.options())) as job:
-            if self.options.resend:
-                job.resend()
-            self.written = self.model_asked.write(prompt, job, self._judged, progress)
-        facts = {
-            "source": "llm", "model": self.model_asked.model, "text": self.options.text, "rounds": self.written.rounds,
-        }  # fmt: skip
-        made = self.written.made
-        return replace(made, blueprint=replace(made.blueprint, parameters={**made.blueprint.parameters, **facts}))
 
-    def _judged(self, made: BuildResult) -> Sequence[str]:
+def model_of_parts(
+    given: Mapping[str, Any], out: Path, config: Config, progress: Reporter
+) -> tuple[int, dict[str, Any], str]:
+    """Get the parts, infer their joints, write the folder and validate the model in it.
+
+    Returns:
+        The exit status, everything as JSON values, and what the user is told.
+
+    Raises:
+        InputError: The prompt, the key or an option cannot be used.
+        EnvironmentFault: The generator failed; the same call goes on where it stopped.
+        OutputError: The folder exists and must not be replaced, or cannot be written.
+    """
+    check_output(out, overwrite=given["force"])
+    source, job_place = part_source(given, config), job_folder(out)
+    prompt = check_prompt(given["text"], given["images"], seed=given["seed"] or 0)
+    with open_job(job_place, source.name, prompt.digest(source.options())) as job:
+        if given["resend"]:
+            job.resend()
+        generated = source.generate(prompt, job, lambda stage, done: progress(stage, _MADE * done))
+    progress("reading the parts", _MADE)
+    parts = load_assembly(
+        generated.path, config=config.assembly, up=given["up"], scale=given["scale"], labels=generated.labels
+    )
+    found = infer(
+        parts, config=config, progress=lambda stage, done: progress(stage, _MADE + (_INFERRED - _MADE) * done)
+    )
+    made = generated.provenance
+    inference = replace(found, provenance=made.as_json())
+    write_model_folder(
+        out,
+        lambda folder: write_inference_files(
+            inference, folder, preview=not given["no_preview"],
+            progress=lambda stage, done: progress(stage, _INFERRED + (_WRITTEN - _INFERRED) * done),
+        ),
+        overwrite=given["force"],
+    )  # fmt: skip
+    report = None if given["no_validation"] else report_after(out, progress, _WRITTEN)
+    answer = {
+        "schema": 1,
+        "out": str(out),
+        "job": str(job_place),
+        "provenance": made.as_json(),
+        "validation": summary_of(report),
+    }
+    words = (
+        f"Parts of {made.provider} ({made.model}), cost: {made.cost or 'unknown'}. Terms: {made.licence}\n"
+        f"{job_place}: everything that the generator made; the same request is not sent again"
+    )
+    return status_of(report), answer, "\n\n".join([words, describe(inference, out), verdict_on(report, out)])
+
+
+def model_asked(given: Mapping[str, Any], config: Config) -> LanguageModel:
+    """The language model that the options ask for.
+
+    Raises:
+        click.UsageError: Options do not go together.
+        InputError: No address is set.
+    """
+    _refuse_both(given)
+    if given["program"] is not None or given["seed"] is not None:
+        raise click.UsageError("--command and --seed mean nothing to a language model. Leave them out.")
+    asked = {"rounds": given["rounds"], "answer_seconds": given["time_limit"]}
+    settings = config.sources.language_model.model_copy(
+        update={name: value for name, value in asked.items() if value is not None}
+    )
+    return language_model(settings, budget=given["budget"], record=given["record"], replay=given["replay"])
+
+
+def written_by(
+    model: LanguageModel, given: Mapping[str, Any], out: Path, config: Config, progress: Reporter
+) -> Written:
+    """Build what a language model answers, and send back what does not hold of it.
+
+    Raises:
+        InputError: See `LanguageModel.write`.
+        EnvironmentFault: The service failed.
+    """
+
+    def judged(made: BuildResult) -> Sequence[str]:
         drawn = drawn_findings(made.blueprint) if made.request is None else ()
-        return [*drawn, *self._findings(made.blueprint)]
-
-    def _findings(self, blueprint: Blueprint) -> Sequence[str]:
-        """Return what the validation holds against the model of a blueprint; nothing without validation."""
-        if not self.validated:
-            return ()
+        if given["no_validation"]:
+            return drawn
         with TemporaryDirectory() as folder:
-            write_blueprint(blueprint, Path(folder), self.config)
-            report = validate(Path(folder, MODEL_FILE), workers=os.cpu_count() or 1)
-        return in_blueprint_words(report.counted)
+            write_blueprint(made.blueprint, Path(folder), config)
+            report: ValidationReport = validate(Path(folder, MODEL_FILE), workers=os.cpu_count() or 1)
+        return [*drawn, *in_blueprint_words(report.counted)]
 
-    @property
-    def answer(self) -> dict[str, Any]:
-        """Everything as JSON values."""
-        facts = {"rounds": self.written.rounds, "tokens": self.written.tokens, "answer": str(self.written.path)}
-        return {**super().answer, "language_model": facts}
+    prompt = check_prompt(given["text"], given["images"], seed=0)
+    with open_job(job_folder(out), "llm", prompt.digest(model.options())) as job:
+        if given["resend"]:
+            job.resend()
+        written = model.write(prompt, job, judged, progress)
+    facts = {"source": "llm", "model": model.model, "text": given["text"], "rounds": written.rounds}
+    blueprint = written.made.blueprint
+    named = replace(blueprint, parameters={**blueprint.parameters, **facts})
+    return replace(written, made=replace(written.made, blueprint=named))
 
-    def say(self, *, quiet: bool) -> None:
-        """Tell the user; nothing if a machine reads stdout."""
-        if not quiet:
-            written = self.written
-            by = f"by {self.model_asked.model} in {written.rounds} rounds, {written.tokens} tokens: {written.path}"
-            say(f"{'Drawn' if written.made.request is None else 'Filled in'} {by}\n")
-        super().say(quiet=quiet)
+
+def say_written(model: LanguageModel, written: Written) -> None:
+    """Tell the user who drew or filled in what was built."""
+    by = f"by {model.model} in {written.rounds} rounds, {written.tokens} tokens: {written.path}"
+    say(f"{'Drawn' if written.made.request is None else 'Filled in'} {by}\n")

@@ -12,7 +12,7 @@ import pytest
 
 from kinematify.batch.corpus import _entry, write_corpus
 from kinematify.cli.app import run
-from kinematify.cli.generation import Generation
+from kinematify.cli.generation import GeneratedModel
 from kinematify.cli.verdict import describe_briefly
 from kinematify.evaluation.datasets import find_objects
 from kinematify.generate.reader import read_sentence
@@ -58,13 +58,10 @@ def test_the_model_is_validated(generated):
 
 
 def test_the_status_follows_the_verdict(tmp_path):
-    run = Generation(read_sentence(SENTENCE), None, tmp_path, preview=False, validated=True)
-    run.made = run.request.made()
-    assert run.exit_status == 0
-    run.report = report(result(finding()))
-    assert (run.report.verdict, run.exit_status) == ("fail", 1)
-    run.report = report(interrupted=True)
-    assert run.exit_status == 130
+    made = read_sentence(SENTENCE).made()
+    for judged, status in ((None, 0), (report(result(finding())), 1), (report(interrupted=True), 130)):
+        found = GeneratedModel(out=tmp_path, made=made, model=None, inference=None, report=judged)
+        assert found.exit_status == status
 
 
 def test_the_short_verdict_tells_errors_in_full_and_counts_warnings(monkeypatch):
