@@ -16,7 +16,7 @@ import numpy as np
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.envs.bundled import DEFAULT, FAMILY_PREFIX, PREFIX, find_bundled, write_bundled
-from kinematify.envs.settings import load_settings as load_env_settings
+from kinematify.envs.settings import SETTINGS
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene, transformed
 from kinematify.manipulation.grasp import moved_bodies, search_grasps
@@ -365,4 +365,4 @@ def _loaded(model: str | None, stamp: tuple[int, int] | None) -> ArticulatedObje
 @lru_cache(maxsize=32)
 def shared_target(articulated_object: ArticulatedObject, joint: str) -> Target:
     """Return the joint of a `joint` keyword, its hold searched once per process."""
-    return find_target(articulated_object, joint, load_env_settings().hand)
+    return find_target(articulated_object, joint, SETTINGS.hand)

@@ -15,7 +15,7 @@ from kinematify.envs.env_picture import CameraView, Piece, Renderer, ViewerWindo
 from kinematify.envs.goal import Goal
 from kinematify.envs.joint_dynamics import draw, drawing
 from kinematify.envs.model_verdict import require_valid
-from kinematify.envs.settings import load_settings
+from kinematify.envs.settings import SETTINGS
 from kinematify.errors import InputError
 from kinematify.geometry.scene import transformed
 from kinematify.robot.robot import forward_kinematics
@@ -86,7 +86,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         require_engine(engine)
         if not 0.0 < open_fraction <= 1.0:
             raise InputError(f"open_fraction is {open_fraction}, but must be above 0 and at most 1, such as 0.9.")
-        self.settings = load_settings()
+        self.settings = SETTINGS
         self.engine, self.render_mode = engine, render_mode
         self._sparse, self.terminates = reward == "sparse", terminate_on_success
         self._drawn_names = drawing(randomize)

@@ -138,5 +138,5 @@ def draw(
     )
 
 
-def _factors(rng: np.random.Generator, ends: list[float], count: int) -> FloatArray:
+def _factors(rng: np.random.Generator, ends: tuple[float, float], count: int) -> FloatArray:
     return np.asarray(np.exp(rng.uniform(np.log(ends[0]), np.log(ends[1]), count)))

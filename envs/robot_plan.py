@@ -16,7 +16,7 @@ import numpy as np
 from kinematify.config.validation import load_settings
 from kinematify.envs.articulated_object import loadable
 from kinematify.envs.model_verdict import content_digest, keep, kept, tell
-from kinematify.envs.settings import load_settings as load_env_settings
+from kinematify.envs.settings import SETTINGS
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene
 from kinematify.manipulation.kinematics import Arm
@@ -115,7 +115,7 @@ def robot_plan(articulated_object: ArticulatedObject, joint: str, robot: EnvRobo
 
 def _planned(articulated_object: ArticulatedObject, joint: str, robot: EnvRobot) -> dict[str, object]:
     settings = load_settings().task
-    seconds = {"seconds": load_env_settings().robot.plan_seconds}
+    seconds = {"seconds": SETTINGS.robot.plan_seconds}
     settings = settings.model_copy(update={"plan": settings.plan.model_copy(update=seconds)})
     plan = plan_pull(robot.arm, articulated_object.scene, joint, settings)
     if plan.place is None or plan.reach is None or plan.pull is None or plan.opened is None:

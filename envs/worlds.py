@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from kinematify.config.validation import load_settings as load_validation_settings
+from kinematify.config.validation import load_settings
 from kinematify.envs.articulated_object import held_links
 from kinematify.envs.joint_dynamics import full_force, joint_dynamics
-from kinematify.envs.settings import load_settings
+from kinematify.envs.settings import SETTINGS
 from kinematify.geometry.rest_pairs import overlapping_links
 from kinematify.manipulation.manipulator import effort_limits
 from kinematify.simulation.engines import open_world
@@ -64,7 +64,7 @@ class HandFacts(WorldFacts):
 @lru_cache(maxsize=16)
 def hand_facts(articulated_object: ArticulatedObject, target: Target, *, spring: bool) -> HandFacts:
     """Describe the world of a hand, once per process."""
-    settings, mechanism = load_settings(), articulated_object.scene.mechanism
+    settings, mechanism = SETTINGS, articulated_object.scene.mechanism
     spec = WorldSpec(
         step=settings.time.step,
         object=_placed(articulated_object, articulated_object.T_world_root),
@@ -97,7 +97,7 @@ def hand_facts(articulated_object: ArticulatedObject, target: Target, *, spring:
 @lru_cache(maxsize=8)
 def arm_facts(articulated_object: ArticulatedObject, target: Target, robot: EnvRobot, plan: RobotPlan) -> WorldFacts:
     """Describe the world of a robot, once per process."""
-    settings, driven = load_settings(), {*robot.robot.arm_joints, *robot.robot.finger_joints}
+    settings, driven = SETTINGS, {*robot.robot.arm_joints, *robot.robot.finger_joints}
     spec = WorldSpec(
         step=settings.time.step,
         object=_placed(articulated_object, plan.T_world_object),
@@ -109,7 +109,7 @@ def arm_facts(articulated_object: ArticulatedObject, target: Target, robot: EnvR
             locked={travel.joint: travel.rest for travel in robot.mechanism.travels if travel.joint not in driven},
             arm=robot.robot.arm_joints,
             fingers=robot.robot.finger_joints,
-            strongest=effort_limits(robot.arm.declared, robot.robot, load_validation_settings().task.execution.effort),
+            strongest=effort_limits(robot.arm.declared, robot.robot, load_settings().task.execution.effort),
             postures=(plan.reach[0], plan.pull[0], plan.pull[-1]),
             tool=robot.robot.tool,
             settings=settings.robot,
@@ -148,7 +148,7 @@ class _Loads:
     def dynamics(self) -> JointDynamics:
         """Damping and friction of all joints."""
         matrix, bias = self._world.mechanics(self._object.scene.mechanism.rest)
-        return joint_dynamics(self._object, np.diag(matrix).copy(), bias, load_settings().object)
+        return joint_dynamics(self._object, np.diag(matrix).copy(), bias, SETTINGS.object)
 
     def moved(self, leaders: FloatArray, leader: int) -> tuple[float, float]:
         """Inertia and holding torque of a joint and of all that follow it."""

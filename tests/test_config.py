@@ -9,13 +9,11 @@ import pytest
 from kinematify.config import CONFIG_FOLDER, Config, StageConfig, load_config
 from kinematify.config.nightly_settings import NightlySettings, load_nightly
 from kinematify.config.validation import ValidationSettings, load_settings
-from kinematify.envs.settings import EnvSettings
 from kinematify.errors import ConfigError
 from tests.places import ROOT
 
 MODULES = [
     *sorted((ROOT / "kinematify" / "config").glob("*.py")),
-    ROOT / "envs" / "settings.py",
 ]
 
 
@@ -44,7 +42,7 @@ def test_every_field_says_what_it_is(module: Path) -> None:
     assert fields_without_meaning(module) == []
 
 
-@pytest.mark.parametrize("stage", [Config, ValidationSettings, EnvSettings, NightlySettings])
+@pytest.mark.parametrize("stage", [Config, ValidationSettings, NightlySettings])
 def test_every_field_has_its_value_in_its_class(stage: type[StageConfig]) -> None:
     def check(values: StageConfig) -> None:
         again = type(values).model_validate(values.model_dump())  # defaults have the types that are declared

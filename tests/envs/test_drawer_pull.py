@@ -15,7 +15,7 @@ from gymnasium.utils.env_checker import check_env
 
 from kinematify.envs.drawer_pull import DrawerPullEnv
 from kinematify.envs.expert import ArmExpert
-from kinematify.envs.settings import load_settings
+from kinematify.envs.settings import RobotSettings
 from kinematify.envs.tasks import EPISODE_STEPS
 from kinematify.errors import EnvironmentFault, InputError
 from kinematify.manipulation.manipulator import builtin_robot
@@ -143,9 +143,7 @@ def test_a_robot_of_the_users(drawer: Path, tmp_path: Path) -> None:
 
 
 def test_what_no_gripper_can_hold_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    settings = load_settings()
-    brief = settings.model_copy(update={"robot": settings.robot.model_copy(update={"plan_seconds": 0.2})})
-    monkeypatch.setattr("kinematify.envs.robot_plan.load_env_settings", lambda: brief)
+    monkeypatch.setattr(RobotSettings, "plan_seconds", 0.2)
     model = write_slider(tmp_path / "smooth.urdf", thick=0.15)
     with pytest.raises(InputError, match=r"cannot open front_slide.*OpenPart"):
         DrawerPullEnv(model, allow_invalid=True)
