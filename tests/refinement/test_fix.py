@@ -117,6 +117,18 @@ def test_only_links_with_a_finding_change(jammed: tuple[Path, Fix]) -> None:
     assert "<!-- slides -->" in done.path.read_text("utf-8")
 
 
+@pytest.mark.parametrize("shape", ['<mesh filename="../meshes/block.stl"/>', '<box size="0.4 0.5 0.3"/>'])
+def test_what_would_lose_more_than_a_share_or_is_a_primitive_keeps_its_collision(tmp_path: Path, shape: str) -> None:
+    model = cabinet(tmp_path, "../meshes/NAME.stl")
+    box((0.4, 0.5, 0.3)).export(tmp_path / "meshes" / "block.stl")  # the drawer is inside
+    solid = f'<collision><origin xyz="0 0 0.15"/><geometry>{shape}</geometry></collision></link>'
+    case, _, rest = model.read_text().partition("</collision></link>")
+    model.write_text(case[: case.index("<collision>")] + solid + rest)
+    done = fixed(model, tmp_path / "urdf" / "fixed.urdf")
+    assert [text for text in done.left if text.startswith("case: its collision geometry is left as it is")]
+    assert not done.written or texts(done.path)["case"] == texts(model)["case"]
+
+
 def test_a_file_with_meshdir_opens_from_its_new_folder(jammed: tuple[Path, Fix]) -> None:
     model, done = jammed
     assert refusals(model, DEFAULT_ENGINES) == {}
