@@ -70,13 +70,6 @@ def test_a_follower_has_the_range_that_its_leader_asks_for():
     assert not narrow
 
 
-def test_a_drawn_object_has_the_size_that_is_asked_for():
-    built = build(known_families()["standing_desk"], {"width": 1.4, "height": 0.7})
-    assert np.ptp(built.assembly.bounds[:, 0]) == pytest.approx(1.4)
-    with pytest.raises(InputError, match="must be a number from 1 to"):
-        build(known_families()["standing_desk"], {"width": 40.0})
-
-
 REAL = """adjustable_wrench .25-.6|air_conditioner 8-20|bench_grinder 7-13|bicycle 9-18|blender 2-4.5|bottle_jack 2.5-6
 box_car 900-1600|bunk_bed 50-110|bus_or_tram 7000-14000|cabinet 25-60|camera .4-1|ceiling_fan 4-9|chainsaw 4-7
 chest_freezer 35-60|circular_saw 2.5-5|coffee_machine 2.5-10|concrete_mixer 45-80|crib 20-40|dentist_chair 120-220

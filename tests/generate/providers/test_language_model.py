@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -31,12 +32,12 @@ from tests.places import BENCH
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
 SETTINGS = load_config().sources.language_model.model_copy(
     update={"first_pause": 0.01, "longest_pause": 0.02, "tries": 2, "answer_seconds": 10.0}
 )
 TEXT = "a box with a lid"
+ANSWERS = Path(__file__).with_name("answers")
 
 
 CHECKLIST = [{"phrase": "a lid", "parts": ["lid"], "count": 1, "motion": "hinge"}]
@@ -64,8 +65,8 @@ def model_at(server: ChatServer, **options: object) -> LanguageModel:
     return LanguageModel(server.url, "tester", chat_server.KEY, SETTINGS, **options)
 
 
-def written(model: LanguageModel, folder: Path, judge=lambda *_: (), images: tuple[Path, ...] = ()):
-    prompt = check_prompt(TEXT, images, seed=0)
+def written(model: LanguageModel, folder: Path, judge=lambda *_: (), images: tuple[Path, ...] = (), text=TEXT):
+    prompt = check_prompt(text, images, seed=0)
     with open_job(folder, "llm", prompt.digest(model.options())) as job:
         return model.write(prompt, job, judge, lambda *_: None)
 
@@ -196,6 +197,14 @@ def test_a_recording_answers_without_a_service(server, tmp_path):
     assert chat_server.KEY not in "".join(path.read_text() for path in (tmp_path / "tape").iterdir())
     with pytest.raises(InputError, match="Nothing is recorded"):
         written(model, tmp_path / "three", lambda *_: ("not good",))
+
+
+@pytest.mark.parametrize("text", (ANSWERS / "sentences.txt").read_text(encoding="utf-8").splitlines())
+def test_answers_of_an_engineer_hold_in_the_first_round(text, tmp_path):
+    """An engineer of this project stood in for a strong model on 2026-11-29, with the prompt alone before him."""
+    model = LanguageModel("http://localhost", "engineer", "", SETTINGS, replay=ANSWERS)
+    found = written(model, tmp_path, lambda made: () if made.request else drawn_findings(made.blueprint), text=text)
+    assert (found.rounds, found.made.differences) == (1, ())
 
 
 def test_pictures_are_sent_as_they_are(server, tmp_path):
