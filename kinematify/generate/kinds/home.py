@@ -432,7 +432,7 @@ def atm(b: ObjectBuilder, width: float) -> None:
     words="cargo container, container with doors, freight container, storage container, sea container",
 )
 def shipping_container(b: ObjectBuilder) -> None:
-    size = b.pick(0.1, 1)
+    size = b.pick(1, 0.1)
     p = scaled(size)
     b.part(
         "container",

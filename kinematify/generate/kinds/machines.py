@@ -367,31 +367,6 @@ def big_lever_console(b: ObjectBuilder, width: float, number: int) -> None:
         b.hinge(f"pedal_{k}", parent="console", axis=X, pivot=(x, -0.012 - g, 0.05), upper=0.3, ajar=False)
 
 
-@kind(
-    "hydraulic lift table",
-    words="lift table, platform lift, lifting platform",
-    width=length(0.5, 1.2),
-    depth=length(0.4, 0.8),
-    height=length(0.3, 0.6),
-)
-def scissor_table(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
-    """A platform over a base; the links are left out, as quick models do."""
-    b.part(
-        "base",
-        box((-width / 2, -depth / 2, 0), (width / 2, depth / 2, 0.06)),
-        b.tube(0.05, 0.035, (0, 0, 0.05), (0, 0, 0.8 * height)),
-        material="steel",
-    )
-    g = b.gap(0.03) + 0.0005
-    b.part(
-        "platform",
-        box((-width / 2, -depth / 2, height), (width / 2, depth / 2, height + 0.05)),
-        b.cylinder(0.035 - 1.5 * g if b.style.has_bore else 0.035, (0, 0, 0.3 * height), (0, 0, height + 0.01)),
-        material="steel",
-    )
-    b.slide("platform", parent="base", axis=Z, upper=0.4 * height, lower=-0.1 * height, ajar=False)
-
-
 @kind("bottle jack", words="screw jack, lifting jack", radius=length(0.03, 0.05), height=length(0.15, 0.25))
 def bottle_jack(b: ObjectBuilder, radius: float, height: float) -> None:
     """A post that rises out of a body, with a lever."""

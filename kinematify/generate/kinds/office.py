@@ -317,8 +317,8 @@ def computer_mouse(b: ObjectBuilder, size: float) -> None:
 @kind(
     "computer keyboard",
     words="pc keyboard, keyboard",
-    columns=whole(6, 10),
-    rows=whole(2, 4),
+    columns=whole(6, 20, default=14, usual=(6, 10)),
+    rows=whole(2, 6, default=5, usual=(2, 4)),
 )
 def computer_keyboard(b: ObjectBuilder, columns: int, rows: int) -> None:
     width = 0.019 * columns + 0.02

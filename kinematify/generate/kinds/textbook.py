@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 
 @kind(
     "scissor lift",
-    words="scissor lift table, scissor jack, scissor platform, lab jack, pantograph lift",
+    words=(
+        "scissor lift table, scissor jack, scissor platform, lab jack, pantograph lift, hydraulic lift table, "
+        "lift table, platform lift, lifting platform"
+    ),
     length=length(0.3, 1.4),
     stages=whole(1, 4),
 )

@@ -16,10 +16,11 @@ if TYPE_CHECKING:
 
 @kind(
     "train wagon",
+    walls=150,
     words="freight car, box wagon, railway wagon, goods wagon, cattle car",
 )
 def train_wagon(b: ObjectBuilder) -> None:
-    size = b.pick(0.1, 1)
+    size = b.pick(1, 0.1)
     p = scaled(size)
     b.part(
         "body",
@@ -50,10 +51,11 @@ def train_wagon(b: ObjectBuilder) -> None:
 
 @kind(
     "cable car",
+    walls=30,
     words="gondola lift, ski lift, cable car cabin, funicular cabin",
 )
 def cable_car(b: ObjectBuilder) -> None:
-    size = b.pick(0.1, 1)
+    size = b.pick(1, 0.1)
     p = scaled(size)
     b.part(
         "rope",
@@ -90,10 +92,11 @@ def cable_car(b: ObjectBuilder) -> None:
 
 @kind(
     "horse carriage",
+    walls=20,
     words="carriage, stagecoach",
 )
 def horse_carriage(b: ObjectBuilder) -> None:
-    size = b.pick(0.15, 1)
+    size = b.pick(1, 0.15)
     p = scaled(size)
     b.part(
         "body",
@@ -133,10 +136,11 @@ def horse_carriage(b: ObjectBuilder) -> None:
 
 @kind(
     "snowmobile",
+    walls=40,
     words="snow scooter",
 )
 def snowmobile(b: ObjectBuilder) -> None:
-    size = b.pick(0.15, 1)
+    size = b.pick(1, 0.15)
     p = scaled(size)
     b.part(
         "body",
@@ -181,10 +185,11 @@ def snowmobile(b: ObjectBuilder) -> None:
 
 @kind(
     "go kart",
+    walls=20,
     words="gokart, go-kart, pedal car, soap box, soapbox car",
 )
 def go_kart(b: ObjectBuilder) -> None:
-    size = b.pick(0.2, 1)
+    size = b.pick(1, 0.2)
     p = scaled(size)
     b.part(
         "frame",
@@ -221,10 +226,11 @@ def go_kart(b: ObjectBuilder) -> None:
 
 @kind(
     "cement truck",
+    walls=110,
     words="concrete truck, mixer truck",
 )
 def cement_truck(b: ObjectBuilder) -> None:
-    size = b.pick(0.1, 1)
+    size = b.pick(1, 0.1)
     p = scaled(size)
     b.part(
         "truck",
@@ -276,10 +282,11 @@ def cement_truck(b: ObjectBuilder) -> None:
 
 @kind(
     "ladder truck",
+    walls=110,
     words="turntable ladder, aerial ladder, fire engine with ladder",
 )
 def ladder_truck(b: ObjectBuilder) -> None:
-    size = b.pick(0.1, 1)
+    size = b.pick(1, 0.1)
     p = scaled(size)
     b.part(
         "truck",
@@ -489,10 +496,11 @@ def stroller(b: ObjectBuilder, size: float) -> None:
 
 @kind(
     "caravan",
+    walls=12,
     words="camper trailer, mobile home",
 )
 def caravan(b: ObjectBuilder) -> None:
-    size = b.pick(0.15, 1)
+    size = b.pick(1, 0.15)
     p = scaled(size)
     b.part(
         "body",
@@ -569,7 +577,7 @@ def semaphore(b: ObjectBuilder, height: float) -> None:
     words="railway switch, rail points, track switch",
 )
 def rail_switch(b: ObjectBuilder) -> None:
-    size = b.pick(0.1, 0.5)
+    size = b.pick(0.5, 0.1)
     p = scaled(size)
     b.part(
         "bed",

@@ -443,8 +443,6 @@ def trailer(b: ObjectBuilder, length: float, width: float, radius: float, height
 @kind("windmill", words="dutch windmill, grain windmill, toy windmill", details={"sail": 4}, height=length(1.0, 8.0))
 def windmill(b: ObjectBuilder, height: float) -> None:
     """Sails on a cap that turns on a tower, a door below."""
-    r = 0.0
-    r = 0.45 * height
     b.part("tower", b.cone(0.22 * height, 0.14 * height, (0, 0, 0), (0, 0, 0.8 * height)), material="wood")
     g = b.gap(0.05 * height)
     b.part(
@@ -455,7 +453,14 @@ def windmill(b: ObjectBuilder, height: float) -> None:
     )
     b.spin("cap", parent="tower", axis=Z, pivot=(0, 0, 0.8 * height))
     rotor(
-        b, "sails", parent="cap", at=(0, -0.24 * height, 0.87 * height), out=-Y, radius=r, blades=b.pick(3, 4), wide=0.2
+        b,
+        "sails",
+        parent="cap",
+        at=(0, -0.24 * height, 0.87 * height),
+        out=-Y,
+        radius=0.45 * height,
+        blades=4,
+        wide=0.2,
     )
 
 

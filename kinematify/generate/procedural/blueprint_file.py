@@ -86,7 +86,7 @@ class Repetition(_Described):
     through: Vector = (0.0, 0.0, 0.0)
     """A point on the axis, world frame [m]."""
     upright: bool = False
-    """It is carried around the axis without being turned."""
+    """It is carried around the axis without being turned; `through` is then counted from where it stands."""
     over: Vector | None = None
     """Way from the first to the last instead, in whose middle it is given, world frame [m]; one alone stands there."""
 
