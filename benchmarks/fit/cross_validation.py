@@ -69,7 +69,6 @@ class Row:
     """Share with the right type and an axis within 5 deg."""
     angle_deg: float
     """Mean over the joints; 90 where none is proposed."""
-    types_per_object: float
     within_per_object: float
 
 
@@ -87,7 +86,6 @@ def row_of(examples: Sequence[Example], picks: Sequence[int]) -> Row:
         types=float(types.mean()),
         within=float(within.mean()),
         angle_deg=float(angles.mean()),
-        types_per_object=float(np.mean([types[rows].mean() for rows in groups])),
         within_per_object=float(np.mean([within[rows].mean() for rows in groups])),
     )
 
@@ -157,31 +155,51 @@ def agreed_examples(examples: Sequence[Example], likely: Sequence[FloatArray]) -
 
 
 @dataclass(frozen=True, kw_only=True)
-class RigidityRow:
-    """How well fixed and moving parts of a set are distinguished, held out by category."""
+class AnswersRow:
+    """How well a question about the parts of a set is answered, held out by category."""
 
-    moving: int
-    lost: float | None
-    """Share of the moving parts that are taken for fixed."""
-    fixed: int
+    yes: int
     found: float | None
-    """Share of the fixed parts that are taken for fixed."""
+    """Share of those for which it is yes that are taken for such."""
+    no: int
+    lost: float | None
+    """Share of the others that are taken for such."""
 
 
-def judge_rigidity_left_out(examples: Sequence[Example]) -> dict[str, RigidityRow]:
+def judge_rigidity_left_out(examples: Sequence[Example]) -> dict[str, AnswersRow]:
     """What is fixed, by trees whose fit had nothing of the category; by set."""
+    fixed = load_config().joints.confidence.fixed
+    return _answered(examples, fit_rigidity, rigidity_odds, is_fixed, float(np.log(fixed / (1.0 - fixed))))
+
+
+def judge_turning_left_out(examples: Sequence[Example]) -> dict[str, AnswersRow]:
+    """What goes round, by trees whose fit had nothing of the category; by set. Links in series are apart."""
+    turning = [example for example in examples if turns_known(example)]
+
+    def odds(scorer: Scorer, some: Sequence[Example]) -> FloatArray:
+        return scorer.sums(turns_of(some, scorer.measurements))
+
+    return _answered(turning, fit_turning, odds, lambda example: bool(example.is_continuous), 0.0)
+
+
+def _answered(
+    examples: Sequence[Example],
+    fit: Callable[..., Scorer],
+    odds_of: Callable[[Scorer, Sequence[Example]], FloatArray],
+    answer: Callable[[Example], bool],
+    least: float,
+) -> dict[str, AnswersRow]:
+    """Fit and ask by folds; what has more than the least log odds is taken for a yes."""
     odds = np.zeros(len(examples))
     for fitted, judged in _folds(examples):
-        scorer = fit_rigidity(fitted, seeds=(0,), provenance={})
-        odds[judged] = rigidity_odds(scorer, [examples[k] for k in judged])
-    taken = 1.0 / (1.0 + np.exp(-odds)) > load_config().joints.confidence.fixed
-    fixed = np.array([is_fixed(example) for example in examples])
+        odds[judged] = odds_of(fit(fitted, seeds=(0,), provenance={}), [examples[k] for k in judged])
+    taken, yes = odds > least, np.array([answer(example) for example in examples], dtype=bool)
     return {
-        name: RigidityRow(
-            moving=int((~fixed[index]).sum()),
-            lost=_share(taken[index][~fixed[index]]),
-            fixed=int(fixed[index].sum()),
-            found=_share(taken[index][fixed[index]]),
+        name: AnswersRow(
+            yes=int(yes[index].sum()),
+            found=_share(taken[index][yes[index]]),
+            no=int((~yes[index]).sum()),
+            lost=_share(taken[index][~yes[index]]),
         )
         for name, index in sets_of(examples).items()
     }
@@ -201,56 +219,13 @@ def judge_edges_left_out(examples: Sequence[TreeExample]) -> dict[str, EdgesRow]
     }
 
 
-@dataclass(frozen=True, kw_only=True)
-class OpeningRow:
-    """How well the side is found to which the turns of a set open, held out by category."""
-
-    turns: int
-    right: float
-
-
-def judge_opening_left_out(examples: Sequence[Example]) -> dict[str, OpeningRow]:
+def judge_opening_left_out(examples: Sequence[Example]) -> dict[str, AnswersRow]:
     """Which way turns open, by trees whose fit had nothing of the category; by set."""
-    turning = [example for example in examples if example.sides]
-    right = np.zeros(len(turning))
-    for fitted, judged in _folds(turning):
-        scorer = fit_opening(fitted, seeds=(0,), provenance={})
-        for k in judged:
-            right[k] = opening_odds(scorer, turning[k].sides) > 0.0
-    return {
-        name: OpeningRow(turns=len(index), right=float(right[index].mean())) for name, index in sets_of(turning).items()
-    }
 
+    def odds(scorer: Scorer, some: Sequence[Example]) -> FloatArray:
+        return np.array([opening_odds(scorer, example.sides) for example in some])
 
-@dataclass(frozen=True, kw_only=True)
-class TurningRow:
-    """How well the endless turns of a set are found, held out by category."""
-
-    rounds: int
-    found: float | None
-    """Share of those that go round which are taken for such."""
-    stopped: int
-    lost: float | None
-    """Share of the others that are taken to go round."""
-
-
-def judge_turning_left_out(examples: Sequence[Example]) -> dict[str, TurningRow]:
-    """What goes round, by trees whose fit had nothing of the category; by set. Links in series are apart."""
-    turning = [example for example in examples if turns_known(example)]
-    taken = np.zeros(len(turning), dtype=bool)
-    for fitted, judged in _folds(turning):
-        scorer = fit_turning(fitted, seeds=(0,), provenance={})
-        taken[judged] = scorer.sums(turns_of([turning[k] for k in judged], scorer.measurements)) > 0.0
-    rounds = np.array([bool(example.is_continuous) for example in turning])
-    return {
-        name: TurningRow(
-            rounds=int(rounds[index].sum()),
-            found=_share(taken[index][rounds[index]]),
-            stopped=int((~rounds[index]).sum()),
-            lost=_share(taken[index][~rounds[index]]),
-        )
-        for name, index in sets_of(turning).items()
-    }
+    return _answered([example for example in examples if example.sides], fit_opening, odds, lambda _: True, 0.0)
 
 
 def _folds(examples: Sequence[Example]) -> Iterator[tuple[list[Example], list[int]]]:

@@ -6,7 +6,6 @@ import json
 from collections import Counter
 from dataclasses import asdict, replace
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 from benchmarks.fit.corpora import (
@@ -44,6 +43,7 @@ from benchmarks.fit.trees import (
     fit_rigidity,
     fit_turning,
     is_fixed,
+    lightgbm_module,
     opening_recipe_key,
     recipe_key,
     rigidity_recipe_key,
@@ -63,7 +63,6 @@ if TYPE_CHECKING:
     from benchmarks.fit.edges import TreeExample
     from benchmarks.fit.examples import Example
     from kinematify.joints.choice.edges import EdgeWeights
-    from kinematify.joints.choice.scorer import Scorer
     from kinematify.robot.arrays import FloatArray
 
     Likely = Mapping[str, Mapping[int, FloatArray]]
@@ -137,7 +136,7 @@ def fit_and_judge(
     fitted = [example for example in examples if example.teaches]
     provenance = {
         "kinematify": __version__,
-        "lightgbm": _version(),
+        "lightgbm": lightgbm_module().__version__,
         "date": datetime.now(UTC).date().isoformat(),
         "commit": git_commit()[0],
         **drawn,
@@ -150,10 +149,17 @@ def fit_and_judge(
     fits = out / "fits"
     scorer = replace(kept_scorer(fitted, fits, SHIPPED), provenance=provenance)
     write_scorer(scorer, out / WEIGHTS)
+    heads: list[tuple[str, Any, Any, list[Example]]] = [
+        (OPENING_WEIGHTS, fit_opening, opening_recipe_key, [example for example in fitted if example.sides]),
+        (TURNING_WEIGHTS, fit_turning, turning_recipe_key, [example for example in fitted if turns_known(example)]),
+    ]
     if FIXED_HEAD not in skip:
-        write_scorer(_rigidity(everything, provenance), out / RIGID_WEIGHTS)
-    write_scorer(_opening(examples, provenance), out / OPENING_WEIGHTS)
-    write_scorer(_turning(examples, provenance), out / TURNING_WEIGHTS)
+        taught = [example for example in everything if example.teaches]
+        heads.append((RIGID_WEIGHTS, fit_rigidity, rigidity_recipe_key, taught))
+    for name, fit, key, some in heads:
+        beside = fit(some, seeds=_SEEDS, provenance={})
+        facts = {"joints": len(some), "fixed": sum(map(is_fixed, some)), "recipe": key(beside.measurements)}
+        write_scorer(replace(beside, provenance={**provenance, **facts}), out / name)
     edges = fit_edges([example for example in trees if example.fits], provenance)
     if EDGES_HEAD not in skip:
         write_edge_weights(edges, out / EDGE_WEIGHTS)
@@ -180,34 +186,6 @@ def fit_and_judge(
     return report
 
 
-def _rigidity(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scorer:
-    """What tells fixed parts from others, fitted to all that may enter weights."""
-    fitted = [example for example in examples if example.teaches]
-    facts = {
-        "joints": len(fitted),
-        "fixed": sum(map(is_fixed, fitted)),
-        "data": data_key(fitted),
-        "recipe": rigidity_recipe_key(list({name for example in fitted for name in example.measured})),
-    }
-    return fit_rigidity(fitted, seeds=_SEEDS, provenance={**provenance, **facts})
-
-
-def _opening(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scorer:
-    """What tells which way a turn opens, fitted to all that may enter weights."""
-    fitted = [example for example in examples if example.teaches and example.sides]
-    names = list({name for example in fitted for name in example.sides})
-    facts = {"joints": len(fitted), "recipe": opening_recipe_key(names)}
-    return fit_opening(fitted, seeds=_SEEDS, provenance={**provenance, **facts})
-
-
-def _turning(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scorer:
-    """What tells which turns go round, fitted to all that may enter weights."""
-    fitted = [example for example in examples if example.teaches and turns_known(example)]
-    scorer = fit_turning(fitted, seeds=_SEEDS, provenance={})
-    facts = {"joints": len(fitted), "recipe": turning_recipe_key(scorer.measurements)}
-    return replace(scorer, provenance={**provenance, **facts})
-
-
 def _edges(trees: Sequence[TreeExample], shipped: EdgeWeights) -> dict[str, Any]:
     """True edges that the likeliest trees have, by set: held out by category, and with the weights that ship."""
     left_out = judge_edges_left_out(trees)
@@ -224,17 +202,13 @@ def _edges(trees: Sequence[TreeExample], shipped: EdgeWeights) -> dict[str, Any]
 def _rows(examples: Sequence[Example], index: Sequence[int], likely: Likely) -> dict[str, Any]:
     """Figures and causes of errors of one set by what chose."""
     some = [examples[k] for k in index]
-    picks = {"weighted cues": [example.by_cues for example in some]}
-    picks |= {
-        by: [picked(examples[k], given[k]) for k in index]
-        for by, given in likely.items()
-        if all(k in given for k in index)
-    }
-    return {
-        by: asdict(row_of(some, chosen))
-        | {"causes": Counter(cause for cause in map(cause_of, some, chosen) if cause is not None)}
-        for by, chosen in picks.items()
-    }
+    found = {}
+    for by, given in likely.items():
+        if all(k in given for k in index):
+            chosen = [picked(examples[k], given[k]) for k in index]
+            causes = Counter(filter(None, map(cause_of, some, chosen)))
+            found[by] = asdict(row_of(some, chosen)) | {"causes": causes}
+    return found
 
 
 def _calibration(examples: Sequence[Example], likely: Mapping[int, FloatArray]) -> dict[str, Any]:
@@ -247,20 +221,15 @@ def _percent(share: float | None) -> str:
     return "" if share is None else f"{share:.1%}"
 
 
-def _version() -> str:
-    """Of LightGBM; empty where it is not installed, which the fit then says."""
-    try:
-        return version("lightgbm")
-    except PackageNotFoundError:
-        return ""
-
-
 def as_markdown(report: dict[str, Any]) -> str:
     """The table of `run_fit` as a page."""
     facts = report["provenance"]
+    most = facts["per_category"]
+    real = "" if most is None else f", at most {most} objects of a category of each folder; the others judge"
     introduction = (
         f"Fitted to {facts['joints']} joints of {facts['objects']} objects by `kinematify fit` (seed {facts['seed']}, "
-        f"LightGBM {facts['lightgbm']}){_sampled(facts)}. The true tree is given. Held out by category: the fit had no "
+        f"LightGBM {facts['lightgbm']}): {facts['rounds']} object of each kind of the library, {facts['composed']} "
+        f"random mechanisms{real}. The true tree is given. Held out by category: the fit had no "
         "object and no family of the category, and one seed; with its source: it had nothing of the sets that have "
         "this row. Weights before: what shipped until this fit, which has seen other objects. In-sample: these "
         "weights have seen what is called fitted to. Errors: no right joint was "
@@ -286,35 +255,18 @@ def as_markdown(report: dict[str, Any]) -> str:
             for name, by, row in edges
         ]
         blocks += ["Edges of the tree, whatever its root:", table(heading, shown)]
-    rigidity = report["rigidity"]
-    if any(row["fixed"] for row in rigidity.values()):
-        columns = ("set", "moving parts", "taken for fixed", "pieces broken off", "found to be fixed")
-        counted = [
-            (name, f"{row['moving']}", _percent(row["lost"]), f"{row['fixed']}", _percent(row["found"]))
-            for name, row in rigidity.items()
-        ]
-        blocks += ["Whether a part is fixed, held out by category:", table(columns, counted)]
-    opening = report["opening"]
-    if opening:
-        titles = ("set", "turns that open one way", "right, held out by category")
-        rows_of_sets = [(name, f"{row['turns']}", f"{row['right']:.1%}") for name, row in opening.items()]
-        blocks += ["Which way a turn opens, of the true line:", table(titles, rows_of_sets)]
-    turning = report["turning"]
-    if turning:
-        columns = ("set", "go round", "found", "turn between stops", "taken to go round")
-        counted = [
-            (name, f"{row['rounds']}", _percent(row["found"]), f"{row['stopped']}", _percent(row["lost"]))
-            for name, row in turning.items()
-        ]
-        blocks += ["Which turns go round, of the true line, held out by category:", table(columns, counted)]
+    for key, title, *what in (
+        ("rigidity", "Whether a part is fixed", "pieces broken off", "moving parts"),
+        ("opening", "Which way a turn opens, of the true line", "open one way", "others"),
+        ("turning", "Which turns go round, of the true line", "go round", "turn between stops"),
+    ):
+        if any(row["yes"] for row in report[key].values()):
+            counted = [
+                (name, f"{row['yes']}", _percent(row["found"]), f"{row['no']}", _percent(row["lost"]))
+                for name, row in report[key].items()
+            ]
+            blocks += [f"{title}, held out by category:", table(("set", what[0], "found", what[1], "lost"), counted)]
     return "\n\n".join(blocks) + "\n"
-
-
-def _sampled(facts: Mapping[str, Any]) -> str:
-    """How the corpora were sampled, as part of a sentence."""
-    most = facts["per_category"]
-    real = "" if most is None else f", at most {most} objects of a category of each folder; the others judge"
-    return f": {facts['rounds']} object of each kind of the library, {facts['composed']} random mechanisms{real}"
 
 
 def _choice_table(sets: Mapping[str, Any]) -> str:

@@ -86,7 +86,7 @@ def fit_scorer(examples: Sequence[Example], *, seeds: Seeds, provenance: Mapping
     columns = np.concatenate([stacked(example.kinds, example.measured, names) for example in usable])
     starts = np.cumsum([0, *(len(example.kinds) for example in usable)])
     target = np.concatenate([example.target for example in usable])
-    of_edges = _weights(usable)
+    of_edges = edge_weights(usable)
     weights = of_edges[np.repeat(np.arange(len(usable)), np.diff(starts))]
     begun = np.concatenate([base_columns(example.kinds, example.measured) for example in usable])
     base = _fit_base(begun, starts, target, weights)
@@ -115,7 +115,7 @@ def fit_rigidity(examples: Sequence[Example], *, seeds: Sequence[int], provenanc
     names = tuple(sorted({name for example in examples for name in example.measured}))
     columns = np.stack([rigid_columns(example.kinds, example.measured, names) for example in examples])
     fixed = np.array([is_fixed(example) for example in examples])
-    weights = _weights(examples)
+    weights = edge_weights(examples)
     weights[fixed] *= _FIXED_SHARE * weights[~fixed].sum() / max(float(weights[fixed].sum()), 1e-12)
     boosters = boosted_logistic(columns, fixed, weights, _RIGIDITY, seeds=seeds, rounds=_RIGIDITY_ROUNDS)
     return trees_alone(names, boosters, provenance)
@@ -130,7 +130,7 @@ def fit_opening(examples: Sequence[Example], *, seeds: Sequence[int], provenance
     names = tuple(sorted({name for example in examples for name in example.sides}))
     columns = np.concatenate([side_columns(example.sides, names) for example in examples])
     opens = np.tile([True, False], len(examples))
-    weights = np.repeat(_weights(examples), 2)
+    weights = np.repeat(edge_weights(examples), 2)
     boosters = boosted_logistic(columns, opens, weights, _OPENING, seeds=seeds, rounds=_OPENING_ROUNDS)
     return trees_alone(names, boosters, provenance)
 
@@ -144,7 +144,7 @@ def fit_turning(examples: Sequence[Example], *, seeds: Sequence[int], provenance
     names = turning_names(examples)
     columns = turns_of(examples, names)
     rounds = np.array([example.is_continuous for example in examples], dtype=np.float64)
-    weights = _weights(examples)
+    weights = edge_weights(examples)
     boosters = boosted_logistic(columns, rounds, weights, _TURNING, seeds=seeds, rounds=_TURNING_ROUNDS)
     return trees_alone(names, boosters, provenance)
 
@@ -226,7 +226,7 @@ def write_scorer(scorer: Scorer, path: Path) -> None:
     np.savez_compressed(path, facts=json.dumps(facts), **arrays)
 
 
-def _weights(examples: Sequence[Example]) -> FloatArray:
+def edge_weights(examples: Sequence[Example]) -> FloatArray:
     """So that neither an object with many joints nor a category with many objects dominates, shape (n,)."""
     of_object = Counter((example.origin, example.object) for example in examples)
     of_category = Counter((example.origin, example.category) for example in examples)
@@ -269,7 +269,7 @@ def _boost(
     *,
     seed: int,
 ) -> Any:
-    lightgbm = _lightgbm()
+    lightgbm = lightgbm_module()
 
     def objective(scores: FloatArray, data: object) -> tuple[FloatArray, FloatArray]:
         likely, _ = _likelihood(scores, starts)
@@ -291,7 +291,7 @@ def boosted_logistic(
     rounds: int,
 ) -> list[Any]:
     """Trees of every seed that say yes or no of each row of columns; `options` stand before `_PARAMETERS`."""
-    lightgbm = _lightgbm()
+    lightgbm = lightgbm_module()
     return [
         lightgbm.train(
             {**_PARAMETERS, "objective": "binary", **options, "seed": seed},
@@ -309,7 +309,8 @@ def trees_alone(names: tuple[str, ...], boosters: Sequence[Any], provenance: Map
     )
 
 
-def _lightgbm() -> Any:
+def lightgbm_module() -> Any:
+    """LightGBM; EnvironmentFault where it is not installed."""
     require("The fit", "lightgbm")
     import lightgbm  # noqa: PLC0415 - an extra that only the fit needs
 

@@ -171,8 +171,9 @@ def command(
     """Erase the joints of every URDF below DATA, infer them again and measure the errors.
 
     DATA is a folder with URDF files at any depth, one URDF file, or one of the words pip, robots, everyday,
-    everyday2, articraft and infinigen. Without it robots and everyday objects are measured. The sets are searched in
-    the folder that the variable KINEMATIFY_BENCH names, else in ../shared/bench beside the repository.
+    everyday2, articraft, infinigen, kitchen and kinart. Without it robots and everyday objects are measured. The
+    sets are searched in the folder that the variable KINEMATIFY_BENCH names, else in ../shared/bench beside the
+    repository.
 
     The report is written as Markdown and JSON. A run that was interrupted goes on where it stopped; a change of the
     code or of the configuration starts again. Wrong answers do not change the exit status, worse ones than those of

@@ -233,9 +233,9 @@ class RailsConfig(StageConfig):
 class ConfidenceConfig(StageConfig):
     """Probability that a joint is right (`results/choice.md`)."""
 
-    cues_lead: float = 1.0  # with less, furniture that the cues were written for loses; with more, all else
+    cues_lead: float = 0.75  # with less, furniture that the cues were written for loses; with more, all else
     """Log odds that what the weighted cues would choose keeps over the fitted probabilities."""
-    fixed: float = 0.82  # omitted, 8 of 629 parts that move are taken for fixed, and 221 of 480 that do not
+    fixed: float = 0.95  # 1 of 1,626 parts that move is taken for fixed, with 0.82 12
     """How likely a part must be fixed to be taken for it."""
     name_weight: float = 3.5  # "drawer", "wheel" and "foot" weigh this much; anonymous names nothing
     """Log odds that a part's name adds to the kind of joint that it speaks of."""

@@ -22,9 +22,10 @@ if TYPE_CHECKING:
 BENCH_VARIABLE = "KINEMATIFY_BENCH"
 PIP_DATA = "pip"
 """The word that represents robots of the PyPI package example-robot-data."""
-SETS = ("robots", "everyday", "everyday2", "articraft", "infinigen")
+SETS = ("robots", "everyday", "everyday2", "articraft", "infinigen", "kitchen", "kinart")
 """Sets of the benchmark folder, each a folder in it and a word for it: robots, household objects of one data set,
-household objects and devices of many others, objects that language models programmed, and those of a generator."""
+household objects and devices of many others, objects that language models programmed, those of a generator, and two
+sets that nothing is fitted to or chosen by."""
 DEFAULT_SETS = ("robots", "everyday")
 """What is measured where nothing is asked for; the others were added later and are measured by themselves."""
 

@@ -122,8 +122,8 @@ class Posterior:
     @property
     def odds_prismatic(self) -> float:
         """Log odds of sliding against turning."""
-        slide, turn = (float(self.posterior[self.hypotheses.kinds == kind].sum()) for kind in (SLIDE, TURN))
-        return float(np.log(max(slide, 1e-9) / max(turn, 1e-9)))
+        slide, turn = (max(self.posterior[self.hypotheses.kinds == kind].sum(), 1e-9) for kind in (SLIDE, TURN))
+        return float(np.log(slide / turn))
 
     def alternatives(self, count: int) -> tuple[JointCandidate, ...]:
         """The hypotheses that say different things, best first, `count` of either type at most."""

@@ -48,7 +48,7 @@ _SCORED = {
 }
 NETWORK, POINTS = "network_", "points_"
 """Before the names of the arrays of either network in a file of weights."""
-POINTS_SHARE = 0.25
+POINTS_SHARE = 0.5
 """How much the points count in the mean log probability of what moves; trees and network share the rest."""
 _ARRAYS = ("base", "feature", "threshold", "missing_left", "left", "right", "value")
 FORMAT = 2
