@@ -235,7 +235,7 @@ class ConfidenceConfig(StageConfig):
 
     cues_lead: float = 0.75  # with less, furniture that the cues were written for loses; with more, all else
     """Log odds that what the weighted cues would choose keeps over the fitted probabilities."""
-    fixed: float = 0.95  # 1 of 1,626 parts that move is taken for fixed, with 0.82 12
+    fixed: float = 0.9  # of 1,673 parts that move 3 are lost, with 0.82 12; of 194 that do not 105 are found, not 136
     """How likely a part must be fixed to be taken for it."""
     name_weight: float = 3.5  # "drawer", "wheel" and "foot" weigh this much; anonymous names nothing
     """Log odds that a part's name adds to the kind of joint that it speaks of."""
