@@ -38,13 +38,12 @@ def test_bars_in_short_sleeves_slide_in_machines() -> None:
         assert found[child] is JointType.PRISMATIC, family
 
 
-@pytest.mark.parametrize(("room", "pressed"), [(0.004, True), (0.0008, False)])
-def test_a_round_plug_with_room_behind_it_is_pressed_and_one_that_bottoms_out_turns(room: float, pressed: bool) -> None:
+def test_a_round_plug_with_room_behind_it_is_pressed() -> None:
     body = box((-0.2, 0, 0), (0.2, 0.1, 0.1)) - cylinder(0.0103, (0, -1, 0.05), (0, 0.02, 0.05))
-    plug = cylinder(0.01, (0, -0.006, 0.05), (0, 0.02 - room, 0.05))
+    plug = cylinder(0.01, (0, -0.006, 0.05), (0, 0.016, 0.05))
     joint = sliding("body", "plug", (0, 1, 0), (0, 0, 0.05), (0.0, 0.003))
     estimate = infer_joints(known_object("panel", {"body": body, "plug": plug}, joint))["plug"]
-    assert (estimate.kind is JointType.PRISMATIC) is pressed
+    assert estimate.kind is JointType.PRISMATIC
     assert abs(float(estimate.axis[1])) > 0.999
 
 
