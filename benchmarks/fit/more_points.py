@@ -12,7 +12,7 @@ from pathlib import Path
 import click
 import numpy as np
 
-from benchmarks.fit.corpora import gather_examples, generated_sources, real_sources
+from benchmarks.fit.corpora import DESCRIBED, gather_examples, generated_sources, real_sources
 from benchmarks.fit.point_network import fit_points
 from benchmarks.fit.trees import data_key, edge_weights, write_scorer
 from kinematify.cli.progress import progress_reporter
@@ -28,7 +28,8 @@ _SEEDS = (2, 3)
 @click.option("-o", "--out", type=click.Path(path_type=Path), required=True)
 def command(folders: tuple[Path, ...], out: Path) -> None:
     """Fit to FOLDERS and the library, and write `OUT/weights.npz`: the weights that ship with two networks more."""
-    sources = generated_sources(1, 80) + [source for folder in folders for source in real_sources(folder)]
+    sources = [source for source in generated_sources(1, 80) if source.origin != DESCRIBED]
+    sources += [source for folder in folders for source in real_sources(folder)]
     with progress_reporter() as progress:
         measured = gather_examples(sources, out / "measured", seed=0, workers=1, progress=progress)
     fitted = [example for example in measured if example.teaches and example.right.sum() > 1e-3]
