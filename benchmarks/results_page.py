@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from benchmarks.fit.corpora import may_be_fitted_to
+from benchmarks.tables import motion_rates
 from kinematify.errors import InputError
-from kinematify.evaluation.benchmark_summary import motion_rates
 from kinematify.evaluation.datasets import find_objects
 from kinematify.evaluation.result_record import load_report, number, replace_text, table
 from kinematify.evaluation.run_benchmark import RESULTS
@@ -126,13 +126,11 @@ def _cells(runs: Sequence[JobResult]) -> tuple[str, ...]:
     if micro is None or macro is None:
         raise InputError("A report of the README's figures has no joints. Make it again with its command.")
     scores = {run.object: run.score for run in runs if run.score is not None}
-    shares = (micro.type_right, micro.axis_right, micro.origin_right)
-    means = (macro.type_right, macro.axis_right, macro.origin_right)
     return (
         str(len(scores)),
         str(sum(len(score.joints) for score in scores.values())),
-        *(number(share, 1, 100.0) for share in shares),
-        " / ".join(number(mean, 1, 100.0) for mean in means),
+        *(number(share, 1, 100.0) for share in micro),
+        " / ".join(number(mean, 1, 100.0) for mean in macro),
     )
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from benchmarks.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
 from kinematify.evaluation.benchmark_job import CLEAN
-from kinematify.evaluation.benchmark_summary import Summary, motion_rates, summarise, summarise_types
+from kinematify.evaluation.benchmark_summary import Summary, summarise, summarise_types
 from kinematify.evaluation.metrics import CLOSE_ANGLE
 from kinematify.evaluation.result_record import grouped, number, table
 
@@ -65,6 +65,24 @@ COLUMNS = (
     Column(title="time [s]", metric="seconds", digits=1),
     Column(title="peak [MB]", metric="peak_mb", digits=0),
 )
+
+
+def motion_rates(results: Iterable[JobResult], *, macro: bool = False) -> list[float] | None:
+    """Shares of joints whose motion is right: M, MA and MAO of S2O, over the joints of a true tree; None without any.
+
+    Over all joints (micro), or the mean of the shares of each category (macro). MA: type right and axis within
+    `CLOSE_ANGLE`; MAO: and, of turning joints, the axis line within `kinematify.evaluation.metrics.CLOSE_ORIGIN`. A
+    joint counts once for each run of its object. Parent and child must be right too: a joint between the wrong parts
+    has no type.
+    """
+    joints = [(result.category, joint) for result in results if result.score for joint in result.score.joints]
+    groups = grouped(joints, by=lambda pair: pair[0] if macro else "").values()
+    if not joints:
+        return None
+    return [
+        fmean(fmean(getattr(joint, key) for _, joint in group) for group in groups)
+        for key in ("type_right", "axis_right", "origin_right")
+    ]
 
 
 def is_right(joint: JointScore, diagonal: float) -> bool:
@@ -155,7 +173,7 @@ def _motion_table(results: Sequence[JobResult]) -> list[str]:
     rows = [
         (
             name,
-            *(number(value, 1, 100.0) for value in (rates.type_right, rates.axis_right, rates.origin_right)),
+            *(number(value, 1, 100.0) for value in rates),
         )
         for name, macro in (("micro: all joints", False), ("macro: mean over categories", True))
         if (rates := motion_rates(results, macro=macro)) is not None

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from PIL import Image
 
 from kinematify.config import load_config
 from kinematify.errors import OutputError
@@ -15,8 +18,9 @@ from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.family import COMMON, build
 from kinematify.generate.procedural.parameter import PARAMETER_HEADINGS, parameter_rows
 from kinematify.generate.reader import read_sentence
-from kinematify.model.picture_scene import moving_joints
-from kinematify.model.preview import draw_pair, draw_steps
+from kinematify.model.picture_scene import best_azimuth, camera_for, joint_glyphs, moving_joints, opened_configuration
+from kinematify.model.preview import MARGIN, draw_panels, panel_size, rest_and_moved, scene_of
+from kinematify.render.picture import BACKGROUND, render_scene
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -106,6 +110,42 @@ def write_gallery(
             "on a disk with space."
         ) from error
     return page
+
+
+def draw_pair(model: KinematicModel, config: PreviewConfig) -> Image.Image:
+    """Return the two panels of a preview without captions and legend, for pages that say in words what is seen.
+
+    Args:
+        model: What to show.
+        config: Size and quality.
+    """
+    panels = rest_and_moved(model, config, ("", ""))
+    size, images = draw_panels(model, panels, config)
+    sheet = Image.new("RGB", (size[0] * len(images), size[1]), tuple(round(255.0 * value) for value in BACKGROUND))
+    for index, image in enumerate(images):
+        sheet.paste(image, (index * size[0], 0))
+    return sheet
+
+
+def draw_steps(model: KinematicModel, groups: Sequence[Sequence[str]], config: PreviewConfig) -> list[Image.Image]:
+    """Return one picture of the model at rest and one more after each group of joints, which has then been moved too.
+
+    Args:
+        model: What to show.
+        groups: Names of joints; each group is moved at once and shown with its arrows.
+        config: Size and quality.
+    """
+    opened = opened_configuration(model, config)
+    scenes = [replace(scene_of(model, {}, config), glyphs=())]
+    q: dict[str, float] = {}
+    for group in groups:
+        q |= {name: opened[name] for name in group}
+        arrows = joint_glyphs(model, q, config)
+        scenes.append(replace(scene_of(model, q, config), glyphs=tuple(arrows[name] for name in group)))
+    azimuth = best_azimuth(model, [scenes[0], scenes[-1]], config)
+    size = panel_size([scenes], azimuth, config)
+    camera = camera_for(scenes, azimuth, config, size=size, margin=MARGIN)
+    return [render_scene(scene, camera, config) for scene in scenes]
 
 
 def _said(text: str) -> Blueprint:

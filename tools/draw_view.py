@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kinematify.view.window import Window
+from kinematify.view.window import model_window
 from tests.browser import opened
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def keep_candidate(page: Page, joint: str, words: str) -> str:
 
 def draw(folder: Path, out: Path) -> None:
     """Write ``view_WIDTH.png`` for each of `WIDTHS`."""
-    window = Window(folder / "model.urdf")
+    window = model_window(folder / "model.urdf")
     window.run_aside()
     joint = next(iter(window.viewer.values))
     for width in WIDTHS:

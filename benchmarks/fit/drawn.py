@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.described import known_families
-from kinematify.generate.library.builder import ModelingStyle
-from kinematify.generate.library.kind import KINDS
-from kinematify.generate.library.kind import drawn_object as drawn_by
+from kinematify.generate.library.builder import ModelingStyle, ObjectBuilder
+from kinematify.generate.library.kind import KINDS, carry_out
+from kinematify.generate.procedural.family import Values
+from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
     from kinematify.generate.procedural.family import Family
+    from kinematify.generate.procedural.parameter import Parameter, Value
     from kinematify.robot.arrays import FloatArray
 
 _SEEDS = "library 4"
@@ -53,7 +55,7 @@ def drawn_object(name: str, seed: int, style: ModelingStyle | None = None) -> Bl
     """
     rng = np.random.default_rng([seed, zlib.crc32(f"{_SEEDS} {name}".encode())])
     someone = ModelingStyle.drawn(rng)
-    built = drawn_by(corpus_kinds()[name], style or someone, rng)
+    built = _drawn_by(corpus_kinds()[name], style or someone, rng)
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     mirrored = bool(rng.random() < 0.5)
     quarters = np.linalg.matrix_power(turn, int(rng.integers(4)))
@@ -63,6 +65,26 @@ def drawn_object(name: str, seed: int, style: ModelingStyle | None = None) -> Bl
         for part in built.parts
     )
     return replace(built, parts=parts, joints=tuple(_seen(joint, placed, mirrored) for joint in built.joints))
+
+
+def _drawn_by(family: Family, style: ModelingStyle, rng: np.random.Generator) -> Blueprint:
+    """An object of a kind that is drawn, with everything drawn."""
+    assert family.draw is not None, family.name
+    workshop = Workshop(family.name, material="plastic")
+    builder = ObjectBuilder(family.name, style, workshop, rng)
+    usual = Values({"material": "", "color": "", "open": 0.0}, rng)
+    taken = family.draw.__code__.co_varnames[: family.draw.__code__.co_argcount]
+    given = {item.name: _some(item, builder) for item in family.parameters if item.name in taken}
+    carry_out(family.draw, builder, given, usual, workshop)
+    return workshop.finish(family.name, {}, style="clean", clearance=style.gap, rng=rng)
+
+
+def _some(asked: Parameter, builder: ObjectBuilder) -> Value:
+    """A value for one more object of a corpus."""
+    if asked.bounds is not None:
+        low, high = asked.usual or asked.bounds
+        return builder.count(int(low), int(high)) if isinstance(asked.default, int) else builder.draw(low, high)
+    return str(builder.pick(*asked.choices)) if asked.yes is None else "yes" if builder.maybe(asked.yes) else "no"
 
 
 def _seen(joint: BlueprintJoint, placed: FloatArray, mirrored: bool) -> BlueprintJoint:

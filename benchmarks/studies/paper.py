@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from benchmarks.study import Measured, Record, Work
     from kinematify.assembly.erasure import ErasedModel
     from kinematify.assembly.part import Assembly
-    from kinematify.config import CavlConfig
+    from kinematify.config import CavlConfig, Config
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.evaluation.result_record import Report
     from kinematify.paper.cavl import CavlScene
@@ -121,6 +121,29 @@ def measure(options: PaperOptions, work: Work) -> Measured:
     return records, {}
 
 
+def field_gaps(assembly: Assembly, config: Config) -> Callable[[Pair], float]:
+    """Return the minimum bidirectional distance of a pair [m], 0 where a sample of one lies inside the other.
+
+    Args:
+        assembly: The parts, world frame.
+        config: `sdf`, `contact.samples` and `seed` are used.
+    """
+    import torch  # noqa: PLC0415  # takes seconds, and exact gaps do without it
+
+    from kinematify.paper.sdf import field_source  # noqa: PLC0415  # with torch
+
+    field_of = field_source(assembly.parts, config.sdf, seed=config.seed)
+    samples = [sample_surface(part, config.contact.samples, config.seed).points for part in assembly.parts]
+
+    def gap(pair: Pair) -> float:
+        a, b = pair
+        both = ((samples[a], assembly.parts[b]), (samples[b], assembly.parts[a]))
+        smallest = min(float(field_of(part).value(torch.from_numpy(points.copy())).min()) for points, part in both)
+        return max(smallest, 0.0)
+
+    return gap
+
+
 def searched_trees(asked: PosedObject) -> Record:
     """The best tree of one object by each set of rules."""
     erased = erased_item(asked.item, asked.condition)
@@ -128,9 +151,6 @@ def searched_trees(asked: PosedObject) -> Record:
     root = erased.truth.parents.index(-1)
     base_config = load_config("paper")
     sdf = base_config.sdf.model_copy(update={"kind": asked.sdf})
-    # torch takes seconds to import, and exact gaps do without it.
-    from kinematify.paper.sdf import field_gaps  # noqa: PLC0415
-
     by_fields = field_gaps(assembly, base_config.model_copy(update={"sdf": sdf}))
     graphs = {
         "": _contacts(assembly, "proximity"),

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from kinematify.robot.arrays import read_only
-from kinematify.robot.vectors import highest, lengths_of, lowest, referenced, triangle_normals
+from kinematify.robot.vectors import box_around, highest, lengths_of, lowest, referenced, triangle_normals
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -132,9 +132,7 @@ class Assembly:
     @cached_property
     def bounds(self) -> FloatArray:
         """Axis-aligned bounds of all parts in the world frame [m], shape (2, 3)."""
-        lower = np.min([part.bounds[0] for part in self.parts], axis=0)
-        upper = np.max([part.bounds[1] for part in self.parts], axis=0)
-        return read_only(np.stack([lower, upper]), np.float64)
+        return read_only(box_around([part.bounds for part in self.parts]), np.float64)
 
     @cached_property
     def diagonal(self) -> float:
@@ -145,17 +143,22 @@ class Assembly:
         """
         height = float(self.bounds[1, 2] - self.bounds[0, 2])
         plan = [referenced(part.vertices, part.faces)[:, :2] for part in self.parts]
-        return math.hypot(height, _smallest_rectangle(np.concatenate(plan)))
+        points = np.concatenate(plan)
+        try:
+            _, widths = rectangles_around(points)
+        except QhullError:  # all points on one line, or as good as
+            return math.hypot(height, float(np.linalg.norm(np.ptp(points, axis=0))))
+        return math.hypot(height, float(np.sqrt((widths[0] ** 2 + widths[1] ** 2).min())))
 
 
-def _smallest_rectangle(points: FloatArray) -> float:
-    """Smallest diagonal of a rectangle around points in the plane, shape (n, 2), with a side along their hull."""
-    try:
-        corners = points[ConvexHull(points).vertices]
-    except QhullError:  # all points on one line, or as good as
-        return float(np.linalg.norm(np.ptp(points, axis=0)))
+def rectangles_around(points: FloatArray) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
+    """Directions of the sides of the hull of points in the plane (n, 2), shape (m, 2), and widths along and across.
+
+    Raises:
+        QhullError: All points are on one line, or as good as.
+    """
+    corners = points[ConvexHull(points).vertices]
     sides = np.roll(corners, -1, axis=0) - corners
     along = sides / np.linalg.norm(sides, axis=1)[:, None]
     across = along @ np.array([[0.0, 1.0], [-1.0, 0.0]])
-    widths = np.ptp(corners @ along.T, axis=0), np.ptp(corners @ across.T, axis=0)
-    return float(np.sqrt((widths[0] ** 2 + widths[1] ** 2).min()))
+    return along, (np.ptp(corners @ along.T, axis=0), np.ptp(corners @ across.T, axis=0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
     from kinematify.vision.ask import PieceVote
+    from kinematify.vision.piece_question import PieceQuestion
 
 
 def asking_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -52,3 +54,22 @@ def ask_pieces(given: Assembly, vlm: str, answer: Path | None, settings: Config)
     if oracle is None:
         return None
     return ask_about_pieces(oracle, piece_question(given, settings), lambda: known_questions(settings))
+
+
+def asked_question(mesh: Path, up: str, scale: float | None, pieces: str) -> PieceQuestion:
+    """The question about a mesh that nobody segmented.
+
+    Raises:
+        InputError: It cannot be read, or is one piece.
+    """
+    from kinematify.assembly.load import load_assembly
+    from kinematify.config import load_config
+    from kinematify.vision.piece_question import piece_question
+
+    settings = load_config()
+    return piece_question(load_assembly(mesh, config=settings.assembly, up=up, scale=scale, pieces=pieces), settings)
+
+
+def infer_command(mesh: Path, answer: Path) -> str:
+    """The command that makes a model of a mesh and an answer."""
+    return shlex.join(["kinematify", "infer", str(mesh), "--answer", str(answer), "-o", "OUT"])

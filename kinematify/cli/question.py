@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shlex
 from pathlib import Path
 
 import click
@@ -32,14 +31,9 @@ def command(*, mesh: Path, out: Path, up: str, scale: float | None, pieces: str)
     text around the JSON does no harm. `kinematify infer MESH --answer OUT/answer.json` with the same options makes the
     model; `infer MESH --vlm URL` asks a model by itself.
     """
-    from kinematify.assembly.load import load_assembly
-    from kinematify.config import load_config
-    from kinematify.vision.piece_question import piece_question
+    from kinematify.cli.asking import asked_question, infer_command
 
-    settings = load_config()
-    question = piece_question(
-        load_assembly(mesh, config=settings.assembly, up=up, scale=scale, pieces=pieces), settings
-    )
+    question = asked_question(mesh, up, scale, pieces)
     try:
         out.mkdir(parents=True, exist_ok=True)
         question.picture.save(out / "sheet.png", optimize=True)
@@ -48,6 +42,5 @@ def command(*, mesh: Path, out: Path, up: str, scale: float | None, pieces: str)
     except OSError as error:
         raise OutputError(f"The question cannot be written to {out} ({error}). Give another folder with -o.") from error
     click.echo(f"{len(question.pieces)} numbered pieces: {out / 'sheet.png'}, question.txt and schema.json beside it.")
-    answer = shlex.quote(str(out / "answer.json"))
-    click.echo(f"Next: save the answer there, then kinematify infer {shlex.quote(str(mesh))} --answer {answer} -o OUT "
+    click.echo(f"Next: save the answer as answer.json there, then {infer_command(mesh, out / 'answer.json')} "
                "(with the same --up, --scale and --pieces).")  # fmt: skip

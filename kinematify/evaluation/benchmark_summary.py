@@ -107,34 +107,6 @@ def _type_summary(kind: str, joints: Sequence[JointScore]) -> TypeSummary:
     )
 
 
-@dataclass(frozen=True, kw_only=True)
-class MotionRates:
-    """Shares of joints whose motion is right: M, MA and MAO of S2O, over the joints of a true tree."""
-
-    type_right: float
-    axis_right: float
-    """Type right and axis within `CLOSE_ANGLE`."""
-    origin_right: float
-    """And, of turning joints, the axis line within `kinematify.evaluation.metrics.CLOSE_ORIGIN`."""
-
-
-def motion_rates(results: Iterable[JobResult], *, macro: bool = False) -> MotionRates | None:
-    """Return the shares over all joints (micro), or the mean of the shares of each category (macro); None without any.
-
-    A joint counts once for each run of its object. Parent and child must be right too: a joint between the wrong parts
-    has no type.
-    """
-    joints = [(result.category, joint) for result in results if result.score for joint in result.score.joints]
-    groups = grouped(joints, by=lambda pair: pair[0] if macro else "").values()
-    if not joints:
-        return None
-    return MotionRates(
-        type_right=fmean(fmean(joint.type_right for _, joint in group) for group in groups),
-        axis_right=fmean(fmean(joint.axis_right for _, joint in group) for group in groups),
-        origin_right=fmean(fmean(joint.origin_right for _, joint in group) for group in groups),
-    )
-
-
 def summaries(results: Iterable[JobResult]) -> list[dict[str, Any]]:
     """Return plain values of every configuration, kind of object and input, with gripper fingers and without."""
     groups = grouped(results, by=lambda result: (result.variant, result.kind, result.input))

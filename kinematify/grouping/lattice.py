@@ -7,8 +7,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
+from scipy.spatial import QhullError
 
+from kinematify.assembly.part import rectangles_around
 from kinematify.geometry.sampling import place_samples
 
 if TYPE_CHECKING:
@@ -133,9 +134,7 @@ def lattice(parts: Sequence[Part]) -> Lattice:
     Args:
         parts: Pieces with area, world frame, z up.
     """
-    used = np.concatenate([part.vertices[np.unique(part.faces)] for part in parts])
-    turn = square_turn(used[:, :2])
-    low, size = (used @ turn.T).min(axis=0), float(np.ptp(used @ turn.T, axis=0).max())
+    turn, low, size = frame_of(parts)
     areas = np.array([part.area for part in parts])
     wanted = np.maximum(areas * _PER_CELL * (CELLS / size) ** 2, _FEWEST)
     wanted *= min(1.0, _MOST / wanted.sum())
@@ -148,17 +147,21 @@ def lattice(parts: Sequence[Part]) -> Lattice:
     )
 
 
-def square_turn(plan: FloatArray) -> FloatArray:
+def frame_of(parts: Sequence[Part]) -> tuple[FloatArray, FloatArray, float]:
+    """Turn, offset and length of the frame of the lattice, shape (3, 3) and (3,) [m]."""
+    used = np.concatenate([part.vertices[np.unique(part.faces)] for part in parts])
+    turn = _square_turn(used[:, :2])
+    used = used @ turn.T
+    return turn, used.min(axis=0), float(np.ptp(used, axis=0).max())
+
+
+def _square_turn(plan: FloatArray) -> FloatArray:
     """Rotation about z that makes the smallest rectangle around points in the plan (n, 2) square to the axes."""
     turn = np.eye(3)
     try:
-        corners = plan[ConvexHull(plan).vertices]
+        along, widths = rectangles_around(plan)
     except QhullError:  # all points on one line
         return turn
-    sides = np.roll(corners, -1, axis=0) - corners
-    along = sides / np.maximum(np.linalg.norm(sides, axis=1), 1e-300)[:, None]
-    across = along @ np.array([[0.0, 1.0], [-1.0, 0.0]])
-    widths = np.ptp(corners @ along.T, axis=0), np.ptp(corners @ across.T, axis=0)
     diagonals = np.hypot(*widths)
     square = np.abs(along).max(axis=1) > 1.0 - 1e-9  # of sides that are as good, one that is square already
     best = int(np.argmin(diagonals - 1e-9 * diagonals.max() * square))

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
-from kinematify.grouping.lattice import Lattice, lattice, square_turn
+from kinematify.grouping.lattice import Lattice, frame_of, lattice
 from kinematify.robot.vectors import box_gaps
 from kinematify.robot.weld import is_closed
 
@@ -75,7 +76,7 @@ def _contacts(parts: Sequence[Part], grid: Lattice, sizes: FloatArray) -> tuple[
     apart = box_gaps(grid.bounds[:, 0], grid.bounds[:, 1])
     rows, columns = np.nonzero(np.triu(apart <= _NEAR, k=1))
     probes = _probes(grid)
-    turn, offset, scale = _frame(parts)
+    turn, offset, scale = frame_of(parts)
     trees = [_Trees(part, turn, offset, scale) for part in parts]
     kept, found = [], []
     for a, b in zip(rows.tolist(), columns.tolist(), strict=True):
@@ -98,32 +99,19 @@ class _Trees:
     def __init__(self, part: Part, turn: FloatArray, offset: FloatArray, scale: float) -> None:
         self.vertices = (part.vertices @ turn.T - offset) / scale
         self.faces = part.faces
-        self._distances: DistanceTree | None = None
-        self._winding: WindingTree | None = None
-        self.closed: bool | None = None
 
-    def distances(self, points: FloatArray) -> FloatArray:
-        if self._distances is None:
-            self._distances = DistanceTree(self.vertices, self.faces)
-        return self._distances.distances(points)
+    @cached_property
+    def distances(self) -> DistanceTree:
+        return DistanceTree(self.vertices, self.faces)
+
+    @cached_property
+    def winding(self) -> WindingTree | None:
+        """None where the piece is open."""
+        return WindingTree(self.vertices, self.faces) if is_closed(self.vertices, self.faces) else None
 
     def inside(self, points: FloatArray) -> float:
         """Share of the points inside; missing where the piece is open."""
-        if self.closed is None:
-            self.closed = is_closed(self.vertices, self.faces)
-        if not self.closed:
-            return float("nan")
-        if self._winding is None:
-            self._winding = WindingTree(self.vertices, self.faces)
-        return float((np.abs(self._winding.numbers(points)) > 0.5).mean())
-
-
-def _frame(parts: Sequence[Part]) -> tuple[FloatArray, FloatArray, float]:
-    """Turn, offset and length of the lattice's frame."""
-    used = np.concatenate([part.vertices[np.unique(part.faces)] for part in parts])
-    turn = square_turn(used[:, :2])
-    used = used @ turn.T
-    return turn, used.min(axis=0), float(np.ptp(used, axis=0).max())
+        return float("nan") if self.winding is None else float((np.abs(self.winding.numbers(points)) > 0.5).mean())
 
 
 def _probes(grid: Lattice) -> list[FloatArray]:
@@ -136,7 +124,7 @@ def _probes(grid: Lattice) -> list[FloatArray]:
 
 
 def _contact(small: FloatArray, large: FloatArray, tree_small: _Trees, tree_large: _Trees) -> tuple[float, ...] | None:
-    there, back = tree_large.distances(small), tree_small.distances(large)
+    there, back = tree_large.distances.distances(small), tree_small.distances.distances(large)
     gap = float(min(there.min(), back.min()))
     if gap > _NEAR:
         return None
@@ -169,7 +157,7 @@ def _of_pieces(parts: Sequence[Part], grid: Lattice) -> dict[str, FloatArray]:
         "area": areas / areas.sum(),
         "rank": rank,
         "largest": (rank == 0).astype(float),
-        "fill": areas / _frame(parts)[2] ** 2 / np.maximum(boxes, 1e-9),
+        "fill": areas / frame_of(parts)[2] ** 2 / np.maximum(boxes, 1e-9),
         "faces": np.log10([len(part.faces) for part in parts]),
         "held": grid.at_rest.sum(axis=1) / grid.sizes,
         **freedom_columns(grid.met.sum(axis=3) / grid.sizes),

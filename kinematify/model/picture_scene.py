@@ -18,6 +18,7 @@ from kinematify.render.picture import PosedMesh
 from kinematify.robot.appearance import joined, plain
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics
+from kinematify.robot.vectors import box_around
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -256,8 +257,7 @@ def _arrow_at_rest(
 
 
 def _diagonal(model: KinematicModel) -> float:
-    low = np.min([link.part.bounds[0] for link in model.links], axis=0)
-    high = np.max([link.part.bounds[1] for link in model.links], axis=0)
+    low, high = box_around([link.part.bounds for link in model.links])
     return float(np.linalg.norm(high - low))
 
 

@@ -1,4 +1,4 @@
-"""Pictures of a whole model: at rest beside moved, and the story from loose parts to a mechanism."""
+"""Pictures of a whole model: at rest beside moved."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from kinematify.model.picture_scene import (
     posed_meshes,
 )
 from kinematify.model.urdf import distinct_colors, link_colors, link_shades
-from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
+from kinematify.render.picture import BACKGROUND, PictureScene, render_scene
 from kinematify.robot.appearance import linear_of, srgb_of
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 _INK = (45, 50, 60)
 _FAINT = (120, 126, 138)
-_MARGIN = 34  # [pixels] around the object in a panel
+MARGIN = 34  # [pixels] around the object in a panel
 _LEAST_SHARE = 60  # [percent] of the configured width and height that a panel keeps in any case
 _CAPTION = 46  # [pixels] height of the line above a panel
 _LEGEND_ROW = 30  # [pixels]
@@ -42,11 +42,12 @@ _LEGEND_COLUMN = 370  # [pixels] room for a swatch, a name and a type
 _LEGEND_PAD = 24  # [pixels]
 _BADGE = 12  # [pixels] radius of a number on a part
 _BADGE_STEP = 3  # [pixels] steps in which its place is sought
-_UNSEGMENTED = np.array([0.74, 0.75, 0.77])  # anonymous parts are all the same grey
 
 
 @dataclass(frozen=True)
-class _Panel:
+class PreviewPanel:
+    """What a panel shows."""
+
     caption: str
     scene: PictureScene
     numbers: tuple[int, ...] = ()
@@ -78,66 +79,17 @@ def render_preview(model: KinematicModel, path: Path, config: PreviewConfig) -> 
     Raises:
         OSError: The file cannot be written.
     """
-    _draw(model, _rest_and_moved(model, config, ("at rest", "every joint moved")), config, path)
+    write_sheet(model, rest_and_moved(model, config, ("at rest", "every joint moved")), config, path)
 
 
-def draw_pair(model: KinematicModel, config: PreviewConfig) -> Image.Image:
-    """Return the two panels of a preview without captions and legend, for pages that say in words what is seen.
-
-    Args:
-        model: What to show.
-        config: Size and quality.
-    """
-    panels = _rest_and_moved(model, config, ("", ""))
-    size, images = _draw_panels(model, panels, config)
-    sheet = Image.new("RGB", (size[0] * len(images), size[1]), _bytes(BACKGROUND))
-    for index, image in enumerate(images):
-        sheet.paste(image, (index * size[0], 0))
-    return sheet
-
-
-def draw_steps(model: KinematicModel, groups: Sequence[Sequence[str]], config: PreviewConfig) -> list[Image.Image]:
-    """Return one picture of the model at rest and one more after each group of joints, which has then been moved too.
-
-    Args:
-        model: What to show.
-        groups: Names of joints; each group is moved at once and shown with its arrows.
-        config: Size and quality.
-    """
-    opened = opened_configuration(model, config)
-    scenes = [replace(_scene(model, {}, config), glyphs=())]
-    q: dict[str, float] = {}
-    for group in groups:
-        q |= {name: opened[name] for name in group}
-        arrows = joint_glyphs(model, q, config)
-        scenes.append(replace(_scene(model, q, config), glyphs=tuple(arrows[name] for name in group)))
-    azimuth = best_azimuth(model, [scenes[0], scenes[-1]], config)
-    size = _panel_size([scenes], azimuth, config)
-    camera = camera_for(scenes, azimuth, config, size=size, margin=_MARGIN)
-    return [render_scene(scene, camera, config) for scene in scenes]
-
-
-def render_story(model: KinematicModel, path: Path, config: PreviewConfig) -> None:
-    """Write a PNG with three panels: the anonymous parts taken apart, the joints found, the mechanism moved.
-
-    Args:
-        model: What to show.
-        path: PNG file to write.
-        config: Size and quality.
-
-    Raises:
-        OSError: The file cannot be written.
-    """
-    rest, moved = _rest_and_moved(model, config, ("the joints that were found", "the mechanism, moved"))
-    loose = _Panel("parts in, without names", _exploded(rest.scene, config))
-    _draw(model, (loose, rest, moved), config, path)
-
-
-def _rest_and_moved(model: KinematicModel, config: PreviewConfig, captions: tuple[str, str]) -> tuple[_Panel, _Panel]:
+def rest_and_moved(
+    model: KinematicModel, config: PreviewConfig, captions: tuple[str, str]
+) -> tuple[PreviewPanel, PreviewPanel]:
+    """Panels of a model at rest and with every joint moved, with their captions."""
     number_of = {entry.name: entry.number for entry in _legend_entries(model)}
     numbers = tuple(number for name in _drawn_links(model) if (number := number_of[name]) is not None)
     rest, moved = (
-        _Panel(caption, _scene(model, q, config), numbers)
+        PreviewPanel(caption, scene_of(model, q, config), numbers)
         for caption, q in zip(captions, ({}, opened_configuration(model, config)), strict=True)
     )
     return rest, moved
@@ -149,7 +101,7 @@ def _drawn_links(model: KinematicModel) -> list[str]:
     return [*moving, *(link.name for link in model.links if link.name not in set(moving))]
 
 
-def _scene(model: KinematicModel, q: Mapping[str, float], config: PreviewConfig) -> PictureScene:
+def scene_of(model: KinematicModel, q: Mapping[str, float], config: PreviewConfig) -> PictureScene:
     """All links in shades of their colours, moving ones first, and the arrows of their joints."""
     meshes = posed_meshes(model, q, link_colors(model), link_shades(model))
     return PictureScene(
@@ -158,21 +110,9 @@ def _scene(model: KinematicModel, q: Mapping[str, float], config: PreviewConfig)
     )
 
 
-def _exploded(scene: PictureScene, config: PreviewConfig) -> PictureScene:
-    """Grey copies moved away from the middle of all, the farther off the more."""
-    middles = np.array([mesh.vertices[mesh.faces.reshape(-1)].mean(axis=0) for mesh in scene.meshes])
-    offsets = config.exploded * (middles - middles.mean(axis=0))
-    return PictureScene(
-        meshes=tuple(
-            PosedMesh(vertices=mesh.vertices + offset, faces=mesh.faces, color=_UNSEGMENTED)
-            for mesh, offset in zip(scene.meshes, offsets, strict=True)
-        )
-    )
-
-
-def _draw(model: KinematicModel, panels: Sequence[_Panel], config: PreviewConfig, path: Path) -> None:
+def write_sheet(model: KinematicModel, panels: Sequence[PreviewPanel], config: PreviewConfig, path: Path) -> None:
     """Write a PNG with panels in a row under their captions, the legend below."""
-    size, images = _draw_panels(model, panels, config)
+    size, images = draw_panels(model, panels, config)
     legend = _legend(model, config, size[0] * len(panels))
     sheet = Image.new("RGB", (legend.width, _CAPTION + size[1] + legend.height), _bytes(BACKGROUND))
     for index, (panel, image) in enumerate(zip(panels, images, strict=True)):
@@ -184,17 +124,17 @@ def _draw(model: KinematicModel, panels: Sequence[_Panel], config: PreviewConfig
     sheet.save(path, "PNG", compress_level=4)  # half the time of the default, a file 5 % larger
 
 
-def _draw_panels(
-    model: KinematicModel, panels: Sequence[_Panel], config: PreviewConfig
+def draw_panels(
+    model: KinematicModel, panels: Sequence[PreviewPanel], config: PreviewConfig
 ) -> tuple[tuple[int, int], list[Image.Image]]:
     """Width and height of all panels, and what each shows; the last two are seen by the same camera."""
     shared = [panel.scene for panel in panels[-2:]]
     azimuth = best_azimuth(model, shared, config)
     groups = [shared if panel.scene in shared else [panel.scene] for panel in panels]
-    size = _panel_size(groups, azimuth, config)
+    size = panel_size(groups, azimuth, config)
     images = []
     for panel, group in zip(panels, groups, strict=True):
-        camera = camera_for(group, azimuth, config, size=size, margin=_MARGIN)
+        camera = camera_for(group, azimuth, config, size=size, margin=MARGIN)
         image = render_scene(panel.scene, camera, config)
         if panel.numbers and panel.caption:
             _draw_numbers(image, panel, camera)
@@ -202,7 +142,7 @@ def _draw_panels(
     return size, images
 
 
-def _draw_numbers(image: Image.Image, panel: _Panel, camera: Camera) -> None:
+def _draw_numbers(image: Image.Image, panel: PreviewPanel, camera: Camera) -> None:
     """Write its number on each mesh where most of it is seen around; small ones first, none over others or arrows."""
     seen = panel.scene.mesh_of_pixel(camera, _BADGE_STEP)
     if panel.scene.glyphs_alone is not None:
@@ -221,14 +161,14 @@ def _draw_badge(draw: ImageDraw.ImageDraw, center: tuple[int, int], number: int)
     draw.text(center, str(number), fill=_INK, font=ImageFont.load_default(15), anchor="mm")
 
 
-def _panel_size(groups: Sequence[Sequence[PictureScene]], azimuth: float, config: PreviewConfig) -> tuple[int, int]:
+def panel_size(groups: Sequence[Sequence[PictureScene]], azimuth: float, config: PreviewConfig) -> tuple[int, int]:
     """Width and height that all panels need: less than configured where everything shown is slim or flat."""
     largest = (config.panel_width, config.panel_height)
     needed = np.zeros(2)
     for group in groups:
-        camera = camera_for(group, azimuth, config, size=largest, margin=_MARGIN)
+        camera = camera_for(group, azimuth, config, size=largest, margin=MARGIN)
         seen, _ = camera.project(np.concatenate([scene.outline for scene in group]))
-        needed = np.maximum(needed, np.ptp(seen, axis=0) + 2.0 * _MARGIN)
+        needed = np.maximum(needed, np.ptp(seen, axis=0) + 2.0 * MARGIN)
     least = [_LEAST_SHARE * pixels // 100 for pixels in largest]
     width, height = (max(round(float(need)), few) for need, few in zip(needed, least, strict=True))
     return min(width, largest[0]), min(height, largest[1])

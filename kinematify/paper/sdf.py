@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
-import torch
-
-from kinematify.geometry.sampling import sample_surface
 from kinematify.paper.sdf_grid import SignedDistanceCache
 from kinematify.paper.sdf_neural import train_fields
 
@@ -15,9 +12,8 @@ if TYPE_CHECKING:
 
     from torch import Tensor
 
-    from kinematify.assembly.part import Assembly, Part
-    from kinematify.config import Config, SdfConfig
-    from kinematify.contact.graph import Pair
+    from kinematify.assembly.part import Part
+    from kinematify.config import SdfConfig
 
 
 class SignedDistanceField(Protocol):
@@ -45,22 +41,3 @@ def field_source(parts: Sequence[Part], config: SdfConfig, *, seed: int) -> Call
     trained = train_fields(distinct, config.neural, seed=seed)
     field_of = {part.mesh_hash: field for part, field in zip(distinct, trained, strict=True)}
     return lambda part: field_of[part.mesh_hash]
-
-
-def field_gaps(assembly: Assembly, config: Config) -> Callable[[Pair], float]:
-    """Return the minimum bidirectional distance of a pair [m], 0 where a sample of one lies inside the other.
-
-    Args:
-        assembly: The parts, world frame.
-        config: `sdf`, `contact.samples` and `seed` are used.
-    """
-    field_of = field_source(assembly.parts, config.sdf, seed=config.seed)
-    samples = [sample_surface(part, config.contact.samples, config.seed).points for part in assembly.parts]
-
-    def gap(pair: Pair) -> float:
-        a, b = pair
-        both = ((samples[a], assembly.parts[b]), (samples[b], assembly.parts[a]))
-        smallest = min(float(field_of(part).value(torch.from_numpy(points.copy())).min()) for points, part in both)
-        return max(smallest, 0.0)
-
-    return gap

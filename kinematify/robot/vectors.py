@@ -13,7 +13,15 @@ import numpy as np
 from kinematify.robot.arrays import used_vertices
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
+
+
+def box_around(boxes: Sequence[FloatArray] | FloatArray) -> FloatArray:
+    """Lower and upper corner of the box around boxes, shape (n, 2, d) -> (2, d)."""
+    corners = np.asarray(boxes)
+    return np.stack([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])
 
 
 def crossed(first: FloatArray, second: FloatArray) -> FloatArray:

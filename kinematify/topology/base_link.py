@@ -15,6 +15,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import shortest_path
 
 from kinematify.contact.graph import pair
+from kinematify.robot.vectors import box_around
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -138,8 +139,7 @@ class Skeleton:
         self.flat_above = np.array([item.flat_top for item in stats])
         self.top = np.array([item.top for item in stats])
         self.middle = np.array([float(item.centroid[2]) for item in stats])
-        lower = np.min([item.bounds[0] for item in stats], axis=0)
-        upper = np.max([item.bounds[1] for item in stats], axis=0)
+        lower, upper = box_around([item.bounds for item in stats])
         self.bottom = np.array([item.bottom for item in stats])
         self.rise = (self.bottom - lower[2]) / max(float(np.linalg.norm(upper - lower)), 1e-12)
         self.low = self.rise <= STAND_BAND

@@ -1,27 +1,26 @@
-"""A candidate, a parent or other parts of the viewer become those of the model folder."""
+"""A candidate or a parent of the viewer becomes that of the model folder."""
 
 from __future__ import annotations
 
 import shlex
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.grouping.groups import GROUPS_FILE
+from kinematify.grouping.groups import GROUPS_FILE, Group, Grouping, stated_groups
 from kinematify.model.output import check_output
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.refinement.folder import open_model_folder, read_record, stored_state, write_refined
-from kinematify.refinement.hints import AXES, Hint, parse_hints, with_hints
+from kinematify.refinement.hints import AXES, Hint, with_hints
 from kinematify.robot.joint_type import JointType
-from kinematify.view.regroup import merge_parts, rename_part, stated_grouping
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from kinematify.grouping.groups import Grouping
+    from kinematify.assembly.part import Assembly
     from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import FloatArray
     from kinematify.view.alternatives import JointAlternative
@@ -63,29 +62,6 @@ class ModelFolder:
         """Follow a hint, and write the model; errors as those of `keep`, and that the hint cannot be followed."""
         return self._keep(lambda _: hint)
 
-    def merge(self, one: str, other: str) -> SavedEdit:
-        """Make one part of two, infer again and write the model; errors as those of `keep`."""
-        return self._regroup(lambda grouping: merge_parts(grouping, (one, other)))
-
-    def rename(self, part: str, name: str) -> SavedEdit:
-        """Give a part and its link another name, and write the model; errors as those of `keep`."""
-        before = self._current_state()
-        return self._write(before, rename_part(before, self._grouping(before), part, name), ())
-
-    def _regroup(self, change: Callable[[Grouping], Grouping]) -> SavedEdit:
-        """Infer with other parts; what was said of parts that are still there is kept."""
-        before = self._current_state()
-        grouping = change(self._grouping(before))
-        root = before.assembly.names[before.trees[0].root]
-        after = infer(grouping, config=before.config, base=root if root in grouping.assembly.names else None)
-        known = [text for text in before.hints if text.partition("=")[0].partition(":")[0] in after.assembly.names]
-        if known:
-            after = with_hints(after, parse_hints(known, after.assembly.names))
-        return self._write(before, after, ())
-
-    def _grouping(self, inference: Inference) -> Grouping:
-        return inference.grouping or stated_grouping(inference.assembly, read_record(self.folder))
-
     def _keep(self, hint_for: Callable[[Inference], Hint]) -> SavedEdit:
         before = self._current_state()
         hint = hint_for(before)
@@ -99,7 +75,7 @@ class ModelFolder:
             record = read_record(self.folder)
             inference = infer(assembly, config=config, base=record["trees"][0]["root"])
             left = stored_state(inference, record)
-            self._steps.append(replace(left, grouping=stated_grouping(assembly, record)) if record["groups"] else left)
+            self._steps.append(replace(left, grouping=_stated_grouping(assembly, record)) if record["groups"] else left)
         return self._steps[-1]
 
     def _write(self, before: Inference, after: Inference, hints: tuple[str, ...]) -> SavedEdit:
@@ -130,6 +106,16 @@ class ModelFolder:
         source, out = (inference.assembly.source, *inference.assembly.options), str(self.folder)
         groups = [] if inference.grouping is None else ["--groups", str(self.folder / GROUPS_FILE)]
         return shlex.join(["kinematify", "infer", *source, "-o", out, "--force", *groups, *hints])
+
+
+def _stated_grouping(assembly: Assembly, record: dict[str, Any]) -> Grouping:
+    """The grouping that a model folder states: its parts, and its `inference.json`."""
+    known = {group.name: group for group in stated_groups(record, "parts")}
+    return Grouping(
+        assembly=assembly,
+        groups=tuple(known.get(name, Group(name=name, pieces=(name,))) for name in assembly.names),
+        rejected=stated_groups(record, "rejected"),
+    )
 
 
 def hint_of(part: str, chosen: JointAlternative, before: JointType) -> Hint:

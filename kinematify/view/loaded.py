@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint, Robot
+    from kinematify.view.server import ModelViewer
     from kinematify.view.window import Window
 
 _AZIMUTH = -1.0
@@ -199,7 +200,7 @@ class LoadedModel:
         """
         return _engine("pinocchio", "pin").buildModelFromUrdf(str(self.path))
 
-    def show(self, q: Mapping[str, float] | None = None, *, port: int = 8080) -> Window:
+    def show(self, q: Mapping[str, float] | None = None, *, port: int = 8080) -> Window[ModelViewer]:
         """Show the model in a browser, as `kinematify view` does; in a notebook the answer is the page itself.
 
         Args:
@@ -213,10 +214,10 @@ class LoadedModel:
             EnvironmentFault: viser is not installed.
             InputError: As for `pose`.
         """
-        from kinematify.view.window import Window  # noqa: PLC0415  # loads the collision geometry
+        from kinematify.view.window import model_window  # noqa: PLC0415  # loads the collision geometry
 
         values = self._by_joint(q or {})
-        window = Window(self.path, package_dirs=self._package_dirs, port=port)
+        window = model_window(self.path, package_dirs=self._package_dirs, port=port)
         window.viewer.set(values)
         window.run_aside()
         return window

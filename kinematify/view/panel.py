@@ -35,12 +35,6 @@ _SLIDER_STEPS = 100
 """An arrow key moves a slider by one."""
 _LISTED_PAIRS, _LISTED_FINDINGS = 12, 40
 """Touching pairs and findings that are listed; the report has all."""
-_PAGE = (
-    '<style>.mantine-Paper-root[style*="max-height: 60%"]{{max-height:50% !important}}</style>'
-    '<img src="data:," style="display:none" onerror="{}">'
-)
-"""Leaves the upper half of a narrow window to the model. A page runs no <script> that arrives later, but what an image
-does that cannot be loaded."""
 _NAME_UNDER_POINTER = """
 if (!window.partName) {
   const label = window.partName = document.body.appendChild(document.createElement('div'));
@@ -60,6 +54,12 @@ if (!window.partName) {
   }), true);
 }"""
 """Shows the name of the part under the pointer, which viser marks but does not report."""
+PAGE = (
+    '<style>.mantine-Paper-root[style*="max-height: 60%"]{max-height:50% !important}</style>'
+    f'<img src="data:," style="display:none" onerror="{html.escape(_NAME_UNDER_POINTER)}">'
+)
+"""Leaves the upper half of a narrow window to the model. A page runs no <script> that arrives later, but what an image
+does that cannot be loaded."""
 _COPY = """
 const said = {}, done = () => this.textContent = 'Copied';
 const older = () => {
@@ -102,11 +102,9 @@ class Panel:
         self._gui, self._scene, self._can_keep = gui, shown.scene, can_keep
         self.sliders: dict[str, Any] = {}
         """By joint."""
-        self.clicked: list[str] = []
-        """The parts that were clicked last, two at most."""
         gui.reset()
         gui.set_panel_label(self._scene.robot.name)
-        gui.add_html(_PAGE.format(html.escape(_NAME_UNDER_POINTER)))
+        gui.add_html(PAGE)
         self.poses = gui.add_button_group("Pose", ("At rest", "Opened", "Random"))
         self.status = gui.add_markdown("Looking for collisions ...")
         self.news = gui.add_markdown("", visible=False)
@@ -150,29 +148,10 @@ class Panel:
     def _add_findings(self, sights: Sequence[FindingMarker]) -> None:
         for sight in sights[:_LISTED_FINDINGS]:
             with self._gui.add_folder(sight.title, expand_by_default=len(sights) <= 3):
-                self._gui.add_markdown(_plain(sight.message))
+                self._gui.add_markdown(plain(sight.message))
                 self.places.append((self._gui.add_button("Show the place"), sight))
         if len(sights) > _LISTED_FINDINGS:
             self._gui.add_markdown(f"{len(sights) - _LISTED_FINDINGS} more are in the report.")
-
-    def add_groups(self, *, opened: bool) -> None:
-        """Add the folder in which parts are named and merged.
-
-        Args:
-            opened: Whether it shows what is in it.
-        """
-        with self._gui.add_folder("Parts as they were grouped", expand_by_default=opened):
-            self._gui.add_markdown("Click a part to name it, or two to merge them.")
-            self.name: Any = self._gui.add_text("Name", "", disabled=True)
-            self.merge = self._gui.add_button("Merge", disabled=True)
-
-    def click(self, name: str) -> None:
-        """Choose a part to be named or merged; the one before it remains chosen as well."""
-        if self._can_keep:
-            self.clicked = [*(other for other in self.clicked if other != name), name][-2:]
-            self.name.disabled, self.name.value = False, name
-            self.merge.disabled = len(self.clicked) < 2
-            self.merge.label = "Merge" if self.merge.disabled else f"Merge {' and '.join(self.clicked)}"
 
     def move(self, joint: str, value: float) -> float:
         """Move the slider of a joint; return the value [rad or m] within its ends."""
@@ -214,21 +193,21 @@ class Panel:
         if kind in (JointType.REVOLUTE, JointType.PRISMATIC):
             words.append(f"{factor * lower:z.4g} to {factor * upper:z.4g} {'deg' if kind.turns else 'mm'}")
         words += [] if probability is None else [f"{probability:.0%} sure"]
-        moves = _plain(f"{joint.child} on {joint.parent}: {', '.join(words)}.")
-        self._text.content = f"**{_plain(joint.name)}** moves {moves}"
+        moves = plain(f"{joint.child} on {joint.parent}: {', '.join(words)}.")
+        self._text.content = f"**{plain(joint.name)}** moves {moves}"
 
     def offer(self, words: str) -> None:
         """Say what waits to be kept, with the button that writes it; nothing does where there are no words."""
         if words or self.keep.visible:
             self.keep.visible = bool(words) and self._can_keep
-            self.news.content, self.news.visible = f"Not written yet: **{_plain(words)}**", self.keep.visible
+            self.news.content, self.news.visible = f"Not written yet: **{plain(words)}**", self.keep.visible
             self._copy.visible = False
 
     def tell(self, text: str, kept: SavedEdit | None = None) -> None:
         """Say what happened to the file: Markdown, or what was kept, with the command that does the same."""
         if kept is not None:
             text = "\n\n".join(
-                [f"Kept. The same from the command line:\n\n```\n{kept.command}\n```", *map(_plain, kept.warnings)]
+                [f"Kept. The same from the command line:\n\n```\n{kept.command}\n```", *map(plain, kept.warnings)]
             )
             self._copy.content = _COPY_BUTTON.format(html.escape(_COPY.replace("{}", json.dumps(kept.command), 1)))
             self._copy.visible = True
@@ -274,26 +253,26 @@ def _introduction(shown: ViewModel) -> str:
     """Return how to begin, the joints to look at first, and where chains of joints close."""
     said = ["Move a slider (arrow keys move it by 1 % of the range) or click a part."]
     if shown.doubtful:
-        names = _plain(", ".join(shown.doubtful))
+        names = plain(", ".join(shown.doubtful))
         said.append(f"Check these joints first, their confidence is below {shown.doubtful_below:.0%}: **{names}**.")
-    said += [f"Dashed line: {_plain(chain.description)}" for chain in shown.chains]
+    said += [f"Dashed line: {plain(chain.description)}" for chain in shown.chains]
     return "\n\n".join(said)
 
 
 def collision_text(touches: Sequence[Touch] | Exception) -> str:
     """Collisions in Markdown, or why they cannot be looked for."""
     if isinstance(touches, Exception):
-        return f"Collisions cannot be looked for. {_plain(str(touches))}"
+        return f"Collisions cannot be looked for. {plain(str(touches))}"
     bad = [touch for touch in touches if not touch.tolerated]
     lines = [
-        f"- **{_plain(' and '.join(touch.pair))}** interpenetrate by {1e3 * touch.depth:.3g} mm"
+        f"- **{plain(' and '.join(touch.pair))}** interpenetrate by {1e3 * touch.depth:.3g} mm"
         for touch in bad[:_LISTED_PAIRS]
     ]
     more = [f"- and {len(bad) - _LISTED_PAIRS} more pairs"] if len(bad) > _LISTED_PAIRS else []
     return "\n".join([*lines, *more]) or "Nothing collides."
 
 
-def _plain(text: str) -> str:
+def plain(text: str) -> str:
     """Text as Markdown that shows it as it is: `<mimic>` would be a tag, and is not seen."""
     return _MARKUP.sub(r"\\\g<0>", text)
 

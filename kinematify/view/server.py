@@ -83,7 +83,6 @@ class ModelViewer:
         self._random = np.random.default_rng(0)
         self._q: dict[str, float] = {}
         self._chosen: str | None = None
-        self._regrouped = False
         server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
         self._open(shown, sights)
         self._drawn.look()
@@ -144,15 +143,6 @@ class ModelViewer:
         for widget, action in actions:
             _connect(widget, action)
         panel.undo.visible = self._folder is not None and self._folder.can_undo
-        if self._open_folder is None:
-            return
-        panel.add_groups(opened=self._regrouped)
-        changes: list[tuple[Any, str, Literal["rename", "merge"], Callable[[], Sequence[Any]]]] = [
-            (panel.name, "{} is named {}", "rename", lambda: (panel.clicked[-1], panel.name.value)),
-            (panel.merge, "{} and {} are one part", "merge", lambda: panel.clicked),
-        ]
-        for widget, words, method, arguments in changes:
-            _connect(widget, partial(self._regroup_from, words, method, arguments))
 
     def set(self, values: Mapping[str, float]) -> None:
         """Move joints [rad or m], sliders included; names that are no leaders are passed over."""
@@ -222,7 +212,6 @@ class ModelViewer:
     def click(self, top: str) -> None:
         """Choose a part, and the joint that carries it or the one that leads that."""
         robot = self._scene.robot
-        self._panel.click(top)
         joint = robot.joint_above.get(top)
         while joint is not None and joint.mimic is not None:
             joint = robot.joint_by_name[joint.mimic.joint]
@@ -297,16 +286,6 @@ class ModelViewer:
             hint = Hint(part=joint.child, parent=name) if key == "parent" else Hint(part=joint.child, twin=name)
             said = f"with {name} as its parent" if key == "parent" else f"with the same joint as {name}"
             self._propose(f"{joint.child} {said}", methodcaller("state", hint))
-
-    def _regroup_from(self, words: str, method: Any, arguments: Callable[[], Any], _: Any) -> None:
-        self.regroup(words, method, *arguments())
-
-    def regroup(self, words: str, method: Literal["rename", "merge"], *arguments: Any) -> None:
-        """Propose other parts: what a method of `ModelFolder` makes of its arguments, which `words` take, too."""
-        with self._lock:
-            self.show_as_in_file()
-            self._regrouped = True
-            self._propose(words.format(*arguments), methodcaller(method, *arguments))
 
     def _preview(self, joint: Joint, alternative: JointAlternative, words: str) -> None:
         """Move a joint as an alternative says; that waits to be kept."""
@@ -389,11 +368,6 @@ class ModelViewer:
             self._gizmo = self._drawn.add_gizmo(axis, pivot)
             _connect(self._gizmo, lambda _: self.move_line())
             self.change_line()
-
-    def set_limits(self, lower: float, upper: float) -> None:
-        """Put the two handles of the limits somewhere [deg or mm]; only while a joint is set by hand."""
-        self._panel.hand_limits.value = (lower, upper)
-        self.change_line()
 
     def _end_by_hand(self) -> None:
         if self._gizmo is not None:

@@ -19,6 +19,7 @@ from kinematify.robot.robot import (
     rigid_groups,
 )
 from kinematify.robot.transforms import joint_motion, rotation_about
+from kinematify.robot.vectors import box_around
 from kinematify.validation.formats.view_data import camera_turn
 
 if TYPE_CHECKING:
@@ -85,8 +86,7 @@ class ViewScene:
 
     def extent(self, q: Mapping[str, float]) -> FloatArray:
         """Return the corners of the model in a configuration, frame of the root link [m], shape (2, 3)."""
-        corners = np.array(list(self._corners(q).values()) or np.zeros((1, 2, 3)))
-        return np.stack([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])
+        return box_around(list(self._corners(q).values()) or np.zeros((1, 2, 3)))
 
     def _corners(self, q: Mapping[str, float]) -> dict[str, FloatArray]:
         """Lower and upper corner of every group in a configuration, frame of the root link [m], shape (2, 3) each."""

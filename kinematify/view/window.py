@@ -7,7 +7,7 @@ import threading
 from contextlib import redirect_stdout
 from functools import partial
 from io import StringIO
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from kinematify.model.output import MODEL_FILE, RECORD_FILE
 from kinematify.robot.read import read_robot
@@ -16,13 +16,17 @@ from kinematify.view.inference_view import ViewModel, declared_chains, shown_wit
 from kinematify.view.viewer_scene import ViewScene
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
+
+    import viser
 
     from kinematify.view.inference_view import FindingMarker
     from kinematify.view.keep import ModelFolder
+    from kinematify.view.piece_page import PiecePage
     from kinematify.view.server import ModelViewer
 
+_Page = TypeVar("_Page", "ModelViewer", "PiecePage")
 _PAGE_HEIGHT = 620
 """Of the frame in a notebook [pixels]."""
 
@@ -48,49 +52,66 @@ def _model_folder(urdf: Path) -> ModelFolder:
     return ModelFolder(urdf.parent)
 
 
-class Window:
+def model_window(
+    urdf: Path,
+    *,
+    package_dirs: Sequence[Path] = (),
+    sights: Sequence[FindingMarker] = (),
+    host: str = "127.0.0.1",
+    port: int = 8080,
+) -> Window[ModelViewer]:
+    """Start to serve a model.
+
+    Args:
+        urdf: The model.
+        package_dirs: Where packages lie (``package://``).
+        sights: Findings about it.
+        host: ``0.0.0.0`` lets other machines in.
+        port: Another one is taken if it is not free.
+
+    Raises:
+        InputError: The model cannot be read.
+        EnvironmentFault: viser is not installed.
+    """
+    require("The viewer", "viser")
+    from kinematify.view.server import ModelViewer  # noqa: PLC0415  # needs viser
+
+    shown = read_model(urdf, package_dirs)
+    viewer = partial(
+        ModelViewer,
+        shown=shown,
+        sights=sights,
+        open_folder=partial(_model_folder, urdf) if urdf.name == MODEL_FILE and shown.alternatives else None,
+        reopen=lambda: read_model(urdf, package_dirs),
+        changed_at=lambda: urdf.stat().st_mtime if urdf.is_file() else 0.0,
+    )
+    return Window(viewer, host=host, port=port)
+
+
+class Window(Generic[_Page]):
     """A page that is being served."""
 
     def __init__(
-        self,
-        urdf: Path,
-        *,
-        package_dirs: Sequence[Path] = (),
-        sights: Sequence[FindingMarker] = (),
-        host: str = "127.0.0.1",
-        port: int = 8080,
+        self, page: Callable[[viser.ViserServer], _Page], *, host: str = "127.0.0.1", port: int = 8080
     ) -> None:
         """Start to serve.
 
         Args:
-            urdf: The model.
-            package_dirs: Where packages lie (``package://``).
-            sights: Findings about it.
+            page: Builds what is seen.
             host: ``0.0.0.0`` lets other machines in.
             port: Another one is taken if it is not free.
 
         Raises:
-            InputError: The model cannot be read.
             EnvironmentFault: viser is not installed.
         """
         require("The viewer", "viser")
         import viser  # noqa: PLC0415  # slow to load
 
-        from kinematify.view.server import ModelViewer  # noqa: PLC0415  # needs viser
-
-        shown = read_model(urdf, package_dirs)
         self._stop = threading.Event()
         with redirect_stdout(StringIO()):  # a banner of its own
             self.server = viser.ViserServer(host=host, port=port, label="kinematify view", verbose=False)
         """Of viser: what else is to stand on the page may be added to it."""
-        self.viewer: ModelViewer = ModelViewer(
-            self.server,
-            shown,
-            sights=sights,
-            open_folder=partial(_model_folder, urdf) if urdf.name == MODEL_FILE and shown.alternatives else None,
-            reopen=lambda: read_model(urdf, package_dirs),
-            changed_at=lambda: urdf.stat().st_mtime if urdf.is_file() else 0.0,
-        )
+        self.viewer: _Page = page(self.server)
         name = "localhost" if host in ("127.0.0.1", "0.0.0.0") else host
         self.port: int = self.server.get_port()
         """The port that is served: another one than asked for if that is in use."""

@@ -13,6 +13,7 @@ from kinematify.assembly.assemble import part_names
 from kinematify.errors import InputError
 from kinematify.grouping.groups import joined_pieces, numbered_pieces
 from kinematify.grouping.numbered_pieces import BODY, MOST_NUMBERS, NamedPart
+from kinematify.robot.vectors import box_around
 from kinematify.vision.sheet import draw_sheet
 
 if TYPE_CHECKING:
@@ -248,7 +249,7 @@ def _direction(stated: Any) -> FloatArray | None:
 
 def _listed(parts: Sequence[Part]) -> list[str]:
     """The extent of every piece, one line each; runs of congruent tiny ones have one."""
-    low, high = np.min([p.bounds[0] for p in parts], axis=0), np.max([p.bounds[1] for p in parts], axis=0)
+    low, high = box_around([part.bounds for part in parts])
     boxes = np.array([100.0 * (part.bounds - low) / max(float((high - low).max()), 1e-300) for part in parts])
     sizes = np.sort(np.ptp(boxes, axis=1), axis=1)
     share = 100.0 * np.array([part.area for part in parts]) / max(sum(part.area for part in parts), 1e-300)

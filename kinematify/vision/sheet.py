@@ -11,6 +11,7 @@ from scipy.ndimage import distance_transform_edt, find_objects
 
 from kinematify.geometry.rays import RayScene
 from kinematify.render.camera import fit_camera
+from kinematify.robot.vectors import box_around
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -50,21 +51,23 @@ def draw_sheet(parts: Sequence[Part]) -> Image.Image:
     return picture.quantize(128, dither=Image.Dither.NONE)
 
 
+def piece_colors(count: int) -> FloatArray:
+    """Colour of each number, sRGB, shape (count, 3)."""
+    return np.array([
+        colorsys.hls_to_rgb(k * 0.618034 % 1.0, (0.62, 0.5, 0.75)[k % 3], (0.75, 0.6, 0.85)[k // 3 % 3])
+        for k in range(count)
+    ])  # fmt: skip
+
+
 class _Sheet:
     """What all panels share."""
 
     def __init__(self, parts: Sequence[Part]) -> None:
         self.parts, self.all = parts, list(range(len(parts)))
-        self.low = np.min([part.bounds[0] for part in parts], axis=0)
-        self.high = np.max([part.bounds[1] for part in parts], axis=0)
+        self.low, self.high = box_around([part.bounds for part in parts])
         self.size = max(float((self.high - self.low).max()), 1e-300)
         self.middles = np.array([part.bounds.mean(axis=0) for part in parts])
-        self.colors = np.array(
-            [
-                colorsys.hls_to_rgb(k * 0.618034 % 1.0, (0.62, 0.5, 0.75)[k % 3], (0.75, 0.6, 0.85)[k // 3 % 3])
-                for k in self.all
-            ]
-        )
+        self.colors = piece_colors(len(parts))
         self.best = np.zeros(len(parts))
         """Pixels of each piece in the panel that shows most of it."""
 
@@ -129,8 +132,7 @@ class _Sheet:
         return chosen
 
     def _region(self, pieces: Sequence[int]) -> FloatArray:
-        low = np.min([self.parts[k].bounds[0] for k in pieces], axis=0)
-        high = np.max([self.parts[k].bounds[1] for k in pieces], axis=0)
+        low, high = box_around([self.parts[k].bounds for k in pieces])
         room = max(0.15 * float(np.linalg.norm(high - low)), _ROOM * self.size)
         return np.array([low - room, high + room])[np.indices((2, 2, 2)).reshape(3, -1).T, range(3)]
 

@@ -10,6 +10,7 @@ import torch
 import trimesh
 
 from benchmarks.paper_configurations import with_types
+from benchmarks.studies.paper import field_gaps
 from benchmarks.study import RECORDS
 from kinematify.assembly.part import Assembly, Part
 from kinematify.cli.app import run
@@ -21,7 +22,6 @@ from kinematify.evaluation.result_record import load_report
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.paper.cavl import _bounded
-from kinematify.paper.sdf import field_gaps
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 from kinematify.pipeline.stages import rank_trees

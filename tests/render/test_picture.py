@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from examples.make_story import render_story
 from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
 from kinematify.contact.tree import KinematicTree
@@ -19,12 +20,13 @@ from kinematify.model.picture_scene import (
     opened_configuration,
     posed_meshes,
 )
-from kinematify.model.preview import draw_pair, render_preview, render_story
+from kinematify.model.preview import render_preview
 from kinematify.model.urdf import distinct_colors, link_colors, link_shades
 from kinematify.render.picture import PictureScene, PosedMesh, render_scene
 from kinematify.robot.appearance import linear_of, srgb_of
 from kinematify.robot.joint_type import JointType
 from tests.mechanisms import Mechanism, box, chain, door, drawer, flat_and_fixed, joint, knob
+from tools.draw_gallery import draw_pair
 
 CONFIG = load_config().preview.model_copy(update={"panel_width": 240, "panel_height": 220})
 UP = np.array([0.0, 0.0, 1.0])

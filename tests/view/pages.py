@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.arrays import IntArray
     from kinematify.view.alternatives import JointAlternative
+    from kinematify.view.server import ModelViewer
     from kinematify.view.window import Window
 
 
@@ -34,16 +35,22 @@ def candidates_in(folder: Path) -> Mapping[tuple[str, str], tuple[JointAlternati
 
 
 @contextmanager
-def served(folder: Path, port: int) -> Iterator[Window]:
+def served(folder: Path, port: int) -> Iterator[Window[ModelViewer]]:
     """The page of a model folder."""
-    from kinematify.view.window import Window  # needs viser
+    from kinematify.view.window import model_window  # needs viser
 
-    window = Window(folder / "model.urdf", port=port)
+    window = model_window(folder / "model.urdf", port=port)
     window.run_aside()
     try:
         yield window
     finally:
         window.close()
+
+
+def limited(viewer: ModelViewer, limits: tuple[float, float]) -> None:
+    """Put the two handles of the limits somewhere [deg or mm], as the slider does while a joint is set by hand."""
+    viewer._panel.hand_limits.value = limits
+    viewer.change_line()
 
 
 def press(page: Page, words: str) -> None:

@@ -12,7 +12,7 @@ from kinematify.pipeline.record import write_inference
 from kinematify.refinement.hints import parse_hints, with_hints
 from kinematify.robot.read import read_robot
 from tests.objects import BUILDERS
-from tests.view.pages import served
+from tests.view.pages import limited, served
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -62,9 +62,7 @@ def test_clicks_and_widgets_that_the_program_sets_change_no_byte(number: int, na
             *(lambda part=part: viewer.state("parent", part) for part in names),
             lambda: viewer.try_candidate(moving, 1),
             viewer.set_by_hand,
-            lambda: viewer.set_limits(-5.0, 20.0),
-            lambda: viewer.regroup("{} is {}", "rename", joint.child, "cover"),
-            lambda: viewer.regroup("{} with {}", "merge", joint.child, joint.parent),
+            lambda: limited(viewer, (-5.0, 20.0)),
             viewer.show_as_in_file,
         ):
             look()

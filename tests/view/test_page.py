@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import cycle
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +16,7 @@ from kinematify.robot.robot import forward_kinematics
 from tests.browser import opened, wait_until
 from tests.household import four_bars
 from tests.objects import BUILDERS
-from tests.view.pages import PATIENCE, downloaded, mistakes, picture, press, served
+from tests.view.pages import PATIENCE, downloaded, limited, mistakes, picture, press, served
 from tools.draw_view import keep_candidate
 
 if TYPE_CHECKING:
@@ -64,7 +63,7 @@ def test_a_joint_is_set_by_hand_kept_and_taken_back_while_a_second_browser_watch
             seen.get_by_text(f"{joint.name} moves").first.wait_for(timeout=PATIENCE)
         press(page, "Edit")
         second.get_by_text("Limits [deg]").first.wait_for(timeout=PATIENCE)
-        window.viewer.set_limits(-10.0, 50.0)
+        limited(window.viewer, (-10.0, 50.0))
         press(page, "Keep this")
         page.get_by_text("The same from the command line").wait_for(timeout=PATIENCE)
         second.get_by_text("The same from the command line").wait_for(timeout=PATIENCE)
@@ -76,28 +75,6 @@ def test_a_joint_is_set_by_hand_kept_and_taken_back_while_a_second_browser_watch
         assert not mistakes(reported)
     (again,) = read_robot(folder / "model.urdf").joints
     assert (again.lower, again.upper) == (joint.lower, joint.upper)
-
-
-def test_the_name_under_the_pointer_is_shown_and_a_merge_keeps_pose_and_folder(tmp_path: Path) -> None:
-    folder = tmp_path / "model"
-    write_inference(infer(BUILDERS["nested_drawer"]().assembly), folder, preview=False)
-    with served(folder, 18195) as window, opened(window.url, width=400) as (page, reported):
-        page.wait_for_selector("text=Nothing collides", timeout=PATIENCE)
-        first, *_, last = window.viewer.parts
-        name = page.locator("#part-name")
-        heights = cycle(range(100, 400, 40))  # the upper half, above the panel
-        wait_until(page, lambda: page.mouse.move(200, next(heights)) or name.inner_text() in window.viewer.parts)
-        for part in (first, last):
-            window.viewer.click(part)
-        moved = dict.fromkeys(window.viewer.values, 0.05)
-        window.viewer.set(moved)
-        window.viewer.regroup("{} and {} are one part", "merge", first, last)
-        page.get_by_text("Not written yet").wait_for(timeout=PATIENCE)
-        press(page, "Keep this")
-        page.get_by_text("The same from the command line").wait_for(timeout=PATIENCE)
-        page.get_by_text("Click a part to name it").wait_for(timeout=PATIENCE)
-        assert window.viewer.values == pytest.approx({joint: moved[joint] for joint in window.viewer.values})
-        assert not mistakes(reported)
 
 
 def test_where_a_chain_closes_is_drawn_along_its_pin_wherever_it_stands(tmp_path: Path) -> None:

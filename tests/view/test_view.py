@@ -129,9 +129,9 @@ def test_a_candidate_gets_the_range_that_is_free(scene: ViewScene) -> None:
 
 
 def test_a_model_that_another_program_changes_is_shown_again(urdf: Path) -> None:
-    from kinematify.view.window import Window  # needs viser
+    from kinematify.view.window import model_window  # needs viser
 
-    window = Window(urdf, port=18087)
+    window = model_window(urdf, port=18087)
     window.run_aside()
     try:
         urdf.write_text(_URDF.replace("hinge", "pivot"))
@@ -207,12 +207,12 @@ def test_it_prints_its_address_and_ends_with_ctrl_c(urdf: Path) -> None:
 
 
 def test_a_model_whose_collision_mesh_is_missing_is_seen_all_the_same(urdf: Path) -> None:
-    from kinematify.view.window import Window  # needs viser
+    from kinematify.view.window import model_window  # needs viser
 
     shape = '<geometry><box size="1 0.1 2"/></geometry>'
     missing = f'<visual>{shape}</visual><collision><geometry><mesh filename="gone.obj"/></geometry></collision>'
     urdf.write_text(_URDF.replace(f"<collision>{shape}</collision>", missing, 1))
-    window = Window(urdf, port=18085)
+    window = model_window(urdf, port=18085)
     try:
         window.viewer.look_for_collisions()
         assert window.viewer.status == "Nothing collides."  # what is missing is omitted, and the command says so

@@ -131,9 +131,7 @@ class JointMeasures:
     @property
     def best_other(self) -> int:
         """Position of the best candidate of the other type."""
-        every = self.posterior.hypotheses
-        others = (every.kinds == (TURN if self.slides else SLIDE)) & ~_given(every)
-        return int(np.argmax(np.where(others, self.posterior.scores, -np.inf)))
+        return self._best(TURN if self.slides else SLIDE)
 
     @property
     def alone(self) -> bool:
@@ -172,9 +170,12 @@ class JointMeasures:
     @cached_property
     def best(self) -> int:
         """Position of the best candidate of the declared type."""
+        return self._best(SLIDE if self.slides else TURN)
+
+    def _best(self, kind: int) -> int:
+        """Position of the best candidate of a type that the file does not state."""
         every = self.posterior.hypotheses
-        others = (every.kinds == (SLIDE if self.slides else TURN)) & ~_given(every)
-        return int(np.argmax(np.where(others, self.posterior.scores, -np.inf)))
+        return int(np.argmax(np.where((every.kinds == kind) & ~_given(every), self.posterior.scores, -np.inf)))
 
     @cached_property
     def deficit(self) -> float:

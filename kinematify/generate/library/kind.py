@@ -30,11 +30,9 @@ from kinematify.generate.procedural.workshop import Workshop
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    import numpy as np
     from manifold3d import Manifold
 
-    from kinematify.generate.library.builder import ModelingStyle
-    from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
+    from kinematify.generate.procedural.blueprint import BlueprintJoint
     from kinematify.generate.procedural.parameter import Value, Words
     from kinematify.generate.procedural.workshop import Look
 
@@ -173,38 +171,19 @@ def _drawer(draw: Callable[..., None], taken: Sequence[str], name: str) -> Calla
         differs = MODELING[values.choice("modeling")] if values.has("modeling") else {"sides": SEGMENTS}
         style = replace(CAREFUL, **{"gap": values.number("clearance"), **differs})
         builder = ObjectBuilder(name, style, workshop, values.rng if values.drawn else None)
-        _carry_out(draw, builder, {key: values.value(key) for key in taken}, values, workshop)
+        carry_out(draw, builder, {key: values.value(key) for key in taken}, values, workshop)
 
     return build
 
 
-def drawn_object(family: Family, style: ModelingStyle, rng: np.random.Generator) -> Blueprint:
-    """Return an object of a kind that is drawn, with everything drawn.
-
-    Raises:
-        InputError: It cannot be built with what was drawn.
-    """
-    assert family.draw is not None, family.name
-    workshop = Workshop(family.name, material="plastic")
-    builder = ObjectBuilder(family.name, style, workshop, rng)
-    usual = Values({"material": "", "color": "", "open": 0.0}, rng)
-    taken = family.draw.__code__.co_varnames[: family.draw.__code__.co_argcount]
-    given = {item.name: _some(item, builder) for item in family.parameters if item.name in taken}
-    _carry_out(family.draw, builder, given, usual, workshop)
-    return workshop.finish(family.name, {}, style="clean", clearance=style.gap, rng=rng)
-
-
-def _some(asked: Parameter, builder: ObjectBuilder) -> Value:
-    """A value for one more object of a corpus."""
-    if asked.bounds is not None:
-        low, high = asked.usual or asked.bounds
-        return builder.count(int(low), int(high)) if isinstance(asked.default, int) else builder.draw(low, high)
-    return str(builder.pick(*asked.choices)) if asked.yes is None else "yes" if builder.maybe(asked.yes) else "no"
-
-
-def _carry_out(
+def carry_out(
     draw: Callable[..., None], builder: ObjectBuilder, given: Mapping[str, Value], values: Values, workshop: Workshop
 ) -> None:
+    """Draw an object with what is given, and put it together in a workshop.
+
+    Raises:
+        InputError: It cannot be built.
+    """
     switched = {name: value == "yes" if value in ("yes", "no") else value for name, value in given.items()}
     try:
         draw(builder, **switched)
