@@ -84,7 +84,7 @@ class Solid:
         share = self._count // 3
         edges = _sharp_edges(vertices, faces)
         corners = vertices[np.unique(edges)] if len(edges) else vertices
-        areas = 0.5 * lengths_of(_crosses(vertices, faces))
+        areas = 0.5 * lengths_of(triangle_normals(vertices[faces]))
         picked, weights = place_samples(vertices[faces], areas, curve_order(vertices[faces], areas), share, 0)
         surface = np.einsum("nk,nkd->nd", weights, vertices[faces[picked]])
         return np.concatenate([_thinned(corners, share), _along(vertices[edges], share), surface])
@@ -214,14 +214,9 @@ def _at_edges(corners: FloatArray, foot: FloatArray) -> BoolArray:
     return np.stack([1.0 - second - third, second, third], axis=1) < 1e-6
 
 
-def _crosses(vertices: FloatArray, faces: IntArray) -> FloatArray:
-    """Normals of faces, twice as long as the face is large, shape (F, 3)."""
-    return np.asarray(triangle_normals(vertices[faces]))
-
-
 def _sharp_edges(vertices: FloatArray, faces: IntArray) -> IntArray:
     """Vertex pairs of edges that two faces do not share smoothly, shape (E, 2)."""
-    cross = _crosses(vertices, faces)
+    cross = triangle_normals(vertices[faces])
     normals = cross / np.maximum(lengths_of(cross), 1e-300)[:, None]
     sides = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     owner = np.tile(np.arange(len(faces)), 3)

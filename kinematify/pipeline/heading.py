@@ -37,7 +37,7 @@ _GRID = 1e-9
 
 def principal_heading(assembly: Assembly) -> float:
     """The angle by which most walls are turned from the axes of the world, in (-45, 45] deg [rad]; 0 without walls."""
-    normals = np.concatenate([_scaled_normals(part) for part in assembly.parts])
+    normals = np.concatenate([triangle_normals(part.vertices[part.faces]) for part in assembly.parts])
     areas = lengths_of(normals)
     walls = (areas > 0.0) & (np.abs(normals[:, 2]) < _LEVEL * areas)
     if not walls.any():
@@ -63,11 +63,6 @@ def principal_heading(assembly: Assembly) -> float:
 def _apart(angles: FloatArray, angle: float) -> FloatArray:
     """From an angle, a quarter turn being none, in [-45, 45) deg [rad], shape (n,)."""
     return np.asarray((angles - angle + 0.5 * _QUARTER) % _QUARTER - 0.5 * _QUARTER)
-
-
-def _scaled_normals(part: Part) -> FloatArray:
-    """Normals of the faces, as long as twice their areas, shape (F, 3)."""
-    return triangle_normals(part.vertices[part.faces])
 
 
 def _area_within(angles: FloatArray, areas: FloatArray, reach: float) -> FloatArray:

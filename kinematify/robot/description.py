@@ -79,7 +79,7 @@ def form_of(path: Path) -> str:
             head = file.read(_HEAD)
     except OSError:
         return "urdf"  # whose reader says what is wrong with it
-    if head.startswith((b"PXR-USDC", b"#usda")) or path.suffix.lower() == ".usdz":
+    if head.startswith((b"PXR-USDC", b"#usda")) or path.suffix.lower().startswith(".usd"):
         return "usd"
     root = _ROOT.search(re.sub(rb"<!--.*?-->", b"", head, flags=re.DOTALL))
     name = b"" if root is None else root[2]

@@ -248,6 +248,7 @@ def test_a_hostile_xacro_runs_nothing(tmp_path: Path, monkeypatch: pytest.Monkey
         ("a.usda", '#usda 1.0\ndef "a" (references = @../other/b.usda@) {}\n', "outside"),
         ("a.usda", '#usda 1.0\ndef Xform "a" {}\n', "no rigid body"),
         ("a.usda", "#usda 1.0\ndef def def", "does not open"),
+        ("a.usd", 'def Xform "a" {}', "does not open"),
         ("a.xml", "<mujoco><include file='a.xml'/></mujoco>", "MuJoCo does not read"),
         ("a.xml", "<mujoco/>", "no body"),
         ("a.sdf", '<!DOCTYPE sdf [<!ENTITY a "b">]><sdf><model/></sdf>', "DOCTYPE"),
