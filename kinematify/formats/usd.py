@@ -12,7 +12,7 @@ from kinematify.robot.appearance import linear_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.material_files import write_texture
 from kinematify.robot.robot import forward_kinematics
-from kinematify.robot.transforms import quaternion_of, rotation_from_x
+from kinematify.robot.transforms import quaternion_of, rotation_from_x, rpy_of
 from kinematify.robot.vectors import triangle_normals
 
 if TYPE_CHECKING:
@@ -128,7 +128,10 @@ class _UsdWriter:
 
     def _frame(self, path: Any, T: FloatArray) -> Any:
         """A frame of its own around one geometry; returns the path of the geometry."""
-        _place(UsdGeom.Xform.Define(self.stage, path), T)
+        xform = UsdGeom.Xform.Define(self.stage, path)
+        xform.AddTranslateOp().Set(Gf.Vec3d(*map(float, T[:3, 3])))
+        # As three angles: ExclusiveXFormParentChecker of SimReady takes no quaternion here.
+        xform.AddRotateXYZOp().Set(_vector(np.degrees(rpy_of(T[:3, :3]))))
         return path.AppendChild("geometry")
 
     def _add_mass(self, prim: Any, link: Link) -> None:
