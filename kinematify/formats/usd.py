@@ -13,7 +13,7 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.material_files import write_texture
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import quaternion_of, rotation_from_x, rpy_of
-from kinematify.robot.vectors import triangle_normals
+from kinematify.robot.vectors import lengths_of, triangle_normals
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -338,7 +338,7 @@ def _primitive(stage: Any, path: Any, shape: Shape) -> Any:
 def _normals(corners: FloatArray) -> FloatArray:
     """One unit normal a triangle; upwards where a triangle has no area."""
     normals = triangle_normals(corners)
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    lengths = lengths_of(normals)[:, None]
     return np.where(lengths > 0.0, normals / np.maximum(lengths, 1e-300), [0.0, 0.0, 1.0])
 
 

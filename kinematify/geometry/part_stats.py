@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from kinematify.robot.arrays import read_only
-from kinematify.robot.vectors import referenced, triangle_normals
+from kinematify.robot.vectors import lengths_of, referenced, triangle_normals
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, Part
@@ -95,7 +95,7 @@ def _hull_measures(part: Part) -> tuple[float, float, float]:
     except QhullError:
         return 0.0, 0.0, 0.0
     sides = points[hull.simplices]
-    areas = 0.5 * np.linalg.norm(triangle_normals(sides), axis=1)
+    areas = 0.5 * lengths_of(triangle_normals(sides))
     up = hull.equations[:, 2]
     footprint = 0.5 * float((areas * np.abs(up)).sum())
     if footprint <= 0.0:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.robot.vectors import triangle_normals
+from kinematify.robot.vectors import lengths_of, triangle_normals
 
 if TYPE_CHECKING:
     from kinematify.robot.appearance import Appearance
@@ -41,8 +41,7 @@ def density_of(appearance: Appearance, corners: FloatArray) -> float | None:
         corners: Of the faces, shape (F, 3, 3); the mean over the area is of those whose material is known.
     """
     known = np.array([_named(material.name) for material in appearance.materials])[appearance.material_of_face]
-    crosses = triangle_normals(corners)
-    areas = np.where(np.isnan(known), 0.0, np.linalg.norm(crosses, axis=1))
+    areas = np.where(np.isnan(known), 0.0, lengths_of(triangle_normals(corners)))
     return float(areas @ np.nan_to_num(known) / areas.sum()) if areas.sum() > 0.0 else None
 
 

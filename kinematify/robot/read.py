@@ -27,7 +27,7 @@ from kinematify.robot.robot import (
 from kinematify.robot.urdf_geometry import geometry_source
 from kinematify.robot.urdf_numbers import MOMENTS, line_of, number, optional_number, origin_transform, vector
 from kinematify.robot.urdf_text import parse_description, parse_text
-from kinematify.robot.vectors import triangle_normals
+from kinematify.robot.vectors import lengths_of, triangle_normals
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -423,7 +423,7 @@ def _on_surface(mesh: LinkMesh) -> FloatArray:
     """Return points drawn uniformly by area, the same on the same faces wherever they stand [m], shape (k, 3)."""
     draw = np.random.default_rng(0)
     corners = mesh.vertices[mesh.faces]
-    areas = np.linalg.norm(triangle_normals(corners), axis=1)
+    areas = lengths_of(triangle_normals(corners))
     if not areas.sum() > 0.0:
         return mesh.vertices[:_POINTS]
     face = corners[draw.choice(len(areas), _POINTS, p=areas / areas.sum())]

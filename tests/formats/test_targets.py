@@ -70,8 +70,8 @@ def test_a_follower_of_a_fixed_joint_is_held_at_its_offset(tmp_path: Path, to: s
 
 @pytest.mark.parametrize("to", ["mjcf", "sdf", "usd", "urdf"])
 def test_the_only_color_of_a_mesh_file_is_kept(tmp_path: Path, to: str) -> None:
-    red, faces = (0.75, 0.0, 0.25, 1.0), np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
-    write_obj(tmp_path / "a.obj", np.eye(4)[:, :3], faces, appearance=plain(red, 4))
+    red, faces = (0.75, 0.0, 0.25, 1.0), np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2]])
+    write_obj(tmp_path / "a.obj", np.eye(4)[:, :3], faces, appearance=plain(red, 3))
     shown = BOX.replace('<box size="0.1 0.1 0.1"/>', '<mesh filename="a.obj"/>')
     done = exported(tmp_path, to, f'<link name="a"><visual>{shown}</visual></link>')
     (shape,) = read_robot(done.path).link_by_name["a"].visuals
