@@ -36,12 +36,12 @@ if TYPE_CHECKING:
     ),
     title="oven or stove",
     material="metal",
-    details={"burner": 4},
     width=length(0.35, 1.2, default=0.6, usual=(0.5, 0.9), help="Outer width."),
     height=length(0.45, 1.2, default=0.85, usual=(0.6, 0.95), help="Outer height."),
     depth=length(0.35, 0.9, default=0.6, usual=(0.5, 0.65), help="Outer depth of the body."),
     knobs=whole(0, 8, default=4, usual=(2, 6), help="Knobs above the door.", words="dial"),
     top=choice({"burners": "cooktop, hob", "plain": "built in"}, help="A cooktop, or a plain top."),
+    burners=whole(4, 4, words="burner", drawn=False, help="Rings on the cooktop."),
     handle=choice(("bar", "edge", "cup"), help="What the door is pulled by."),
     hinge=choice(("edge", "barrel"), help="Hidden hinges, or visible ones."),
 )

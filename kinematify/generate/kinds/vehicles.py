@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.library.builder import spread
-from kinematify.generate.library.kind import kind, length, yes
+from kinematify.generate.library.kind import kind, length, whole, yes
 from kinematify.generate.library.mechanisms import axles, case, caster, rotor, wheel
 from kinematify.generate.library.panels import grip, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, prism, vector
@@ -440,7 +440,12 @@ def trailer(b: ObjectBuilder, length: float, width: float, radius: float, height
     b.spin("jockey_wheel", parent="jockey", axis=Y, pivot=(x, 0.07, 0.07))
 
 
-@kind("windmill", words="dutch windmill, grain windmill, toy windmill", details={"sail": 4}, height=length(1.0, 8.0))
+@kind(
+    "windmill",
+    words="dutch windmill, grain windmill, toy windmill",
+    sails=whole(4, 4, words="sail", drawn=False),
+    height=length(1.0, 8.0),
+)
 def windmill(b: ObjectBuilder, height: float) -> None:
     """Sails on a cap that turns on a tower, a door below."""
     b.part("tower", b.cone(0.22 * height, 0.14 * height, (0, 0, 0), (0, 0, 0.8 * height)), material="wood")
