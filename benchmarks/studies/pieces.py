@@ -40,6 +40,7 @@ from kinematify.evaluation.datasets import bench_folder, find_objects
 from kinematify.evaluation.metrics import CLOSE_ANGLE, CLOSE_ORIGIN, axis_angle, axis_line_distance
 from kinematify.evaluation.result_record import grouped, table
 from kinematify.grouping.groups import group_pieces
+from kinematify.grouping.numbered_pieces import NamedPart
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
@@ -57,7 +58,6 @@ if TYPE_CHECKING:
     from kinematify.assembly.truth import TrueJoint
     from kinematify.evaluation.datasets import BenchObject
     from kinematify.evaluation.result_record import Report
-    from kinematify.grouping.numbered_pieces import NamedPart
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline.inference import Inference
     from kinematify.robot.arrays import FloatArray, IntArray
