@@ -73,8 +73,10 @@ class Grouping:
             said.append(
                 f"Pieces that may move but were left fixed: {', '.join(map(_said, self.rejected[:_MOST_NAMED]))}."
             )
-        if doubtful or self.rejected:
-            said.append(f"To change the parts, edit {GROUPS_FILE} beside the model and give it with --groups.")
+        said.append(
+            "If a part is wrong, click its pieces in `kinematify view MESH`, show `kinematify question MESH` to a chat that "
+            f"reads pictures, or edit {GROUPS_FILE} and give it with --groups."
+        )
         return tuple(said)
 
     def record(self) -> dict[str, Any]:
