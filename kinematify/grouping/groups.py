@@ -74,8 +74,8 @@ class Grouping:
                 f"Pieces that may move but were left fixed: {', '.join(map(_said, self.rejected[:_MOST_NAMED]))}."
             )
         said.append(
-            "If a part is wrong, click its pieces in `kinematify view MESH`, show `kinematify question MESH` to a chat that "
-            f"reads pictures, or edit {GROUPS_FILE} and give it with --groups."
+            "If a part is wrong, click its pieces in `kinematify view MESH`, show `kinematify question MESH` to a chat "
+            f"that reads pictures, or edit {GROUPS_FILE} and give it with --groups."
         )
         return tuple(said)
 
