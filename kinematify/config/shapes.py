@@ -95,10 +95,8 @@ class SeamConfig(StageConfig):
     """Length over which two rims coincide and the surface goes on, in diagonals of the smaller part, that no outline of
     a door has: a cut along the edges of a mesh, through the base link too."""
     share: float = 0.5  # a cut that goes through a part is about as long as it is wide
-    """Length over which two rims coincide and the surface goes on, in diagonals of the smaller part, from which the
-    two are one part, however the seam runs; not asked of the base link."""
-    smooth: float = 0.7  # knobs and doors cut out of one shell turn a corner there
-    """Share of the common rim over which the surface goes on, from which the same holds."""
+    """Length over which two rims coincide and the surface goes on, in diagonals of the smaller part, from which a
+    straight line is a cut."""
 
 
 class NeuralSdfConfig(StageConfig):

@@ -6,8 +6,7 @@ its foot, a door along its frame. There the surface mostly turns a corner; where
 straight on. Doors that lie flush in the body that they close go straight on as well. What tells them from a cut is that
 a plane that goes through a part crosses its surface and leaves no rim in it that is not common, while a door's outline
 lies in the surface, or has another one towards the inside. A door's outline is also at most some six times as long as
-the door is big, both its sides together, while a ragged cut through boards and walls is longer. Seams that run
-otherwise never join anything with the base.
+the door is big, both its sides together, while a ragged cut through boards and walls is longer.
 """
 
 from __future__ import annotations
@@ -48,23 +47,6 @@ def find_cuts(assembly: Assembly, surfaces: Sequence[PartSurface], config: SeamC
         config: What counts as a cut.
     """
     return {pair: seam.length for pair, seam in _seams(assembly, surfaces, config) if seam.goes_through(config)}
-
-
-def find_seams(assembly: Assembly, surfaces: Sequence[PartSurface], root: int, config: SeamConfig) -> dict[Pair, float]:
-    """Pairs (a < b) that are one part cut in two, however the seam runs, with its length [m].
-
-    Args:
-        assembly: The parts.
-        surfaces: Derived geometry of each part, same order.
-        root: The base link, with which only what was cut off it beyond doubt is joined.
-        config: What counts as a cut.
-    """
-    found = {}
-    for pair, seam in _seams(assembly, surfaces, config):
-        long = seam.long(config) and seam.smooth > config.smooth and root not in pair and not seam.leaves_rims(config)
-        if seam.goes_through(config) or long:
-            found[pair] = seam.length
-    return found
 
 
 def rigid_pieces(n: int, seams: dict[Pair, float]) -> tuple[tuple[int, ...], ...]:
@@ -125,10 +107,6 @@ class _Seam:
         through = self.long(config) if self.line else self.facing <= config.through_facing
         flat = straight and self.complete >= config.through_complete and through
         return flat or self.smooth * self.length > config.ragged * self.smaller
-
-    def leaves_rims(self, config: SeamConfig) -> bool:
-        """True if it lies in a plane with rims of one part alone, as of a door towards the inside."""
-        return self.bend <= config.through_planar and self.complete < config.through_complete
 
     def long(self, config: SeamConfig) -> bool:
         """True if the surface goes on over about the size of the smaller part."""

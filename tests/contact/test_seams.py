@@ -10,7 +10,7 @@ from objects import BUILDERS
 from benchmarks.degrade import cut_in_bands, degraded
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
-from kinematify.contact.seams import find_cuts, find_seams, rigid_pieces
+from kinematify.contact.seams import find_cuts
 from kinematify.geometry.surface import part_surfaces
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.robot.joint_type import JointType
@@ -88,27 +88,6 @@ def test_a_door_flush_in_its_body_that_has_a_back_of_its_own_is_no_piece() -> No
     inside = opening.submesh([opening.face_normals[:, 0] < 0.5], append=True)
     hollow = trimesh.util.concatenate([trimesh.Trimesh(body.vertices, body.faces), inside])
     assert cuts(door, part_of(hollow, "body")) == set()
-    parts = (
-        door,
-        part_of(hollow, "body"),
-        part_of(trimesh.creation.box((3, 3, 0.1)).apply_translation((0, 0, -1)), "table"),
-    )
-    assembly = Assembly(parts=parts, source="test")
-    assert find_seams(assembly, part_surfaces(assembly, config=CONFIG.surface), 2, CONFIG.seam) == {}
-
-
-def test_seams_that_bend_join_parts_but_never_the_base() -> None:
-    ball = SOLIDS["ball"]
-    jagged = ball.triangles_center[:, 0] + 0.2 * ball.triangles_center[:, 1] ** 2 > 0.1
-    parts = tuple(
-        Part(name=f"p{k}", vertices=ball.vertices, faces=ball.faces[side]) for k, side in enumerate((jagged, ~jagged))
-    )
-    plate = part_of(trimesh.creation.box((3, 3, 0.1)).apply_translation((0, 0, -1.05)), "plate")
-    assembly = Assembly(parts=(*parts, plate), source="test")
-    surfaces = part_surfaces(assembly, config=CONFIG.surface)
-    assert set(find_seams(assembly, surfaces, 2, CONFIG.seam)) == {(0, 1)}
-    assert find_seams(assembly, surfaces, 0, CONFIG.seam) == {}
-    assert rigid_pieces(3, {(0, 1): 1.0}) == ((0, 1), (2,))
 
 
 @pytest.mark.parametrize(("name", "kind", "seed"), [("nested_drawer", "cut-2", 0), ("hinge_pin", "cut-3", 1)])
