@@ -139,8 +139,9 @@ def _seam(
         return None
     theirs, _ = _common(second[0], first[0], tolerance)
     straight = np.abs(np.einsum("nd,nd->n", first[1][mine], second[1][partner])) > _SMOOTH
-    centre, normal, bend, line = _plane(first[0][mine].reshape(-1, 3), np.repeat(lengths, 2))
-    reach = max(tolerance, config.through_planar * float(np.ptp(first[0][mine].reshape(-1, 3), axis=0).max()))
+    ends = first[0][mine].reshape(-1, 3)
+    centre, normal, bend, line = _plane(ends, np.repeat(lengths, 2))
+    reach = max(tolerance, config.through_planar * float(np.ptp(ends, axis=0).max()))
     return _Seam(
         length=float(lengths.sum()),
         smooth=float(lengths @ straight / lengths.sum()),
@@ -149,8 +150,8 @@ def _seam(
         line=line,
         smaller=smaller,
         complete=min(
-            _share_in_plane(ends, common, centre, normal, reach)
-            for ends, common in ((first[0], mine), (second[0], theirs))
+            _share_in_plane(rim, common, centre, normal, reach)
+            for rim, common in ((first[0], mine), (second[0], theirs))
         ),
     )
 

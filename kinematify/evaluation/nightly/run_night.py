@@ -96,7 +96,7 @@ def nightly(
     baseline: str | None = None,
     smoke: bool = False,
     jobs: int | None = None,
-    progress: Progress = lambda what, share: None,
+    progress: Progress | None = None,
 ) -> NightResult:
     """Infer every object, validate its models, and compare with an earlier night, as `kinematify nightly` does.
 
@@ -125,7 +125,7 @@ def nightly(
         smoke=_SMOKE if smoke else (),
         workers=jobs or os.cpu_count() or 1,
     )
-    return run_night(request, progress)
+    return run_night(request, progress or (lambda what, share: None))
 
 
 def run_night(request: NightRequest, progress: Progress) -> NightResult:
