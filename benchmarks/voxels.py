@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import igl
 import numpy as np
 
-from kinematify.paper.sdf_grid import exact_distance, exact_signed_distance
+from kinematify.paper.sdf_grid import exact_signed_distance
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Part
@@ -39,7 +39,7 @@ def voxel_remeshed(part: Part, pitch: float, *, seed: int = 0) -> Part:
     if solid is not None:
         remeshed = replace(part, vertices=solid[0], faces=solid[1])
         few = samples[:: 1 + len(samples) // 2000]
-        if np.mean(exact_distance(remeshed, few) < pitch) > _KEPT:
+        if np.mean(np.abs(exact_signed_distance(remeshed, few)) < pitch) > _KEPT:
             return remeshed
     wall = _isosurface(part, cells, pitch, wall=_WALL * pitch)
     return part if wall is None else replace(part, vertices=wall[0], faces=wall[1])
@@ -78,7 +78,8 @@ def _isosurface(part: Part, cells: IntArray, pitch: float, *, wall: float | None
     corners, index = _distinct((cells[:, None] + _CORNERS).reshape(-1, 3))
     # Half a cell off, so that walls at round coordinates do not lie on the grid.
     places: FloatArray = np.asarray((corners + 0.5) * pitch, dtype=np.float64)
-    field = exact_signed_distance(part, places) if wall is None else exact_distance(part, places) - wall
+    field = exact_signed_distance(part, places)
+    field = field if wall is None else np.abs(field) - wall
     grid = np.ascontiguousarray(index.reshape(-1, 8))
     vertices, faces, _ = igl.marching_cubes(field, places, grid, 0.0)
     return (vertices, faces) if len(faces) else None

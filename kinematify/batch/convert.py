@@ -33,6 +33,7 @@ from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.report_picture import drawing_of
 from kinematify.validation.run import validate
 from kinematify.validation.run.outcome import as_json_text
+from kinematify.vision.ask import ask_pieces
 
 if TYPE_CHECKING:
     from kinematify.batch.batch_inputs import Source
@@ -61,6 +62,8 @@ class Conversion:
     engines: tuple[str, ...]
     reading: dict[str, Any]
     """Arguments of `load_assembly`."""
+    vlm: str
+    """Model that is asked about the pieces of a mesh: ``off``, ``auto`` or its address."""
     hash: str
     """Of all of these."""
 
@@ -117,7 +120,13 @@ def _do_steps(
             assembly = load_assembly(model, config=config.assembly, **conversion.reading)
             known["parts"] = len(assembly.parts)
             known["faces"] = sum(len(part.faces) for part in assembly.parts)
-            inference = repaired(infer(assembly, config=config), settings=conversion.settings)
+            eyes = None if assembly.segmented else ask_pieces(assembly, conversion.vlm, None, config)
+            if eyes is None:
+                inference = infer(assembly, config=config)
+            else:
+                inference = eyes.applied(infer(eyes.grouping(config), config=config, base=eyes.base))
+                known["asked"] = eyes.described()
+            inference = repaired(inference, settings=conversion.settings)
             known["parts"] = len(inference.assembly.parts)  # pieces of a mesh are fewer parts
             known["lengths"], known["warnings"] = assembly.lengths, tuple(inference.warnings)
         if "refine" in steps:

@@ -64,6 +64,8 @@ class ObjectRecord:
     faces: int | None = None
     joints: int | None = None
     """Joints that move."""
+    asked: str = ""
+    """Who was asked about the pieces, what that cost, and the record of answers."""
     content: str = ""
     """Hash of the files; empty where they could not be read."""
     configuration: str

@@ -60,6 +60,8 @@ class BatchRequest:
     """Of the validation."""
     reading: dict[str, Any] = field(default_factory=dict)
     """Arguments of `load_assembly`: `up`, `scale`, `pieces`."""
+    vlm: str = "off"
+    """Model that is asked about the pieces of a mesh: ``off``, ``auto`` or its address."""
     share: tuple[int, int] = (1, 1)
     """Number of the share of the objects to convert, from 1, and how many shares there are."""
     timeout: float = 900.0
@@ -85,7 +87,7 @@ class BatchRequest:
         facts = {
             "config": self.config.model_dump(mode="json"),
             "settings": self.settings.model_dump(mode="json"),
-            "asked": [sorted(self.steps), sorted(self.formats), sorted(self.engines), self.reading],
+            "asked": [sorted(self.steps), sorted(self.formats), sorted(self.engines), self.reading, self.vlm],
             "kinematify": __version__,
         }
         return Conversion(
@@ -95,6 +97,7 @@ class BatchRequest:
             settings=self.settings,
             engines=self.engines,
             reading=self.reading,
+            vlm=self.vlm,
             hash=hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest(),
         )
 

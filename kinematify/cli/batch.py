@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
+from kinematify.cli.asking import vlm_option
 from kinematify.cli.options import examples, listed, pieces_option, scale_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
@@ -76,6 +77,7 @@ _SHOWN = 10
 )
 @scale_option
 @pieces_option
+@vlm_option
 @click.option(
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
 )
@@ -106,6 +108,7 @@ def command(**values: Any) -> int:
         steps=listed(values["steps"]),
         formats=listed(values["to"]),
         reading={name: values[name] for name in ("up", "scale", "pieces")},
+        vlm=values["vlm"],
         share=_share(values["shard"]),
         timeout=values["timeout"],
         resume=values["resume"],

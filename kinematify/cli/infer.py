@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.asking import ask_pieces, asking_options
+from kinematify.cli.asking import vlm_option
 from kinematify.cli.inferred import (
     describe,
     describe_lengths,
@@ -107,7 +107,12 @@ _LONGEST = 86400.0
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
 )
 @click.option("--seed", type=int, help="Seed of everything random, instead of the configuration's.")
-@asking_options
+@vlm_option
+@click.option(
+    "--answer",
+    type=click.Path(path_type=Path),
+    help="Which pieces are one moving part, as a person or a chat answered `kinematify question`.",
+)
 @collision_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
@@ -191,7 +196,7 @@ def command(
         )
         if eyes is None and any(joint.confidence < settings.vision.ask_below for joint in inference.joints):
             progress("asking about the parts" if vlm != "off" else "choosing joints", _INFERRED)
-            eyes = ask_pieces(inference.assembly, vlm, None, settings)
+            eyes = _asked(inference.assembly, vlm, None, settings)
         inference = eyes.applied(inference) if eyes else inference
         inference = _with_hints(inference, stated)
         progress("moving every joint", _INFERRED)
@@ -219,10 +224,18 @@ def _asked_parts(
         raise InputError("--groups and --answer both say which pieces are one part. Give one of them.")
     known = answer is None and (given.segmented or groups)
     progress("reading the parts" if vlm == "off" else "asking about the pieces", 0.0)
-    eyes = None if known else ask_pieces(given, vlm, answer, settings)
+    eyes = None if known else _asked(given, vlm, answer, settings)
     if eyes is None or given.segmented:
         return grouped_parts(given, groups, settings, progress), eyes
     return eyes.grouping(settings), eyes
+
+
+def _asked(given: Assembly, vlm: str, answer: Path | None, settings: Config) -> PieceVote | None:
+    if answer is None and vlm == "off":  # what draws a sheet takes time to load
+        return None
+    from kinematify.vision.ask import ask_pieces
+
+    return ask_pieces(given, vlm, answer, settings)
 
 
 def _names(parts: Assembly | Grouping) -> Sequence[str]:

@@ -69,8 +69,6 @@ class Scene:
     settings: GeometrySettings
     unit: float
     """Length of one unit of all FCL trees [m]."""
-    stand_ins: tuple[str, ...]
-    """Links without collision geometry, which are judged by their visual geometry."""
     solids: dict[bytes, Solid] = field(default_factory=dict)
     """Solids by what they are made of: other scenes of the model take those that are the same, with their trees."""
 
@@ -261,7 +259,6 @@ def read_scene(
         ),
         settings=settings,
         unit=unit,
-        stand_ins=tuple(link.name for link in model.links if link.visuals and not link.collisions),
         solids=solids,
     )
 

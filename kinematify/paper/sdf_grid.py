@@ -26,11 +26,6 @@ _WINDING_EDGE = 0.125
 _WINDING_FACES = 500_000
 
 
-def exact_distance(part: Part, points: FloatArray) -> FloatArray:
-    """Unsigned distance to the surface of `part` [m], world points (n, 3) -> (n,)."""
-    return _Surface(part).closest(points)[0]
-
-
 def exact_signed_distance(part: Part, points: FloatArray) -> FloatArray:
     """Signed distance to `part` [m], negative inside, world points (n, 3) -> (n,).
 

@@ -86,7 +86,6 @@ class PartsWorld:
             ),
             settings=self.settings,
             unit=self._unit,
-            stand_ins=(),
             lines={joint.name: origins[joint.child] for joint in model.joints},
         )
 

@@ -11,13 +11,16 @@ from kinematify.contact.graph import pair
 from kinematify.grouping.groups import group_pieces
 from kinematify.grouping.numbered_pieces import BODY
 from kinematify.refinement.hints import with_parents
-from kinematify.vision.client import read_kept, write_kept
-from kinematify.vision.screening import right_parts
+from kinematify.vision.client import oracle_of, read_kept, write_kept
+from kinematify.vision.piece_question import piece_question, read_answer_file
+from kinematify.vision.screening import known_questions, right_parts
 from kinematify.vision.votes import VoterRecord, follow_parts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
+    from pathlib import Path
 
+    from kinematify.assembly.part import Assembly
     from kinematify.config import Config
     from kinematify.grouping.groups import Grouping
     from kinematify.pipeline.inference import Inference
@@ -107,19 +110,30 @@ class PieceVote:
         return f"{self.voter} named {self.answer.named} moving parts for {self.answer.tokens} tokens: {worth}."
 
 
-def ask_about_pieces(
-    oracle: ChatOracle, question: PieceQuestion, known: Callable[[], Iterable[KnownQuestion]]
-) -> PieceVote:
-    """Ask a model about an object; without an answer geometry decides alone.
+def ask_pieces(given: Assembly, vlm: str, answer: Path | None, config: Config) -> PieceVote | None:
+    """Ask a file or a model about the pieces of an object; without an answer geometry decides alone.
 
     Args:
-        oracle: The model.
-        question: About the object.
-        known: Makes questions whose answers are known.
+        given: Pieces of a mesh, or parts.
+        vlm: ``off``, ``auto`` or the address of a model.
+        answer: File of a person's or a chat's answer; it comes first.
+        config: Of the inference.
+
+    Returns:
+        What was said; None where nobody is asked.
+
+    Raises:
+        InputError: The answer cannot be read, or `vlm` is neither off, auto nor an address.
     """
-    [answer] = oracle.ask([question])
-    record = VoterRecord(right=0, asked=0) if answer.fault else voter_record(oracle, known)
-    return PieceVote(voter=oracle.name, question=question, answer=answer, record=record)
+    if answer is not None:
+        question = piece_question(given, config)
+        return PieceVote(voter=str(answer), question=question, answer=read_answer_file(question, answer))
+    oracle = oracle_of(vlm, config.vision)
+    if oracle is None:
+        return None
+    [said] = oracle.ask([question := piece_question(given, config)])
+    record = VoterRecord(right=0, asked=0) if said.fault else voter_record(oracle, lambda: known_questions(config))
+    return PieceVote(voter=oracle.name, question=question, answer=said, record=record)
 
 
 def voter_record(oracle: ChatOracle, known: Callable[[], Iterable[KnownQuestion]]) -> VoterRecord:

@@ -30,7 +30,7 @@ from kinematify.paper.cavl import (
 )
 from kinematify.paper.contact_region import ContactRegion, revolve, slide
 from kinematify.paper.joints import estimate_paper_joint, paper_candidates
-from kinematify.paper.sdf_grid import SignedDistanceCache, exact_distance
+from kinematify.paper.sdf_grid import SignedDistanceCache, exact_signed_distance
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def drawer_in_box() -> tuple[Part, Part]:
 
 def contact_of(part: Part, other: Part, band: float) -> ContactSamples:
     samples = sample_surface(part, 6000, 1)
-    distances = exact_distance(other, samples.points)
+    distances = np.abs(exact_signed_distance(other, samples.points))
     near = distances <= band
     return ContactSamples(
         points=samples.points[near],

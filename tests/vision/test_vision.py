@@ -348,6 +348,10 @@ def test_command_line_asks_a_person_or_a_server_and_falls_back_on_geometry(  # n
     assert run([*words, "--vlm", server.url]) == 0
     record = json.loads((out / "inference.json").read_text(encoding="utf-8"))["vision"]
     assert (record["questions"], record["tokens"], record["record"]) == (1, 7, {"right": 10, "asked": 10})
+    several = ["batch", str(chest), "-o", str(tmp_path / "library"), "--steps", "infer", "--vlm", server.url]
+    assert run([*several, "--workers", "1"]) == 0
+    [line] = (tmp_path / "library" / "manifest.jsonl").read_text(encoding="utf-8").splitlines()
+    assert "named 3 moving parts for 7 tokens: 10 of 10 known parts right" in json.loads(line)["asked"]
     server.scripts = [400]
     monkeypatch.setenv("KINEMATIFY_VLM_MODEL", "refuses")
     assert run([*words, "--vlm", server.url]) == 3
