@@ -8,8 +8,6 @@ import math
 import struct
 from typing import TYPE_CHECKING, Any
 
-from markupsafe import Markup
-
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.formats.html_frame import rendered
@@ -86,7 +84,7 @@ def _model(index: int, outcome: Outcome, picture: bytes, scene: str) -> dict[str
         "counts": [counts.get(severity, 0) for severity in Severity],
         "summary": summary_words(outcome),
         "blocks": [(block_of([item]), _shown(outcome, item.finding) if scene else "") for item in groups],
-        "scene": Markup(scene.replace("<", "\\u003c")),  # a name must not be able to end the script
+        "scene": scene.replace("<", "\\u003c"),  # a name must not be able to end the script
         "sliders": [joint for joint in json.loads(scene)["joints"] if joint["mimic"] is None] if scene else [],
         "picture": base64.b64encode(picture).decode("ascii"),
         "extent": struct.unpack(">II", picture[_PNG_SIZES]) if len(picture) >= _PNG_SIZES.stop else None,

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
 
 from kinematify.validation.formats.report_content import printable
 
@@ -29,6 +28,6 @@ def _templates() -> Environment:
         undefined=StrictUndefined,
         finalize=lambda value: printable(value) if type(value) is str else value,
     )
-    style = {"asset": lambda name: Markup((_ASSETS / name).read_text(encoding="utf-8"))}
-    made.globals |= {**style, "scripts": (), "beside": False}
+    asset = {"asset": lambda name: (_ASSETS / name).read_text(encoding="utf-8")}
+    made.globals |= {**asset, "scripts": (), "beside": False}
     return made

@@ -78,7 +78,8 @@ def with_causes(results: Sequence[CheckResult], robot: Robot | None) -> tuple[Ch
     def finished(result: CheckResult) -> CheckResult:
         found = tuple(final[id(item)] for item in result.findings)
         counted = any(item.severity is not Severity.NOTE for item in found)
-        return replace(result, findings=found, status=Status.FAIL if counted else result.status)
+        failed = counted and result.status is Status.PASS  # what is blocked stays so
+        return replace(result, findings=found, status=Status.FAIL if failed else result.status)
 
     return tuple(map(finished, results))
 
