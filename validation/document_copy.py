@@ -89,7 +89,7 @@ def readable_copy(request: StageRequest, errors: Iterable[Finding], name: str) -
 
 
 def resolved_copy(request: StageRequest, name: str, left_out: Iterable[Finding]) -> Path:
-    """Write a copy that engines open wherever packages lie: absolute paths, which MuJoCo is told to keep whole.
+    """Write a copy that engines open wherever packages lie: absolute paths, which MuJoCo is set to keep whole.
 
     Args:
         request: Names the document, where packages lie, and the folder.

@@ -196,22 +196,22 @@ def command(**given: Any) -> int:
             "rounds": written.rounds, "tokens": written.tokens, "answer": str(written.path)
         }  # fmt: skip
 
-    def told() -> None:
+    def print_text() -> None:
         if by:
             from kinematify.cli.provided import say_written
 
             say_written(*by)
         found.print()
 
-    return _ended(found.exit_status, answer, given["json_to"], told)
+    return _ended(found.exit_status, answer, given["json_to"], print_text)
 
 
-def _ended(status: int, answer: dict[str, Any], json_to: str | None, told: Callable[[], None]) -> int:
+def _ended(status: int, answer: dict[str, Any], json_to: str | None, print_text: Callable[[], None]) -> int:
     """Write the answer, print the words unless a machine reads stdout, and return the exit status."""
     if json_to:
         write_answer(answer, json_to)
     if json_to != "-":
-        told()
+        print_text()
         if status == ExitStatus.INTERRUPTED:
             click.echo("Interrupted. The model is complete, its validation is not.", err=True)
     return status

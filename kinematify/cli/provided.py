@@ -85,7 +85,7 @@ def model_of_parts(
     """Get the parts, infer their joints, write the folder and validate the model in it.
 
     Returns:
-        The exit status, everything as JSON values, and what the user is told.
+        The exit status, everything as JSON values, and the text for the user.
 
     Raises:
         InputError: The prompt, the key or an option cannot be used.

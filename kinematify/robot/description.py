@@ -1,4 +1,4 @@
-"""Descriptions in other formats than URDF: told apart by their content, read by a process that is bounded."""
+"""Descriptions in other formats than URDF: distinguished by their content, read by a process that is bounded."""
 
 from __future__ import annotations
 
