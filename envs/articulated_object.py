@@ -15,8 +15,7 @@ import numpy as np
 
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
-from kinematify.envs.bundled import DEFAULT, FAMILY_PREFIX, PREFIX, find_bundled, write_bundled
-from kinematify.envs.settings import SETTINGS
+from kinematify.envs.bundled import DEFAULT, FAMILY_PREFIX, PREFIX, write_bundled
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene, transformed
 from kinematify.manipulation.grasp import moved_bodies, search_grasps
@@ -30,7 +29,8 @@ from kinematify.robot.robot import forward_kinematics, rigid_groups
 from kinematify.simulation.engines import engines_that_hold
 
 if TYPE_CHECKING:
-    from kinematify.envs.settings import HandSettings
+    from collections.abc import Mapping
+
     from kinematify.geometry.scene import Scene
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import Travel
@@ -42,6 +42,7 @@ ENGINES = engines_that_hold(Hold.WELD)
 _PLINTH = 0.4  # objects whose parts swing below them stand so much higher [m]
 _WAY_SAMPLES = 33
 _LEAST_SHARE = 0.4  # of the longest way of the part: nobody pulls a lid next to its hinge
+_WIDEST = 0.1  # hold that is looked for [m]
 _LEAST_WAY = 1e-4  # a part whose hold moves by less cannot be seen to open [m]
 
 
@@ -72,6 +73,25 @@ class ArticulatedObject:
     def joints(self) -> tuple[str, ...]:
         """Their names."""
         return tuple(travel.joint for travel in self.travels)
+
+    def travel(self, joint: str) -> Travel:
+        """The way of a joint that leads; errors as for `leader`."""
+        return self.travels[self.leader(joint)]
+
+    def link_pose(
+        self, joint: str, value: float | None = None, others: Mapping[str, float] | None = None
+    ) -> FloatArray:
+        """Pose of the child link of a joint, frame of the root link, shape (4, 4).
+
+        Args:
+            joint: One that leads.
+            value: Of it [rad or m]; rest if None.
+            others: Joints that do not rest [rad or m].
+        """
+        values = {travel.joint: travel.rest for travel in self.travels} | dict(others or {})
+        if value is not None:
+            values[joint] = value
+        return forward_kinematics(self.declared, values)[self.declared.joint_by_name[joint].child]
 
     def leader(self, joint: str) -> int:
         """Index of a joint among those that lead.
@@ -165,8 +185,7 @@ def load_articulated_object(model: str | Path | None) -> ArticulatedObject:
 def _read(source: str, folder: Path) -> ArticulatedObject:
     suggested = AUTO
     if source.startswith((PREFIX, FAMILY_PREFIX)):
-        bundled = find_bundled(source)
-        urdf, suggested = write_bundled(bundled, folder / "object"), bundled.joint
+        urdf, suggested = write_bundled(source, folder / "object")
     elif Path(source).exists():
         urdf = urdf_of(Path(source)).resolve()
     else:
@@ -213,37 +232,35 @@ def loadable(urdf: Path, folder: Path) -> Path:
     return editor.write()
 
 
-def find_target(articulated_object: ArticulatedObject, joint: str, hand: HandSettings) -> Target:
-    """Find where the part of a joint is held, and the way of that point.
+@lru_cache(maxsize=32)
+def find_target(articulated_object: ArticulatedObject, joint: str) -> Target:
+    """Find once per process where the part of a joint is held, and the way of that point.
 
     The best hold for a gripper is taken, whatever its part is called; where there is none, the outermost point.
 
     Args:
         articulated_object: The object.
         joint: A joint that leads.
-        hand: How wide a hold may be.
 
     Raises:
         InputError: There is no such joint, or it moves nothing.
     """
-    leader = articulated_object.leader(joint)
-    opened = open_end(articulated_object.travels[leader])
-    link = articulated_object.declared.joint_by_name[joint].child
-    point = _hold(articulated_object, joint, opened, hand)
+    travel = articulated_object.travel(joint)
+    opened = open_end(travel)
+    point = _hold(articulated_object, joint, opened)
     way = 0.0 if point is None else _length(_path(articulated_object, joint, opened, point))
     if point is None or way < _LEAST_WAY:
         raise InputError(
             f"The joint {joint} of the model {articulated_object.source} moves nothing that could be seen to "
             f"open. Give another of its joints: {', '.join(articulated_object.joints)}."
         )
-    travel = articulated_object.travels[leader]
     return Target(
         joint=joint,
-        leader=leader,
+        leader=articulated_object.leader(joint),
         turns=travel.turns,
         closed=travel.rest,
         opened=opened,
-        link=link,
+        link=articulated_object.declared.joint_by_name[joint].child,
         point=point,
         way=way,
     )
@@ -256,31 +273,22 @@ def held_links(articulated_object: ArticulatedObject, target: Target) -> tuple[s
 
 def open_end(travel: Travel) -> float:
     """Value at the end of the range that is farther from rest; a quarter of a turn where there is no end [rad or m]."""
-    if not travel.limited:
-        return travel.rest + 0.5 * np.pi
-    return travel.upper if travel.upper - travel.rest >= travel.rest - travel.lower else travel.lower
+    return travel.far_end if travel.limited else travel.rest + 0.5 * np.pi
 
 
-def _hold(articulated_object: ArticulatedObject, joint: str, opened: float, hand: HandSettings) -> FloatArray | None:
+def _hold(articulated_object: ArticulatedObject, joint: str, opened: float) -> FloatArray | None:
     """Point in the frame of the joint's child link; None where the joint moves no geometry."""
-    grasps = search_grasps(articulated_object.scene, joint, hand.opening).grasps
+    grasps = search_grasps(articulated_object.scene, joint, _WIDEST).grasps
     least = max(_LEAST_WAY, _LEAST_SHARE * _longest_way(articulated_object, joint))
     for grasp in grasps:
         point = np.asarray(grasp.T_link_grasp[:3, 3])
         if _length(_path(articulated_object, joint, opened, point)) >= least:
             return point
-    return _outermost(articulated_object, joint, opened)
-
-
-def _outermost(articulated_object: ArticulatedObject, joint: str, opened: float) -> FloatArray | None:
-    """Corner of what a joint moves that goes farthest, of those the one that lies farthest out in that direction."""
+    # The corner that goes farthest, of those the one that lies farthest out in that direction.
     corners = _corners(articulated_object, joint)
     if not len(corners):
         return None
-    first, last = (
-        _link_pose(articulated_object, joint, value)
-        for value in (articulated_object.travels[articulated_object.leader(joint)].rest, opened)
-    )
+    first, last = (articulated_object.link_pose(joint, value) for value in (None, opened))
     moves = transformed(corners, last) - transformed(corners, first)
     lengths = np.linalg.norm(moves, axis=1)
     far = np.flatnonzero(lengths >= 0.98 * lengths.max())
@@ -291,9 +299,7 @@ def _outermost(articulated_object: ArticulatedObject, joint: str, opened: float)
 def _corners(articulated_object: ArticulatedObject, joint: str) -> FloatArray:
     """Corners of all bodies that a joint moves, frame of its child link at rest, shape (n, 3)."""
     own, carried = moved_bodies(articulated_object.scene, joint)
-    back = np.linalg.inv(
-        _link_pose(articulated_object, joint, articulated_object.travels[articulated_object.leader(joint)].rest)
-    )
+    back = np.linalg.inv(articulated_object.link_pose(joint))
     found = [
         transformed(shape, back @ articulated_object.scene.at_rest[body])
         for body in [*own, *carried]
@@ -307,22 +313,15 @@ def _longest_way(articulated_object: ArticulatedObject, joint: str) -> float:
     corners = _corners(articulated_object, joint)
     if not len(corners):
         return 0.0
-    travel = articulated_object.travels[articulated_object.leader(joint)]
-    poses = [_link_pose(articulated_object, joint, value) for value in np.linspace(travel.rest, open_end(travel), 5)]
+    travel = articulated_object.travel(joint)
+    poses = [articulated_object.link_pose(joint, value) for value in np.linspace(travel.rest, open_end(travel), 5)]
     places = np.stack([transformed(corners, T) for T in poses])
     return float(np.linalg.norm(np.diff(places, axis=0), axis=2).sum(axis=0).max())
 
 
-def _link_pose(articulated_object: ArticulatedObject, joint: str, value: float) -> FloatArray:
-    """Child link of a joint while the others rest, frame of the root link, shape (4, 4)."""
-    values = {travel.joint: travel.rest for travel in articulated_object.travels} | {joint: value}
-    declared = articulated_object.declared
-    return forward_kinematics(declared, values)[declared.joint_by_name[joint].child]
-
-
 def _path(articulated_object: ArticulatedObject, joint: str, opened: float, point: FloatArray) -> FloatArray:
-    rest = articulated_object.travels[articulated_object.leader(joint)].rest
-    poses = [_link_pose(articulated_object, joint, value) for value in np.linspace(rest, opened, _WAY_SAMPLES)]
+    rest = articulated_object.travel(joint).rest
+    poses = [articulated_object.link_pose(joint, value) for value in np.linspace(rest, opened, _WAY_SAMPLES)]
     return np.stack([T[:3, :3] @ point + T[:3, 3] for T in poses])
 
 
@@ -360,9 +359,3 @@ def shared_articulated_object(model: str | Path | None) -> ArticulatedObject:
 def _loaded(model: str | None, stamp: tuple[int, int] | None) -> ArticulatedObject:
     del stamp
     return load_articulated_object(model)
-
-
-@lru_cache(maxsize=32)
-def shared_target(articulated_object: ArticulatedObject, joint: str) -> Target:
-    """Return the joint of a `joint` keyword, its hold searched once per process."""
-    return find_target(articulated_object, joint, SETTINGS.hand)

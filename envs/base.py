@@ -10,15 +10,13 @@ import numpy as np
 from gymnasium import spaces
 from gymnasium.utils import EzPickle
 
-from kinematify.envs.articulated_object import AUTO, ENGINES, held_links, shared_articulated_object, shared_target
-from kinematify.envs.env_picture import CameraView, Piece, Renderer, ViewerWindow, has_screen, require_screen
+from kinematify.envs.articulated_object import AUTO, ENGINES, find_target, held_links, shared_articulated_object
+from kinematify.envs.env_picture import Piece, Renderer, ViewerWindow, has_screen, require_screen
 from kinematify.envs.goal import Goal
 from kinematify.envs.joint_dynamics import draw, drawing
 from kinematify.envs.model_verdict import require_valid
-from kinematify.envs.settings import SETTINGS
 from kinematify.errors import InputError
 from kinematify.geometry.scene import transformed
-from kinematify.robot.robot import forward_kinematics
 from kinematify.simulation.engines import require_engine
 from kinematify.versions import require
 
@@ -29,13 +27,23 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.envs.articulated_object import ArticulatedObject, Target
-    from kinematify.envs.goal import Progress
     from kinematify.envs.joint_dynamics import Draw
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.world import EngineWorld, ObjectState
 
 _HELD, _OTHERS, _BODY = (0.16, 0.62, 0.56), (0.62, 0.72, 0.80), (0.86, 0.80, 0.71)
 _OPTIONS = ("joint", "qpos", "open_fraction")
+_HEIGHT, _WIDTH = 360, 480  # of pictures [pixels]
+_AZIMUTH = 0.6  # of the camera, to the side of the way out, so that it is not seen end on [rad]
+_ESCAPE = 3.0  # sizes of the object: nothing that hangs on joints gets as far from its place at rest
+
+START_OPEN = (0.0, 0.05)  # a drawer is never shut to the millimetre
+"""Share of the way that is open at the start, drawn evenly."""
+_TRIES = 20  # draws until one has no interpenetration; then the part is shut
+START_DEPTH = 0.002  # contacts that are deeper count as interpenetration
+"""Deepest contact at the start, share of the object's size."""
+OPEN_REWARD, SUCCESS_REWARD = 0.5, 0.5
+"""Weights of the share of the way that is open, and of success, in the dense reward."""
 
 
 class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], EzPickle, ABC):
@@ -47,6 +55,8 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         "render_fps": 20,
     }
     _with_robot: ClassVar[bool] = False
+    _helping: ClassVar[float] = 0.0
+    """Weight of what a subclass rewards beside opening (`_helped`)."""
     world: EngineWorld
     """What runs."""
     articulated_object: ArticulatedObject
@@ -86,7 +96,6 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         require_engine(engine)
         if not 0.0 < open_fraction <= 1.0:
             raise InputError(f"open_fraction is {open_fraction}, but must be above 0 and at most 1, such as 0.9.")
-        self.settings = SETTINGS
         self.engine, self.render_mode = engine, render_mode
         self._sparse, self.terminates = reward == "sparse", terminate_on_success
         self._drawn_names = drawing(randomize)
@@ -96,10 +105,9 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         self.T_world_root = self.articulated_object.T_world_root
         self._asked_joint = joint
         self._draw: Draw | None = None
-        self._start_noise = np.array(self.settings.reset.start_open)
         self._window: ViewerWindow | None = None
         self._renderer: Renderer | None = None
-        self._progress: Progress | None = None
+        self._progress: dict[str, Any] = {}
         self._aim(self._choose(joint))
 
     def _choose(self, joint: str) -> str:
@@ -108,23 +116,15 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     def _aim(self, joint: str) -> None:
         self.target = self._targeted(joint)
-        self.goal = Goal(self.articulated_object, self.target, self.open_fraction, self.settings)
-        self.middle = self._rest_place()
-        self.escape_distance = self.settings.task.escape * self.articulated_object.scene.size
+        self.goal = Goal(self.articulated_object, self.target, self.open_fraction)
+        # The hold at rest, world frame, the object at its usual place [m], shape (3,).
+        at_rest = self.T_world_root @ self.articulated_object.link_pose(self.target.joint)
+        self.middle: FloatArray = np.asarray(at_rest[:3, :3] @ self.target.point + at_rest[:3, 3])
+        self.escape_distance = _ESCAPE * self.articulated_object.scene.size
 
     def _targeted(self, joint: str) -> Target:
         """Return the joint with the point at which its part is held."""
-        return shared_target(self.articulated_object, joint)
-
-    @property
-    def _counts(self) -> tuple[int, int]:
-        mechanism = self.articulated_object.scene.mechanism
-        return len(mechanism.joints), len(mechanism.links)
-
-    def _rest_place(self) -> FloatArray:
-        """The hold at rest, world frame, the object at its usual place [m], shape (3,)."""
-        link_pose = self.T_world_root @ _pose_at_rest(self.articulated_object, self.target)
-        return np.asarray(link_pose[:3, :3] @ self.target.point + link_pose[:3, 3])
+        return find_target(self.articulated_object, joint)
 
     # Start of an episode.
 
@@ -137,19 +137,19 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         joint = self._choose(str(given.get("joint", self._asked_joint)))
         if joint != self.target.joint:
             self._retarget(joint)
-        rng = self.np_random
-        self._draw = draw(self._drawn_names, *self._counts, self.settings.randomize, rng, robot=self._with_robot)
+        rng, mechanism = self.np_random, self.articulated_object.scene.mechanism
+        counts = len(mechanism.joints), len(mechanism.links)
+        self._draw = draw(self._drawn_names, *counts, rng, robot=self._with_robot)
         self.world.vary(self._draw)
         if "qpos" in given or "open_fraction" in given:
             self._place(self._asked_start(given))
             return
-        allowed = self.settings.reset.depth * self.articulated_object.scene.size
-        for _ in range(self.settings.reset.tries):
-            leaders = self.articulated_object.scene.mechanism.rest.copy()
-            leaders[self.target.leader] = self.target.value(float(rng.uniform(*self._start_noise)))
-            if self._place(leaders) <= allowed:
+        for _ in range(_TRIES):
+            leaders = mechanism.rest.copy()
+            leaders[self.target.leader] = self.target.value(float(rng.uniform(*START_OPEN)))
+            if self._place(leaders) <= START_DEPTH * self.articulated_object.scene.size:
                 return
-        leaders = self.articulated_object.scene.mechanism.rest.copy()
+        leaders = mechanism.rest.copy()
         leaders[self.target.leader] = self.target.closed
         self._place(leaders)
 
@@ -245,8 +245,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
             reading: State of the object.
             extra: What a subclass rewards beside opening, already weighted.
         """
-        assert self._progress is not None
-        success, opened, _ = self.goal.judge(reading, self._progress)
+        success, opened = self.goal.judge(reading, self._progress)
         done, escaped = bool(success), bool(np.abs(reading.hold - self.middle).max() > self.escape_distance)
         reward = float(self.rewarded(done, opened)) + (0.0 if self._sparse else extra)
         return reward, escaped or (done and self.terminates), self._info(is_success=done, escaped=escaped)
@@ -260,9 +259,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         """
         if self._sparse:
             return 1.0 * success
-        weights = self.settings.reward
-        share = 1.0 - weights.reach - weights.grip if self._with_robot else 1.0
-        return share * (weights.open * opened + weights.success * success)
+        return (1.0 - self._helping) * (OPEN_REWARD * opened + SUCCESS_REWARD * success)
 
     def _failed(self, last: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """End an episode in which the engine produced numbers that are none."""
@@ -271,11 +268,10 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         return last, 0.0, True, False, info
 
     def _info(self, *, is_success: bool, escaped: bool) -> dict[str, Any]:
-        assert self._progress is not None
         return {
             "is_success": is_success,
-            "open_fraction": float(self._progress.fraction),
-            "thrown": bool(self._progress.thrown),
+            "open_fraction": float(self._progress["fraction"]),
+            "thrown": bool(self._progress["thrown"]),
             "max_penetration": self.world.depth(),
             "escaped": escaped,
             "unstable": False,
@@ -299,11 +295,10 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
             return None
         poses, tint = self.world.link_poses(), self._tint
         if self.render_mode == "human":
-            self._window = self._window or ViewerWindow(self._pieces(), self._view(), self.settings.picture)
+            self._window = self._window or ViewerWindow(self._pieces(), *self._view())
             self._window.draw(poses, tint)
             return None
-        height, width = self.settings.picture.height, self.settings.picture.width
-        fine = self.camera().draw(poses, tint, (2 * height, 2 * width)).reshape(height, 2, width, 2, 3)
+        fine = self.camera().draw(poses, tint, (2 * _HEIGHT, 2 * _WIDTH)).reshape(_HEIGHT, 2, _WIDTH, 2, 3)
         return fine.mean(axis=(1, 3)).round().astype(np.uint8)
 
     def pixels(self, size: tuple[int, int]) -> NDArray[np.uint8]:
@@ -312,7 +307,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     def camera(self) -> Renderer:
         """Return what pictures are taken with; it is made when it is first asked for, in some tenths of a second."""
-        self._renderer = self._renderer or Renderer(self._pieces(), self._view(), self.settings.picture)
+        self._renderer = self._renderer or Renderer(self._pieces(), *self._view())
         return self._renderer
 
     @property
@@ -339,8 +334,8 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
             if len(shape.mesh.faces)
         ]
 
-    def _view(self) -> CameraView:
-        """All of the object, at rest and open, from the side to which it opens."""
+    def _view(self) -> tuple[FloatArray, float, float]:
+        """Centre, radius and azimuth of what is seen: all of the object, from the side to which it opens."""
         scene, T = self.articulated_object.scene, self.T_world_root
         rows = np.stack([scene.mechanism.rest] * 2)
         rows[:, self.target.leader] = self.target.closed, self.target.opened
@@ -352,10 +347,9 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         ]
         points = np.concatenate([*corners, *self._beside()])
         low, high = points.min(axis=0), points.max(axis=0)
-        center = 0.5 * (low + high)
         # The object stands in the middle of the world: where its part is held is the side to which it opens.
-        azimuth = float(np.arctan2(self.middle[1], self.middle[0])) + self.settings.picture.azimuth
-        return CameraView(center=center, radius=0.5 * float(np.linalg.norm(high - low)), azimuth=azimuth)
+        azimuth = float(np.arctan2(self.middle[1], self.middle[0])) + _AZIMUTH
+        return 0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low)), azimuth
 
     def _beside(self) -> Sequence[FloatArray]:
         """Points beside the object that are to be seen [m], shape (n, 3) each."""
@@ -381,12 +375,6 @@ def one_of(name: str, value: object, choices: Sequence[object]) -> None:
     """
     if value not in choices:
         raise InputError(f"{name} is {value!r}, but must be one of {', '.join(map(repr, choices))}.")
-
-
-def _pose_at_rest(articulated_object: ArticulatedObject, target: Target) -> FloatArray:
-    """Link that is moved, frame of the root link, shape (4, 4)."""
-    values = {travel.joint: travel.rest for travel in articulated_object.travels}
-    return forward_kinematics(articulated_object.declared, values)[target.link]
 
 
 STATE, PIXELS, BOTH = "state", "pixels", "pixels+state"

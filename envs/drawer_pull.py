@@ -10,18 +10,18 @@ import numpy as np
 from gymnasium.spaces import Box
 from gymnasium.utils import EzPickle
 
-from kinematify.envs.articulated_object import AUTO, shared_target
+from kinematify.envs.articulated_object import AUTO, find_target
 from kinematify.envs.base import OpeningEnv, made, one_of
 from kinematify.envs.env_picture import Piece
-from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
+from kinematify.envs.goal import CONTROL_STEP, OPEN_BOUND, PLACE_BOUND, SPEED_BOUND, SUBSTEPS
 from kinematify.envs.robot_plan import env_robot, robot_plan
-from kinematify.envs.worlds import arm_facts
+from kinematify.envs.worlds import Servos, arm_facts
 from kinematify.manipulation.manipulator import hand_links
 from kinematify.manipulation.robot_place import column_mesh
 from kinematify.simulation.world import ROBOT
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
     from gymnasium import spaces
@@ -38,6 +38,24 @@ TOOL, JOINT = "tool", "joint"
 ARM_BOUND = 7.0
 """Ends of observed joint values [rad or m]."""
 _ARM_COLOR, _HAND_COLOR, _COLUMN_COLOR = (0.80, 0.83, 0.88), (0.96, 0.58, 0.20), (0.55, 0.58, 0.63)
+REACH_REWARD, GRIP_REWARD = 0.15, 0.15
+"""Weights of being near the handle and of holding it, which scale the others so that the sum stays 1."""
+REACH_SCALE = 5.0  # 0.2 m away half of it is left
+"""How fast the reward for being near falls off [1/m]."""
+JOINT_STEP = 0.08  # 20 steps a second make 1.6 rad/s, which the arm's servos follow
+"""Full action of a joint [rad]."""
+TOOL_STEP, TURN_STEP = 0.02, 0.1  # 0.4 m/s
+"""Full action along [m] and about [rad] an axis."""
+FINGER_SECONDS = 0.4
+"""From open to closed with full action [s]."""
+POSTURE = 0.1  # an elbow that wanders off ends where the wrist has no way on
+"""Share of the way to the posture of the planned grasp that is taken per step, where the tool does not mind."""
+START_NOISE = 0.02
+"""Of each joint at the start, either way [rad]."""
+TOUCH_FORCE = 0.5  # less is no grip
+"""Of each finger at least for a grip [N]."""
+_LEAD = 0.12  # targets of servos stay so near to the joints that nothing is wound up [rad]
+_DAMPING = 0.05  # of the inverse kinematics
 _ELBOW = 0.5  # of the reach: so high above the shoulder an elbow gets
 
 
@@ -99,6 +117,7 @@ class DrawerPullEnv(OpeningEnv):
     """
 
     _with_robot = True
+    _helping = REACH_REWARD + GRIP_REWARD
 
     def __init__(
         self,
@@ -128,7 +147,6 @@ class DrawerPullEnv(OpeningEnv):
         super().__init__(model, **keywords)
         self._make_world()
         self._dof = len(self.robot.robot.arm_joints)
-        self._count = len(self.robot.robot.finger_joints)
         self.action_space: Space = Box(-1.0, 1.0, (7 if control == TOOL else self._dof + 1,), np.float32)
         self.observation_space: Space = self._space()
 
@@ -139,11 +157,11 @@ class DrawerPullEnv(OpeningEnv):
 
     def _targeted(self, joint: str) -> Target:
         """Plan with the robot; the hold is where the plan grips."""
-        found = shared_target(self.articulated_object, joint)
+        found = find_target(self.articulated_object, joint)
         self.robot: EnvRobot = env_robot(self.articulated_object, *self._robot_words)
         self.plan: RobotPlan = robot_plan(self.articulated_object, joint, self.robot)
         self.T_world_root = self.plan.T_world_object
-        return _held_at(found, self.plan)
+        return replace(found, point=self.plan.T_link_tool[:3, 3])
 
     def _make_world(self) -> None:
         self.world = arm_facts(self.articulated_object, self.target, self.robot, self.plan).opened(self.engine)
@@ -151,9 +169,8 @@ class DrawerPullEnv(OpeningEnv):
     def _place(self, leaders: FloatArray) -> float:
         for name, value in self.plan.first.items():
             leaders[self.articulated_object.leader(name)] = value
-        noise = self.settings.robot.start_noise
         arm = self.robot.arm
-        drawn = self.plan.reach[0] + self.np_random.uniform(-noise, noise, len(self.plan.reach[0]))
+        drawn = self.plan.reach[0] + self.np_random.uniform(-START_NOISE, START_NOISE, len(self.plan.reach[0]))
         self.wanted = np.clip(drawn, arm.lower, arm.upper)
         self._gap = 1.0
         values = self.articulated_object.scene.mechanism.all_values(leaders[None])[0]
@@ -167,31 +184,30 @@ class DrawerPullEnv(OpeningEnv):
     def _act(self, action: NDArray[np.float32]) -> None:
         self._command(np.clip(np.asarray(action, dtype=np.float64), -1.0, 1.0))
         self.world.command(self._commands())
-        self.world.step(self.settings.time.substeps)
+        self.world.step(SUBSTEPS)
 
     def _command(self, action: FloatArray) -> None:
         """Move the targets of the servos: never far from where the joints are, so that nothing winds up."""
-        values, arm = self.settings.robot, self.robot.arm
-        step = values.joint_step * action[:-1] if self.control == JOINT else self._joint_step(action[:6])
+        arm = self.robot.arm
+        step = JOINT_STEP * action[:-1] if self.control == JOINT else self._joint_step(action[:6])
         now = self.world.driven()[0][: self._dof]
-        wanted = np.clip(self.wanted + step, now - values.lead, now + values.lead)
+        wanted = np.clip(self.wanted + step, now - _LEAD, now + _LEAD)
         self.wanted = np.clip(wanted, arm.lower, arm.upper)
-        rate = self.settings.time.control_step / values.finger_seconds
+        rate = CONTROL_STEP / FINGER_SECONDS
         self._gap += float(np.clip(0.5 * (action[-1] + 1.0) - self._gap, -rate, rate))
 
     def _joint_step(self, action: FloatArray) -> FloatArray:
         """Joint motion that moves the tool along and about the world's axes, shape (dof,)."""
-        values, arm = self.settings.robot, self.robot.arm
+        arm = self.robot.arm
         turn = (self.plan.T_world_base[:3, :3] @ arm.pose(self.wanted)[:3, :3]).T
-        twist = np.concatenate([turn @ (values.tool_step * action[:3]), turn @ (values.turn_step * action[3:])])
-        jacobian, wish = arm.jacobian(self.wanted), values.posture * (self.plan.pull[0] - self.wanted)
-        return np.asarray(wish + damped_step(jacobian, twist - jacobian @ wish, values.damping))
+        twist = np.concatenate([turn @ (TOOL_STEP * action[:3]), turn @ (TURN_STEP * action[3:])])
+        jacobian, wish = arm.jacobian(self.wanted), POSTURE * (self.plan.pull[0] - self.wanted)
+        return np.asarray(wish + damped_step(jacobian, twist - jacobian @ wish, _DAMPING))
 
     def _helped(self) -> float:
         """Reward for being near and for gripping."""
-        weights = self.settings.reward
-        near = 1.0 - float(np.tanh(weights.reach_scale * self._distance))
-        return weights.reach * near + weights.grip * self._grips
+        near = 1.0 - float(np.tanh(REACH_SCALE * self._distance))
+        return REACH_REWARD * near + GRIP_REWARD * self._grips
 
     def _info(self, *, is_success: bool, escaped: bool) -> dict[str, Any]:
         return {**super()._info(is_success=is_success, escaped=escaped), "grip": self._grips}
@@ -200,22 +216,18 @@ class DrawerPullEnv(OpeningEnv):
         found = np.zeros(self.observation_space.shape or ())
         self.goal.fill_joints(reading, found)
         tool, (values, speeds), touch = self.world.tool(), self.world.driven(), self.world.touch()
-        planned = self._link_turn() @ self.plan.T_link_tool[:3, :3]
+        planned = self.world.link_poses()[self.target.link][:3, :3] @ self.plan.T_link_tool[:3, :3]
         away = reading.hold - tool[:3, 3]
         self._distance = float(np.sqrt(away @ away))
-        self._grips = bool((touch >= self.settings.robot.touch_force).all())
+        self._grips = bool((touch >= TOUCH_FORCE).all())
         found[3 * self.goal.slots :] = np.concatenate([
             values[: self._dof], speeds[: self._dof], [self._opening(values[self._dof :])],
             tool[:3, 3] - self.plan.T_world_base[:3, 3], tool[:3, 2], tool[:3, 1], away, planned[:, 2], planned[:, 1],
-            self.goal.direction(reading), touch / self.settings.robot.grip_force,
+            self.goal.direction(reading), touch / Servos.grip_force,
         ])  # fmt: skip
         box = self.observation_space
         assert isinstance(box, Box)
         return np.minimum(np.maximum(found, box.low), box.high).astype(np.float32)
-
-    def _link_turn(self) -> FloatArray:
-        """Orientation of the link that is opened, shape (3, 3)."""
-        return self.world.link_poses()[self.target.link][:3, :3]
 
     def _opening(self, fingers: FloatArray) -> float:
         """Gap between the pads, share of the widest."""
@@ -223,7 +235,7 @@ class DrawerPullEnv(OpeningEnv):
         return float(np.mean((fingers - closed) / (opened - closed)))
 
     def _space(self) -> Space:
-        slots, dof, touch = self.goal.slots, self._dof, 2.0
+        slots, dof, count = self.goal.slots, self._dof, len(self.robot.robot.finger_joints)
         bounds = [
             OPEN_BOUND,
             SPEED_BOUND,
@@ -235,11 +247,11 @@ class DrawerPullEnv(OpeningEnv):
             1.0,
             PLACE_BOUND,
             1.0,
-            touch,
+            2.0,
         ]
-        high = np.repeat(bounds, [slots, slots, slots, dof, dof, 1, 3, 6, 3, 9, self._count]).astype(np.float32)
+        high = np.repeat(bounds, [slots, slots, slots, dof, dof, 1, 3, 6, 3, 9, count]).astype(np.float32)
         low = -high
-        low[2 * slots : 3 * slots] = low[len(low) - self._count :] = 0.0
+        low[2 * slots : 3 * slots] = low[len(low) - count :] = 0.0
         return Box(low, high, dtype=np.float32)
 
     def _pieces(self) -> Sequence[Piece]:
@@ -265,24 +277,14 @@ class DrawerPullEnv(OpeningEnv):
         found = column_mesh(float(self.plan.T_world_base[2, 3]))
         if found is None:
             return ()
-        root = ROBOT + self.robot.mechanism.robot.root
+        root = ROBOT + self.robot.scene.model.root
         return (Piece(link=root, vertices=found[0], faces=found[1], color=np.array(_COLUMN_COLOR)),)
-
-    @property
-    def link_poses(self) -> Mapping[str, FloatArray]:
-        """World poses of the object's links, and of the robot's under ``robot `` and their names, shape (4, 4) each."""
-        return self.world.link_poses()
 
 
 def damped_step(jacobian: FloatArray, twist: FloatArray, damping: float) -> FloatArray:
     """Joint motion for a twist by damped least squares, shape (dof,)."""
     gram = jacobian @ jacobian.T + damping**2 * np.eye(6)
     return np.asarray(jacobian.T @ np.linalg.solve(gram, twist))
-
-
-def _held_at(target: Target, plan: RobotPlan) -> Target:
-    """Return the target with the hold of the plan."""
-    return replace(target, point=plan.T_link_tool[:3, 3])
 
 
 make_drawer_pull = partial(made, DrawerPullEnv)

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.envs.settings import PictureSettings
     from kinematify.robot.arrays import FloatArray, IntArray
 
 _FLOOR, _SKY = (0.93, 0.94, 0.95, 1.0), (0.97, 0.975, 0.985)
@@ -28,6 +27,9 @@ _FLOOR_SIZE = 4.0
 _NEAR, _FAR = 0.05, 20.0
 """What is drawn, in radii of what is seen from the camera."""
 _LIGHT = (-0.4, -1.0, 1.6)
+_DISTANCE = 2.4  # of the camera from the middle, in radii of what is seen: all of it is seen, opened too
+_ELEVATION = 0.35  # of the camera above the horizon [rad]
+_FIELD_OF_VIEW = 45.0  # vertical [deg]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -48,23 +50,17 @@ class Piece:
         return np.clip(self.color + tint.get(self.link, 0.0), 0.0, 1.0)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class CameraView:
-    """Where the camera stands."""
-
-    center: FloatArray
-    """What it looks at [m], shape (3,)."""
-    radius: float
-    """Of what is to be seen [m]."""
-    azimuth: float
-    """Where it is, seen from the centre, from x towards y [rad]."""
-
-
 class Renderer:
     """Draws pieces at poses; `close` frees what it holds."""
 
-    def __init__(self, pieces: Sequence[Piece], view: CameraView, settings: PictureSettings) -> None:
+    def __init__(self, pieces: Sequence[Piece], center: FloatArray, radius: float, azimuth: float) -> None:
         """Put the pieces into a world of their own, which is never simulated.
+
+        Args:
+            pieces: What is seen.
+            center: What the camera looks at [m], shape (3,).
+            radius: Of what is to be seen [m].
+            azimuth: Where the camera is, seen from the centre, from x towards y [rad].
 
         Raises:
             EnvironmentFault: PyBullet is not installed.
@@ -77,14 +73,13 @@ class Renderer:
         self._pieces = tuple(pieces)
         self._pybullet, self._client = pybullet, Client()
         self._bodies = [self._body(piece) for piece in self._pieces]
-        size = _FLOOR_SIZE * view.radius
+        size = _FLOOR_SIZE * radius
         floor = self._client.createVisualShape(pybullet.GEOM_BOX, halfExtents=[size, size, 1e-3], rgbaColor=_FLOOR)
         self._client.createMultiBody(0, -1, floor, basePosition=[0.0, 0.0, -1e-3])
-        distance = settings.distance * view.radius
         self._view = pybullet.computeViewMatrixFromYawPitchRoll(
-            view.center.tolist(), distance, np.degrees(view.azimuth) + 90.0, -np.degrees(settings.elevation), 0.0, 2
+            center.tolist(), _DISTANCE * radius, np.degrees(azimuth) + 90.0, -np.degrees(_ELEVATION), 0.0, 2
         )
-        self._field, self._near, self._far = settings.field_of_view, _NEAR * view.radius, _FAR * view.radius
+        self._near, self._far = _NEAR * radius, _FAR * radius
 
     def _body(self, piece: Piece) -> int:
         corners = piece.vertices[piece.faces]  # one per face: shared ones would round off the edges
@@ -118,7 +113,7 @@ class Renderer:
             width,
             height,
             self._view,
-            self._pybullet.computeProjectionMatrixFOV(self._field, width / height, self._near, self._far),
+            self._pybullet.computeProjectionMatrixFOV(_FIELD_OF_VIEW, width / height, self._near, self._far),
             lightDirection=_LIGHT,
             renderer=self._pybullet.ER_TINY_RENDERER,
         )
@@ -150,8 +145,8 @@ def require_screen() -> None:
 class ViewerWindow:
     """MuJoCo's viewer, for ``render_mode="human"``: the pieces are bodies that are moved by hand, never simulated."""
 
-    def __init__(self, pieces: Sequence[Piece], view: CameraView, settings: PictureSettings) -> None:
-        """Open a window.
+    def __init__(self, pieces: Sequence[Piece], center: FloatArray, radius: float, azimuth: float) -> None:
+        """Open a window; arguments as for `Renderer`.
 
         Raises:
             EnvironmentFault: There is no screen.
@@ -159,22 +154,22 @@ class ViewerWindow:
         require_screen()
         self._pieces = tuple(pieces)
         self._links = tuple(dict.fromkeys(piece.link for piece in pieces))
-        self._model = self._spec(view, settings).compile()
+        self._model = self._spec(center, radius).compile()
         self._data = mujoco.MjData(self._model)
         self._mocap = [int(self._model.body(f"link {k}").mocapid[0]) for k in range(len(self._links))]
         self._geoms = [int(self._model.geom(f"piece {k}").id) for k in range(len(self._pieces))]
         viewer = importlib.import_module("mujoco.viewer")
         self._viewer: Any = viewer.launch_passive(self._model, self._data, show_left_ui=False, show_right_ui=False)
         camera = self._viewer.cam
-        camera.type, camera.lookat[:] = mujoco.mjtCamera.mjCAMERA_FREE, view.center
-        camera.distance = settings.distance * view.radius
-        camera.azimuth, camera.elevation = np.degrees(view.azimuth) + 180.0, -np.degrees(settings.elevation)
+        camera.type, camera.lookat[:] = mujoco.mjtCamera.mjCAMERA_FREE, center
+        camera.distance = _DISTANCE * radius
+        camera.azimuth, camera.elevation = np.degrees(azimuth) + 180.0, -np.degrees(_ELEVATION)
 
-    def _spec(self, view: CameraView, settings: PictureSettings) -> mujoco.MjSpec:
+    def _spec(self, center: FloatArray, radius: float) -> mujoco.MjSpec:
         spec = mujoco.MjSpec()
-        spec.visual.global_.fovy = settings.field_of_view
+        spec.visual.global_.fovy = _FIELD_OF_VIEW
         spec.visual.headlight.ambient, spec.visual.headlight.diffuse = [0.35] * 3, [0.45] * 3
-        spec.stat.center, spec.stat.extent = view.center, 2.0 * view.radius
+        spec.stat.center, spec.stat.extent = center, 2.0 * radius
         sky = spec.add_texture(name="sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, width=64, height=384)
         sky.builtin, sky.rgb1, sky.rgb2 = mujoco.mjtBuiltin.mjBUILTIN_FLAT, _SKY, _SKY
         spec.worldbody.add_light(pos=[1.0, -2.0, 4.0], dir=[-0.2, 0.4, -1.0], diffuse=[0.5] * 3, castshadow=True,

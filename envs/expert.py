@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.envs.drawer_pull import JOINT, damped_step
+from kinematify.envs.drawer_pull import JOINT, JOINT_STEP, TOOL_STEP, TURN_STEP, damped_step
+from kinematify.envs.goal import CONTROL_STEP
 from kinematify.envs.open_part import POSITION
+from kinematify.envs.worlds import HAND_SPEED
 from kinematify.manipulation.execute import eased
-from kinematify.robot.robot import forward_kinematics
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -38,13 +39,11 @@ class HandExpert:
     def __init__(self, env: OpenPartEnv) -> None:
         """Take what the observation does not tell: control and goal."""
         self._control, self._goal = env.control, min(env.open_fraction + _AHEAD, 0.995)
-        self._slots, self._stride = env.goal.slots, env.settings.hand.speed
+        self._slots = env.goal.slots
         self._push = 0.0
         facts, target = env.facts, env.target
         # Change of speed by a full action [ways/s]: heavy lids have weak hands, light ones strong hands.
-        change = (
-            facts.hand.force * target.path_ratio / facts.inertia * env.settings.time.control_step / abs(target.range)
-        )
+        change = facts.hand.force * target.path_ratio / facts.inertia * CONTROL_STEP / abs(target.range)
         self._gain, self._sum = min(_GAIN / change, 1.0), min(_SUM / change, 0.5)
 
     def begin(self) -> None:
@@ -57,7 +56,7 @@ class HandExpert:
         direction = observation[3 * self._slots + 6 : 3 * self._slots + 9]
         wanted = float(np.clip((self._goal - share) / _SETTLE, -_SPEED, _SPEED))
         if self._control == POSITION:
-            return np.asarray(np.clip(wanted / self._stride * direction, -1.0, 1.0), dtype=np.float32)
+            return np.asarray(np.clip(wanted / HAND_SPEED * direction, -1.0, 1.0), dtype=np.float32)
         # The force that keeps the speed is found on the way; weight, friction and damping are not known.
         self._push = float(np.clip(self._push + self._sum * (wanted - speed), -1.0, 1.0))
         action = (self._push + self._gain * (wanted - speed)) * direction
@@ -77,9 +76,8 @@ class ArmExpert:
 
     def begin(self) -> None:
         """Lay out the way of an episode that has just begun."""
-        env = self._env
         reach, pull = self._reach(), self._pull()
-        closing = round(_GRIP_SECONDS / env.settings.time.control_step)
+        closing = round(_GRIP_SECONDS / CONTROL_STEP)
         settling = np.tile(pull[-1], (1, 1))
         self._way = np.concatenate([reach, np.tile(reach[-1], (closing, 1)), pull, settling])
         self._grips_from, self._step, self._beyond = len(reach), 0, 0.0
@@ -93,25 +91,25 @@ class ArmExpert:
         row = self._way[min(self._step, len(self._way) - 1)]
         gripper = -1.0 if self._step >= self._grips_from else 1.0
         self._step += 1
-        values, wanted = env.settings.robot, env.wanted
+        wanted = env.wanted
         if env.control == JOINT:
-            motion = (row - wanted) / values.joint_step
+            motion = (row - wanted) / JOINT_STEP
         else:
             turn = env.plan.T_world_base[:3, :3] @ env.robot.arm.pose(wanted)[:3, :3]
             twist = env.robot.arm.error(wanted, env.robot.arm.pose(row))
-            motion = np.concatenate([turn @ twist[:3] / values.tool_step, turn @ twist[3:] / values.turn_step])
+            motion = np.concatenate([turn @ twist[:3] / TOOL_STEP, turn @ twist[3:] / TURN_STEP])
         return np.asarray(np.clip(np.append(motion, gripper), -1.0, 1.0), dtype=np.float32)
 
     def _reach(self) -> FloatArray:
         """Arm joints from where they are to the hold, rows of one step each."""
         env, plan = self._env, self._env.plan
-        now, planned = env.link_poses[env.target.link], plan.T_world_object @ self._link_at(env.target.closed)
+        now, planned = env.world.link_poses()[env.target.link], plan.T_world_object @ self._link_at(env.target.closed)
         shift = now @ np.linalg.inv(planned)
         rows = [env.wanted]
         for row in plan.reach[1:]:
             target = shift @ plan.T_world_base @ env.robot.arm.pose(row)
             rows.append(self._solved(target, row))
-        return _paced(np.array(rows), _REACH_SPEED * env.settings.robot.joint_step)
+        return _paced(np.array(rows), _REACH_SPEED * JOINT_STEP)
 
     def _pull(self) -> FloatArray:
         """Arm joints from the hold to the open end."""
@@ -125,13 +123,13 @@ class ArmExpert:
         rows = [self._posture(shares[0], guesses[0])]
         for share, motion in zip(shares[1:].tolist(), np.diff(guesses, axis=0), strict=True):
             rows.append(self._posture(share, rows[-1] + motion))  # from the plan alone elbows would jump to and fro
-        least = (end - start) / _PULL_ROWS / (_PULL_SPEED * env.settings.time.control_step)
-        return _paced(np.array(rows), _REACH_SPEED * env.settings.robot.joint_step, least)
+        least = (end - start) / _PULL_ROWS / (_PULL_SPEED * CONTROL_STEP)
+        return _paced(np.array(rows), _REACH_SPEED * JOINT_STEP, least)
 
     def _posture(self, share: float, guess: FloatArray) -> FloatArray:
         """Arm joints where a share of the way is open, near a guess."""
         env = self._env
-        root = env.link_poses[env.articulated_object.declared.root]
+        root = env.world.link_poses()[env.articulated_object.declared.root]
         return self._solved(root @ self._link_at(env.target.value(share)) @ env.plan.T_link_tool, guess)
 
     def _solved(self, target: FloatArray, guess: FloatArray) -> FloatArray:
@@ -152,10 +150,7 @@ class ArmExpert:
 
     def _link_at(self, value: float) -> FloatArray:
         """Link that is opened, frame of the object's root, shape (4, 4)."""
-        env = self._env
-        leaders = {travel.joint: travel.rest for travel in env.articulated_object.travels} | env.plan.first
-        declared = env.articulated_object.declared
-        return forward_kinematics(declared, {**leaders, env.target.joint: value})[env.target.link]
+        return self._env.articulated_object.link_pose(self._env.target.joint, value, self._env.plan.first)
 
 
 def _paced(rows: FloatArray, step: float, least: float = 1e-9) -> FloatArray:

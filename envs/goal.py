@@ -5,17 +5,30 @@ All arrays may have leading axes of environments.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject, Target
-    from kinematify.envs.settings import EnvSettings
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.world import ObjectState
 
+
+STEP = 0.002  # where the servos of `validate` and grips by friction are stable
+"""Of the engine [s]."""
+SUBSTEPS = 25  # 20 actions a second, as in most benchmarks of manipulation
+"""Steps of the engine per action."""
+CONTROL_STEP = SUBSTEPS * STEP
+"""Time between actions [s]."""
+SLOTS = 16  # furniture has up to 12
+"""Joints in an observation; models with more get the next multiple."""
+FAST = 1.5  # a person pulls with 0.7, what is thrown or let slam has 2 and more
+"""Faster is thrown [ways/s]."""
+CALM = 0.1  # hardly seen to move
+"""Slower is at rest [ways/s]."""
+FORGET = 0.1  # what was slammed must come back by this share of the way before it counts again
+"""Share of the way by which a thrown part must come back."""
 
 OPEN_BOUND, SPEED_BOUND, PLACE_BOUND = 2.0, 20.0, 10.0
 """Ends of observed shares [1], speeds [1/s] and places [m]; what goes beyond is clipped."""
@@ -23,42 +36,26 @@ OPEN_BOUND, SPEED_BOUND, PLACE_BOUND = 2.0, 20.0, 10.0
 _SHORT = 1e-9  # a hold that is nearer to an axis moves nowhere [m]
 
 
-@dataclass(slots=True, eq=False)
-class Progress:
-    """State that the judgement remembers from step to step."""
-
-    fraction: Any
-    """Share of the way that is open: a float for one environment, else shape (n,); so are the others."""
-    speed: Any
-    """[ways/s]."""
-    thrown: Any
-    """The part went fast where it counts as open, and has not come back since."""
-
-
 class Goal:
     """The joint that is opened, as the share of a way."""
 
-    def __init__(
-        self, articulated_object: ArticulatedObject, target: Target, open_fraction: float, settings: EnvSettings
-    ) -> None:
+    def __init__(self, articulated_object: ArticulatedObject, target: Target, open_fraction: float) -> None:
         """Keep what the formulas need.
 
         Args:
             articulated_object: The object.
             target: Its joint.
             open_fraction: Share of the way that counts as open.
-            settings: Of task and reward.
         """
-        self.target, self.open_fraction, self.task, self.reward = target, open_fraction, settings.task, settings.reward
+        self.target, self.open_fraction = target, open_fraction
         travels = articulated_object.travels
-        self.slots = settings.object.slots * -(-len(travels) // settings.object.slots)
+        self.slots = SLOTS * -(-len(travels) // SLOTS)
         self._order = np.array([target.leader, *(k for k in range(len(travels)) if k != target.leader)], dtype=np.int64)
         lower = np.array([travels[k].lower for k in self._order])
         scale = np.array([max(travels[k].range, 1e-9) for k in self._order])
         lower[0], scale[0] = target.closed, target.range
         self._lower, self._per_range = lower, 1.0 / scale
         self._sign = float(np.sign(target.range))
-        self._step = settings.time.control_step
         self._count = len(travels)
 
     def fraction(self, reading: ObjectState) -> Any:
@@ -88,32 +85,37 @@ class Goal:
         out[..., slots : slots + count] = reading.speeds[..., self._order] * self._per_range
         out[..., 2 * slots : 2 * slots + count] = 1.0
 
-    def begin(self, reading: ObjectState) -> Progress:
-        """Start of an episode."""
-        fraction, speed = self.fraction(reading), self.speed(reading)
-        thrown = np.zeros(np.shape(fraction), dtype=bool) if np.ndim(fraction) else False
-        return Progress(fraction=fraction, speed=speed, thrown=thrown)
+    def begin(self, reading: ObjectState) -> dict[str, Any]:
+        """Return what is remembered from step to step, at the start of an episode.
 
-    def judge(self, reading: ObjectState, progress: Progress) -> tuple[Any, Any, Any]:
+        Returns:
+            ``fraction``, the share of the way that is open; ``speed`` [ways/s]; and ``thrown``: the part went fast
+            where it counts as open, and has not come back since. Each is a number for one environment, else has shape
+            (n,).
+        """
+        fraction = self.fraction(reading)
+        thrown = np.zeros(np.shape(fraction), dtype=bool) if np.ndim(fraction) else False
+        return {"fraction": fraction, "speed": self.speed(reading), "thrown": thrown}
+
+    def judge(self, reading: ObjectState, progress: dict[str, Any]) -> tuple[Any, Any]:
         """Update `progress`.
 
         Returns:
-            Success; how well the part stands open, in [0, 1]; how fast it was at most since last time [ways/s].
+            Success; how well the part stands open, in [0, 1].
         """
-        task = self.task
         fraction, speed = self.fraction(reading), self.speed(reading)
         least, most = (min, max) if isinstance(fraction, float) else (np.minimum, np.maximum)
-        between = abs(fraction - progress.fraction) / self._step
-        fastest = most(most(abs(speed), abs(progress.speed)), between)
+        between = abs(fraction - progress["fraction"]) / CONTROL_STEP
+        fastest = most(most(abs(speed), abs(progress["speed"])), between)
         opened = fraction >= self.open_fraction
-        kept = progress.thrown & (fraction >= self.open_fraction - task.forget)
-        progress.thrown = kept | (opened & (fastest > task.fast))
-        fair = progress.thrown ^ True
-        success = opened & (fastest <= task.calm) & fair
-        progress.fraction, progress.speed = fraction, speed
+        kept = progress["thrown"] & (fraction >= self.open_fraction - FORGET)
+        thrown = kept | (opened & (fastest > FAST))
+        fair = thrown ^ True
+        success = opened & (fastest <= CALM) & fair
+        progress.update(fraction=fraction, speed=speed, thrown=thrown)
         open_share = least(most(fraction / self.open_fraction, 0.0), 1.0)
-        slow = least(most(2.0 - fastest / task.fast, 0.0), 1.0)
-        return success, open_share * slow * fair, fastest
+        slow = least(most(2.0 - fastest / FAST, 0.0), 1.0)
+        return success, open_share * slow * fair
 
 
 def _component(values: FloatArray, index: int) -> Any:

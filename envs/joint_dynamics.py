@@ -11,29 +11,40 @@ from kinematify.errors import InputError
 from kinematify.simulation.world import Variation
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection
 
     from kinematify.envs.articulated_object import ArticulatedObject, Target
-    from kinematify.envs.settings import HandSettings, ObjectSettings, RandomizeSettings
     from kinematify.robot.arrays import FloatArray
 
 RANDOMIZED = ("damping", "friction", "mass", "pose", "color")
 """What `randomize` may name."""
+DAMPING_RATE = 1.5  # a drawer that is let go comes to rest within a second or two
+"""Damping of a joint without one, per inertia that it moves [1/s]."""
+FRICTION_ACCELERATION = 0.3  # gives a drawer of 5 kg 1.5 N, a light kitchen slide
+"""Friction of a joint without one, per inertia that it moves [m/s^2 or rad/s^2]."""
+HOLD = 1.3  # what would start to move by its own weight stands still, as it was given
+"""Friction of a joint without one, over what gravity pulls it away from rest with."""
 
+SECONDS = 1.5  # people open doors and drawers in one to two seconds
+"""Time in which the hand can open the part from rest to rest [s]."""
+FORCE_MARGIN = 3.0  # what is needed stays in the middle of the range of actions
+"""Full force over what that needs."""
+_LEAST_FORCE = 0.05  # the lightest lids and clock hands need less
+"""Full force at least [N]."""
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class JointDynamics:
-    """In the order of `Mechanism.joints`."""
-
-    damping: FloatArray
-    """[N m s/rad or N s/m], shape (J,)."""
-    friction: FloatArray
-    """[N m or N], shape (J,)."""
+FACTORS = (0.5, 2.0)
+"""Of damping in joints, and of friction in joints and contacts, drawn evenly in its logarithm."""
+MASSES = (0.8, 1.25)  # what lies in a drawer
+"""Factor of the masses of what moves, drawn evenly in its logarithm."""
+PLACE, ROBOT_PLACE = (0.05, 0.35), (0.02, 0.08)  # 20 deg; what is out of an arm's reach teaches nothing
+"""Of the object along x and y [m] and about z [rad], either way; the same in front of a robot."""
+COLOR = 0.25
+"""Of each channel, either way."""
 
 
 def joint_dynamics(
-    articulated_object: ArticulatedObject, inertia: FloatArray, gravity: FloatArray, settings: ObjectSettings
-) -> JointDynamics:
+    articulated_object: ArticulatedObject, inertia: FloatArray, gravity: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Return the declared dynamics; where the file has none, values in proportion to what the joint moves.
 
     Friction then also holds what its own weight would move from where it was given into its range.
@@ -42,10 +53,12 @@ def joint_dynamics(
         articulated_object: The object.
         inertia: That each joint moves at rest [kg m^2 or kg], shape (J,).
         gravity: Torque or force that holds each joint still at rest [N m or N], shape (J,).
-        settings: Proportions.
+
+    Returns:
+        Damping [N m s/rad or N s/m] and friction [N m or N], shape (J,) each, in the order of `Mechanism.joints`.
     """
     mechanism, declared = articulated_object.scene.mechanism, articulated_object.declared.joint_by_name
-    damping, friction = settings.damping_rate * inertia, settings.friction_acceleration * inertia
+    damping, friction = DAMPING_RATE * inertia, FRICTION_ACCELERATION * inertia
     travels = {travel.joint: travel for travel in articulated_object.travels}
     for k, name in enumerate(mechanism.joints):
         joint, travel, torque = declared[name], travels.get(name), float(gravity[k])
@@ -54,31 +67,28 @@ def joint_dynamics(
             travel.lower < travel.rest - slack if torque > 0.0 else travel.upper > travel.rest + slack
         )
         if moves:
-            friction[k] = max(friction[k], settings.hold * abs(torque))
+            friction[k] = max(friction[k], HOLD * abs(torque))
         if joint.damping is not None and joint.damping > 0.0:
             damping[k] = joint.damping
         if joint.friction is not None and joint.friction > 0.0:
             friction[k] = joint.friction
-    return JointDynamics(damping=damping, friction=friction)
+    return damping, friction
 
 
-def full_force(
-    target: Target, hand: HandSettings, *, inertia: FloatArray, gravity: FloatArray, damping: float, friction: float
-) -> float:
-    """Force of a hand that opens the part from rest to rest in `hand.seconds`, with a margin [N].
+def full_force(target: Target, *, inertia: FloatArray, gravity: FloatArray, damping: float, friction: float) -> float:
+    """Force of a hand that opens the part from rest to rest in `SECONDS`, with a margin [N].
 
     Args:
         target: The joint and its way.
-        hand: Time and margin.
         inertia: Along the way [kg m^2 or kg], shape (n,).
         gravity: Along the way [N m or N], shape (n,).
         damping: Of the joint.
         friction: Of the joint.
     """
-    acceleration = 4.0 * abs(target.range) / hand.seconds**2
-    speed = 1.5 * abs(target.range) / hand.seconds
+    acceleration = 4.0 * abs(target.range) / SECONDS**2
+    speed = 1.5 * abs(target.range) / SECONDS
     needed = np.max(np.abs(gravity) + inertia * acceleration) + damping * speed + friction
-    return max(hand.least_force, hand.margin * float(needed) / target.path_ratio)
+    return max(_LEAST_FORCE, FORCE_MARGIN * float(needed) / target.path_ratio)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -107,34 +117,30 @@ def drawing(randomize: bool | str | Collection[str]) -> frozenset[str]:
     return names
 
 
-def draw(
-    names: frozenset[str], joints: int, links: int, ranges: RandomizeSettings, rng: np.random.Generator, *, robot: bool
-) -> Draw:
+def draw(names: frozenset[str], joints: int, links: int, rng: np.random.Generator, *, robot: bool) -> Draw:
     """Draw an object; always the same number of draws, so that one name does not change what others give.
 
     Args:
         names: What is randomised (`drawing`).
         joints: J.
         links: L.
-        ranges: From where to where.
         rng: Source of the draws.
         robot: The object stands in front of a robot, and moves less.
     """
-    position, yaw = (ranges.robot_position, ranges.robot_yaw) if robot else (ranges.position, ranges.yaw)
-    damping, friction = _factors(rng, ranges.damping, joints), _factors(rng, ranges.friction, joints)
-    surface, mass = float(_factors(rng, ranges.friction, 1)[0]), _factors(rng, ranges.mass, links)
+    position, yaw = ROBOT_PLACE if robot else PLACE
+    damping, friction = _factors(rng, FACTORS, joints), _factors(rng, FACTORS, joints)
+    surface, mass = float(_factors(rng, FACTORS, 1)[0]), _factors(rng, MASSES, links)
     x, y, turn = rng.uniform(-1.0, 1.0, 3) * [position, position, yaw]
-    color = rng.uniform(-ranges.color, ranges.color, (links, 3))
+    color = rng.uniform(-COLOR, COLOR, (links, 3))
     pose = np.eye(4)
     pose[:2, :2], pose[:2, 3] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]], (x, y)
-    given: Mapping[str, bool] = {name: name in names for name in RANDOMIZED}
     return Draw(
-        damping=damping if given["damping"] else np.ones(joints),
-        friction=friction if given["friction"] else np.ones(joints),
-        surface=surface if given["friction"] else 1.0,
-        mass=mass if given["mass"] else np.ones(links),
-        T_root=pose if given["pose"] else np.eye(4),
-        color=color if given["color"] else np.zeros((links, 3)),
+        damping=damping if "damping" in names else np.ones(joints),
+        friction=friction if "friction" in names else np.ones(joints),
+        surface=surface if "friction" in names else 1.0,
+        mass=mass if "mass" in names else np.ones(links),
+        T_root=pose if "pose" in names else np.eye(4),
+        color=color if "color" in names else np.zeros((links, 3)),
     )
 
 

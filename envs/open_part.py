@@ -10,8 +10,8 @@ from gymnasium.spaces import Box
 from gymnasium.utils import EzPickle
 
 from kinematify.envs.base import OpeningEnv, made, one_of
-from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
-from kinematify.envs.worlds import hand_facts
+from kinematify.envs.goal import CONTROL_STEP, OPEN_BOUND, PLACE_BOUND, SPEED_BOUND, SUBSTEPS
+from kinematify.envs.worlds import HAND_SPEED, hand_facts
 from kinematify.errors import InputError
 
 if TYPE_CHECKING:
@@ -142,8 +142,8 @@ class OpenPartEnv(OpeningEnv):
         self.facts: HandFacts = hand_facts(self.articulated_object, self.target, spring=self.control == POSITION)
         self.world = self.facts.opened(self.engine)
         self._command = self._hold = np.zeros(3)
-        self._stride = self.facts.speed * self.settings.time.control_step
-        self._lead, self._substeps = self.facts.hand.force / self.facts.hand.stiffness, self.settings.time.substeps
+        self._stride = HAND_SPEED * self.target.way * CONTROL_STEP
+        self._lead = self.facts.hand.force / self.facts.hand.stiffness
 
     def _place(self, leaders: FloatArray) -> float:
         """The hand's spring is slack."""
@@ -176,7 +176,7 @@ class OpenPartEnv(OpeningEnv):
         clipped = np.minimum(np.maximum(np.asarray(action, dtype=np.float64), -1.0), 1.0)
         self._command = self.commanded(self._command, self._hold, clipped)
         self.world.pull(self._command)
-        self.world.step(self._substeps)
+        self.world.step(SUBSTEPS)
 
     def _observe(self, reading: ObjectState) -> NDArray[np.float32]:
         self._hold = reading.hold

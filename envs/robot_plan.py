@@ -16,7 +16,6 @@ import numpy as np
 from kinematify.config.validation import load_settings
 from kinematify.envs.articulated_object import loadable
 from kinematify.envs.model_verdict import content_digest, keep, kept, tell
-from kinematify.envs.settings import SETTINGS
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene
 from kinematify.manipulation.kinematics import Arm
@@ -29,7 +28,8 @@ if TYPE_CHECKING:
     from kinematify.geometry.scene import Scene
     from kinematify.manipulation.manipulator import TaskRobot
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.mechanism import LeaderMechanism
+
+_PLAN_SECONDS = 20.0  # of processor time for finding a place of the robot: it is kept for the next time
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -42,11 +42,6 @@ class EnvRobot:
     """What engines load (`loadable`)."""
     scene: Scene
     """Of that file."""
-
-    @property
-    def mechanism(self) -> LeaderMechanism:
-        """Its tree."""
-        return self.scene.mechanism
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -115,8 +110,8 @@ def robot_plan(articulated_object: ArticulatedObject, joint: str, robot: EnvRobo
 
 def _planned(articulated_object: ArticulatedObject, joint: str, robot: EnvRobot) -> dict[str, object]:
     settings = load_settings().task
-    seconds = {"seconds": SETTINGS.robot.plan_seconds}
-    settings = settings.model_copy(update={"plan": settings.plan.model_copy(update=seconds)})
+    plan_settings = settings.plan.model_copy(update={"seconds": _PLAN_SECONDS})
+    settings = settings.model_copy(update={"plan": plan_settings})
     plan = plan_pull(robot.arm, articulated_object.scene, joint, settings)
     if plan.place is None or plan.reach is None or plan.pull is None or plan.opened is None:
         raise InputError(

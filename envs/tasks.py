@@ -19,17 +19,6 @@ reaches, grips and pulls with half of its speed."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Task:
-    """One joint of a family of objects, and what is to be done with it."""
-
-    family: str
-    """Of `kinematify generate --list`."""
-    joint: str
-    closing: bool = False
-    """From open to closed, in place of the other way."""
-
-
-@dataclass(frozen=True, kw_only=True)
 class Split:
     """Objects and seeds that episodes are drawn from."""
 
@@ -43,29 +32,30 @@ TRAIN = Split(objects=range(8), seeds=range(100_000))
 TEST = Split(objects=range(1000, 1004), seeds=range(1_000_000, 1_000_100))
 """Nothing of it is in `TRAIN`."""
 
-TASKS: dict[str, Task] = {
-    "open-drawer": Task(family="cabinet", joint="drawer_1_joint"),
-    "open-desk-drawer": Task(family="table", joint="drawer_1_joint"),
-    "open-fridge": Task(family="fridge", joint="door_1_joint"),
-    "open-oven": Task(family="oven", joint="door_joint"),
-    "open-microwave": Task(family="microwave", joint="door_joint"),
-    "open-dishwasher": Task(family="dishwasher", joint="door_joint"),
-    "open-washing-machine": Task(family="washing_machine", joint="door_joint"),
-    "open-detergent-drawer": Task(family="washing_machine", joint="drawer_joint"),
-    "open-safe": Task(family="safe", joint="door_joint"),
-    "open-window": Task(family="window", joint="sash_1_joint"),
-    "open-door": Task(family="door", joint="leaf_1_joint"),
-    "open-suitcase": Task(family="suitcase", joint="front_joint"),
-    "close-drawer": Task(family="cabinet", joint="drawer_1_joint", closing=True),
-    "close-microwave": Task(family="microwave", joint="door_joint", closing=True),
-    "lift-coffee-lid": Task(family="coffee_machine", joint="lid_joint"),
-    "lift-toilet-lid": Task(family="toilet", joint="lid_joint"),
-    "lift-laptop-screen": Task(family="laptop", joint="screen_joint"),
-    "turn-oven-knob": Task(family="oven", joint="knob_1_joint"),
-    "press-microwave-button": Task(family="microwave", joint="button_1_joint"),
-    "push-toaster-lever": Task(family="toaster", joint="lever_1_joint"),
+TASKS = {
+    "open-drawer": ("cabinet", "drawer_1_joint"),
+    "open-desk-drawer": ("table", "drawer_1_joint"),
+    "open-fridge": ("fridge", "door_1_joint"),
+    "open-oven": ("oven", "door_joint"),
+    "open-microwave": ("microwave", "door_joint"),
+    "open-dishwasher": ("dishwasher", "door_joint"),
+    "open-washing-machine": ("washing_machine", "door_joint"),
+    "open-detergent-drawer": ("washing_machine", "drawer_joint"),
+    "open-safe": ("safe", "door_joint"),
+    "open-window": ("window", "sash_1_joint"),
+    "open-door": ("door", "leaf_1_joint"),
+    "open-suitcase": ("suitcase", "front_joint"),
+    "close-drawer": ("cabinet", "drawer_1_joint"),
+    "close-microwave": ("microwave", "door_joint"),
+    "lift-coffee-lid": ("coffee_machine", "lid_joint"),
+    "lift-toilet-lid": ("toilet", "lid_joint"),
+    "lift-laptop-screen": ("laptop", "screen_joint"),
+    "turn-oven-knob": ("oven", "knob_1_joint"),
+    "press-microwave-button": ("microwave", "button_1_joint"),
+    "push-toaster-lever": ("toaster", "lever_1_joint"),
 }
-"""Keyed by name; ``kinematify/NAME-v0`` is the id of the environment."""
+"""Family of `kinematify generate --list` and its joint; keyed by name, ``kinematify/NAME-v0`` is the id of the
+environment. What begins with ``close`` goes from open to closed, all others the other way."""
 
 
 def make_task(task: str, object_seed: int = TRAIN.objects[0], **keywords: Any) -> gymnasium.Env[Any, Any]:
@@ -78,6 +68,6 @@ def make_task(task: str, object_seed: int = TRAIN.objects[0], **keywords: Any) -
     """
     from kinematify.envs.open_part import make_open_part  # noqa: PLC0415  # ids are registered without an engine
 
-    asked = TASKS[task]
-    model = f"procedural:{asked.family}:{object_seed}"
-    return make_open_part(model=model, joint=asked.joint, closing=asked.closing, **{"randomize": True, **keywords})
+    family, joint = TASKS[task]
+    model, closing = f"procedural:{family}:{object_seed}", task.startswith("close")
+    return make_open_part(model=model, joint=joint, closing=closing, **{"randomize": True, **keywords})

@@ -12,6 +12,7 @@ from gymnasium.vector.utils import batch_space
 from mujoco.rollout import Rollout
 
 from kinematify.envs.base import STATE
+from kinematify.envs.goal import SUBSTEPS
 from kinematify.envs.open_part import POSITION, OpenPartEnv, hand_space, observe_hand
 from kinematify.envs.tasks import EPISODE_STEPS
 from kinematify.errors import InputError
@@ -19,7 +20,6 @@ from kinematify.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.envs.goal import Progress
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.mujoco_world import MujocoWorld
     from kinematify.simulation.world import ObjectState
@@ -93,11 +93,11 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
         self._models, model = [world.model for world in self._worlds], self._worlds[0].model
         self._workers = [mujoco.MjData(model) for _ in range(self._threads)]
         self._rollout = Rollout(nthread=self._threads if self._threads > 1 else 0)
-        size, steps = mujoco.mj_stateSize(model, _STATE), self._envs[0].settings.time.substeps
+        size = mujoco.mj_stateSize(model, _STATE)
         self._state, self._sensors = np.zeros((self.num_envs, size)), np.zeros((self.num_envs, model.nsensordata))
-        self._control = np.zeros((self.num_envs, steps, model.nu))
-        self._states = np.zeros((self.num_envs, steps, size))
-        self._outputs = np.zeros((self.num_envs, steps, model.nsensordata))
+        self._control = np.zeros((self.num_envs, SUBSTEPS, model.nu))
+        self._states = np.zeros((self.num_envs, SUBSTEPS, size))
+        self._outputs = np.zeros((self.num_envs, SUBSTEPS, model.nsensordata))
         self._warmstart = np.zeros((self.num_envs, model.nv))
         self._nq, self._nv = model.nq, model.nv
         self._elapsed = np.zeros(self.num_envs, dtype=np.int64)
@@ -127,8 +127,9 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
         for k in over:
             self._begin(int(k), None, None)
         reading = self._reading()
-        success, opened, _ = self.goal.judge(reading, self._progress)
-        self._forget(over, reading)
+        success, opened = self.goal.judge(reading, self._progress)
+        for name, fresh in self.goal.begin(reading).items():  # episodes that began have no past
+            self._progress[name][over] = fresh[over]
         escaped = np.abs(reading.hold - self._middle).max(axis=-1) > self._envs[0].escape_distance
         kept = np.ones(self.num_envs, dtype=bool)
         kept[over] = False
@@ -167,12 +168,6 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
         qvel = self._state[:, start + self._nq : start + self._nq + self._nv]
         return self._worlds[0].split(qpos, qvel, self._sensors)
 
-    def _forget(self, over: Any, reading: ObjectState) -> None:
-        """Episodes that began have no past."""
-        fresh: Progress = self.goal.begin(reading)
-        for name in ("fraction", "speed", "thrown"):
-            getattr(self._progress, name)[over] = getattr(fresh, name)[over]
-
     def _observe(self, reading: ObjectState) -> NDArray[np.float32]:
         command = self._control[:, 0] - self._sensors[:, :3] if self._envs[0].control == POSITION else 0.0
         return observe_hand(self.goal, reading, self._middle, np.asarray(command), self._envs[0].bounds)
@@ -180,8 +175,8 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
     def _info(self, success: BoolArray, escaped: BoolArray, unstable: BoolArray) -> dict[str, Any]:
         return {
             "is_success": success,
-            "open_fraction": self._progress.fraction.copy(),
-            "thrown": self._progress.thrown.copy(),
+            "open_fraction": self._progress["fraction"].copy(),
+            "thrown": self._progress["thrown"].copy(),
             "escaped": escaped,
             "unstable": unstable,
         }

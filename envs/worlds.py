@@ -10,8 +10,8 @@ import numpy as np
 
 from kinematify.config.validation import load_settings
 from kinematify.envs.articulated_object import held_links
+from kinematify.envs.goal import CONTROL_STEP, STEP
 from kinematify.envs.joint_dynamics import full_force, joint_dynamics
-from kinematify.envs.settings import SETTINGS
 from kinematify.geometry.rest_pairs import overlapping_links
 from kinematify.manipulation.manipulator import effort_limits
 from kinematify.simulation.engines import open_world
@@ -19,15 +19,33 @@ from kinematify.simulation.world import HeldPoint, PlacedModel, PlacedRobot, Pul
 
 if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject, Target
-    from kinematify.envs.joint_dynamics import JointDynamics
     from kinematify.envs.robot_plan import EnvRobot, RobotPlan
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.mujoco_world import MujocoWorld
     from kinematify.simulation.world import EngineWorld
 
+LAG = 0.08  # with this share of the way between hand and part the spring pulls with full force
+"""Distance between hand and part at which the spring has full force, share of the way."""
+HAND_SPEED = 1.2  # below what counts as thrown
+"""Full speed of the hand in position control [ways/s]."""
 _DAMPING_RATIO = 2.0  # of the hand's spring, times mass and frequency: neither swings nor creeps
 _WAY_SAMPLES = 9
 _FILTER_SHARE = 0.6  # of the time between actions: servos are led smoothly to a new target
+
+
+class Servos:
+    """Of the robot of DrawerPull."""
+
+    servo_frequency = 8.0
+    """[Hz]."""
+    armature = 0.1
+    """Inertia of motors over that of the links."""
+    finger_inertia = 1.0
+    """[kg]."""
+    grip_force = 60.0  # grippers of research arms exert 40 to 140 N
+    """Of each finger at most [N]."""
+    friction = 1.0  # rubber on varnish
+    """Of the robot's surfaces."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -35,12 +53,13 @@ class WorldFacts:
     """Facts that worlds are opened from, in any engine."""
 
     spec: WorldSpec
-    dynamics: JointDynamics
+    dynamics: tuple[FloatArray, FloatArray]
+    """Damping and friction of all joints (`joint_dynamics`)."""
 
     def opened(self, engine: str) -> EngineWorld:
         """Open a world."""
         world = open_world(engine, self.spec)
-        world.resist(self.dynamics.damping, self.dynamics.friction)
+        world.resist(*self.dynamics)
         return world
 
 
@@ -51,8 +70,6 @@ class HandFacts(WorldFacts):
     hand: PullingHand
     inertia: float
     """That the joint moves at most [kg m^2 or kg]."""
-    speed: float
-    """Of the hand with a full action in position control [m/s]."""
 
     def opened(self, engine: str) -> EngineWorld:
         """Open a world with the hand."""
@@ -64,60 +81,66 @@ class HandFacts(WorldFacts):
 @lru_cache(maxsize=16)
 def hand_facts(articulated_object: ArticulatedObject, target: Target, *, spring: bool) -> HandFacts:
     """Describe the world of a hand, once per process."""
-    settings, mechanism = SETTINGS, articulated_object.scene.mechanism
+    mechanism = articulated_object.scene.mechanism
     spec = WorldSpec(
-        step=settings.time.step,
+        step=STEP,
         object=_placed(articulated_object, articulated_object.T_world_root),
         point=_point(articulated_object, target),
     )
-    loads = _Loads(articulated_object, spec)
-    dynamics = loads.dynamics()
-    along = np.tile(mechanism.rest, (_WAY_SAMPLES, 1))
-    along[:, target.leader] = np.linspace(target.closed, target.opened, _WAY_SAMPLES)
-    moved = [loads.moved(row, target.leader) for row in along]
-    ends = np.tile(mechanism.rest, (2, 1))
-    ends[:, target.leader] = target.closed, target.opened
+    world, dynamics = _loads(articulated_object, spec)
+
+    def moved(values: FloatArray) -> FloatArray:
+        """Inertia and holding torque of the joint and of all that follow it, at values of it, shape (2, n)."""
+        found = []
+        for value in values:
+            leaders = mechanism.rest.copy()
+            leaders[target.leader] = value
+            matrix, bias = world.mechanics(leaders)
+            leads = mechanism.leads_at(leaders)[:, target.leader]
+            found.append((float(leads @ matrix @ leads), float(leads @ bias)))
+        return np.array(found).T
+
     leads = mechanism.leads_at(mechanism.rest)[:, target.leader]
+    along, gravity = moved(np.linspace(target.closed, target.opened, _WAY_SAMPLES))
     force = full_force(
         target,
-        settings.hand,
-        inertia=np.array([inertia for inertia, _ in moved]),
-        gravity=np.array([gravity for _, gravity in moved]),
-        damping=float(leads**2 @ dynamics.damping),
-        friction=float(np.abs(leads) @ dynamics.friction),
+        inertia=along,
+        gravity=gravity,
+        damping=float(leads**2 @ dynamics[0]),
+        friction=float(np.abs(leads) @ dynamics[1]),
     )
-    inertia = max(loads.moved(row, target.leader)[0] for row in ends)
-    stiffness = force / (settings.hand.lag * target.way)
+    inertia = float(moved(np.array([target.closed, target.opened]))[0].max())
+    stiffness = force / (LAG * target.way)
     damping = float(_DAMPING_RATIO * np.sqrt(stiffness * inertia) / target.path_ratio)
     hand = PullingHand(spring=spring, force=force, stiffness=stiffness, damping=damping)
-    speed = settings.hand.speed * target.way
-    return HandFacts(spec=spec, dynamics=dynamics, hand=hand, inertia=inertia, speed=speed)
+    return HandFacts(spec=spec, dynamics=dynamics, hand=hand, inertia=inertia)
 
 
 @lru_cache(maxsize=8)
 def arm_facts(articulated_object: ArticulatedObject, target: Target, robot: EnvRobot, plan: RobotPlan) -> WorldFacts:
     """Describe the world of a robot, once per process."""
-    settings, driven = SETTINGS, {*robot.robot.arm_joints, *robot.robot.finger_joints}
+    driven = {*robot.robot.arm_joints, *robot.robot.finger_joints}
+    mechanism = robot.scene.mechanism
     spec = WorldSpec(
-        step=settings.time.step,
+        step=STEP,
         object=_placed(articulated_object, plan.T_world_object),
         robot=PlacedRobot(
             urdf=robot.loaded,
-            mechanism=robot.mechanism,
+            mechanism=mechanism,
             T_world_root=plan.T_world_base,
             apart=overlapping_links(robot.scene),
-            locked={travel.joint: travel.rest for travel in robot.mechanism.travels if travel.joint not in driven},
+            locked={travel.joint: travel.rest for travel in mechanism.travels if travel.joint not in driven},
             arm=robot.robot.arm_joints,
             fingers=robot.robot.finger_joints,
             strongest=effort_limits(robot.arm.declared, robot.robot, load_settings().task.execution.effort),
             postures=(plan.reach[0], plan.pull[0], plan.pull[-1]),
             tool=robot.robot.tool,
-            settings=settings.robot,
-            smoothing=_FILTER_SHARE * settings.time.control_step,
+            settings=Servos,
+            smoothing=_FILTER_SHARE * CONTROL_STEP,
         ),
         point=_point(articulated_object, target),
     )
-    return WorldFacts(spec=spec, dynamics=_Loads(articulated_object, spec).dynamics())
+    return WorldFacts(spec=spec, dynamics=_loads(articulated_object, spec)[1])
 
 
 def _placed(articulated_object: ArticulatedObject, T_world_root: FloatArray) -> PlacedModel:
@@ -138,20 +161,8 @@ def _point(articulated_object: ArticulatedObject, target: Target) -> HeldPoint:
     )
 
 
-class _Loads:
-    """Loads that joints move and carry, which MuJoCo computes whatever engine is asked for."""
-
-    def __init__(self, articulated_object: ArticulatedObject, spec: WorldSpec) -> None:
-        self._object = articulated_object
-        self._world = cast("MujocoWorld", open_world("mujoco", spec))
-
-    def dynamics(self) -> JointDynamics:
-        """Damping and friction of all joints."""
-        matrix, bias = self._world.mechanics(self._object.scene.mechanism.rest)
-        return joint_dynamics(self._object, np.diag(matrix).copy(), bias, SETTINGS.object)
-
-    def moved(self, leaders: FloatArray, leader: int) -> tuple[float, float]:
-        """Inertia and holding torque of a joint and of all that follow it."""
-        matrix, bias = self._world.mechanics(leaders)
-        leads = self._object.scene.mechanism.leads_at(leaders)[:, leader]
-        return float(leads @ matrix @ leads), float(leads @ bias)
+def _loads(articulated_object: ArticulatedObject, spec: WorldSpec) -> tuple[MujocoWorld, tuple[FloatArray, FloatArray]]:
+    """World that tells what joints move and carry, MuJoCo's whatever engine is asked for, and their dynamics."""
+    world = cast("MujocoWorld", open_world("mujoco", spec))
+    matrix, bias = world.mechanics(articulated_object.scene.mechanism.rest)
+    return world, joint_dynamics(articulated_object, np.diag(matrix).copy(), bias)

@@ -46,6 +46,11 @@ class Travel:
         return self.upper - self.lower
 
     @property
+    def far_end(self) -> float:
+        """End of the range that is farther from rest: where the joint is open [rad or m]."""
+        return self.upper if self.upper - self.rest >= self.rest - self.lower else self.lower
+
+    @property
     def unit(self) -> str:
         """Unit of its values."""
         return "rad" if self.turns else "m"

@@ -13,10 +13,15 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
+from kinematify.envs import drawer_pull as pull
+from kinematify.envs import robot_plan
+from kinematify.envs.base import OPEN_REWARD, SUCCESS_REWARD
 from kinematify.envs.drawer_pull import DrawerPullEnv
 from kinematify.envs.expert import ArmExpert
-from kinematify.envs.settings import RobotSettings
+from kinematify.envs.goal import CONTROL_STEP
+from kinematify.envs.joint_dynamics import ROBOT_PLACE
 from kinematify.envs.tasks import EPISODE_STEPS
+from kinematify.envs.worlds import Servos
 from kinematify.errors import EnvironmentFault, InputError
 from kinematify.manipulation.manipulator import builtin_robot
 from kinematify.simulation.world import ROBOT
@@ -56,25 +61,25 @@ def test_the_documented_spaces_are_the_spaces(drawer: Path) -> None:
     for first, last, low, high in rows:
         assert set(env.observation_space.low[first : last + 1].tolist()) == {low}
         assert set(env.observation_space.high[first : last + 1].tolist()) == {high}
-    flat, robot, reward = " ".join((DrawerPullEnv.__doc__ or "").split()), env.settings.robot, env.settings.reward
-    share = 1.0 - reward.reach - reward.grip
+    flat = " ".join((DrawerPullEnv.__doc__ or "").split())
+    share = 1.0 - pull.REACH_REWARD - pull.GRIP_REWARD
     for words in (
         f"`Box(-1, 1, {env.action_space.shape}, float32)`",
         "`Box((86,), float32)`",
-        f"after {EPISODE_STEPS['drawer_pull']} steps of {env.settings.time.control_step:g} s",
-        f"shares of {robot.tool_step:g} m",
-        f"shares of {robot.turn_step:g} rad",
-        f"shares of {robot.joint_step:g} rad",
-        f"in {robot.finger_seconds:g} s at",
-        f"leaves, {robot.posture:g} of it per step",
-        f"share of {robot.grip_force:g} N",
-        f"{reward.reach:g} times 1 - tanh({reward.reach_scale:g} d)",
-        f"{reward.grip:g} while both fingers press on the part with at least {robot.touch_force:g} N",
-        f"{share * reward.open:g} times the share",
-        f"{share * reward.success:g} for success",
-        f"off by up to {robot.start_noise:g} rad",
-        f"up to {env.settings.randomize.robot_position:g} m along x and y",
-        f"and {env.settings.randomize.robot_yaw:g} rad",
+        f"after {EPISODE_STEPS['drawer_pull']} steps of {CONTROL_STEP:g} s",
+        f"shares of {pull.TOOL_STEP:g} m",
+        f"shares of {pull.TURN_STEP:g} rad",
+        f"shares of {pull.JOINT_STEP:g} rad",
+        f"in {pull.FINGER_SECONDS:g} s at",
+        f"leaves, {pull.POSTURE:g} of it per step",
+        f"share of {Servos.grip_force:g} N",
+        f"{pull.REACH_REWARD:g} times 1 - tanh({pull.REACH_SCALE:g} d)",
+        f"{pull.GRIP_REWARD:g} while both fingers press on the part with at least {pull.TOUCH_FORCE:g} N",
+        f"{share * OPEN_REWARD:g} times the share",
+        f"{share * SUCCESS_REWARD:g} for success",
+        f"off by up to {pull.START_NOISE:g} rad",
+        f"up to {ROBOT_PLACE[0]:g} m along x and y",
+        f"and {ROBOT_PLACE[1]:g} rad",
     ):
         assert words in flat
     assert gymnasium.spec(DRAWER_PULL.split(":")[1]).max_episode_steps == EPISODE_STEPS["drawer_pull"]
@@ -143,7 +148,7 @@ def test_a_robot_of_the_users(drawer: Path, tmp_path: Path) -> None:
 
 
 def test_what_no_gripper_can_hold_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(RobotSettings, "plan_seconds", 0.2)
+    monkeypatch.setattr(robot_plan, "_PLAN_SECONDS", 0.2)
     model = write_slider(tmp_path / "smooth.urdf", thick=0.15)
     with pytest.raises(InputError, match=r"cannot open front_slide.*OpenPart"):
         DrawerPullEnv(model, allow_invalid=True)

@@ -22,7 +22,7 @@ def test_the_picture_shows_the_part_where_it_is() -> None:
     env = OpenPartEnv("bundled:cabinet", render_mode="rgb_array")
     env.reset(seed=0, options={"open_fraction": 0.0})
     shut = env.render()
-    assert shut.shape == (env.settings.picture.height, env.settings.picture.width, 3)
+    assert shut.shape == (360, 480, 3)
     assert shut.dtype == np.uint8
     env.reset(seed=0, options={"open_fraction": 1.0})
     opened = env.render()

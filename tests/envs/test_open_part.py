@@ -11,9 +11,13 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
+from kinematify.envs import joint_dynamics as dynamics
+from kinematify.envs.base import OPEN_REWARD, START_DEPTH, START_OPEN, SUCCESS_REWARD
 from kinematify.envs.bundled import BUNDLED
+from kinematify.envs.goal import CALM, CONTROL_STEP, FAST, FORGET
 from kinematify.envs.open_part import OpenPartEnv
 from kinematify.envs.tasks import EPISODE_STEPS
+from kinematify.envs.worlds import HAND_SPEED, LAG
 from kinematify.errors import EnvironmentFault, InputError
 from tests.envs.hands import OPEN_PART, documented_rows, run, steady, write_slider
 
@@ -29,31 +33,30 @@ def test_the_documented_spaces_are_the_spaces() -> None:
     doc = OpenPartEnv.__doc__ or ""
     assert f"`Box((57,), {env.observation_space.dtype})`" in doc
     assert f"`Box(-1, 1, {env.action_space.shape}, {env.action_space.dtype})`" in doc
-    settings = env.settings
     steps = EPISODE_STEPS["open_part"]
     assert gymnasium.spec(OPEN_PART.split(":")[1]).max_episode_steps == steps
-    numbers = {
-        f"after {EPISODE_STEPS['open_part']} steps": "time",
-        f"of {settings.time.control_step:g} s": "time",
-        f"shares of {settings.hand.speed:g} ways": "hand",
-        f"{settings.hand.lag:.0%}".replace("%", " %"): "hand",
-        f"rest in {settings.hand.seconds:g} s": "hand",
-        f"{settings.reward.open:g} times the share": "reward",
-        f"plus {settings.reward.success:g} for success": "reward",
-        f"up to {settings.task.fast:g} ways per second": "task",
-        f"nothing at {2 * settings.task.fast:g}": "task",
-        f"faster than {settings.task.calm:g} ways": "task",
-        f"by {settings.task.forget:.0%}".replace("%", " %"): "task",
-        f"open by 0 to {settings.reset.start_open[1]:.0%}".replace("%", " %"): "reset",
-        f"than {settings.reset.depth:.1%}".replace("%", " %"): "reset",
-        f"factors {settings.randomize.damping[0]:g} to {settings.randomize.damping[1]:g}": "randomize",
-        f"factor {settings.randomize.mass[0]:g} to {settings.randomize.mass[1]:g}": "randomize",
-        f"{settings.randomize.position:g} m along": "randomize",
-        f"{settings.randomize.yaw:g} rad about": "randomize",
-        f"{settings.object.damping_rate:g} 1/s": "object",
-        f"{settings.object.friction_acceleration:g} m/s^2": "object",
-        f"{settings.object.hold:g} times what": "object",
-    }
+    numbers = (
+        f"after {EPISODE_STEPS['open_part']} steps",
+        f"of {CONTROL_STEP:g} s",
+        f"shares of {HAND_SPEED:g} ways",
+        f"{LAG:.0%}".replace("%", " %"),
+        f"rest in {dynamics.SECONDS:g} s",
+        f"{OPEN_REWARD:g} times the share",
+        f"plus {SUCCESS_REWARD:g} for success",
+        f"up to {FAST:g} ways per second",
+        f"nothing at {2 * FAST:g}",
+        f"faster than {CALM:g} ways",
+        f"by {FORGET:.0%}".replace("%", " %"),
+        f"open by 0 to {START_OPEN[1]:.0%}".replace("%", " %"),
+        f"than {START_DEPTH:.1%}".replace("%", " %"),
+        f"factors {dynamics.FACTORS[0]:g} to {dynamics.FACTORS[1]:g}",
+        f"factor {dynamics.MASSES[0]:g} to {dynamics.MASSES[1]:g}",
+        f"{dynamics.PLACE[0]:g} m along",
+        f"{dynamics.PLACE[1]:g} rad about",
+        f"{dynamics.DAMPING_RATE:g} 1/s",
+        f"{dynamics.FRICTION_ACCELERATION:g} m/s^2",
+        f"{dynamics.HOLD:g} times what",
+    )
     flat = " ".join(doc.split())
     assert [words for words in numbers if words not in flat] == []
     _, info = env.reset(seed=0)
