@@ -1,10 +1,11 @@
-"""What README and `docs/results.md` say of the reports in `results/`: figures, and date and commit of every table."""
+"""`python -m benchmarks.results_page`: README.md and docs/results.md get figures and dates of the reports in `results/`."""
 
 from __future__ import annotations
 
 import json
 import re
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from benchmarks.fit.corpora import may_be_fitted_to
@@ -16,7 +17,6 @@ from kinematify.evaluation.run_benchmark import RESULTS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from kinematify.evaluation.benchmark_job import JobResult
 
@@ -150,3 +150,7 @@ def _between(page: Path, mark: str) -> tuple[str, str, str]:
 def _replace(page: Path, mark: str, text: str) -> None:
     before, _, after = _between(page, mark)
     replace_text(page, f"{before}\n{text}\n{after}")
+
+
+if __name__ == "__main__":
+    write_results_page(Path())

@@ -1,6 +1,6 @@
 """`python -m benchmarks.fit.more_points FOLDERS -o OUT`: networks of points beside those that ship, fitted to more.
 
-What they are fitted to is measured as by `kinematify fit`, and what was measured in `OUT/measured` is not again.
+What they are fitted to is measured as by `python -m benchmarks.fit`; what is in `OUT/measured` is not measured again.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 COMMANDS = (
     "generate", "infer", "question", "refine", "validate", "explain", "fix", "view", "export", "erase", "batch",
-    "bench", "fit", "nightly", "doctor", "mcp",
+    "bench", "nightly", "doctor", "mcp",
 )  # fmt: skip
 """Each is a module of this package that defines `command`."""
 

@@ -71,13 +71,6 @@ def _list(context: click.Context, _parameter: click.Parameter, asked: bool) -> N
         context.exit()
 
 
-def _write_results_page(context: click.Context, _parameter: click.Parameter, asked: bool) -> None:
-    if asked:
-        benchmark_module("results_page", "--results-page").write_results_page(Path())
-        click.echo("README.md has the figures of the reports in results/, docs/results.md their dates and commits.")
-        context.exit()
-
-
 @click.command(
     "bench",
     cls=_BenchCommand,
@@ -98,14 +91,6 @@ def _write_results_page(context: click.Context, _parameter: click.Parameter, ask
 @click.argument("folder", metavar="[DATA]", required=False, type=click.Path(path_type=Path))
 @click.option(
     "--list", is_flag=True, expose_value=False, is_eager=True, callback=_list, help="Name the studies and end."
-)
-@click.option(
-    "--results-page",
-    is_flag=True,
-    expose_value=False,
-    is_eager=True,
-    callback=_write_results_page,
-    help="Fill README.md and docs/results.md of this checkout from the reports in results/, and end.",
 )
 @click.option("--data", metavar="pip|PATH", help="Same as DATA; pip: robots of the package example-robot-data.")
 @click.option(
@@ -177,8 +162,8 @@ def command(
 
     The report is written as Markdown and JSON. A run that was interrupted goes on where it stopped; a change of the
     code or of the configuration starts again. Wrong answers do not change the exit status, worse ones than those of
-    --baseline do. Studies, --ablation, --baseline, --degrade, --results-page and all tables but the first
-    need a checkout of the repository.
+    --baseline do. Studies, --ablation, --baseline, --degrade and all tables but the first need a checkout of the
+    repository.
 
     --degrade measures the same objects once more with every fault that meshes have in practice: remeshed on a grid of
     1/300 or 1/150 of the diagonal, noisy, decimated, as hulls, with holes or flipped faces, apart or interpenetrating,

@@ -27,99 +27,31 @@ _WIDTH = 100
         "kinematify explain KV301",
         "kinematify explain kv301 kv401 --json -",
         "kinematify explain --list",
-        "kinematify explain --markdown > docs/checks.md",
     ),
 )
 @click.argument("checks", nargs=-1, metavar="[CHECK]...", shell_complete=complete_checks)
 @click.option("--list", "as_list", is_flag=True, help="Table of all checks.")
-@click.option("--markdown", is_flag=True, help="All checks as a page of documentation.")
 @json_option
-def command(*, checks: tuple[str, ...], as_list: bool, markdown: bool, json_to: str | None) -> None:
+def command(*, checks: tuple[str, ...], as_list: bool, json_to: str | None) -> None:
     """Explain each CHECK, by its id such as KV301; an unknown one is answered with the nearest.
 
     Without CHECK, --json writes all of them.
     """
     from kinematify.validation.checks import CHECKS, find_check
 
-    if checks and (as_list or markdown):
-        raise click.UsageError("--list and --markdown show all checks. Leave the ids or the option out.")
-    if not (checks or as_list or markdown or json_to):
+    if checks and as_list:
+        raise click.UsageError("--list shows all checks. Leave the ids or the option out.")
+    if not (checks or as_list or json_to):
         raise click.UsageError("Give the id of a check, such as KV301, or --list.")
     chosen = [find_check(name) for name in checks] or list(CHECKS.values())
     if json_to:
         write_answer({"schema": 1, "checks": [_as_answer(check) for check in chosen]}, json_to)
     if json_to == "-":
         return
-    if markdown:
-        click.echo(as_markdown(chosen), nl=False)
-    elif as_list:
+    if as_list:
         click.echo(_as_table(chosen))
     elif checks:
         click.echo("\n\n".join(map(_describe, chosen)))
-
-
-def as_markdown(checks: Sequence[Check]) -> str:
-    """Return the page `docs/checks.md`."""
-    from kinematify.validation.check import FAMILIES
-
-    lines = [
-        "# Checks of `kinematify validate`",
-        "",
-        "Written by `kinematify explain --markdown > docs/checks.md`; change `validation/checks/`, not this page.",
-        "",
-        "An id stays the same for ever. The severity is the worst that a check reports. Words in `this_form` are",
-        "settings of [kinematify/config/validation.py](../kinematify/config/validation.py).",
-    ]
-    for prefix, family in FAMILIES.items():
-        members = sorted((check for check in checks if check.id.startswith(prefix)), key=lambda check: check.id)
-        if members:
-            lines += ["", f"## {prefix}xx: {family}", "", *_index(members)]
-            lines += [line for check in members for line in ("", *_section(check))]
-    lines += ["", "## What `kinematify refine` makes of findings", "", *_feedback(checks)]
-    return "\n".join(lines) + "\n"
-
-
-def _index(checks: Sequence[Check]) -> list[str]:
-    rows = [
-        f"| [{check.id}](#{check.id.lower()}) | {_cell(check.title)} | {check.severity.value} | {check.cause.value} "
-        f"| {_engines(check)} |"
-        for check in checks
-    ]
-    return ["| id | check | severity | cause | engines |", "|---|---|---|---|---|", *rows]
-
-
-def _feedback(checks: Sequence[Check]) -> list[str]:
-    from kinematify.validation.check import FAMILIES, FeedbackRow
-
-    table = ["| signal | checks |", "|---|---|"]
-    for row in FeedbackRow:
-        inside = {check.id for check in checks if check.feedback is row}
-        whole = [
-            family for family in FAMILIES if {check.id for check in checks if check.id.startswith(family)} <= inside
-        ]
-        single = [f"[{name}](#{name.lower()})" for name in sorted(inside) if not name.startswith(tuple(whole))]
-        table.append(f"| {row.value} | {', '.join([f'{family}xx' for family in whole] + single)} |")
-    return table
-
-
-def _section(check: Check) -> list[str]:
-    return [
-        f"### {check.id}",
-        f"- **{check.title}**; else: {check.fails}",
-        f"- Verifies: {check.verifies}",
-        f"- Why it matters: {check.matters}",
-        f"- Remedy: {check.remedy}",
-        *([f"- May follow from: {_causes(check)}"] if check.follows else []),
-    ]
-
-
-def _causes(check: Check) -> str:
-    """Checks that can be the cause, with what both must be about."""
-    return ", ".join(f"[{name}](#{name.lower()}) ({shared.value})" for name, shared in check.follows.items())
-
-
-def _cell(text: str) -> str:
-    return text.replace("|", "\\|")
 
 
 def _as_table(checks: Sequence[Check]) -> str:

@@ -13,7 +13,7 @@ from tests.places import ROOT
 
 def test_dates_and_commits_are_those_of_the_tables() -> None:
     rows = (ROOT / "docs" / "results.md").read_text("utf-8").split("<!-- tables:begin -->\n")[1].split("\n<!--")[0]
-    assert rows == dated(rows, ROOT), "kinematify bench --results-page fills them"
+    assert rows == dated(rows, ROOT), "python -m benchmarks.results_page fills them"
 
 
 def test_a_row_gets_date_and_commit_of_its_table_and_a_table_without_them_is_refused(tmp_path: Path) -> None:

@@ -134,5 +134,5 @@ def test_damaged_weights_are_refused_with_the_remedy(
 ) -> None:
     (tmp_path / edges.EDGE_WEIGHTS).write_text(text, encoding="utf-8")
     monkeypatch.setattr(edges, "files", lambda _: tmp_path)
-    with pytest.raises(EnvironmentFault, match="kinematify fit"):
+    with pytest.raises(EnvironmentFault, match=r"benchmarks\.fit"):
         edges.shipped_edge_weights.__wrapped__()

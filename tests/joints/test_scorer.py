@@ -64,7 +64,7 @@ def test_the_measurements_are_those_that_were_fitted() -> None:
 
 
 def test_the_weights_are_those_of_the_committed_recipe() -> None:
-    """Another parameter, start or measurement without a new fit goes red; `kinematify fit` remakes the weights."""
+    """Another parameter, start or measurement without a new fit goes red; `benchmarks.fit` remakes the weights."""
     shipped = shipped_scorer()
     assert shipped.provenance["recipe"] == recipe_key(shipped.measurements)
 

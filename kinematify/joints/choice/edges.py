@@ -188,7 +188,7 @@ def shipped_edge_weights() -> EdgeWeights:
     Raises:
         EnvironmentFault: Their file is missing, damaged or of another version.
     """
-    remedy = "Install kinematify again, or write the weights with 'kinematify fit'."
+    remedy = "Install kinematify again, or write the weights with 'python -m benchmarks.fit'."
     try:
         stored = json.loads((files("kinematify.joints.choice") / EDGE_WEIGHTS).read_text(encoding="utf-8"))
         if stored["format"] != FORMAT or tuple(stored["measurements"]) != MEASUREMENTS:

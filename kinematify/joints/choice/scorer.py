@@ -184,7 +184,7 @@ def read_scorer(path: Traversable) -> Scorer:
         EnvironmentFault: The file is missing, damaged or of another version.
     """
     name = path.name
-    remedy = "Install kinematify again, or write the weights with 'kinematify fit'."
+    remedy = "Install kinematify again, or write the weights with 'python -m benchmarks.fit'."
     try:
         with path.open("rb") as file, np.load(file) as stored:
             facts = json.loads(str(stored["facts"]))

@@ -1,4 +1,4 @@
-"""`kinematify fit`: the choice of joints, fitted again and judged on held-out objects."""
+"""`python -m benchmarks.fit`: the choice of joints, fitted again and judged on held-out objects."""
 
 from __future__ import annotations
 
@@ -7,20 +7,19 @@ from pathlib import Path
 
 import click
 
+from benchmarks.fit.packages import write_installed
+from benchmarks.fit.run import as_markdown, run_fit
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.checkout import benchmark_module
 from kinematify.cli.options import examples
 from kinematify.cli.progress import progress_reporter
 
 
 @click.command(
-    "fit",
-    short_help="Retrain the joint selection and evaluate it on held-out categories.",
     epilog=examples(
-        "kinematify fit -o fitted",
-        "kinematify fit models/everyday models/robots --rounds 8 --composed 400 -o fitted",
-        "kinematify fit models/everyday models/infinigen --per-category 10 --hold-out infinigen -o fitted",
-        "kinematify fit --rounds 1 --composed 20 -o reduced",
+        "python -m benchmarks.fit -o fitted",
+        "python -m benchmarks.fit models/everyday models/robots --rounds 8 --composed 400 -o fitted",
+        "python -m benchmarks.fit models/everyday models/infinigen --per-category 10 --hold-out infinigen -o fitted",
+        "python -m benchmarks.fit --rounds 1 --composed 20 -o reduced",
     ),
 )
 @click.argument("folders", nargs=-1, type=click.Path(path_type=Path))
@@ -65,12 +64,11 @@ def command(
     alone judge and are not fitted to. What was measured is kept beside the weights, so that an interrupted run goes on.
     To ship new weights, copy the .npz files and edges.json into kinematify/joints/choice.
     """
-    fit = benchmark_module("fit.run", "`kinematify fit`")
     if packages:
-        benchmark_module("fit.packages", "--packages").write_installed(out / "packages")
+        write_installed(out / "packages")
         folders = (*folders, out / "packages")
     with progress_reporter() as progress:
-        report = fit.run_fit(
+        report = run_fit(
             folders,
             out,
             rounds=rounds,
@@ -84,6 +82,10 @@ def command(
             progress=progress,
         )
     if json_to != "-":
-        click.echo(fit.as_markdown(report))
+        click.echo(as_markdown(report))
     if json_to is not None:
         write_answer(report, json_to)
+
+
+if __name__ == "__main__":
+    command(prog_name="python -m benchmarks.fit")
