@@ -1,4 +1,4 @@
-"""`python -m benchmarks.results_page`: README.md and docs/results.md get figures and dates of the reports in `results/`."""
+"""`python -m benchmarks.results_page`: figures and dates of the reports in README.md and docs/results.md."""
 
 from __future__ import annotations
 

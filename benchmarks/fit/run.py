@@ -228,8 +228,8 @@ def as_markdown(report: dict[str, Any]) -> str:
     real = "" if most is None else f", at most {most} objects of a category of each folder; the others judge"
     introduction = (
         f"Fitted to {facts['joints']} joints of {facts['objects']} objects by `python -m benchmarks.fit` "
-        f"(seed {facts['seed']}, LightGBM {facts['lightgbm']}): {facts['rounds']} object of each kind of the library, {facts['composed']} "
-        f"random mechanisms{real}. The true tree is given. Held out by category: the fit had no "
+        f"(seed {facts['seed']}, LightGBM {facts['lightgbm']}): {facts['rounds']} object of each kind of the library, "
+        f"{facts['composed']} random mechanisms{real}. The true tree is given. Held out by category: the fit had no "
         "object and no family of the category, and one seed; with its source: it had nothing of the sets that have "
         "this row. Weights before: what shipped until this fit, which has seen other objects. In-sample: these "
         "weights have seen what is called fitted to. Errors: no right joint was "

@@ -49,7 +49,7 @@ _COMMANDS = (
     "fix missing.urdf -o out", "fix zero_axis.urdf -o fixed.urdf", "export missing.urdf --to mjcf -o out.xml",
     "export model/model.urdf --to mjcf -o model.xml", "export model/model.urdf --to docx -o model.docx",
     "view missing.urdf", "batch missing -o out", "bench no-such-study", "bench detection --seed no",
-    "fit --no-such-option", "nightly --no-such-option",
+    "nightly --no-such-option",
 )  # fmt: skip
 """Words of commands that are run beside a good model and one whose axis is zero; `_` represents a space."""
 _TIMES = re.compile(r"^\[ *\d+\.\d s,.*\n|; \d+\.\d s$", re.MULTILINE)
