@@ -49,7 +49,6 @@ _PICTURE_SECONDS = 15.0
         "kinematify validate model.urdf --suggest-accept accepted.yaml",
         "kinematify validate model.urdf --suppress accepted.yaml --json - > answer.json",
         "kinematify validate cabinet.urdf --task pull",
-        "kinematify validate cup.urdf --task pour --into bowl.urdf",
         "kinematify validate cabinet.urdf --task pull --robot fetch.urdf --tool gripper_link --checks 'KV7*'",
     ),
 )
@@ -104,10 +103,9 @@ _PICTURE_SECONDS = 15.0
 )
 @click.option(
     "--task",
-    type=click.Choice(["pull", "pour"]),
-    help="A robot opens every joint, or pours from a cup (KV7xx), with a film.",
+    type=click.Choice(["pull"]),
+    help="A robot opens every joint (KV7xx), with a film.",
 )
-@click.option("--into", type=click.Path(path_type=Path), metavar="FILE", help="Container to pour into, a URDF.")
 @click.option(
     "--robot", type=click.Path(path_type=Path), metavar="FILE", help="URDF of the robot, if not the built-in arm."
 )
@@ -277,18 +275,11 @@ def _task(given: dict[str, Any], files: dict[str, Path], package_dirs: tuple[Pat
         InputError: There is no such robot, tool or gripper.
         OutputError: Films cannot be written where they should go.
     """
-    kind, into = given["task"], given["into"]
-    if kind is None:
-        for name in ("robot", "tool", "gripper", "grasp", "base", "scale", "films", "into"):
+    if given["task"] is None:
+        for name in ("robot", "tool", "gripper", "grasp", "base", "scale", "films"):
             if given[name]:
                 raise click.UsageError(f"--{name} belongs to a task. Give --task pull with it.")
         return None
-    if kind == "pour" and (given["grasp"] or given["base"]):
-        raise click.UsageError("--grasp and --base belong to --task pull. Leave them out.")
-    if (into is None) == (kind == "pour"):
-        raise click.UsageError("--task pour and --into, which names the container, belong together.")
-    if into is not None and not into.is_file():
-        raise InputError(f"--into {into} is no file. Give the URDF of the container that is poured into.")
     beside = next((path.absolute().parent for path in files.values()), None)
     films = beside if given["films"] is None else given["films"].absolute()
     if films is not None and not films.is_dir():
@@ -297,7 +288,6 @@ def _task(given: dict[str, Any], files: dict[str, Path], package_dirs: tuple[Pat
     from kinematify.manipulation.plan_request import TaskRequest
 
     request = TaskRequest(
-        kind=kind,
         robot=given["robot"] and given["robot"].absolute(),
         tool=given["tool"],
         gripper=listed(given["gripper"]),
@@ -305,7 +295,6 @@ def _task(given: dict[str, Any], files: dict[str, Path], package_dirs: tuple[Pat
         grasp=given["grasp"] or None,
         base=given["base"] or None,
         scale=given["scale"],
-        into=into and into.absolute(),
         films=films,
     )
     with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
@@ -316,7 +305,7 @@ def _task(given: dict[str, Any], files: dict[str, Path], package_dirs: tuple[Pat
 def _task_of(task: TaskRequest | None, model: Path, *, several: bool) -> TaskRequest | None:
     """The task with names of films that distinguish the models."""
     stem = f"{model.absolute().parent.name}_{model.stem}" if several else model.stem
-    return None if task is None else replace(task, stem=f"{stem}_{task.kind}")
+    return None if task is None else replace(task, stem=f"{stem}_{task.stem}")
 
 
 def _existing(folders: Sequence[Path]) -> tuple[Path, ...]:

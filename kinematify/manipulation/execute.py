@@ -59,11 +59,10 @@ class Motion:
     reach: FloatArray
     """Arm joints on the way to the grasp [rad or m], shape (n, dof), n >= 1."""
     pull: FloatArray
-    """Arm joints during the pull, the first row is the last of `reach`, shape (m, dof), m >= 2."""
+    """Arm joints during the pull, the first row is the last of `reach`, shape (m, dof), m >= 2. All other joints of the
+    object stay where they are."""
     opened: FloatArray
     """Value of the object's joint in each row of `pull` [rad or m], shape (m,)."""
-    freed: tuple[str, ...] = ()
-    """Other joints of the object that the hand moves too; all that are not named stay where they are."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -329,7 +328,7 @@ class _Run:
 
     def _take_hold(self) -> None:
         """Release the joint; with a weld, fix the hand to the part."""
-        self.world.release((self._motion.joint, *self._motion.freed))
+        self.world.release((self._motion.joint,))
         if self._hold is Hold.WELD:
             self.world.weld()
 

@@ -12,9 +12,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
-PULL, POUR = "pull", "pour"
-TASKS = (PULL, POUR)
-
 
 @dataclass(frozen=True, kw_only=True)
 class PriorFinding:
@@ -29,10 +26,8 @@ class PriorFinding:
 
 @dataclass(frozen=True, kw_only=True)
 class TaskRequest:
-    """A task with its robot."""
+    """Opening every joint of an object, and the robot that does it."""
 
-    kind: str
-    """One of `TASKS`."""
     robot: Path | None = None
     """URDF of the user's robot, absolute; the built-in arm if None."""
     tool: str | None = None
@@ -48,11 +43,9 @@ class TaskRequest:
     root link; searched if None."""
     scale: float | None = None
     """Metres per unit of the object; from the table of sizes if None."""
-    into: Path | None = None
-    """URDF of the container that is poured into, absolute."""
     films: Path | None = None
     """Existing folder for films and stills; none are made if None."""
-    stem: str = PULL
+    stem: str = "pull"
     """Beginning of their names."""
 
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from kinematify.manipulation.grasp import GraspReport
     from kinematify.manipulation.kinematics import Arm
     from kinematify.manipulation.manipulator import TaskRobot
-    from kinematify.manipulation.robot_place import ObjectMotion, RobotPlacement
+    from kinematify.manipulation.robot_place import RobotPlacement
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import Travel
 
@@ -245,8 +245,7 @@ class JointPlanning:
 
     def __init__(
         self, arm: Arm, clearing: OpenedObject, joint: str, settings: TaskSettings, *, way: float, started: float,
-        point: FloatArray | None = None, base: FloatArray | None = None, motion: ObjectMotion | None = None,
-        seed: int = 0,
+        point: FloatArray | None, base: FloatArray | None, seed: int,
     ) -> None:  # fmt: skip
         """Keep what is given; see `plan_pull`.
 
@@ -259,7 +258,6 @@ class JointPlanning:
             started: Processor time at which planning began [s].
             point: Where the part is held.
             base: Where the robot stands.
-            motion: Of the object; the joint's own if None.
             seed: Of all that is random.
         """
         scene = clearing.scene
@@ -267,7 +265,7 @@ class JointPlanning:
         self._settings, self._plan, self._seed = settings, settings.plan, seed
         self._point, self._started, self._way = point, started, way
         self._travel = next(travel for travel in scene.travels if travel.joint == joint)
-        self._motion = motion or object_motion(scene, joint, pull_end(self._travel, self._plan), self._plan)
+        self._motion = object_motion(scene, joint, pull_end(self._travel, self._plan), self._plan)
         self._base = None if base is None else self._motion.T_world_object @ base
         self._places = Places(arm, self._motion, object_box(scene), self._plan)
         self._grasps: GraspReport | None = None

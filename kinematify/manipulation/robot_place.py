@@ -39,13 +39,10 @@ _QUALITY = 0.06  # a grasp of no quality at all may be so much easier to reach [
 class ObjectMotion:
     """The object while one of its joints moves and the others rest; world z is up, the floor at 0."""
 
-    joint: str
     T_world_object: FloatArray
     """Root link, shape (4, 4)."""
     values: FloatArray
     """Of the joint [rad or m], from rest to the open end, shape (k,)."""
-    rows: FloatArray
-    """Of all leading joints, shape (k, leaders)."""
     link_poses: FloatArray
     """Child link of the joint, world frame, shape (k, 4, 4)."""
     body_poses: FloatArray
@@ -112,10 +109,8 @@ def object_motion(scene: Scene, joint: str, end: float, settings: PlanSettings) 
     child = scene.model.joint_by_name[joint].child
     links = [forward_kinematics(scene.model, dict(zip(names, row.tolist(), strict=True)))[child] for row in rows]
     return ObjectMotion(
-        joint=joint,
         T_world_object=T_world_object,
         values=values,
-        rows=rows,
         link_poses=T_world_object @ np.stack(links),
         body_poses=body_poses,
     )

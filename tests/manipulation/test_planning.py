@@ -14,7 +14,7 @@ from kinematify.geometry.scene import Scene, read_scene
 from kinematify.manipulation.collision_world import CollisionWorld
 from kinematify.manipulation.kinematics import Arm
 from kinematify.manipulation.manipulator import builtin_robot
-from kinematify.manipulation.plan_request import PULL, Failure, TaskRequest
+from kinematify.manipulation.plan_request import Failure, TaskRequest
 from kinematify.manipulation.planning import PullPlan, depend, plan_pull
 from kinematify.manipulation.robot_place import object_motion
 from kinematify.robot.read import read_robot
@@ -136,9 +136,7 @@ def test_door_is_opened_before_the_drawer_behind_it(arm: Arm, tmp_path: Path) ->
 @pytest.mark.parametrize(("axis", "verdict"), [("-1 0 0", "pass"), ("0 1 0", "fail")])
 def test_validate_says_who_can_act(tmp_path: Path, axis: str, verdict: str) -> None:
     urdf = write_drawer_cabinet(tmp_path / "cabinet.urdf", axis=axis)
-    report = validate(
-        urdf, selected={f"KV70{k}" for k in range(1, 10)}, engines=(), task=TaskRequest(kind=PULL), workers=1
-    )
+    report = validate(urdf, selected={f"KV70{k}" for k in range(1, 10)}, engines=(), task=TaskRequest(), workers=1)
     found = [finding for finding in report.findings if finding.joint == "slide" and finding.check >= "KV7"]
     if verdict == "pass":
         assert [(f.check, f.severity) for f in found] == [("KV705", Severity.NOTE)], found
@@ -160,7 +158,7 @@ def test_without_a_task_its_checks_are_not_in_the_report(tmp_path: Path) -> None
 )
 def test_what_cannot_be_set_up_is_a_finding(tmp_path: Path, asked: dict[str, Any]) -> None:
     urdf = write_drawer_cabinet(tmp_path / "cabinet.urdf")
-    task = TaskRequest(kind=PULL, **asked)
+    task = TaskRequest(**asked)
     report = validate(urdf, selected={"KV701", "KV703"}, engines=(), task=task, workers=1)
     assert [finding.check for finding in report.findings if finding.severity is Severity.ERROR] == ["KV701"]
     assert {check.status for check in report.checks if check.check == "KV703"} == {Status.SKIPPED}

@@ -30,7 +30,6 @@ if TYPE_CHECKING:
         (["--task", "pull", "--films", "{arm}"], "is no folder"),
         (["--task", "juggle"], "juggle"),
         (["--base", "1", "0", "0", "180"], "--task pull"),
-        (["--task", "pour", "--base", "1", "0", "0", "180"], "--task pull"),
     ],
     ids=lambda value: None if isinstance(value, str) else " ".join(value[-2:]),
 )

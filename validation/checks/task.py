@@ -1,4 +1,4 @@
-"""KV701 to KV709: a robot uses the object, in the way that the task says (`validation/task`)."""
+"""KV701 to KV709: a robot uses the object, it opens every joint (`validation/task`)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from kinematify.validation.check import OpenCheck
-    from kinematify.validation.task.robot_task import RobotTask
+    from kinematify.validation.task.pull_task import PullTask
 
 
 @check(
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     severity=Severity.ERROR,
     cause=Cause.TASK,
 )
-def task_set_up(result: OpenCheck, task: RobotTask) -> None:
+def task_set_up(result: OpenCheck, task: PullTask) -> None:
     """The object has a joint that moves, its size is that of a thing that an arm can use (objects of common
     collections are brought to the usual size of what they are called; --scale wins), and the point of --grasp lies
     on a part that moves.
@@ -40,7 +40,7 @@ def task_set_up(result: OpenCheck, task: RobotTask) -> None:
     severity=Severity.WARNING,
     cause=Cause.TASK,
 )
-def no_hold(result: OpenCheck, task: RobotTask) -> None:
+def no_hold(result: OpenCheck, task: PullTask) -> None:
     """On what the joint moves there is a place that two parallel pads can take: seen from outside, with opposite sides
     within the opening of the gripper, and with room for the fingers beside it and for the hand behind it. Handles,
     knobs and rims are found from the shape alone. Joints that move what they carry by less than task.plan.least_way
@@ -60,7 +60,7 @@ def no_hold(result: OpenCheck, task: RobotTask) -> None:
     severity=Severity.ERROR,
     cause=Cause.TASK,
 )
-def out_of_reach(result: OpenCheck, task: RobotTask) -> None:
+def out_of_reach(result: OpenCheck, task: PullTask) -> None:
     """From at least one place around the object (task.plan.bearings, distances, heights) the arm's inverse kinematics
     reaches one of the holds, within the joints' limits and without meeting the object, the floor or itself while it
     holds on.
@@ -80,7 +80,7 @@ def out_of_reach(result: OpenCheck, task: RobotTask) -> None:
     severity=Severity.ERROR,
     cause=Cause.TASK,
 )
-def no_path(result: OpenCheck, task: RobotTask) -> None:
+def no_path(result: OpenCheck, task: PullTask) -> None:
     """From the arm's home posture, RRTConnect finds a path free of collisions (task.plan.margin) to a place in front
     of the hold, and a straight way leads in from there.
 
@@ -98,7 +98,7 @@ def no_path(result: OpenCheck, task: RobotTask) -> None:
     severity=Severity.ERROR,
     cause=Cause.TASK,
 )
-def not_opened(result: OpenCheck, task: RobotTask) -> None:
+def not_opened(result: OpenCheck, task: PullTask) -> None:
     """With the hand fixed to the part, the arm follows the joint from rest to the farther end of its range (joints
     without limits by task.plan.range_turn); task.plan.opened of it counts. What ends a pull earlier is said: a
     limit of the arm, a singular posture, the arm's own parts, the object, the floor. Where the checks of KV3xx
@@ -120,7 +120,7 @@ def not_opened(result: OpenCheck, task: RobotTask) -> None:
     severity=Severity.ERROR,
     cause=Cause.KINEMATICS,
 )
-def jams(result: OpenCheck, task: RobotTask) -> None:
+def jams(result: OpenCheck, task: PullTask) -> None:
     """On the way from rest to the open end, the moved part does not run into its own parent before task.plan.opened of
     the range, and no check of KV3xx doubts axis, type, place or limits of the joint.
 
@@ -140,7 +140,7 @@ def jams(result: OpenCheck, task: RobotTask) -> None:
     cause=Cause.TASK,
     engines=engines_that_hold(Hold.WELD),
 )
-def plan_fails(result: OpenCheck, task: RobotTask) -> None:
+def plan_fails(result: OpenCheck, task: PullTask) -> None:
     """Joint servos track the plan with the hand welded to the part when the fingers have arrived; the joint ends at
     task.execution.opened of the planned way, at rest, and the robot gets nowhere deeper into the object than
     task.execution.depth.
@@ -162,7 +162,7 @@ def plan_fails(result: OpenCheck, task: RobotTask) -> None:
     cause=Cause.TASK,
     engines=engines_that_hold(Hold.CONTACT),
 )
-def slips(result: OpenCheck, task: RobotTask) -> None:
+def slips(result: OpenCheck, task: PullTask) -> None:
     """The same with real contact: the fingers close with task.execution.grip_force, and nothing but friction
     (task.execution.friction) holds the part.
 
@@ -176,7 +176,7 @@ def slips(result: OpenCheck, task: RobotTask) -> None:
 @check(
     "KV709", title="Films of the task are written", fails="Films of the task", severity=Severity.NOTE, cause=Cause.TASK
 )
-def films(result: OpenCheck, task: RobotTask) -> None:
+def films(result: OpenCheck, task: PullTask) -> None:
     """Nothing: it names the films. Each shows the first execution of a plan, as a GIF, and beside it a still of its
     three moments: before, at the grasp, and open.
 

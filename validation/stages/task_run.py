@@ -4,23 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.manipulation.plan_request import POUR
 from kinematify.validation.checks import checks_of
 
 if TYPE_CHECKING:
     from kinematify.validation.stage import Recorder, StageRequest
-    from kinematify.validation.task.robot_task import RobotTask
 
 
 def run(request: StageRequest, recorder: Recorder) -> None:
     """Carry out the task of a request; see `kinematify.validation.stage`."""
-    from kinematify.validation.task.pour_task import PourTask
     from kinematify.validation.task.pull_task import PullTask
 
     if request.task is None:
         return
-    task: RobotTask
-    task = PourTask(request, request.task) if request.task.kind == POUR else PullTask(request, request.task)
+    task = PullTask(request, request.task)
     first, *others = checks_of("KV7")
     with recorder.check(first.id) as result:
         first.run(result, task)

@@ -26,7 +26,7 @@ from kinematify.config.validation import load_settings
 from kinematify.evaluation.benchmark_job import erased_item, imported, shown_parts
 from kinematify.evaluation.benchmark_summary import summarise
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject
-from kinematify.manipulation.plan_request import PULL, TaskRequest
+from kinematify.manipulation.plan_request import TaskRequest
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.validation.checks import CHECKS
@@ -238,7 +238,7 @@ def validation_run(job: ModelJob) -> Run:
             settings=settings.model_copy(update={"budget": patient}),
             selected=selected,
             engines=tuple(asked.engines),
-            task=TaskRequest(kind=PULL) if job.source == PULLED else None,
+            task=TaskRequest() if job.source == PULLED else None,
             workers=1,
         )
         return _kept(job.run(report.verdict, time.perf_counter() - start), report, selected, asked.engines)
