@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from kinematify.generate import generate
     from kinematify.joints.candidate import JointCandidate
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.pipeline.infer_assembly import infer
     from kinematify.pipeline.inference import Inference
     from kinematify.pipeline.record import write_inference
     from kinematify.refinement.loop import Refinement, refine
@@ -47,6 +46,7 @@ if TYPE_CHECKING:
     from kinematify.validation.run import validate
     from kinematify.validation.run.report import ValidationReport
     from kinematify.view.loaded import LoadedModel, load
+    from kinematify.vision.infer_object import infer
 
 __version__ = "0.2.0"
 
@@ -93,7 +93,7 @@ _HOMES = {
     "export": "kinematify.formats.export_model",
     "fix": "kinematify.refinement.repair",
     "generate": "kinematify.generate",
-    "infer": "kinematify.pipeline.infer_assembly",
+    "infer": "kinematify.vision.infer_object",
     "load": "kinematify.view.loaded",
     "load_assembly": "kinematify.assembly.load",
     "load_config": "kinematify.config",

@@ -22,10 +22,10 @@ from kinematify.config.validation import ValidationSettings
 from kinematify.errors import InputError, KinematifyError, OutputError
 from kinematify.formats.export_model import export
 from kinematify.model.output import MODEL_FILE
-from kinematify.pipeline.infer_assembly import StageClock, infer, peak_mb
+from kinematify.pipeline.infer_assembly import StageClock, peak_mb
 from kinematify.pipeline.record import write_inference_files
 from kinematify.processes.pool import sentence
-from kinematify.refinement.loop import refine, repaired
+from kinematify.refinement.loop import refine
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity
@@ -33,7 +33,7 @@ from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.report_picture import drawing_of
 from kinematify.validation.run import validate
 from kinematify.validation.run.outcome import as_json_text
-from kinematify.vision.ask import ask_pieces
+from kinematify.vision.infer_object import infer
 
 if TYPE_CHECKING:
     from kinematify.batch.batch_inputs import Source
@@ -120,13 +120,8 @@ def _do_steps(
             assembly = load_assembly(model, config=config.assembly, **conversion.reading)
             known["parts"] = len(assembly.parts)
             known["faces"] = sum(len(part.faces) for part in assembly.parts)
-            eyes = None if assembly.segmented else ask_pieces(assembly, conversion.vlm, None, config)
-            if eyes is None:
-                inference = infer(assembly, config=config)
-            else:
-                inference = eyes.applied(infer(eyes.grouping(config), config=config, base=eyes.base))
-                known["asked"] = eyes.described()
-            inference = repaired(inference, settings=conversion.settings)
+            inference = infer(assembly, vlm=conversion.vlm, config=config, settings=conversion.settings)
+            known["asked"] = (inference.vision or {}).get("described", "")
             known["parts"] = len(inference.assembly.parts)  # pieces of a mesh are fewer parts
             known["lengths"], known["warnings"] = assembly.lengths, tuple(inference.warnings)
         if "refine" in steps:

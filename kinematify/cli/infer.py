@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,27 +23,27 @@ from kinematify.cli.inferred import (
 )
 from kinematify.cli.options import collision_option, examples, pieces_option, scale_option, up_option, with_collision
 from kinematify.cli.progress import progress_reporter
-from kinematify.errors import EnvironmentFault, ExitStatus, InputError
+from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from kinematify.assembly.part import Assembly
-    from kinematify.cli.progress import Reporter
     from kinematify.config import Config
-    from kinematify.errors import KinematifyError
-    from kinematify.grouping.groups import Grouping
     from kinematify.pipeline.inference import Inference
-    from kinematify.processes.pool import WorkerProcess
-    from kinematify.refinement.hints import Hint
     from kinematify.robot.robot import Joint
-    from kinematify.validation.run.report import ValidationReport
-    from kinematify.vision.ask import PieceVote
 
-_INFERRED, _REFINED, _WRITTEN, _DRAWN = 0.4, 0.5, 0.75, 0.8
-"""Shares of the whole time after the inference, the refinement, the files and the picture."""
-_LONGEST = 86400.0
-"""So long is waited for the engines, whose stages have limits of their own [s]."""
+_INFERRED, _WRITTEN = 0.5, 0.8
+"""Shares of the whole time after the inference and after the files and the picture."""
+
+
+def _masses(_context: click.Context, _parameter: click.Parameter, given: tuple[str, ...]) -> dict[str, float]:
+    """Masses [kg] by part; no number is a mass that none has."""
+    masses = {}
+    for text in given:
+        part, _, number = text.rpartition("=")
+        try:
+            masses[part] = float(number)
+        except ValueError:
+            masses[part or text] = math.nan
+    return masses
 
 
 @click.command(
@@ -92,7 +91,9 @@ _LONGEST = 86400.0
     help="Density of all parts; without it materials in the files, else that of plastic, with walls where they are "
     "hollow.",
 )
-@click.option("--mass", "masses", multiple=True, metavar="PART=KG", help="Mass of a part. Several may be given.")
+@click.option(
+    "--mass", "masses", multiple=True, callback=_masses, metavar="PART=KG", help="Mass of a part. Several may be given."
+)
 @click.option("--base", metavar="NAME", help="Part that the tree is rooted at, if the choice made is wrong.")
 @click.option(
     "--hint",
@@ -129,7 +130,7 @@ def command(
     groups: Path | None,
     number: int | None,
     density: float | None,
-    masses: tuple[str, ...],
+    masses: dict[str, float],
     base: str | None,
     hints: tuple[str, ...],
     config: str,
@@ -157,143 +158,52 @@ def command(
     model has an error, with 3 if an engine failed, or with --vlm if the vision model gave no answer. OUT is written in
     all cases.
     """
-    from contextlib import ExitStack
-
     from kinematify.processes.lock import writing
-    from kinematify.processes.pool import WorkerProcess
-    from kinematify.processes.start import ONE_THREAD, environment_variables, worker_context
+    from kinematify.processes.start import ONE_THREAD, environment_variables
 
     with environment_variables(ONE_THREAD):
         from kinematify.assembly.load import load_assembly
         from kinematify.config import load_config
-        from kinematify.model.output import check_output
-        from kinematify.pipeline.infer_assembly import infer
-        from kinematify.refinement import repaired
+        from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
+        from kinematify.pipeline.record import write_inference_files
+        from kinematify.vision.infer_object import infer
 
     check_output(out, overwrite=force)
     settings = load_config(config) if seed is None else load_config(config, seed=seed)
     settings = with_collision(settings, collision)
-    with ExitStack() as stack:
-        stack.enter_context(writing(out))
-        beside = None
+    with writing(out), progress_reporter() as progress:
         if not no_validation:
-            beside = WorkerProcess(worker_context())
-            stack.callback(beside.stop)
-            beside.submit(load_validation, _LONGEST)  # beside the inference
-        progress = stack.enter_context(progress_reporter())
+            load_validation()
         use_one_thread(settings)
         progress("reading the parts", 0.0)
         given = load_assembly(
             assembly, config=settings.assembly, up=up, scale=scale, labels=labels, pieces=pieces, number=number
         )
         click.echo(describe_lengths(given), err=True)
-        parts, eyes = _asked_parts(given, groups, (vlm, answer), settings, progress)
-        settings = _weighing(settings, density, masses, parts)
-        stated = _parsed(hints, _names(parts), base)
-        base = base or (eyes.base if eyes else None)
         inference = infer(
-            parts, config=settings, base=base, progress=lambda stage, done: progress(stage, _INFERRED * min(done, 0.99))
-        )
-        if eyes is None and any(joint.confidence < settings.vision.ask_below for joint in inference.joints):
-            progress("asking about the parts" if vlm != "off" else "choosing joints", _INFERRED)
-            eyes = _asked(inference.assembly, vlm, None, settings)
-        inference = eyes.applied(inference) if eyes else inference
-        inference = _with_hints(inference, stated)
-        progress("moving every joint", _INFERRED)
-        inference = repaired(inference, base=base)
-        report = _written(inference, out, overwrite=force, preview=not no_preview, beside=beside, progress=progress)
+            given, groups=groups, answer=answer, vlm=vlm, density=density, masses=masses, base=base, hints=hints,
+            config=settings, progress=lambda stage, done: progress(stage, _INFERRED * done),
+        )  # fmt: skip
+        write_model_folder(
+            out,
+            lambda folder: write_inference_files(
+                inference, folder, preview=not no_preview,
+                progress=lambda stage, done: progress(stage, _INFERRED + (_WRITTEN - _INFERRED) * done),
+            ),
+            overwrite=force,
+        )  # fmt: skip
+        report = None
+        if not no_validation:
+            progress("checking the geometry and loading the file into engines", _WRITTEN)
+            report = validated(out / MODEL_FILE)
         progress("done", 1.0)
+    asked = inference.vision or {}
     if json_to:
         write_answer({**_as_answer(inference, out), **validation_answer(report)}, json_to)
     if json_to != "-":
-        blocks = (eyes.described() if eyes else "", describe(inference, out), describe_validation(report, out))
+        blocks = (asked.get("described", ""), describe(inference, out), describe_validation(report, out))
         click.echo("\n\n".join(block for block in blocks if block))
-    return int(ExitStatus.FAULT) if eyes and eyes.answer.fault else validation_status(report)
-
-
-def _asked_parts(
-    given: Assembly, groups: Path | None, asked: tuple[str, Path | None], settings: Config, progress: Reporter
-) -> tuple[Assembly | Grouping, PieceVote | None]:
-    """The parts, and what a file or a model (`asked`: --vlm and --answer) said of their pieces.
-
-    Raises:
-        InputError: Both a groups file and an answer are given.
-    """
-    vlm, answer = asked
-    if groups and answer:
-        raise InputError("--groups and --answer both say which pieces are one part. Give one of them.")
-    known = answer is None and (given.segmented or groups)
-    progress("reading the parts" if vlm == "off" else "asking about the pieces", 0.0)
-    eyes = None if known else _asked(given, vlm, answer, settings)
-    if eyes is None or given.segmented:
-        return grouped_parts(given, groups, settings, progress), eyes
-    return eyes.grouping(settings), eyes
-
-
-def _asked(given: Assembly, vlm: str, answer: Path | None, settings: Config) -> PieceVote | None:
-    if answer is None and vlm == "off":  # what draws a sheet takes time to load
-        return None
-    from kinematify.vision.ask import ask_pieces
-
-    return ask_pieces(given, vlm, answer, settings)
-
-
-def _names(parts: Assembly | Grouping) -> Sequence[str]:
-    from kinematify.grouping.groups import Grouping
-
-    return parts.assembly.names if isinstance(parts, Grouping) else parts.names
-
-
-def _weighing(settings: Config, density: float | None, masses: Sequence[str], parts: Assembly | Grouping) -> Config:
-    """The settings with the density and the masses that were given.
-
-    Raises:
-        InputError: A mass is not ``PART=KG``, or there is no such part.
-    """
-    stated = {}
-    for text in masses:
-        part, _, number = text.rpartition("=")
-        try:
-            stated[part] = float(number)
-        except ValueError:
-            stated[part] = math.nan
-        if part not in _names(parts) or not 0.0 < stated[part] < math.inf:
-            raise InputError(
-                f"--mass {text} is not the name of a part and its mass in kg, such as {_names(parts)[0]}=1.5. "
-                f"The parts are {', '.join(_names(parts)[:12])}."
-            )
-    model = settings.model.model_copy(update={"density": density, "masses": stated})
-    return settings.model_copy(update={"model": model})
-
-
-def grouped_parts(
-    given: Assembly, groups: Path | None, settings: Config, progress: Callable[[str, float], None]
-) -> Assembly | Grouping:
-    """The parts as they were given, or pieces grouped as a file says or as it is likely."""
-    from kinematify.grouping.groups import group_pieces, read_groups
-
-    if groups is not None:
-        return read_groups(groups, given)
-    if given.segmented:
-        return given
-    progress("grouping the pieces", 0.0)
-    return group_pieces(given, settings.grouping)
-
-
-def _parsed(hints: Sequence[str], parts: Sequence[str], base: str | None) -> Sequence[Hint]:
-    if not hints:  # refinement takes a quarter of a second to load
-        return ()
-    from kinematify.refinement.hints import parse_hints
-
-    return parse_hints(hints, parts, base=base)
-
-
-def _with_hints(inference: Inference, stated: Sequence[Hint]) -> Inference:
-    if not stated:
-        return inference
-    from kinematify.refinement.hints import with_hints
-
-    return with_hints(inference, stated)
+    return int(ExitStatus.FAULT) if asked.get("fault") else validation_status(report)
 
 
 def use_one_thread(config: Config) -> None:
@@ -302,49 +212,6 @@ def use_one_thread(config: Config) -> None:
         import torch
 
         torch.set_num_threads(1)
-
-
-def _written(
-    inference: Inference, out: Path, *, overwrite: bool, preview: bool, beside: WorkerProcess | None, progress: Reporter
-) -> ValidationReport | KinematifyError | None:
-    """Write the model folder, its picture while engines load the model, and return what is wrong with the model."""
-    from kinematify.model.output import MODEL_FILE, write_model_folder
-    from kinematify.pipeline.record import write_inference_files, write_preview
-
-    found: Any = None
-
-    def write(folder: Path) -> None:
-        nonlocal found
-        progress("fitting collision geometry and writing the files", _REFINED)
-        write_inference_files(inference, folder, preview=False)
-        if beside is not None:
-            beside.submit(partial(validated, folder / MODEL_FILE), _LONGEST)
-        if preview:
-            progress("drawing the picture", _WRITTEN)
-            write_preview(inference, folder)
-        if beside is not None:
-            progress("checking the geometry and loading the file into engines", _DRAWN)
-            found = _last_answer(beside)
-
-    write_model_folder(out, write, overwrite=overwrite)
-    from kinematify.processes.pool import TaskFailure
-
-    if not isinstance(found, TaskFailure):
-        answer: ValidationReport | KinematifyError | None = found
-        return answer
-    return EnvironmentFault(f"The engines ended before they had answered: {found.message}.")
-
-
-def _last_answer(worker: WorkerProcess) -> Any:
-    """Return the answer to the second of two tasks; the first one loads what that needs."""
-    from kinematify.processes.pool import wait_for
-
-    alive = True
-    for _ in range(2):
-        if alive:
-            wait_for([worker])
-            answer, alive = worker.result()
-    return answer
 
 
 def _as_answer(inference: Inference, out: Path) -> dict[str, Any]:

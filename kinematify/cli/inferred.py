@@ -84,12 +84,12 @@ def validated(urdf: Path) -> ValidationReport | KinematifyError:
 
 
 def load_validation() -> None:
-    """Load what `validated` needs, in a process that is asked for it later."""
+    """Start to load what `validated` needs, on another core than the inference."""
     from kinematify.simulation.engines import DEFAULT_ENGINES
-    from kinematify.validation.isolation import load_imports
+    from kinematify.validation.isolation import start_server
     from kinematify.validation.run.plan import needed, stages_of
 
-    load_imports(needed(stages_of(DEFAULT_ENGINES), _checks()))
+    start_server(needed(stages_of(DEFAULT_ENGINES), _checks()))
 
 
 def _checks() -> set[str]:

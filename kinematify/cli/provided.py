@@ -23,9 +23,9 @@ from kinematify.generate.providers.language_model import LanguageModel, language
 from kinematify.generate.providers.rodin import RodinSource
 from kinematify.generate.providers.source import RecordingSource, ReplayedSource, check_prompt
 from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
-from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference_files
 from kinematify.validation.run import validate
+from kinematify.vision.infer_object import infer
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -72,18 +72,9 @@ def write_inference_files(
         (folder / GROUPS_FILE).write_text(inference.grouping.to_json(), encoding="utf-8")
     if preview:
         report("drawing the picture", 0.7)
-        write_preview(inference, folder)
+        from kinematify.model.preview import render_preview  # noqa: PLC0415 - a third of a second
 
-
-def write_preview(inference: Inference, folder: Path) -> None:
-    """Draw the picture that belongs to a model folder into an existing folder.
-
-    Raises:
-        OSError: It cannot be written.
-    """
-    from kinematify.model.preview import render_preview  # noqa: PLC0415 - a third of a second
-
-    render_preview(inference.model, folder / PREVIEW_FILE, inference.config.preview)
+        render_preview(inference.model, folder / PREVIEW_FILE, inference.config.preview)
 
 
 def file_hashes(folder: Path) -> dict[str, str]:

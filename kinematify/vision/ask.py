@@ -98,10 +98,10 @@ class PieceVote:
             "record": None if self.record is None else {"right": self.record.right, "asked": self.record.asked},
             "trust": self.trust, "questions": 1, "tokens": self.answer.tokens, "object": self.answer.about,
             "named": self.answer.named, "taken": [part.name for part in self.answer.parts],
-            "fault": self.answer.fault, "joints": results,
+            "fault": self.answer.fault, "described": self._described(), "joints": results,
         }  # fmt: skip
 
-    def described(self) -> str:
+    def _described(self) -> str:
         """Who answered, what that cost, and what its record is."""
         if self.answer.fault:
             return f"{self.voter} gave no answer, so geometry decided alone: {self.answer.fault}"
