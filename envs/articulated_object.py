@@ -17,7 +17,7 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.envs.bundled import DEFAULT, FAMILY_PREFIX, PREFIX, write_bundled
 from kinematify.errors import InputError
-from kinematify.geometry.scene import read_scene, transformed
+from kinematify.geometry.scene import read_scene
 from kinematify.manipulation.grasp import moved_bodies, search_grasps
 from kinematify.manipulation.plan_request import Hold
 from kinematify.model.collision import collides_as_it_is
@@ -26,6 +26,7 @@ from kinematify.model.output import urdf_of
 from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rigid_groups
+from kinematify.robot.transforms import transformed
 from kinematify.simulation.engines import engines_that_hold
 
 if TYPE_CHECKING:

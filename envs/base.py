@@ -16,7 +16,7 @@ from kinematify.envs.goal import Goal
 from kinematify.envs.joint_dynamics import draw, drawing
 from kinematify.envs.model_verdict import require_valid
 from kinematify.errors import InputError
-from kinematify.geometry.scene import transformed
+from kinematify.robot.transforms import transformed
 from kinematify.simulation.engines import require_engine
 from kinematify.versions import require
 

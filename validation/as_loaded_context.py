@@ -390,7 +390,7 @@ class AsLoadedContext:
         """Every joint at the hand's speed towards the wider side of its range, followers with it [rad/s or m/s]."""
         speeds = dict.fromkeys(self.loaded.joints, 0.0)
         for travel in self.travels:
-            up = travel.upper - travel.rest >= travel.rest - travel.lower
+            up = travel.far_end == travel.upper
             for name, ratio in self.ratios(travel).items():
                 speeds[name] += ratio * (self.speed(travel) if up else -self.speed(travel))
         return speeds

@@ -22,7 +22,7 @@ from scipy.spatial import cKDTree
 from kinematify.assembly.part import Assembly, Part
 from kinematify.contact.build_graph import near_pairs
 from kinematify.robot.exact_faces import joined_faces
-from kinematify.robot.vectors import lengths_of
+from kinematify.robot.vectors import as_one, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -71,11 +71,11 @@ def _one(assembly: Assembly, group: tuple[int, ...]) -> Part:
     if len(group) == 1:
         return main
     parts = [assembly.parts[index] for index in group]
-    starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    vertices, faces = as_one((part.vertices, part.faces) for part in parts)
     return Part(
         name=main.name,
-        vertices=np.concatenate([part.vertices for part in parts]),
-        faces=np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=False)]),
+        vertices=vertices,
+        faces=faces,
         color=main.color,
         density=main.density,
         exact=joined_faces([part.exact for part in parts]),

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import fcl
 import numpy as np
 
-from kinematify.geometry.scene import inverse, transformed
+from kinematify.geometry.scene import inverse
+from kinematify.robot.transforms import transformed
 from kinematify.robot.vectors import all_three, lengths_of
 
 if TYPE_CHECKING:

@@ -13,7 +13,8 @@ import numpy as np
 from kinematify.geometry.solid import Solid, merged_corners
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import rigid_groups
-from kinematify.robot.vectors import referenced
+from kinematify.robot.transforms import transformed
+from kinematify.robot.vectors import as_one, referenced
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -296,7 +297,7 @@ def _solid(
     thin: bool,
 ) -> Solid:
     """The solid of some shapes, the known one where one was made of the same numbers."""
-    vertices, faces = _together(shapes)
+    vertices, faces = as_one(shapes)
     made_of = blake2b(repr((unit, len(vertices))).encode())
     made_of.update(vertices.tobytes())
     made_of.update(faces.tobytes())
@@ -309,17 +310,9 @@ def _solid(
             unit=unit,
             hole=settings.hole,
             points=settings.points,
-            measured=(lambda: _together([_thinned(*shape, settings.most_faces) for shape in shapes]))
-            if large
-            else None,
+            measured=(lambda: as_one([_thinned(*shape, settings.most_faces) for shape in shapes])) if large else None,
         )
     return known[key]
-
-
-def _together(shapes: Sequence[tuple[FloatArray, IntArray]]) -> tuple[FloatArray, IntArray]:
-    starts = np.cumsum([0, *(len(vertices) for vertices, _ in shapes)])
-    vertices = np.concatenate([vertices for vertices, _ in shapes])
-    return vertices, np.concatenate([faces + start for (_, faces), start in zip(shapes, starts, strict=False)])
 
 
 def _thinned(vertices: FloatArray, faces: IntArray, most: int) -> tuple[FloatArray, IntArray]:
@@ -332,11 +325,6 @@ def _thinned(vertices: FloatArray, faces: IntArray, most: int) -> tuple[FloatArr
     if len(faces) > most:
         vertices, faces = fast_simplification.simplify(vertices, faces, target_count=most)
     return np.asarray(vertices, dtype=np.float64), np.asarray(faces, dtype=np.int64)
-
-
-def transformed(points: FloatArray, T: FloatArray) -> FloatArray:
-    """Points (n, 3) moved by a transform (4, 4)."""
-    return np.asarray(points @ T[:3, :3].T + T[:3, 3])
 
 
 def box_corners(solid: Solid) -> FloatArray:

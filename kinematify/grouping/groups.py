@@ -18,6 +18,7 @@ from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.joints.choice.scorer import MOVING_WEIGHTS, PIECES_WEIGHTS, shipped_scorer
 from kinematify.robot.appearance import joined
 from kinematify.robot.exact_faces import joined_faces
+from kinematify.robot.vectors import as_one
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -491,11 +492,11 @@ def _main_piece(assembly: Assembly, group: IntArray) -> int:
 def _joined(pieces: Sequence[Part], name: str, main: Part) -> Part:
     if len(pieces) == 1:
         return replace(pieces[0], name=name)
-    starts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
+    vertices, faces = as_one((piece.vertices, piece.faces) for piece in pieces)
     return Part(
         name=name,
-        vertices=np.concatenate([piece.vertices for piece in pieces]),
-        faces=np.concatenate([piece.faces + start for piece, start in zip(pieces, starts, strict=False)]),
+        vertices=vertices,
+        faces=faces,
         color=main.color,
         appearance=joined([piece.appearance for piece in pieces], [len(piece.faces) for piece in pieces]),
         density=main.density,

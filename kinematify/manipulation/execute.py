@@ -7,7 +7,7 @@ part but, with contact, for the piece between the pads (`grip_piece`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -77,13 +77,6 @@ class Reference:
     """Step at which the arm has arrived at the grasp and the fingers close."""
     pulls: int
     """Step at which the pull begins."""
-    arrives: int
-    """Step at which the pull has arrived."""
-
-    @property
-    def steps(self) -> int:
-        """Number of time steps."""
-        return len(self.arm)
 
 
 def timed(motion: Motion, fastest: FloatArray, settings: ExecutionSettings, step: float) -> Reference:
@@ -102,8 +95,7 @@ def timed(motion: Motion, fastest: FloatArray, settings: ExecutionSettings, step
     settling = round(settings.settle_seconds / step)
     arm = np.concatenate([reach, np.tile(reach[-1], (closing, 1)), pull, np.tile(pull[-1], (settling, 1))])
     speed = np.gradient(arm, step, axis=0) if len(arm) > 1 else np.zeros_like(arm)
-    grasped, pulls = len(reach), len(reach) + closing
-    return Reference(arm=arm, speed=speed, grasped=grasped, pulls=pulls, arrives=pulls + len(pull))
+    return Reference(arm=arm, speed=speed, grasped=len(reach), pulls=len(reach) + closing)
 
 
 def _along(path: FloatArray, allowed: FloatArray, least: float, step: float) -> FloatArray:
@@ -231,20 +223,10 @@ def execute(loaded: Loaded, settings: ExecutionSettings, *, engine: str, hold: H
     run = _Run(loaded, settings, engine, hold)
     reference = timed(loaded.motion, loaded.fastest(settings), settings, settings.time_step)
     try:
-        values, log = run.tracked(reference)
+        values = run.tracked(reference)
     finally:
         run.world.close()
-    return _judged(loaded, log, values, reference, settings, engine=engine, hold=hold)
-
-
-@dataclass(kw_only=True)
-class _Log:
-    """Log of an execution."""
-
-    frames: list[Frame] = field(default_factory=list)
-    depth: float = 0.0
-    deepest: tuple[str, str] | None = None
-    tracking: float = 0.0
+    return run.judged(values, reference, engine)
 
 
 class _Run:
@@ -252,6 +234,9 @@ class _Run:
 
     def __init__(self, loaded: Loaded, settings: ExecutionSettings, engine: str, hold: Hold) -> None:
         self._motion, self._settings, self._hold = loaded.motion, settings, hold
+        self._frames: list[Frame] = []
+        self._depth, self._tracking = 0.0, 0.0
+        self._deepest: tuple[str, str] | None = None
         self._robot, self._object = (LeaderMechanism(robot=model) for model in (loaded.robot, loaded.object))
         start = {**self._motion.start, self._motion.joint: float(self._motion.opened[0])}
         rest = rest_configuration(loaded.object)
@@ -303,89 +288,63 @@ class _Run:
             ),
         )
 
-    def tracked(self, reference: Reference) -> tuple[FloatArray, _Log]:
-        """Track the reference; returns the value of the object's joint after every step, shape (steps,), and a log."""
+    def tracked(self, reference: Reference) -> FloatArray:
+        """Track the reference; returns the value of the object's joint after every step, shape (steps,)."""
         settings, world = self._settings, self.world
         every = max(1, round(1.0 / (settings.frame_rate * settings.time_step)))
-        values, log = np.full(reference.steps, np.nan), _Log()
-        for step in range(reference.steps):
+        steps = len(reference.arm)
+        values = np.full(steps, np.nan)
+        for step, wanted in enumerate(reference.arm):
             if step == reference.grasped and self._hold is Hold.CONTACT:
                 self._fingers = self._squeezed
             if step == reference.pulls:
-                self._take_hold()
-            world.command(np.concatenate([reference.arm[step], self._fingers]), reference.speed[step])
+                world.release((self._motion.joint,))
+                if self._hold is Hold.WELD:
+                    world.weld()
+            world.command(np.concatenate([wanted, self._fingers]), reference.speed[step])
             world.step()
             if not world.stable() or _BLOWN_UP & world.warnings().keys():
                 break
             values[step] = world.values()[self._opened]
-            arm = world.driven()[0][: len(reference.arm[step])]
-            log.tracking = max(log.tracking, float(np.abs(arm - reference.arm[step]).max()))
-            if (contact := world.deeper(log.depth)) is not None:
-                log.depth, log.deepest = contact
-            if step % every == 0 or step == reference.steps - 1:
-                log.frames.append(self._frame(step * settings.time_step))
-        return values, log
+            self._tracking = max(self._tracking, float(np.abs(world.driven()[0][: len(wanted)] - wanted).max()))
+            if (contact := world.deeper(self._depth)) is not None:
+                self._depth, self._deepest = contact
+            if step % every == 0 or step == steps - 1:
+                both = (self._robot, world.robot_values()), (self._object, world.values())
+                robot, articulated = (dict(zip(of.joints, at.tolist(), strict=True)) for of, at in both)
+                self._frames.append(Frame(time=step * settings.time_step, robot=robot, object=articulated))
+        return values
 
-    def _take_hold(self) -> None:
-        """Release the joint; with a weld, fix the hand to the part."""
-        self.world.release((self._motion.joint,))
-        if self._hold is Hold.WELD:
-            self.world.weld()
-
-    def _frame(self, seconds: float) -> Frame:
-        robot, articulated = (
-            dict(zip(mechanism.joints, values.tolist(), strict=True))
-            for mechanism, values in (
-                (self._robot, self.world.robot_values()),
-                (self._object, self.world.values()),
-            )
+    def judged(self, values: FloatArray, reference: Reference, engine: str) -> Execution:
+        """Judge the run by the value of the object's joint after every step [rad or m], shape (steps,)."""
+        settings, opened = self._settings, self._motion.opened
+        way = float(opened[-1] - opened[0])
+        tail = max(2, round(0.2 * settings.settle_seconds / settings.time_step))
+        share = float(values[-1] - opened[0]) / way if way else 1.0
+        speed = float(np.ptp(values[-tail:])) / (tail * settings.time_step) / max(abs(way), 1e-9)
+        reason = None
+        if not np.isfinite(values).all():
+            share, speed, reason = 0.0, float("inf"), "the simulation blew up"
+        elif share < settings.opened:
+            reason = f"the joint stops at {max(share, 0.0):.0%} of the planned way"
+        elif speed > settings.rest_speed:
+            reason = f"the joint still moves at the end, by {speed:.0%} of its way per second"
+        elif self._depth > settings.depth:
+            reason = f"{' and '.join(self._deepest or ())} get {self._depth * 1e3:.1f} mm into each other"
+        return Execution(
+            engine=engine,
+            hold=self._hold,
+            share=share,
+            rest_speed=speed,
+            depth=self._depth,
+            deepest=self._deepest,
+            tracking=self._tracking,
+            success=reason is None,
+            reason=reason,
+            simulated=len(values) * settings.time_step,
+            grasped=reference.pulls * settings.time_step,
+            frames=tuple(self._frames),
         )
-        return Frame(time=seconds, robot=robot, object=articulated)
-
-
-def _judged(
-    loaded: Loaded, log: _Log, values: FloatArray, reference: Reference, settings: ExecutionSettings, *, engine: str,
-    hold: Hold,
-) -> Execution:  # fmt: skip
-    """Judge a run.
-
-    Args:
-        loaded: What was run.
-        log: What was noted down.
-        values: Value of the object's joint after every step [rad or m], shape (steps,).
-        reference: What was commanded.
-        settings: Step and tolerances.
-        engine: Its name.
-        hold: How the part was held.
-    """
-    opened = loaded.motion.opened
-    way = float(opened[-1] - opened[0])
-    tail = max(2, round(0.2 * settings.settle_seconds / settings.time_step))
-    share = float(values[-1] - opened[0]) / way if way else 1.0
-    speed = float(np.ptp(values[-tail:])) / (tail * settings.time_step) / max(abs(way), 1e-9)
-    reason = None
-    if not np.isfinite(values).all():
-        share, speed, reason = 0.0, float("inf"), "the simulation blew up"
-    elif share < settings.opened:
-        reason = f"the joint stops at {max(share, 0.0):.0%} of the planned way"
-    elif speed > settings.rest_speed:
-        reason = f"the joint still moves at the end, by {speed:.0%} of its way per second"
-    elif log.depth > settings.depth:
-        reason = f"{' and '.join(log.deepest or ())} get {log.depth * 1e3:.1f} mm into each other"
-    return Execution(
-        engine=engine,
-        hold=hold,
-        share=share,
-        rest_speed=speed,
-        depth=log.depth,
-        deepest=log.deepest,
-        tracking=log.tracking,
-        success=reason is None,
-        reason=reason,
-        simulated=reference.steps * settings.time_step,
-        grasped=reference.pulls * settings.time_step,
-        frames=tuple(log.frames),
-    )
 
 
 def _body(robot: Robot, link: str) -> frozenset[str]:

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from kinematify.geometry.scene import Scene
     from kinematify.manipulation.grasp_search import Candidates, Tally
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.mechanism import Travel
 
     BoolArray = NDArray[np.bool_]
 
@@ -166,11 +165,6 @@ def moved_bodies(scene: Scene, joint: str) -> tuple[list[int], list[int]]:
     return own, carried
 
 
-def opening_sign(travel: Travel) -> float:
-    """Direction in which a joint opens: towards the farther end of its range from rest."""
-    return 1.0 if travel.upper - travel.rest >= travel.rest - travel.lower else -1.0
-
-
 class _Ranked:
     """Candidates with what their rank depends on."""
 
@@ -184,7 +178,7 @@ class _Ranked:
         self.T_root_link = poses[described.child]
         self.axis = self.T_root_link[:3, :3] @ described.axis
         travel = next(t for t in scene.travels if t.joint == joint)
-        self.sign = opening_sign(travel)
+        self.sign = 1.0 if travel.far_end == travel.upper else -1.0
         self.turns = travel.turns
         self.lever, pull = self._lever_and_pull()
         self.plate = search.is_plate(candidates)

@@ -16,8 +16,7 @@ from scipy.sparse.csgraph import connected_components
 
 from kinematify.geometry.rays import RayScene
 from kinematify.geometry.sampling import curve_order, place_samples
-from kinematify.geometry.scene import transformed
-from kinematify.robot.transforms import rotation_about
+from kinematify.robot.transforms import rotation_about, transformed
 from kinematify.robot.vectors import triangle_normals
 
 if TYPE_CHECKING:

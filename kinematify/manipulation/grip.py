@@ -13,8 +13,8 @@ import numpy as np
 from trimesh.intersections import slice_faces_plane
 
 from kinematify.geometry.convex import convex_hull, thickened
-from kinematify.geometry.scene import transformed
 from kinematify.robot.robot import forward_kinematics, rigid_groups
+from kinematify.robot.transforms import transformed
 from kinematify.robot.vectors import referenced
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def grip_piece(
     high = np.array([0.5 * settings.pad_width, 0.5 * grasp.spread, 0.5 * settings.pad_length])
     low = -high
     back = np.asarray(np.linalg.inv(grasp.T_link_grasp), dtype=np.float64)
-    points = _clipped(_triangles(model, link, grasp.held, values) @ back[:3, :3].T + back[:3, 3], low, high)
+    points = _clipped(transformed(_triangles(model, link, grasp.held, values), back), low, high)
     if not len(points):
         size = np.array([high[0], 0.5 * grasp.width, high[2]])
         points = size * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])

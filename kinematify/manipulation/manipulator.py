@@ -16,6 +16,7 @@ from kinematify.errors import InputError
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Joint, Link, forward_kinematics, joint_values, rest_configuration, rigid_groups
+from kinematify.robot.transforms import transformed
 from kinematify.robot.vectors import referenced
 from kinematify.robot.write import write_robot
 
@@ -339,7 +340,7 @@ class _Hand:
             declared, T = self.robot.link_by_name[link], poses[link]
             for shape in declared.collisions or declared.visuals:
                 used = referenced(shape.mesh.vertices, shape.mesh.faces)
-                found.append(used @ T[:3, :3].T + T[:3, 3])
+                found.append(transformed(used, T))
         return np.concatenate(found)
 
     def _closing(self, first: FloatArray, second: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ first, as a person would, and finds the object standing like that.
 from __future__ import annotations
 
 import time
+from collections import Counter
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ from kinematify.geometry.rest_pairs import DepthAllowance
 from kinematify.geometry.sweep import Sweeper
 from kinematify.manipulation.collision_world import CollisionWorld
 from kinematify.manipulation.execute import Motion
-from kinematify.manipulation.grasp import moved_bodies, opening_sign, search_grasps
+from kinematify.manipulation.grasp import moved_bodies, search_grasps
 from kinematify.manipulation.plan_request import Failure
 from kinematify.manipulation.pull import ITSELF, Pull, Puller, Stop
 from kinematify.manipulation.robot_place import Places, object_box, object_motion
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from kinematify.config.planning_settings import PlanSettings
     from kinematify.config.task_settings import TaskSettings
     from kinematify.geometry.scene import Scene
-    from kinematify.manipulation.grasp import GraspReport
     from kinematify.manipulation.kinematics import Arm
     from kinematify.manipulation.manipulator import TaskRobot
     from kinematify.manipulation.robot_place import RobotPlacement
@@ -38,34 +38,24 @@ if TYPE_CHECKING:
     from kinematify.robot.mechanism import Travel
 
 
-@dataclass(frozen=True, kw_only=True)
-class FreeRange:
-    """Range that the object lets one of its joints go, whoever pulls."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class OpenedObject:
+    """An object as it is when the turn of a joint comes, and how far it lets the joint go, whoever pulls."""
 
+    scene: Scene
+    first: Mapping[str, float] = field(default_factory=dict)
+    """Joints that were opened before, and where to [rad or m]."""
     share: float = 1.0
-    """Of the way from rest to the open end, in [0, 1]."""
+    """Of the way from rest to the open end that is free, in [0, 1]."""
     pair: tuple[str, str] | None = None
     """Who meets at the end of it."""
     helpers: tuple[int, ...] = ()
     """Other leaders that move the two against each other."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class OpenedObject:
-    """An object as it is when the turn of a joint comes."""
-
-    scene: Scene
-    freedom: FreeRange
-    """Of the joint, in this scene."""
-    first: Mapping[str, float] = field(default_factory=dict)
-    """Joints that were opened before, and where to [rad or m]."""
-
-
 def pull_end(travel: Travel, settings: PlanSettings) -> float:
     """Value at which a joint counts as open: the farther end of its range from rest [rad or m]."""
-    if not travel.limited:
-        return travel.rest + settings.range_turn
-    return travel.upper if opening_sign(travel) > 0.0 else travel.lower
+    return travel.far_end if travel.limited else travel.rest + settings.range_turn
 
 
 def clear_way(scene: Scene, joint: str, settings: PlanSettings) -> OpenedObject:
@@ -80,27 +70,23 @@ def clear_way(scene: Scene, joint: str, settings: PlanSettings) -> OpenedObject:
         The object with the others opened; as it is where that would not help.
     """
     leader = [travel.joint for travel in scene.travels].index(joint)
-    start = found = OpenedObject(scene=scene, freedom=_freedom(scene, leader, settings))
+    start = found = _freedom(scene, leader, settings, {})
     for _ in range(settings.openers):
-        if found.freedom.share >= settings.opened:
+        if found.share >= settings.opened:
             break
-        steps = [_with(found, scene, helper, leader, settings) for helper in found.freedom.helpers]
-        better = [step for step in steps if step.freedom.share > found.freedom.share]
-        if not better:
+        steps = []
+        for helper in found.helpers:
+            travel = scene.travels[helper]
+            first = {**found.first, travel.joint: pull_end(travel, settings)}
+            steps.append(_freedom(scene.standing(first), leader, settings, first))
+        best = max(steps, key=lambda step: step.share, default=found)
+        if best.share <= found.share:
             break
-        found = max(better, key=lambda step: step.freedom.share)
-    return found if found.freedom.share >= settings.opened else start
+        found = best
+    return found if found.share >= settings.opened else start
 
 
-def _with(before: OpenedObject, scene: Scene, helper: int, leader: int, settings: PlanSettings) -> OpenedObject:
-    """Open one more joint."""
-    travel = scene.travels[helper]
-    first = {**before.first, travel.joint: pull_end(travel, settings)}
-    opened = scene.standing(first)
-    return OpenedObject(scene=opened, freedom=_freedom(opened, leader, settings), first=first)
-
-
-def _freedom(scene: Scene, leader: int, settings: PlanSettings) -> FreeRange:
+def _freedom(scene: Scene, leader: int, settings: PlanSettings, first: Mapping[str, float]) -> OpenedObject:
     """Return how far a leader goes while all others rest."""
     overlap = OverlapQueries(scene)
     sweep = Sweeper(scene, overlap, DepthAllowance(scene, overlap)).sweep(leader)
@@ -110,8 +96,10 @@ def _freedom(scene: Scene, leader: int, settings: PlanSettings) -> FreeRange:
     deep = scene.settings.wrong * scene.size
     meeting = next((m for m in side.meetings if m.inside and m.depth > deep), None)
     if meeting is None:
-        return FreeRange()
-    return FreeRange(
+        return OpenedObject(scene=scene, first=first)
+    return OpenedObject(
+        scene=scene,
+        first=first,
         share=float(np.clip((meeting.first - travel.rest) / (end - travel.rest), 0.0, 1.0)),
         pair=scene.name(meeting.pair),
         helpers=tuple(sorted(scene.between(meeting.pair) - {leader})),
@@ -123,8 +111,6 @@ class PullPlan:
     """Result of the plan for one joint."""
 
     joint: str
-    turns: bool
-    grasps: GraspReport | None
     place: RobotPlacement | None
     T_world_object: FloatArray
     reach: FloatArray | None
@@ -133,8 +119,6 @@ class PullPlan:
     """Arm joints from the grasp on [rad or m], shape (m, dof)."""
     opened: FloatArray | None
     """Value of the object's joint in each row of `pull` [rad or m], shape (m,)."""
-    way: float
-    """Longest way of a point of what is moved, over the whole range [m]."""
     fraction: float
     """How much of the declared range opens, in [0, 1]."""
     free: float
@@ -148,33 +132,11 @@ class PullPlan:
     """Why it failed, a clause; empty if it did not."""
     tried: int
     """Pairs of place and grasp that were looked at closely."""
-    searched: bool
-    """The pull comes from the search on the constraint manifold."""
     manipulability: float
     """Smallest along the pull; 0 without one."""
     on_column: bool
     """The robot stands on a column of the height of its root link."""
     seconds: float
-
-
-@dataclass(kw_only=True)
-class _Tried:
-    """Memory of the search."""
-
-    pulls: list[Pull] = field(default_factory=list)
-    stops: dict[str, int] = field(default_factory=dict)
-    words: dict[str, Stop] = field(default_factory=dict)
-    ways: dict[str, int] = field(default_factory=dict)
-    count: int = 0
-
-    def note(self, stop: Stop) -> None:
-        self.stops[stop.kind] = self.stops.get(stop.kind, 0) + 1
-        self.words.setdefault(stop.kind, stop)
-
-    @property
-    def usual(self) -> Stop | None:
-        """Return what stopped it most often."""
-        return self.words[max(self.stops, key=lambda kind: self.stops[kind])] if self.stops else None
 
 
 def plan_pull(
@@ -201,14 +163,7 @@ def plan_pull(
     Raises:
         InputError: The object has no such joint, or `point` is not on what it moves.
     """
-    started = time.process_time()
-    way = _longest_way(scene, joint, settings.plan)
-    moves = way >= settings.plan.least_way
-    clearing = clear_way(scene, joint, settings.plan) if moves else OpenedObject(scene=scene, freedom=FreeRange())
-    planning = JointPlanning(
-        arm, clearing, joint, settings, point=point, base=base, seed=seed, started=started, way=way
-    )
-    return planning.run()
+    return _Planning(arm, scene, joint, settings.plan, point=point, base=base, seed=seed).run()
 
 
 def depend(plans: Sequence[PullPlan]) -> tuple[PullPlan, ...]:
@@ -240,61 +195,46 @@ def _longest_way(scene: Scene, joint: str, settings: PlanSettings) -> float:
     return max(ways)
 
 
-class JointPlanning:
-    """One joint of an object."""
+class _Planning:
+    """One joint of an object; see `plan_pull`."""
 
     def __init__(
-        self, arm: Arm, clearing: OpenedObject, joint: str, settings: TaskSettings, *, way: float, started: float,
-        point: FloatArray | None, base: FloatArray | None, seed: int,
+        self, arm: Arm, scene: Scene, joint: str, plan: PlanSettings, *, point: FloatArray | None,
+        base: FloatArray | None, seed: int,
     ) -> None:  # fmt: skip
-        """Keep what is given; see `plan_pull`.
-
-        Args:
-            arm: The robot.
-            clearing: The object.
-            joint: Joint that leads.
-            settings: Thresholds.
-            way: Longest way of a point that the joint moves [m].
-            started: Processor time at which planning began [s].
-            point: Where the part is held.
-            base: Where the robot stands.
-            seed: Of all that is random.
-        """
-        scene = clearing.scene
-        self._arm, self._clearing, self._scene, self._joint = arm, clearing, scene, joint
-        self._settings, self._plan, self._seed = settings, settings.plan, seed
-        self._point, self._started, self._way = point, started, way
-        self._travel = next(travel for travel in scene.travels if travel.joint == joint)
-        self._motion = object_motion(scene, joint, pull_end(self._travel, self._plan), self._plan)
+        self._started = time.process_time()
+        self._moves = _longest_way(scene, joint, plan) >= plan.least_way
+        self._opened = clear_way(scene, joint, plan) if self._moves else OpenedObject(scene=scene)
+        self._arm, self._joint, self._plan, self._point, self._seed = arm, joint, plan, point, seed
+        opened = self._opened.scene
+        travel = next(travel for travel in opened.travels if travel.joint == joint)
+        self._motion = object_motion(opened, joint, pull_end(travel, plan), plan)
         self._base = None if base is None else self._motion.T_world_object @ base
-        self._places = Places(arm, self._motion, object_box(scene), self._plan)
-        self._grasps: GraspReport | None = None
-        self._tried = _Tried()
+        self._places = Places(arm, self._motion, object_box(opened), plan)
+        self._tried = 0
+        self._stops: list[Stop] = []
+        self._ways: Counter[str] = Counter()
 
     def run(self) -> PullPlan:
         """Look at the object first, then at grasps, then at places."""
-        if self._way < self._plan.least_way:
+        if not self._moves:
             words = f"it moves what it carries by less than {self._plan.least_way * 1e3:.0f} mm"
             return self._ended(Failure.NO_WAY, words)
-        free = self._clearing.freedom
+        free = self._opened
         if free.pair is not None and free.share < self._plan.opened:
             failure = Failure.COVERED if free.helpers else Failure.JAMS
             words = f"{free.pair[0]} meets {free.pair[1]} of the object"
             return self._ended(failure, words, stop=Stop(kind=ITSELF, words=words, pair=free.pair), fraction=free.share)
-        self._grasps = search_grasps(
-            self._scene, self._joint, self._arm.robot.opening, point=self._point,
-            seed=self._seed,
-        )  # fmt: skip
-        if not self._grasps.grasps:
-            return self._ended(Failure.NO_GRASP, self._grasps.reason or "")
-        world = CollisionWorld(self._arm, self._scene, self._joint, self._plan)
-        puller = Puller(self._arm, world, self._motion, self._plan)
-        return self._search(world, puller)
+        opening = self._arm.robot.opening
+        found = search_grasps(free.scene, self._joint, opening, point=self._point, seed=self._seed)
+        if not found.grasps:
+            return self._ended(Failure.NO_GRASP, found.reason or "")
+        world = CollisionWorld(self._arm, free.scene, self._joint, self._plan)
+        places = self._places.ranked(found.grasps, self._base)
+        return self._search(world, Puller(self._arm, world, self._motion, self._plan), places)
 
-    def _search(self, world: CollisionWorld, puller: Puller) -> PullPlan:
+    def _search(self, world: CollisionWorld, puller: Puller, places: list[RobotPlacement]) -> PullPlan:
         """Try the most promising places until one lets the arm open the joint."""
-        assert self._grasps is not None
-        places = self._places.ranked(self._grasps.grasps, self._base)
         column = self._places.on_column
         best: tuple[Pull, FloatArray] | None = None
         for pull in self._pulls(puller, places, column=column):
@@ -308,7 +248,11 @@ class JointPlanning:
                 break
         if best is None:
             return self._nothing()
-        return self._plan_of(*best)
+        pull, way = best
+        if pull.fraction >= self._plan.opened:
+            return self._ended(None, "", stop=pull.stop, pull=pull, way=way, fraction=pull.fraction)
+        words = pull.stop.words if pull.stop else ""
+        return self._ended(Failure.STOPS, words, stop=pull.stop, pull=pull, way=way, fraction=pull.fraction)
 
     def _pulls(self, puller: Puller, places: list[RobotPlacement], *, column: bool) -> Iterator[Pull]:
         """Pulls as they are found: followed from the middle, then searched for, then followed as far as it goes."""
@@ -318,15 +262,15 @@ class JointPlanning:
             for place in chosen:
                 if self._spent > share * self._plan.seconds:
                     break
-                self._tried.count += 1
+                self._tried += 1
                 found = puller.follow(place, column=column, from_start=from_start)
                 if isinstance(found, Stop):
-                    self._tried.note(found)
+                    self._stops.append(found)
                     continue
                 if found.stop is None or found.fraction >= self._plan.opened:
                     yield found
                 else:
-                    self._tried.note(found.stop)
+                    self._stops.append(found.stop)
                     partial.append(found)
             if not from_start:
                 yield from self._searched(puller, partial, column=column)
@@ -346,25 +290,20 @@ class JointPlanning:
         world.place(pull.place.T_world_base, self._motion.T_world_object, column=column)
         world.pose_object(self._motion.body_poses[0], pull.place.grasp.spread)
         reach = plan_reach(self._arm, world, pull.path[0], self._plan, seed=self._seed)
-        if reach.reason is not None:
-            self._tried.pulls.append(pull)
-            self._tried.ways[reach.reason] = self._tried.ways.get(reach.reason, 0) + 1
-        return reach.path
+        if isinstance(reach, str):
+            self._ways[reach] += 1
+            return None
+        return reach
 
     def _nothing(self) -> PullPlan:
         """No way to any grasp."""
-        if self._tried.ways:
-            return self._ended(Failure.NO_PATH, max(self._tried.ways, key=lambda why: self._tried.ways[why]))
-        usual = self._tried.usual
+        if self._ways:
+            return self._ended(Failure.NO_PATH, self._ways.most_common(1)[0][0])
+        kinds = Counter(stop.kind for stop in self._stops).most_common(1)
+        usual = next((stop for stop in self._stops if stop.kind == kinds[0][0]), None)
         late = " before time ran out" if self._spent > self._plan.seconds else ""
-        words = f"none of {self._tried.count} places and grasps{late}" + (f"; mostly {usual.words}" if usual else "")
+        words = f"none of {self._tried} places and grasps{late}" + (f"; mostly {usual.words}" if usual else "")
         return self._ended(Failure.NO_REACH, words, stop=usual)
-
-    def _plan_of(self, pull: Pull, way: FloatArray) -> PullPlan:
-        if pull.fraction >= self._plan.opened:
-            return self._ended(None, "", stop=pull.stop, pull=pull, way=way, fraction=pull.fraction)
-        words = pull.stop.words if pull.stop else ""
-        return self._ended(Failure.STOPS, words, stop=pull.stop, pull=pull, way=way, fraction=pull.fraction)
 
     def _ended(
         self, failure: Failure | None, words: str, *, stop: Stop | None = None, pull: Pull | None = None,
@@ -373,22 +312,18 @@ class JointPlanning:
         path = None if pull is None else pull.path
         return PullPlan(
             joint=self._joint,
-            turns=self._travel.turns,
-            grasps=self._grasps,
             place=None if pull is None else pull.place,
             T_world_object=self._motion.T_world_object,
             reach=way,
             pull=path,
             opened=None if pull is None else pull.values,
-            way=self._way,
             fraction=fraction,
-            free=self._clearing.freedom.share,
-            first=self._clearing.first,
+            free=self._opened.share,
+            first=self._opened.first,
             failure=failure,
             stop=stop,
             words=words,
-            tried=self._tried.count,
-            searched=pull is not None and pull.searched,
+            tried=self._tried,
             manipulability=min((self._arm.manipulability(q) for q in path), default=0.0) if path is not None else 0.0,
             on_column=self._places.on_column,
             seconds=self._spent,

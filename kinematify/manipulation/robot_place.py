@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.geometry.convex import convex_hull
-from kinematify.geometry.scene import transformed
 from kinematify.manipulation.grasp import moved_bodies
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration
+from kinematify.robot.transforms import transformed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -8,7 +8,7 @@ times longer, and the tangent bundle leaves the manifold.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -191,16 +191,9 @@ def _refined(puller: Puller, constraint: _HoldsOn, states: FloatArray) -> FloatA
     return None
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Reach:
-    """A way to the grasp, or why there is none."""
-
-    path: FloatArray | None
-    """Arm joints from home to the grasp [rad or m], shape (n, dof)."""
-    reason: str | None
-
-
-def plan_reach(arm: Arm, world: CollisionWorld, grasp: FloatArray, settings: PlanSettings, *, seed: int) -> Reach:
+def plan_reach(
+    arm: Arm, world: CollisionWorld, grasp: FloatArray, settings: PlanSettings, *, seed: int
+) -> FloatArray | str:
     """Plan the way to a posture.
 
     Args:
@@ -209,17 +202,20 @@ def plan_reach(arm: Arm, world: CollisionWorld, grasp: FloatArray, settings: Pla
         grasp: Arm joints at the grasp, shape (dof,).
         settings: Times and steps.
         seed: Of OMPL.
+
+    Returns:
+        Arm joints from home to the grasp [rad or m], shape (n, dof), or why there is no way.
     """
     straight = _straight_in(arm, world, grasp, settings)
     if isinstance(straight, str):
-        return Reach(path=None, reason=straight)
+        return straight
     home = _free_start(arm, world)
     if home is None:
-        return Reach(path=None, reason="the arm finds no free posture to start from beside the object")
+        return "the arm finds no free posture to start from beside the object"
     way = _free_path(arm, world, home, straight[0], settings, seed=seed)
     if way is None:
-        return Reach(path=None, reason="no way free of collisions leads to the grasp")
-    return Reach(path=np.concatenate([way, straight[1:]]), reason=None)
+        return "no way free of collisions leads to the grasp"
+    return np.concatenate([way, straight[1:]])
 
 
 def _straight_in(arm: Arm, world: CollisionWorld, grasp: FloatArray, settings: PlanSettings) -> FloatArray | str:

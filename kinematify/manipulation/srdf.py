@@ -19,13 +19,15 @@ from lxml import etree
 from kinematify.errors import InputError
 from kinematify.geometry.overlap import OverlapQueries
 from kinematify.geometry.rest_pairs import DepthAllowance
-from kinematify.geometry.scene import judged_shapes, placed_links, read_scene, relative, transformed
+from kinematify.geometry.scene import judged_shapes, placed_links, read_scene, relative
 from kinematify.geometry.solid import Solid
 from kinematify.geometry.together import random_rows
 from kinematify.manipulation.manipulator import arm_chain, found_fingers, named_fingers
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import rest_configuration, rigid_groups
+from kinematify.robot.transforms import transformed
+from kinematify.robot.vectors import as_one
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -56,14 +58,6 @@ class DisableReason(StrEnum):
     """In contact in nearly all configurations."""
     NEVER = "Never"
     """In contact in none of the configurations."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class DisabledPair:
-    """Two links that a planner need not check, in the order of the document."""
-
-    links: tuple[str, str]
-    reason: DisableReason
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,12 +112,10 @@ def write_srdf(
     for joint in model.joints:
         if joint.mimic is not None:
             etree.SubElement(document, "passive_joint", name=joint.name)
-    for pair in pairs:
-        etree.SubElement(
-            document, "disable_collisions", link1=pair.links[0], link2=pair.links[1], reason=pair.reason.value
-        )
+    for (first, second), reason in pairs:
+        etree.SubElement(document, "disable_collisions", link1=first, link2=second, reason=reason.value)
     etree.ElementTree(document).write(path, pretty_print=True, xml_declaration=True, encoding="utf-8")
-    return Counter({**Counter(pair.reason.value for pair in pairs), "checked": enabled})
+    return Counter({**Counter(reason.value for _, reason in pairs), "checked": enabled})
 
 
 def semantic_groups(model: Robot, urdf: Path, tool: str | None, gripper: Sequence[str]) -> tuple[SemanticGroup, ...]:
@@ -171,7 +163,9 @@ def _single_fingers(robot: Robot, link: str) -> list[Joint]:
     ]
 
 
-def disabled_pairs(model: Robot, settings: ValidationSettings) -> tuple[list[DisabledPair], int]:
+def disabled_pairs(
+    model: Robot, settings: ValidationSettings
+) -> tuple[list[tuple[tuple[str, ...], DisableReason]], int]:
     """Return the pairs of links with geometry that need no check, in the document's order, and how many stay.
 
     Args:
@@ -183,9 +177,7 @@ def disabled_pairs(model: Robot, settings: ValidationSettings) -> tuple[list[Dis
     order = {link.name: index for index, link in enumerate(model.links)}
     judged = {tuple(sorted(pair, key=order.__getitem__)): reason for pair, reason in _link_reasons(scene, settings)}
     ranked = sorted(judged.items(), key=lambda item: [order[name] for name in item[0]])
-    found = [
-        DisabledPair(links=(first, second), reason=reason) for (first, second), reason in ranked if reason is not None
-    ]
+    found = [(links, reason) for links, reason in ranked if reason is not None]
     return found, len(ranked) - len(found)
 
 
@@ -248,10 +240,8 @@ class _LinkSolids:
             group = rigid_groups(model)[self._scene.bodies[body].group]
             T = placed_links(model, group)[link]
             shapes = judged_shapes(model.link_by_name[link])
-            starts = np.cumsum([0, *(len(shape.mesh.vertices) for shape in shapes)])
             self._solids[link] = Solid(
-                np.concatenate([transformed(shape.mesh.vertices, T) for shape in shapes]),
-                np.concatenate([shape.mesh.faces + start for shape, start in zip(shapes, starts, strict=False)]),
+                *as_one((transformed(shape.mesh.vertices, T), shape.mesh.faces) for shape in shapes),
                 unit=self._scene.unit,
                 hole=settings.hole,
                 points=settings.points,

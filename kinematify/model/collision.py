@@ -33,8 +33,8 @@ from kinematify.model.collision_pieces import decomposed, fewer_pieces, shapes_o
 from kinematify.model.urdf import MESH_FOLDER
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import LinkMesh, Shape, forward_kinematics, joint_ends, rest_configuration
-from kinematify.robot.transforms import rotation_from_x
-from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.transforms import rotation_from_x, transformed
+from kinematify.robot.vectors import as_one, crossed, lengths_of
 from kinematify.robot.weld import snapped
 
 if TYPE_CHECKING:
@@ -367,11 +367,11 @@ def _named(shapes: Sequence[Shape], link: str, index: int) -> tuple[Shape, ...]:
 def _marks(link: Link, T_world_link: FloatArray) -> FloatArray:
     """Points on what the pieces of a link represent, world frame, shape (n, 3)."""
     points = _on_surface((shape.mesh for shape in shapes_of(link)), _MARKS)
-    return points @ T_world_link[:3, :3].T + T_world_link[:3, 3]
+    return transformed(points, T_world_link)
 
 
 def _moved(piece: ConvexPiece, T: FloatArray) -> ConvexPiece:
-    return ConvexPiece(vertices=piece.vertices @ T[:3, :3].T + T[:3, 3], faces=piece.faces)
+    return ConvexPiece(vertices=transformed(piece.vertices, T), faces=piece.faces)
 
 
 def _fitted(link: Link, shapes: Sequence[Shape], *, outside: float, lost: float, thinned: float) -> FittedLink:
@@ -394,9 +394,7 @@ def _on_surface(meshes: Iterable[LinkMesh], count: int) -> FloatArray:
     shown = [mesh for mesh in meshes if len(mesh.faces)]
     if not shown:
         return np.empty((0, 3))
-    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in shown)])
-    faces = [mesh.faces + start for mesh, start in zip(shown, starts, strict=False)]
-    return surface_points(np.concatenate([mesh.vertices for mesh in shown]), np.concatenate(faces), count)
+    return surface_points(*as_one((mesh.vertices, mesh.faces) for mesh in shown), count)
 
 
 def _left_out(link: Link, shapes: Sequence[Shape]) -> float:

@@ -15,7 +15,8 @@ from kinematify.geometry.cut import Concave, CutSurface
 from kinematify.geometry.cut_cache import cached_cuts
 from kinematify.robot.raw_mesh import RawMesh
 from kinematify.robot.robot import forward_kinematics
-from kinematify.robot.vectors import lengths_of, referenced
+from kinematify.robot.transforms import transformed
+from kinematify.robot.vectors import as_one, lengths_of, referenced
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -116,7 +117,7 @@ def _diagonal(model: Robot) -> float:
     """Diagonal of the box around the collision geometry at zero [m]; 0 where there is none."""
     poses = forward_kinematics(model, {})
     ends = [
-        end(shape.mesh.vertices @ poses[link.name][:3, :3].T + poses[link.name][:3, 3], axis=0)
+        end(transformed(shape.mesh.vertices, poses[link.name]), axis=0)
         for link in model.links
         for shape in shapes_of(link)
         if len(shape.mesh.vertices)
@@ -163,11 +164,7 @@ def _components(link: Link, mesh: LinkMesh, size: float, settings: PrepareSettin
 
 
 def _joined(parts: Sequence[RawMesh]) -> CutSurface:
-    starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
-    return CutSurface(
-        np.concatenate([part.vertices for part in parts]),
-        np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=False)]),
-    )
+    return CutSurface(*as_one((part.vertices, part.faces) for part in parts))
 
 
 def _inside(points: FloatArray, hull: ConvexPiece) -> bool:

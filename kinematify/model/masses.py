@@ -12,7 +12,7 @@ from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.geometry.convex import convex_hull, thickened
 from kinematify.robot.robot import Inertial, rigid_groups
-from kinematify.robot.vectors import referenced, triangle_normals
+from kinematify.robot.vectors import as_one, referenced, triangle_normals
 from kinematify.robot.weld import is_closed
 
 if TYPE_CHECKING:
@@ -262,9 +262,5 @@ def link_part(link: Link) -> Part | None:
 
 def merged_part(name: str, shapes: Sequence[Shape]) -> Part:
     """Put shapes together in the link frame."""
-    starts = np.cumsum([0, *(len(shape.mesh.vertices) for shape in shapes)])
-    return Part(
-        name=name,
-        vertices=np.concatenate([shape.mesh.vertices for shape in shapes]),
-        faces=np.concatenate([shape.mesh.faces + start for shape, start in zip(shapes, starts, strict=False)]),
-    )
+    vertices, faces = as_one((shape.mesh.vertices, shape.mesh.faces) for shape in shapes)
+    return Part(name=name, vertices=vertices, faces=faces)

@@ -18,7 +18,8 @@ from kinematify.render.picture import PosedMesh
 from kinematify.robot.appearance import joined, plain
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics
-from kinematify.robot.vectors import box_around
+from kinematify.robot.transforms import transformed
+from kinematify.robot.vectors import as_one, box_around
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -141,18 +142,15 @@ def posed_meshes(
         # No picture shows more than the mesh that the inference used, but that one has no materials.
         seen = link.visual if link.visual.appearance is not None else link.part
         parts = (seen, *(part for part in link.fixed_visuals if len(part.faces)))
-        starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
-        vertices = np.concatenate([part.vertices for part in parts])
-        faces = np.concatenate([part.faces + start for part, start in zip(parts, starts[:-1], strict=True)])
+        vertices, faces = as_one((part.vertices, part.faces) for part in parts)
         T_moved = T_world_link[link.name] @ np.linalg.inv(link.T_world_link)
-        moved = vertices @ T_moved[:3, :3].T + T_moved[:3, 3]
         usual = [part.color or colors[link.name].tolist() for part in parts]
         looks = [
             part.appearance or plain((*color, 1.0), len(part.faces)) for part, color in zip(parts, usual, strict=True)
         ]
         appearance = joined(looks, [len(part.faces) for part in parts])
         posed[link.name] = PosedMesh(
-            vertices=moved,
+            vertices=transformed(vertices, T_moved),
             faces=faces,
             color=colors[link.name],
             appearance=appearance,
@@ -185,9 +183,8 @@ def joint_glyphs(model: KinematicModel, q: Mapping[str, float], config: PreviewC
         vertices, faces = _arrow_at_rest(model, joint, diagonal, config)
         # The axis is fixed in the parent; the arrow rides on the child, about the same line.
         T_moved = T_world_link[joint.child] @ np.linalg.inv(model.link_by_name[joint.child].T_world_link)
-        moved = vertices @ T_moved[:3, :3].T + T_moved[:3, 3]
         color = glyph_color(joint.kind, colors[joint.child])
-        glyphs[joint.name] = PosedMesh(vertices=moved, faces=faces, color=color)
+        glyphs[joint.name] = PosedMesh(vertices=transformed(vertices, T_moved), faces=faces, color=color)
     return glyphs
 
 
@@ -282,7 +279,7 @@ def turning_arrow(center: FloatArray, axis: FloatArray, length: float, radius: f
     tip = center + 0.5 * length * axis
     tail = center - 0.5 * length * axis
     ring = tip - 0.12 * length * axis
-    return _joined([_tube(np.stack([tail, tip]), np.full(2, radius)), _circular_arrow(ring, axis, radius, sweep)])
+    return as_one([_tube(np.stack([tail, tip]), np.full(2, radius)), _circular_arrow(ring, axis, radius, sweep)])
 
 
 def sliding_arrow(center: FloatArray, axis: FloatArray, length: float, radius: float) -> Mesh:
@@ -349,11 +346,3 @@ def _perpendiculars(axis: FloatArray) -> tuple[FloatArray, FloatArray]:
     side = np.cross(axis, helper)
     side /= np.linalg.norm(side)
     return side, np.cross(axis, side)
-
-
-def _joined(meshes: list[Mesh]) -> Mesh:
-    starts = np.cumsum([0, *(len(vertices) for vertices, _ in meshes)])
-    return (
-        np.concatenate([vertices for vertices, _ in meshes]),
-        np.concatenate([faces + start for (_, faces), start in zip(meshes, starts[:-1], strict=True)]),
-    )

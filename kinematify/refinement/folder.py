@@ -23,6 +23,7 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.raw_mesh import RawMesh
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
+from kinematify.robot.transforms import transformed
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, Part
@@ -200,7 +201,7 @@ def _meshes(folder: Path, record: dict[str, Any]) -> list[RawMesh]:
         for name, mesh in zip(names, link.meshes, strict=False):
             found[name] = RawMesh(
                 name=name,
-                vertices=np.asarray(mesh.vertices @ T[:3, :3].T + T[:3, 3]),
+                vertices=transformed(mesh.vertices, T),
                 faces=mesh.faces,
                 appearance=mesh.appearance,
             )

@@ -17,6 +17,7 @@ from kinematify.geometry.scene import Scene, SceneBody
 from kinematify.geometry.solid import Solid
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import Joint, Link, LinkMesh, Robot, Shape, rigid_groups
+from kinematify.robot.vectors import as_one
 from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import checks_of
 from kinematify.validation.geometry.look import GeometryContext, JointMotion
@@ -93,10 +94,8 @@ class PartsWorld:
         key = tuple(sorted(links))
         if key not in self._solids:
             parts = [part for link in key for part in self._parts[link]]
-            starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
             self._solids[key] = Solid(
-                np.concatenate([part.vertices for part in parts]),
-                np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=False)]),
+                *as_one((part.vertices, part.faces) for part in parts),
                 unit=self._unit,
                 hole=self.settings.hole,
                 points=self.settings.points,

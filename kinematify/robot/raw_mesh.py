@@ -9,6 +9,7 @@ import numpy as np
 
 from kinematify.robot.appearance import joined
 from kinematify.robot.exact_faces import ExactFaces, joined_faces
+from kinematify.robot.vectors import as_one
 from kinematify.robot.weld import without_unused
 
 if TYPE_CHECKING:
@@ -72,12 +73,12 @@ def compacted(mesh: RawMesh) -> RawMesh:
 
 def merged(meshes: Sequence[RawMesh], name: str) -> RawMesh:
     """Return all `meshes` as one."""
-    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    vertices, faces = as_one((mesh.vertices, mesh.faces) for mesh in meshes)
     first = meshes[0]
     return RawMesh(
         name=name,
-        vertices=np.concatenate([mesh.vertices for mesh in meshes]),
-        faces=np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)]),
+        vertices=vertices,
+        faces=faces,
         unit=first.unit,
         up=first.up,
         appearance=joined([mesh.appearance for mesh in meshes], [len(mesh.faces) for mesh in meshes]),

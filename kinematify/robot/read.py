@@ -24,6 +24,7 @@ from kinematify.robot.robot import (
     inertial_of,
     rest_configuration,
 )
+from kinematify.robot.transforms import transformed
 from kinematify.robot.urdf_geometry import geometry_source
 from kinematify.robot.urdf_numbers import MOMENTS, line_of, number, optional_number, origin_transform, vector
 from kinematify.robot.urdf_text import parse_description, parse_text
@@ -414,8 +415,7 @@ def _points(robot: Robot) -> dict[str, FloatArray]:
     for link in robot.links:
         on = [_on_surface(shape.mesh) for shape in link.visuals or link.collisions if len(shape.mesh.faces)]
         if on:
-            T_root_link = poses[link.name]
-            points[link.name] = np.concatenate(on) @ T_root_link[:3, :3].T + T_root_link[:3, 3]
+            points[link.name] = transformed(np.concatenate(on), poses[link.name])
     return points
 
 

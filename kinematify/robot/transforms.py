@@ -20,6 +20,11 @@ _PARALLEL = 1e-12
 """Sine of the angle below which two directions are one line."""
 
 
+def transformed(points: FloatArray, T: FloatArray) -> FloatArray:
+    """Points (n, 3) moved by a transform (4, 4)."""
+    return np.asarray(points @ T[:3, :3].T + T[:3, 3])
+
+
 def rotation_about(axis: FloatArray, angle: float | FloatArray) -> FloatArray:
     """Return rotation matrices, shape (..., 3, 3), by angles (...) [rad] about a unit `axis` (3,) (Rodrigues)."""
     x, y, z = axis

@@ -15,6 +15,7 @@ from kinematify.robot.mesh_file import read_meshes, to_z_up
 from kinematify.robot.mesh_paths import find_mesh
 from kinematify.robot.raw_mesh import RawMesh, merged
 from kinematify.robot.robot import LinkMesh, Shape
+from kinematify.robot.transforms import transformed
 from kinematify.robot.urdf_numbers import line_of, number, origin_transform, vector
 
 if TYPE_CHECKING:
@@ -196,7 +197,7 @@ def mesh_shape(
     line: int = 0,
 ) -> Shape:
     """Return a mesh that comes from no file of its own, of one colour; vertices in the frame of the shape, (V, 3)."""
-    placed = np.asarray(vertices, dtype=np.float64) @ T_link_shape[:3, :3].T + T_link_shape[:3, 3]
+    placed = transformed(np.asarray(vertices, dtype=np.float64), T_link_shape)
     looks = None if color is None else plain(color, len(faces))
     return Shape(mesh=LinkMesh(vertices=placed, faces=faces, appearance=looks), color=color, line=line)
 

@@ -18,7 +18,7 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_file import to_z_up
 from kinematify.robot.polygons import triangle_places
 from kinematify.robot.robot import Inertial, Joint, Link, Mimic
-from kinematify.robot.transforms import rotation_from_quaternion
+from kinematify.robot.transforms import rotation_from_quaternion, transformed
 from kinematify.robot.urdf_geometry import mesh_shape, primitive
 
 if TYPE_CHECKING:
@@ -240,7 +240,7 @@ def _shape(read: _Stage, prim: Any, T: FloatArray, line: int) -> Shape | None:
         vertices, faces = _triangles(UsdGeom.Mesh(prim))
         if not len(faces):
             return None
-        vertices = vertices @ T[:3, :3].T + T[:3, 3]
+        vertices = transformed(vertices, T)
         return mesh_shape(vertices, faces if np.linalg.det(T[:3, :3]) > 0.0 else faces[:, ::-1], np.eye(4), color, line)
     kind, size, axis = _primitive(prim)
     if not kind:
@@ -256,7 +256,7 @@ def _shape(read: _Stage, prim: Any, T: FloatArray, line: int) -> Shape | None:
             kind, tuple((np.array(size) * scale).tolist() if kind == "box" else lengths), rigid, color, line
         )
     mesh = primitive(kind, size, np.eye(4)).mesh
-    return mesh_shape(mesh.vertices @ turned[:3, :3].T + turned[:3, 3], mesh.faces, np.eye(4), color, line)
+    return mesh_shape(transformed(mesh.vertices, turned), mesh.faces, np.eye(4), color, line)
 
 
 def _primitive(prim: Any) -> tuple[str, tuple[float, ...], str]:

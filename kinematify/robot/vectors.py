@@ -13,7 +13,7 @@ import numpy as np
 from kinematify.robot.arrays import used_vertices
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
@@ -66,6 +66,16 @@ def all_three(flags: BoolArray) -> BoolArray:
 def referenced(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """Return the vertices (V, 3) that a face (F, 3) uses, each once, in their order, shape (k, 3)."""
     return vertices[used_vertices(faces, len(vertices))]
+
+
+def as_one(meshes: Iterable[tuple[FloatArray, IntArray]]) -> tuple[FloatArray, IntArray]:
+    """Return several meshes as one, each of vertices (V, 3) and faces (F, 3); both are empty where there are none."""
+    vertices, faces, start = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)], 0
+    for points, triangles in meshes:
+        vertices.append(points)
+        faces.append(triangles + start)
+        start += len(points)
+    return np.concatenate(vertices), np.concatenate(faces)
 
 
 def box_gaps(low: FloatArray, high: FloatArray) -> FloatArray:

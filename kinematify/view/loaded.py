@@ -18,6 +18,7 @@ from kinematify.robot.description import notes_of
 from kinematify.robot.mesh_paths import CAD_SUFFIXES, MESH_SUFFIXES
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
+from kinematify.robot.transforms import transformed
 from kinematify.versions import require
 
 if TYPE_CHECKING:
@@ -139,7 +140,7 @@ class LoadedModel:
         poses, colors = self.pose(q), usual_colors(len(self.robot.links))
         meshes = [
             PosedMesh(
-                vertices=mesh.vertices @ poses[link.name][:3, :3].T + poses[link.name][:3, 3],
+                vertices=transformed(mesh.vertices, poses[link.name]),
                 faces=mesh.faces,
                 color=color,
                 appearance=mesh.appearance,

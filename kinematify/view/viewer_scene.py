@@ -18,8 +18,8 @@ from kinematify.robot.robot import (
     rest_configuration,
     rigid_groups,
 )
-from kinematify.robot.transforms import joint_motion, rotation_about
-from kinematify.robot.vectors import box_around
+from kinematify.robot.transforms import joint_motion, rotation_about, transformed
+from kinematify.robot.vectors import as_one, box_around
 from kinematify.validation.formats.view_data import camera_turn
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ class ViewScene:
     def _corners(self, q: Mapping[str, float]) -> dict[str, FloatArray]:
         """Lower and upper corner of every group in a configuration, frame of the root link [m], shape (2, 3) each."""
         poses = self.poses(q)
-        placed = {top: v @ poses[top][:3, :3].T + poses[top][:3, 3] for top, (v, _) in self.meshes.items() if len(v)}
+        placed = {top: transformed(points, poses[top]) for top, (points, _) in self.meshes.items() if len(points)}
         return {top: np.stack([points.min(axis=0), points.max(axis=0)]) for top, points in placed.items()}
 
     @cached_property
@@ -125,7 +125,7 @@ class ViewScene:
         poses = self.poses(q)
         return tuple(
             PosedMesh(
-                vertices=vertices @ poses[top][:3, :3].T + poses[top][:3, 3],
+                vertices=transformed(vertices, poses[top]),
                 faces=faces,
                 color=np.array(color[:3]),
                 appearance=appearance,
@@ -320,17 +320,10 @@ class ViewScene:
         return scene, DepthAllowance(scene, OverlapQueries(scene))
 
     def _mesh(self, group: RigidGroup) -> tuple[FloatArray, IntArray, Appearance | None]:
-        vertices, faces, start = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)], 0
-        looks: list[Appearance | None] = []
         T_top_root = np.linalg.inv(self._zero[group.top])
-        for link in group.links:
-            T = T_top_root @ self._zero[link]
-            for mesh in self.robot.link_by_name[link].meshes:
-                vertices.append(mesh.vertices @ T[:3, :3].T + T[:3, 3])
-                faces.append(mesh.faces + start)
-                looks.append(mesh.appearance)
-                start += len(mesh.vertices)
-        return np.concatenate(vertices), np.concatenate(faces), joined(looks, [len(item) for item in faces[1:]])
+        meshes = [(self._zero[link], mesh) for link in group.links for mesh in self.robot.link_by_name[link].meshes]
+        looks = joined([mesh.appearance for _, mesh in meshes], [len(mesh.faces) for _, mesh in meshes])
+        return *as_one((transformed(mesh.vertices, T_top_root @ T), mesh.faces) for T, mesh in meshes), looks
 
 
 def _color(index: int) -> Rgba:

@@ -40,8 +40,8 @@ def test_unit_shapes_are_brought_to_their_real_size() -> None:
     box = box_of(1.2, stands=False)
     assert is_normalised(box)
     assert not is_normalised(box_of(1.2))
-    assert 1.2 * sizing(Path("/a/b/c.urdf"), "stapler", box).factor == pytest.approx(0.16)
-    assert "normalised" in sizing(Path("/a/b/c.urdf"), "cabinet", box).reason
+    assert 1.2 * sizing(Path("/a/b/c.urdf"), "stapler", box)[0] == pytest.approx(0.16)
+    assert "normalised" in sizing(Path("/a/b/c.urdf"), "cabinet", box)[1]
 
 
 @pytest.mark.parametrize("scale", [0.0, -1.0, float("inf"), float("nan")])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.robot import forward_kinematics
+from kinematify.robot.transforms import transformed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -46,7 +47,7 @@ def extents_of(robot: Robot) -> dict[str, Extent]:
         clouds = [shape.mesh.vertices for shape in (*link.visuals, *link.collisions) if len(shape.mesh.vertices)]
         if clouds:
             points = np.concatenate(clouds)
-            placed = points @ poses[link.name][:3, :3].T + poses[link.name][:3, 3]
+            placed = transformed(points, poses[link.name])
             found[link.name] = Extent(
                 link=link,
                 diagonal=float(np.linalg.norm(np.ptp(points, axis=0))),

@@ -19,6 +19,7 @@ from kinematify.robot.appearance import joined, linear_of, srgb_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Inertial, Joint, forward_kinematics, joint_values, rest_configuration, rigid_groups
+from kinematify.robot.transforms import transformed
 from kinematify.validation.formats.view_data import view_data
 from kinematify.validation.isolation import Stage, run_stages
 from kinematify.validation.stage import StageRequest
@@ -162,7 +163,7 @@ def _link(standing: _Standing, group: RigidGroup) -> ModelLink:
         for mesh in standing.robot.link_by_name[name].meshes:
             looks.append(mesh.appearance)
             faces.append(mesh.faces + sum(map(len, vertices)))
-            vertices.append(mesh.vertices @ T_world_link[:3, :3].T + T_world_link[:3, 3])
+            vertices.append(transformed(mesh.vertices, T_world_link))
     if group.has_geometry:
         faces.pop(0)
         looks.pop(0)

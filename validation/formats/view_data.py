@@ -10,6 +10,8 @@ import numpy as np
 
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
+from kinematify.robot.transforms import transformed
+from kinematify.robot.vectors import as_one
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -68,14 +70,11 @@ def view_data(robot: Robot, *, faces: int, colors: Mapping[str, FloatArray]) -> 
 def _mesh(robot: Robot, group: RigidGroup, T_root_link: Poses) -> tuple[FloatArray, IntArray]:
     """All meshes of a group in the frame of its top link."""
     T_top_root = np.linalg.inv(T_root_link[group.top])
-    vertices, faces, start = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)], 0
-    for link in group.links:
-        T_top_link = T_top_root @ T_root_link[link]
-        for mesh in robot.link_by_name[link].meshes:
-            vertices.append(mesh.vertices @ T_top_link[:3, :3].T + T_top_link[:3, 3])
-            faces.append(mesh.faces + start)
-            start += len(mesh.vertices)
-    return np.concatenate(vertices), np.concatenate(faces)
+    return as_one(
+        (transformed(mesh.vertices, T_top_root @ T_root_link[link]), mesh.faces)
+        for link in group.links
+        for mesh in robot.link_by_name[link].meshes
+    )
 
 
 def _extent(
@@ -87,10 +86,7 @@ def _extent(
     """Corners of the box around the object at rest, in the root's frame."""
     poses = forward_kinematics(robot, rest)
     points = np.concatenate(
-        [
-            vertices @ poses[group.top][:3, :3].T + poses[group.top][:3, 3]
-            for group, (vertices, _) in zip(groups, meshes, strict=True)
-        ]
+        [transformed(vertices, poses[group.top]) for group, (vertices, _) in zip(groups, meshes, strict=True)]
     )
     return points.min(axis=0), points.max(axis=0)
 

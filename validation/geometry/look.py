@@ -14,10 +14,11 @@ import numpy as np
 
 from kinematify.geometry.overlap import OverlapQueries, boxes_meet
 from kinematify.geometry.rest_pairs import DepthAllowance, Reason
-from kinematify.geometry.scene import inverse, read_scene, relative, simplified, transformed, visible_shapes
+from kinematify.geometry.scene import inverse, read_scene, relative, simplified, visible_shapes
 from kinematify.geometry.sweep import Sweeper
 from kinematify.geometry.together import looked_at, random_rows
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.transforms import transformed
 from kinematify.validation.finding import not_finished
 from kinematify.validation.geometry.formatting import in_document_order
 from kinematify.validation.summary import PairSummary, PairTable

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.transforms import transformed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -102,7 +103,7 @@ def twins_at_odds(scene: Scene) -> Iterator[Difference]:
 
 def _box(scene: Scene, body: int) -> FloatArray:
     T = scene.at_rest[body]
-    points = scene.bodies[body].solid.points @ T[:3, :3].T + T[:3, 3]
+    points = transformed(scene.bodies[body].solid.points, T)
     return np.stack([points.min(axis=0), points.max(axis=0)])
 
 
@@ -211,7 +212,7 @@ def _other_line(
 def _fits(scene: Scene, first: _Part, second: _Part, sign: FloatArray, most: float) -> bool:
     """True if the surface of one part, mapped, is that of the other one."""
     T = scene.at_rest[first.child]
-    points = scene.bodies[first.child].solid.points[::_SOME] @ T[:3, :3].T + T[:3, 3]
+    points = transformed(scene.bodies[first.child].solid.points[::_SOME], T)
     T = scene.at_rest[second.child]
     local = (_mapped(points, sign, first, second) - T[:3, 3]) @ T[:3, :3]
     return bool((scene.bodies[second.child].solid.distance(local) <= most).all())

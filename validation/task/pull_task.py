@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
     from kinematify.geometry.scene import Scene
     from kinematify.manipulation.plan_request import TaskRequest
-    from kinematify.manipulation.real_size import Sizing
     from kinematify.robot.arrays import FloatArray
     from kinematify.validation.check import OpenCheck
     from kinematify.validation.stage import StageRequest
@@ -55,7 +54,7 @@ class PullTask:
         self.settings = request.settings.task
         self.runs: dict[str, Execution] = {}
         self.left: list[str] = []
-        self._world: tuple[Scene, Sizing] | None = None
+        self._world: tuple[Scene, float] | None = None
 
     @property
     def scene(self) -> Scene:
@@ -155,7 +154,7 @@ class PullTask:
     @property
     def _factor(self) -> float:
         assert self._world is not None
-        return self._world[1].factor
+        return self._world[1]
 
     def set_up(self, result: OpenCheck) -> None:
         """Bring the object to its size; add a finding where that makes no sense."""
@@ -168,12 +167,12 @@ class PullTask:
                     "Give a model with a movable joint.",
                 )
                 return
-            sized = sizing(self.request.urdf, model.name, object_box(scene), scale=self.task.scale)
-            extent = sized.factor * float(np.ptp(object_box(scene), axis=0).max())
+            factor, reason = sizing(self.request.urdf, model.name, object_box(scene), scale=self.task.scale)
+            extent = factor * float(np.ptp(object_box(scene), axis=0).max())
             plan = self.request.settings.task.plan
             if not plan.smallest <= extent <= plan.largest:
                 result.find(
-                    f"The object is {extent:.4g} m large with a scale of {sized.factor:.4g}, and no arm can use a "
+                    f"The object is {extent:.4g} m large with a scale of {factor:.4g}, and no arm can use a "
                     "thing of that size.",
                     "Give --scale with the metres per unit of the model, e.g. 0.001 for millimetres.",
                     value=extent,
@@ -182,22 +181,22 @@ class PullTask:
                 )
                 return
             path = self.request.work / OBJECT_FILE
-            write_scaled(self.request.urdf, sized.factor, path, package_dirs=self.request.package_dirs)
+            write_scaled(self.request.urdf, factor, path, package_dirs=self.request.package_dirs)
             scene = read_scene(read_robot(path), self.request.settings.geometry)
-            self._world = scene, sized
+            self._world = scene, factor
             joints = self.joints
         except InputError as error:
             self._world = None
             result.find(str(error), "Give what the message asks for.")
             return
-        result.measured["scale"] = sized.factor
+        result.measured["scale"] = factor
         result.measured["joints"] = len(joints)
-        if sized.factor != 1.0:
+        if factor != 1.0:
             result.find(
-                f"The object is scaled by {sized.factor:.4g}: {sized.reason}.",
+                f"The object is scaled by {factor:.4g}: {reason}.",
                 "Give --scale if that is wrong.",
                 severity=Severity.NOTE,
-                value=sized.factor,
+                value=factor,
             )
 
     def plan(self) -> None:

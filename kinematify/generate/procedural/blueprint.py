@@ -14,7 +14,7 @@ from kinematify.assembly.truth import GroundTruth, TrueJoint
 from kinematify.robot.appearance import joined as joined_appearances
 from kinematify.robot.arrays import read_only
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.transforms import joint_motion
+from kinematify.robot.transforms import joint_motion, transformed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -182,7 +182,7 @@ class Blueprint:
 
 
 def _placed(part: Part, transform: FloatArray) -> Part:
-    return replace(part, vertices=part.vertices @ transform[:3, :3].T + transform[:3, 3])
+    return replace(part, vertices=transformed(part.vertices, transform))
 
 
 def ground_truth(blueprint: Blueprint) -> GroundTruth:
