@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from kinematify.assembly.load import load_assembly
     from kinematify.assembly.part import Assembly, Part
+    from kinematify.batch import batch
     from kinematify.config import load_config
     from kinematify.contact.graph import ContactGraph
     from kinematify.contact.tree import KinematicTree
@@ -64,6 +65,7 @@ __all__ = [
     "Refinement",
     "ValidationReport",
     "__version__",
+    "batch",
     "export",
     "fix",
     "generate",
@@ -90,6 +92,7 @@ _HOMES = {
     "Part": "kinematify.assembly.part",
     "Refinement": "kinematify.refinement",
     "ValidationReport": "kinematify.validation.run.report",
+    "batch": "kinematify.batch",
     "export": "kinematify.formats.export_model",
     "fix": "kinematify.refinement.repair",
     "generate": "kinematify.generate",

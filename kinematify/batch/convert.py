@@ -59,7 +59,6 @@ class Conversion:
     formats: tuple[str, ...]
     config: Config
     settings: ValidationSettings
-    engines: tuple[str, ...]
     reading: dict[str, Any]
     """Arguments of `load_assembly`."""
     vlm: str
@@ -133,7 +132,7 @@ def _do_steps(
         model = made / MODEL_FILE
     if "validate" in steps:
         with clock.stage("validate", 0.0):
-            report = validate(model, settings=conversion.settings, engines=conversion.engines, workers=1)
+            report = validate(model, settings=conversion.settings, workers=1)
             report = replace(report, model=posixpath.join(place, MODEL_FILE) if "infer" in steps else source.place)
             (made / REPORT_FILE).write_text(as_json_text([report]), encoding="utf-8")
             _draw(report, model, conversion.settings, made)

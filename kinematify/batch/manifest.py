@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import json
 import posixpath
-import shutil
 import tempfile
 import time
-from contextlib import ExitStack, suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -19,13 +18,10 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import TypeAdapter, ValidationError
 
 from kinematify.batch.batch_inputs import filesystem, is_local
-from kinematify.batch.ledger import Ledger
 from kinematify.processes.lock import locked
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from types import TracebackType
-    from typing import Self
+    from collections.abc import Callable, Iterator
 
 _EVERY = 10.0
 """Seconds between two copies to a store."""
@@ -81,83 +77,37 @@ class ObjectRecord:
 RECORD = TypeAdapter(ObjectRecord)
 
 
-class Manifest:
-    """The records of a run and of those before it, by the places of the objects."""
+@contextmanager
+def manifest_file(out: str, share: tuple[int, int] = (1, 1)) -> Iterator[tuple[Path, Callable[[], None]]]:
+    """The file of a run, which no other run writes; and what keeps its copy in a store, called now and then.
 
-    def __init__(self, out: str, share: tuple[int, int] = (1, 1)) -> None:
-        """Open nothing yet.
+    Args:
+        out: Path or URL of the output.
+        share: Number of the share of the objects, from 1, and how many shares there are.
+    """
+    fs, path = filesystem(out)
+    number, of = share
+    place = posixpath.join(path, "manifest.jsonl" if of == 1 else f"manifest-{number}-of-{of}.jsonl")
+    if is_local(fs):
+        with locked(Path(path, f".{posixpath.basename(place)}.lock"), place):
+            yield Path(place), lambda: None
+        return
+    with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
+        file, copied = Path(folder, posixpath.basename(place)), 0.0
+        if fs.exists(place):
+            fs.get_file(place, str(file))
 
-        Args:
-            out: Path or URL of the output.
-            share: Number of the share of the objects, from 1, and how many shares there are.
-        """
-        number, of = share
-        self._fs, path = filesystem(out)
-        self.name = "manifest.jsonl" if of == 1 else f"manifest-{number}-of-{of}.jsonl"
-        self.place = posixpath.join(path, self.name)
-        self.records: dict[str, ObjectRecord] = {}
-        self.notice = ""
-        """What a user must know of the lines that were there; empty if nothing."""
-        self._exit = ExitStack()
-        self._copied = 0.0
+        def copy() -> None:
+            nonlocal copied
+            if time.monotonic() > copied + _EVERY:
+                fs.put_file(str(file), place)
+                copied = time.monotonic()
 
-    def __enter__(self) -> Self:
-        with ExitStack() as stack:
-            if is_local(self._fs):
-                file = Path(self.place)
-                stack.enter_context(locked(file.with_name(f".{file.name}.lock"), str(file)))
-            else:
-                file = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="kinematify-"))) / self.name
-                if self._fs.exists(self.place):
-                    self._fs.get_file(self.place, str(file))
-            self._ledger = stack.enter_context(Ledger(file))
-            self._read()
-            self._exit = stack.pop_all()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        with self._exit:
-            self._copy()
-
-    def add(self, record: ObjectRecord) -> None:
-        """Add the record of an object that has none; it is on disk when this returns.
-
-        Raises:
-            OutputError: The disk is full or gone.
-        """
-        self._ledger.append(RECORD.dump_python(record, mode="json"))
-        self.records[record.source] = record
-        if time.monotonic() > self._copied + _EVERY:
-            self._copy()
-
-    def forget(self, places: Iterable[str]) -> None:
-        """Drop the records of objects that are going to be converted again."""
-        gone = self.records.keys() & set(places)
-        if gone:
-            self.records = {place: record for place, record in self.records.items() if place not in gone}
-            self._ledger.rewrite(RECORD.dump_python(record, mode="json") for record in self.records.values())
-
-    def _read(self) -> None:
-        """Take up what stands there; a manifest of another version is put aside, not lost."""
-        lines = list(self._ledger)
-        if any(facts.get("schema") != SCHEMA for facts in lines):
-            aside = self._ledger.path.with_name(f"{self.name}.old")
-            shutil.copyfile(self._ledger.path, aside)
-            if not is_local(self._fs):
-                self._fs.put_file(str(aside), f"{self.place}.old")
-            self.notice = (
-                f"{self.name} has lines of another version, which stay in {aside.name}; these objects are new."
-            )
-        self.records = {record.source: record for record in _records(lines)}
-        if len(self.records) < len(lines):
-            self._ledger.rewrite(RECORD.dump_python(record, mode="json") for record in self.records.values())
-
-    def _copy(self) -> None:
-        if not is_local(self._fs) and self._ledger.path.stat().st_size:
-            self._fs.put_file(str(self._ledger.path), self.place)
-            self._copied = time.monotonic()
+        try:
+            yield file, copy
+        finally:
+            if file.is_file() and file.stat().st_size:
+                fs.put_file(str(file), place)
 
 
 def read_manifests(out: str) -> list[ObjectRecord]:
@@ -168,12 +118,11 @@ def read_manifests(out: str) -> list[ObjectRecord]:
         for line in fs.cat_file(file).splitlines():
             with suppress(ValueError):  # the last line of a share that is being written
                 lines.append(json.loads(line))
-    return sorted(_records(lines), key=lambda record: record.object)
+    return sorted(filter(None, map(record_of, lines)), key=lambda record: record.object)
 
 
-def _records(lines: Iterable[dict[str, Any]]) -> Iterator[ObjectRecord]:
-    """The records among lines of this version."""
-    for facts in lines:
-        with suppress(ValidationError):
-            if facts.get("schema") == SCHEMA:
-                yield RECORD.validate_python(facts)
+def record_of(line: dict[str, Any]) -> ObjectRecord | None:
+    """The record of a line; None where another version wrote it."""
+    with suppress(ValidationError):
+        return RECORD.validate_python(line) if line.get("schema") == SCHEMA else None
+    return None

@@ -4,33 +4,37 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import posixpath
 import shutil
 import tempfile
 import time
 import zlib
-from contextlib import closing, contextmanager
-from dataclasses import dataclass, field
+from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from kinematify import __version__
 from kinematify.batch.batch_inputs import absolute, content_hash, filesystem, find_sources, is_local
 from kinematify.batch.convert import FORMATS, STEPS, Conversion, convert
-from kinematify.batch.manifest import Manifest, ObjectRecord
+from kinematify.batch.ledger import Ledger
+from kinematify.batch.manifest import RECORD, ObjectRecord, manifest_file, record_of
+from kinematify.batch.task_pool import Pool
+from kinematify.config import load_config
+from kinematify.config.validation import load_settings
 from kinematify.errors import InputError, OutputError
-from kinematify.processes.pool import TaskFailure, WorkItem, run_tasks
-from kinematify.simulation.engines import DEFAULT_ENGINES
+from kinematify.processes.pool import Processes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from kinematify.batch.batch_inputs import Source
     from kinematify.config import Config
     from kinematify.config.validation import ValidationSettings
     from kinematify.pipeline.infer_assembly import Progress
-    from kinematify.processes.pool import Executor
+    from kinematify.processes.pool import Executor, TaskFailure
 
 OBJECTS = "objects"
 """Folder of the output with a folder for each object."""
@@ -40,66 +44,6 @@ REUSE = 50
 """Objects that a worker takes before a new one is started: what leaks ends with it."""
 LIVES = 3
 """Workers that an object may cost."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class BatchRequest:
-    """Inputs and options of a batch."""
-
-    patterns: tuple[str, ...]
-    """As `find_sources` takes them."""
-    out: str
-    """Path or URL of a folder."""
-    config: Config
-    settings: ValidationSettings
-    steps: tuple[str, ...] = ("infer", "validate")
-    """Some of `STEPS`; without ``infer`` the inputs are URDFs."""
-    formats: tuple[str, ...] = ("mjcf",)
-    """Some of `FORMATS`, for the step ``export``."""
-    engines: tuple[str, ...] = DEFAULT_ENGINES
-    """Of the validation."""
-    reading: dict[str, Any] = field(default_factory=dict)
-    """Arguments of `load_assembly`: `up`, `scale`, `pieces`."""
-    vlm: str = "off"
-    """Model that is asked about the pieces of a mesh: ``off``, ``auto`` or its address."""
-    share: tuple[int, int] = (1, 1)
-    """Number of the share of the objects to convert, from 1, and how many shares there are."""
-    timeout: float = 900.0
-    """Wall time for an object [s]."""
-    resume: bool = False
-    """Go on: objects with a record of the same content and configuration stay, but for errors of the machine."""
-    retry: bool = False
-    """With `resume`: convert again what is not ``ok``, whatever the reason."""
-
-    def conversion(self) -> Conversion:
-        """Return what is asked for of every object.
-
-        Raises:
-            InputError: There is no such step or format, or there is nothing to refine.
-        """
-        for word, words, option in [(step, STEPS, "--steps") for step in self.steps] + [
-            (form, tuple(FORMATS), "--to") for form in self.formats
-        ]:
-            if word not in words:
-                raise InputError(f"{option} names {word!r}. Give some of {', '.join(words)}, separated by commas.")
-        if not self.steps or ("refine" in self.steps and "infer" not in self.steps):
-            raise InputError("--steps has nothing to work on. Give infer, or validate and export for URDFs.")
-        facts = {
-            "config": self.config.model_dump(mode="json"),
-            "settings": self.settings.model_dump(mode="json"),
-            "asked": [sorted(self.steps), sorted(self.formats), sorted(self.engines), self.reading, self.vlm],
-            "kinematify": __version__,
-        }
-        return Conversion(
-            steps=self.steps,
-            formats=self.formats,
-            config=self.config,
-            settings=self.settings,
-            engines=self.engines,
-            reading=self.reading,
-            vlm=self.vlm,
-            hash=hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest(),
-        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,87 +61,179 @@ class BatchResult:
     seconds: float
     """Wall time of this run [s]."""
     workers: int
-    notice: str
-    """What a user must know of an earlier manifest; empty if nothing."""
     interrupted: bool
 
 
-def run_batch(request: BatchRequest, engine: Executor, progress: Progress | None = None) -> BatchResult:
-    """Convert all objects that have no record yet; what has ended is kept whatever happens.
+def batch(
+    inputs: Sequence[str],
+    out: str,
+    *,
+    steps: Sequence[str] = ("infer", "validate"),
+    to: Sequence[str] = ("mjcf",),
+    engine: Literal["local", "ray"] | Executor = "local",
+    address: str | None = None,
+    workers: int | None = None,
+    timeout: float = 900.0,
+    memory: float = 8.0,
+    resume: bool = False,
+    retry: bool = False,
+    shard: tuple[int, int] = (1, 1),
+    up: str = "auto",
+    scale: float | None = None,
+    pieces: str = "auto",
+    vlm: str = "off",
+    config: Config | None = None,
+    settings: ValidationSettings | None = None,
+    progress: Progress | None = None,
+) -> BatchResult:
+    """Convert all objects that have no record yet, as `kinematify batch` does; what has ended is kept whatever happens.
 
     Args:
-        request: What to convert, and how.
-        engine: Starts the workers.
+        inputs: Paths or URLs; ``*`` is any name and ``**`` any folders.
+        out: Path or URL of a folder.
+        steps: Some of `STEPS`; without ``infer`` the inputs are URDFs.
+        to: Some of `FORMATS`, for the step ``export``.
+        engine: Processes of this machine, of a Ray cluster, or what else starts workers.
+        address: Of the Ray cluster; None starts one here.
+        workers: Objects at a time; as many as there are processors if absent.
+        timeout: Wall time for an object [s].
+        memory: Address space of a worker [GB].
+        resume: Go on: objects with a record of the same content and configuration stay, but for errors of the machine.
+        retry: With `resume`: convert again what is not ``ok``, whatever the reason.
+        shard: Number of the share of the objects to convert, from 1, and how many shares there are.
+        up: As `kinematify.load_assembly` takes it.
+        scale: The same.
+        pieces: The same.
+        vlm: As `kinematify.infer` takes it.
+        config: All stages, the default ones if absent.
+        settings: Of the validation; the shipped ones if absent.
         progress: Called with the object that has ended and the share done.
 
     Returns:
         The records; after an interrupt those of the objects that have ended.
 
     Raises:
-        InputError: The patterns match nothing, or the steps do not fit together.
+        InputError: The inputs match nothing, or the steps do not fit together.
         OutputError: The output cannot be written, holds a run that must not be touched, or is full.
-        EnvironmentFault: A store cannot be opened.
+        EnvironmentFault: A store or a cluster cannot be opened.
     """
-    conversion, start = request.conversion(), time.perf_counter()
-    out = absolute(*filesystem(request.out))
-    sources = _share(find_sources(request.patterns, besides=out), request.share)
+    reading = {"up": up, "scale": scale, "pieces": pieces}
+    conversion = _conversion(steps, to, reading, vlm, (config or load_config(), settings or load_settings()))
+    start, place = time.perf_counter(), absolute(*filesystem(out))
+    sources = {
+        source.place: source
+        for source in find_sources(inputs, besides=place)
+        if zlib.crc32(source.place.encode()) % shard[1] == shard[0] - 1
+    }  # a share hangs on the places alone
+    executor = _executor(engine, address, workers, int(memory * 2**30)) if isinstance(engine, str) else engine
     report = progress or (lambda what, share: None)
-    with Manifest(out, request.share) as manifest, _staging(out, request.share) as staging:
-        if manifest.records and not request.resume:
-            raise OutputError(
-                f"{request.out} holds a run with {len(manifest.records)} objects. Go on with --resume, or give another "
-                "folder with -o."
-            )
-        missing = [source for source in sources if not _has_ended(source, manifest, conversion, request)]
-        manifest.forget(source.place for source in missing)
-        if len(missing) < len(sources):
-            report("skipped: done earlier", 1.0 - len(missing) / len(sources))
-        by_place = {source.place: source for source in missing}
-        tasks = (
-            WorkItem(
-                key=place,
-                call=partial(convert, source, conversion, posixpath.join(out, OBJECTS, source.name), staging),
-                timeout=request.timeout,
-            )
-            for place, source in by_place.items()
-        )
-        new, interrupted = 0, False
+    with manifest_file(place, shard) as (file, copy), _staging(place, shard) as staging:
+        kept = _kept(file, sources, conversion.hash, resume=resume, retry=retry)
+
+        def said(key: str, answer: ObjectRecord | TaskFailure) -> str:
+            copy()
+            assert isinstance(answer, ObjectRecord)
+            return f"{answer.object}: {answer.verdict or answer.status}, {answer.seconds:.1f} s"
+
+        interrupted = False
         try:
-            with closing(run_tasks(tasks, engine, reuse=REUSE, lives=LIVES)) as running:
-                for place, answer in running:
-                    record = _failed(by_place[place], answer, conversion) if isinstance(answer, TaskFailure) else answer
-                    manifest.add(record)
-                    new += 1
-                    words = f"{record.object}: {record.verdict or record.status}, {record.seconds:.1f} s"
-                    report(words, 1.0 - (len(missing) - new) / len(sources))
+            Pool(folder=file.parent, progress=report).run(
+                {
+                    name: partial(convert, source, conversion, posixpath.join(place, OBJECTS, source.name), staging)
+                    for name, source in sources.items()
+                },
+                RECORD,
+                ledger=file.stem,
+                timeout=timeout,
+                said=said,
+                reuse=REUSE,
+                lives=LIVES,
+                executor=executor,
+                failed=lambda key, failure: _failed(sources[key], failure, conversion),
+            )
         except KeyboardInterrupt:
             interrupted = True
-        return BatchResult(
-            out=out,
-            records=tuple(manifest.records[source.place] for source in sources if source.place in manifest.records),
-            new=new,
-            left=len(missing) - new,
-            seconds=time.perf_counter() - start,
-            workers=engine.capacity,
-            notice=manifest.notice,
-            interrupted=interrupted,
-        )
+        with Ledger(file) as ledger:
+            known = {record.source: record for line in ledger if (record := record_of(line)) is not None}
+    records = tuple(known[name] for name in sources if name in known)
+    return BatchResult(
+        out=place,
+        records=records,
+        new=len(records) - kept,
+        left=len(sources) - len(records),
+        seconds=time.perf_counter() - start,
+        workers=executor.capacity,
+        interrupted=interrupted,
+    )
 
 
-def _share(sources: Sequence[Source], share: tuple[int, int]) -> list[Source]:
-    """The objects of one share; which share an object is in hangs on its place alone."""
-    number, of = share
-    return [source for source in sources if zlib.crc32(source.place.encode()) % of == number - 1]
+def _conversion(
+    steps: Sequence[str],
+    to: Sequence[str],
+    reading: dict[str, Any],
+    vlm: str,
+    values: tuple[Config, ValidationSettings],
+) -> Conversion:
+    """What is asked for of every object.
+
+    Raises:
+        InputError: There is no such step or format, or there is nothing to refine.
+    """
+    for word, words, option in [(step, STEPS, "--steps") for step in steps] + [
+        (form, tuple(FORMATS), "--to") for form in to
+    ]:
+        if word not in words:
+            raise InputError(f"{option} names {word!r}. Give some of {', '.join(words)}, separated by commas.")
+    if not steps or ("refine" in steps and "infer" not in steps):
+        raise InputError("--steps has nothing to work on. Give infer, or validate and export for URDFs.")
+    config, settings = values
+    facts = {
+        "config": config.model_dump(mode="json"),
+        "settings": settings.model_dump(mode="json"),
+        "asked": [sorted(steps), sorted(to), reading, vlm],
+        "kinematify": __version__,
+    }
+    return Conversion(
+        steps=tuple(steps),
+        formats=tuple(to),
+        config=config,
+        settings=settings,
+        reading=reading,
+        vlm=vlm,
+        hash=hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest(),
+    )
 
 
-def _has_ended(source: Source, manifest: Manifest, conversion: Conversion, request: BatchRequest) -> bool:
-    """True if an object has a record that stays."""
-    record = manifest.records.get(source.place)
-    if record is None or record.configuration != conversion.hash or record.status == "error":
-        return False
-    if request.retry and record.status != "ok":
-        return False
-    return _content(source) == record.content
+def _executor(engine: str, address: str | None, workers: int | None, memory: int) -> Executor:
+    if engine == "ray":
+        from kinematify.batch.ray_nodes import RayNodes  # noqa: PLC0415 - of an extra
+
+        return RayNodes(address, workers=workers, preload=PRELOAD, memory=memory)
+    return Processes(workers or os.cpu_count() or 1, preload=PRELOAD, memory=memory)
+
+
+def _kept(file: Path, sources: Mapping[str, Source], configuration: str, *, resume: bool, retry: bool) -> int:
+    """Drop the lines of objects that are to be converted again; return how many of these objects stay."""
+    with Ledger(file) as ledger:
+        lines = [(line, record) for line in ledger if (record := record_of(line)) is not None]
+        if lines and not resume:
+            raise OutputError(
+                f"{file.parent} holds a run with {len(lines)} objects. Go on with --resume, or give another folder "
+                "with -o."
+            )
+        asked = [record.source in sources for _, record in lines]
+        stays = [
+            not mine
+            or (
+                record.configuration == configuration
+                and record.status != "error"
+                and not (retry and record.status != "ok")
+                and _content(sources[record.source]) == record.content
+            )
+            for mine, (_, record) in zip(asked, lines, strict=True)
+        ]
+        ledger.rewrite(line for (line, _), stay in zip(lines, stays, strict=True) if stay)
+    return sum(mine and stay for mine, stay in zip(asked, stays, strict=True))
 
 
 def _failed(source: Source, failure: TaskFailure, conversion: Conversion) -> ObjectRecord:

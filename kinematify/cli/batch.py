@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 from typing import TYPE_CHECKING, Any
 
@@ -17,10 +16,17 @@ from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
     from kinematify.batch.run_batch import BatchResult
-    from kinematify.processes.pool import Executor
 
 _SHOWN = 10
 """Objects without a good model that are named on the terminal; the page has all."""
+
+
+def _share(_context: click.Context, _parameter: click.Parameter, words: str) -> tuple[int, int]:
+    """Number and count of the shares, from `2/8`."""
+    number, _, of = words.partition("/")
+    if not (number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
+        raise click.BadParameter(f"{words} is no share. Give I/N with I from 1 to N, e.g. 2/8.")
+    return int(number), int(of)
 
 
 @click.command(
@@ -67,7 +73,13 @@ _SHOWN = 10
 )  # fmt: skip
 @click.option("--resume", is_flag=True, help="Continue the run in the output and skip finished objects.")
 @click.option("--retry", is_flag=True, help="With --resume, convert again every object that gave no model.")
-@click.option("--shard", metavar="I/N", help="Only share I of N of the objects, for runs side by side.")
+@click.option(
+    "--shard",
+    metavar="I/N",
+    default="1/1",
+    callback=_share,
+    help="Only share I of N of the objects, for runs side by side.",
+)
 @click.option(
     "--up",
     type=click.Choice(["auto", "z", "y", "x", "-z", "-y", "-x"]),
@@ -93,65 +105,30 @@ def command(**values: Any) -> int:
     with 130; the same command with --resume goes on.
     """
     from kinematify.batch.batch_summary import write_page
-    from kinematify.batch.run_batch import BatchRequest, run_batch
+    from kinematify.batch.run_batch import batch
     from kinematify.config import load_config
     from kinematify.config.validation import load_settings
 
     if values["retry"] and not values["resume"]:
         raise click.UsageError("--retry belongs to --resume. Give both, or leave it out.")
-    seed = {} if values["seed"] is None else {"seed": values["seed"]}
-    request = BatchRequest(
-        patterns=values["inputs"],
-        out=values["out"],
-        config=load_config(values["config"], **seed),
-        settings=load_settings(**seed),
-        steps=listed(values["steps"]),
-        formats=listed(values["to"]),
-        reading={name: values[name] for name in ("up", "scale", "pieces")},
-        vlm=values["vlm"],
-        share=_share(values["shard"]),
-        timeout=values["timeout"],
-        resume=values["resume"],
-        retry=values["retry"],
-    )
+    if values["address"] and values["engine"] != "ray":
+        raise click.UsageError("--address belongs to --engine ray. Leave it out.")
+    seed = {} if (drawn := values.pop("seed")) is None else {"seed": drawn}
+    json_to = values.pop("json_to")
+    values |= {"config": load_config(values["config"], **seed), "settings": load_settings(**seed)}
+    values |= {name: listed(values[name]) for name in ("steps", "to")}
     signal.signal(signal.SIGTERM, lambda *_: signal.raise_signal(signal.SIGINT))  # as schedulers of clusters stop jobs
     with progress_reporter() as progress:
-        result = run_batch(request, _engine(values), progress)
+        result = batch(**values, progress=progress)
     page = write_page(result.out)
-    if values["json_to"]:
-        write_answer(_answer(result), values["json_to"])
-    if values["json_to"] != "-":
+    if json_to:
+        write_answer(_answer(result), json_to)
+    if json_to != "-":
         click.echo(f"{_described(result)}\n{page}")
-    if result.notice:
-        click.echo(result.notice, err=True)
     if result.interrupted:
         click.echo(f"Interrupted, {result.left} objects are left. Go on with --resume.", err=True)
         return ExitStatus.INTERRUPTED
     return ExitStatus.FAILURES if any(record.failed for record in result.records) else ExitStatus.FINE
-
-
-def _engine(values: dict[str, Any]) -> Executor:
-    """The engine that was asked for, started."""
-    from kinematify.batch.run_batch import PRELOAD
-
-    memory = int(values["memory"] * 2**30)
-    if values["engine"] == "ray":
-        from kinematify.batch.ray_nodes import RayNodes
-
-        return RayNodes(values["address"], workers=values["workers"], preload=PRELOAD, memory=memory)
-    if values["address"]:
-        raise click.UsageError("--address belongs to --engine ray. Leave it out.")
-    from kinematify.processes.pool import Processes
-
-    return Processes(values["workers"] or os.cpu_count() or 1, preload=PRELOAD, memory=memory)
-
-
-def _share(words: str | None) -> tuple[int, int]:
-    """Number and count of the shares, from `2/8`."""
-    number, _, of = (words or "1/1").partition("/")
-    if not (number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
-        raise click.UsageError(f"--shard {words} is no share. Give I/N with I from 1 to N, e.g. 2/8.")
-    return int(number), int(of)
 
 
 def _described(result: BatchResult) -> str:

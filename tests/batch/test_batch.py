@@ -184,7 +184,7 @@ def test_time_that_ran_out_is_recorded_and_tried_again_if_asked(tmp_path: Path) 
         (("--steps", "infer,paint"), "--steps names 'paint'"),
         (("--steps", "refine"), "has nothing to work on"),
         (("--to", "dae"), "--to names 'dae'"),
-        (("--shard", "3/2"), "--shard 3/2 is no share"),
+        (("--shard", "3/2"), "3/2 is no share"),
         (("--retry",), "--retry belongs to --resume"),
         (("--address", "auto"), "--address belongs to --engine ray"),
     ],

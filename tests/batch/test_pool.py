@@ -19,30 +19,32 @@ from kinematify.batch.task_pool import Pool
 from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 from tests.places import ROOT
 
-NUMBER = TypeAdapter(int)
+NUMBER = TypeAdapter(dict[str, int])
 
 
-def process_of_worker(number: int) -> int:
-    return os.getpid()
+def process_of_worker(number: int) -> dict[str, int]:
+    return {"process": os.getpid()}
 
 
-def crash() -> int:
+def crash() -> dict[str, int]:
     os.kill(os.getpid(), signal.SIGSEGV)
-    return 0
+    return {}
 
 
-def fail() -> int:
+def fail() -> dict[str, int]:
     raise ValueError("no such number")
 
 
-def hang_with_a_child(file: Path) -> int:
+def hang_with_a_child(file: Path) -> dict[str, int]:
     child = subprocess.Popen(["sleep", "600"])
     file.write_text(f"{child.pid} {os.getpid()}")
     time.sleep(600.0)
-    return 0
+    return {}
 
 
-def results(tasks: dict[str, Callable[[], int]], folder: Path, **how: float) -> dict[str, int | TaskFailure]:
+def results(
+    tasks: dict[str, Callable[[], dict[str, int]]], folder: Path, **how: float
+) -> dict[str, dict[str, int] | TaskFailure]:
     settings = {"timeout": 60.0, **how}
     pool = Pool(folder=folder, workers=2)
     return pool.run(tasks, NUMBER, ledger="numbers", said=lambda key, result: key, **settings)  # type: ignore[arg-type]
@@ -83,7 +85,7 @@ def test_a_hang_is_stopped_with_all_that_it_started(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("reuse", "most"), [(1, 6), (3, 3)])
 def test_a_process_takes_as_many_tasks_as_allowed(reuse: int, most: int, tmp_path: Path) -> None:
     tasks = {str(number): partial(process_of_worker, number) for number in range(6)}
-    taken = Counter(results(tasks, tmp_path, reuse=reuse).values())
+    taken = Counter(answer["process"] for answer in results(tasks, tmp_path, reuse=reuse).values())
     assert max(taken.values()) <= reuse
     assert 6 / reuse <= len(taken) <= most  # one that has taken all it may is replaced while another is still busy
 
@@ -111,9 +113,9 @@ def test_a_caller_that_is_killed_takes_its_processes_with_it(tmp_path: Path) -> 
     assert all(gone(int(pid)) for pid in file.read_text().split())
 
 
-def crash_once(marker: Path) -> int:
+def crash_once(marker: Path) -> dict[str, int]:
     if marker.exists():
-        return 7
+        return {"seven": 7}
     marker.touch()
     return crash()
 
@@ -122,7 +124,7 @@ def test_a_task_whose_worker_died_is_begun_again(tmp_path: Path) -> None:
     calls = {"once": partial(crash_once, tmp_path / "marker"), "always": crash}
     tasks = [WorkItem(key=key, call=call, timeout=60.0) for key, call in calls.items()]
     found = dict(run_tasks(tasks, Processes(1), lives=2))
-    assert found["once"] == 7
+    assert found["once"] == {"seven": 7}
     assert isinstance(found["always"], TaskFailure)
     assert found["always"].message == "the worker ended with SIGSEGV, the last of 2 that it cost"
 

@@ -1,20 +1,18 @@
-"""`run_batch` from a store into a store: fsspec's file system in memory, with a worker in this process."""
+"""`batch` from a store into a store: fsspec's file system in memory, with a worker in this process."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Collection
-from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
 from fsspec.implementations.memory import MemoryFileSystem
 
-from kinematify.batch.run_batch import BatchRequest, run_batch
+from kinematify.batch.run_batch import batch
 from kinematify.cli.app import run
-from kinematify.config import load_config
-from kinematify.config.validation import load_settings
 from tests.batch.assets import write_assets
 
 URDF = """<robot name="boxes">
@@ -52,15 +50,9 @@ def test_a_library_in_a_store_is_converted_there(tmp_path: Path) -> None:
     (tmp_path / "assets" / "stone.obj").write_text(STONE)
     store = MemoryFileSystem()
     store.put(str(tmp_path / "assets"), "/bucket/", recursive=True)
-    request = BatchRequest(
-        patterns=("memory://bucket/assets/**/*.glb", "memory://bucket/assets/**/*.urdf"),
-        out="memory://bucket/out",
-        config=load_config(),
-        settings=load_settings(),
-        steps=("infer",),
-        reading={"up": "z"},
-    )
-    done = run_batch(request, Here())
+    inputs = ("memory://bucket/assets/**/*.glb", "memory://bucket/assets/**/*.urdf")
+    run_in_store = partial(batch, inputs, "memory://bucket/out", steps=("infer",), up="z", engine=Here())
+    done = run_in_store()
     assert {record.object: record.status for record in done.records} == dict.fromkeys(
         ("deep-knob_0", "deep-knob_1", "deep-boxes"), "ok"
     )
@@ -68,7 +60,7 @@ def test_a_library_in_a_store_is_converted_there(tmp_path: Path) -> None:
     found = {path.removeprefix("/bucket/out/") for path in store.find("/bucket/out")}
     assert found >= {"manifest.jsonl", "objects/deep-knob_1/model.urdf"}
     assert any(path.startswith("objects/deep-knob_1/meshes/") for path in found)
-    assert run_batch(replace(request, resume=True), Here()).new == 0
+    assert run_in_store(resume=True).new == 0
 
 
 def test_a_store_whose_package_is_missing_is_named(
