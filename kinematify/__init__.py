@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from kinematify.contact.tree import KinematicTree
     from kinematify.errors import KinematifyError
     from kinematify.evaluation.nightly.run_night import nightly
+    from kinematify.evaluation.run_benchmark import bench
     from kinematify.formats.export_model import export
     from kinematify.generate import generate
     from kinematify.joints.candidate import JointCandidate
@@ -66,6 +67,7 @@ __all__ = [
     "ValidationReport",
     "__version__",
     "batch",
+    "bench",
     "export",
     "fix",
     "generate",
@@ -93,6 +95,7 @@ _HOMES = {
     "Refinement": "kinematify.refinement",
     "ValidationReport": "kinematify.validation.run.report",
     "batch": "kinematify.batch",
+    "bench": "kinematify.evaluation.run_benchmark",
     "export": "kinematify.formats.export_model",
     "fix": "kinematify.refinement.repair",
     "generate": "kinematify.generate",

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from typing import Any
 
-from kinematify.evaluation.run_benchmark import BenchmarkRequest
+from kinematify.evaluation.benchmark_job import JobResult
+from kinematify.evaluation.result_record import Report
+from kinematify.evaluation.run_benchmark import bench
 
 BOX = '<visual><geometry><box size="{size}"/></geometry></visual>'
 
@@ -39,6 +42,6 @@ def write_object(folder: Path, *, with_knob: bool) -> None:
     (folder / "source.json").write_text(json.dumps(facts))
 
 
-def request(data: Path, work: Path, infer: str, **changes: object) -> BenchmarkRequest:
-    base = BenchmarkRequest(data=data, work_folder=work, workers=2, infer=f"quick_inference:{infer}", timeout=60.0)
-    return replace(base, **changes)  # type: ignore[arg-type]
+def request(data: Path, work: Path, infer: str, **changes: Any) -> partial[Report[JobResult]]:
+    settings = {"jobs": 2, "infer": f"quick_inference:{infer}", "timeout": 60.0, **changes}
+    return partial(bench, data, work=work, **settings)

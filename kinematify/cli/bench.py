@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +9,7 @@ import click
 
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.checkout import benchmark_module, has_benchmarks
-from kinematify.cli.options import examples, words_of
+from kinematify.cli.options import examples, listed, words_of
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
@@ -173,29 +172,28 @@ def command(
     """
     from kinematify.evaluation.benchmark_job import CLEAN
     from kinematify.evaluation.result_record import as_json, load_report, table, write_report
-    from kinematify.evaluation.run_benchmark import RESULTS, BenchmarkRequest, run_benchmark
+    from kinematify.evaluation.run_benchmark import RESULTS, bench
 
     if folder is not None and data is not None:
         raise click.UsageError(f"Both DATA ({folder}) and --data ({data}) are given. Leave one out.")
-    chosen = data if data is not None else folder
     if degrade != "none" and baseline is not None:
         raise click.UsageError("--degrade cannot be combined with --baseline. Give one of them.")
     earlier = load_report(baseline, RESULTS) if baseline is not None else None
     find = None if baseline is None else benchmark_module("regression", "--baseline").find_regressions
     detailed = has_benchmarks()
     faults, by = _faults(degrade)
-    request = BenchmarkRequest(
-        data=chosen,
-        variants=_variants(configs, ablation=ablation),
-        conditions=tuple(word.strip() for word in conditions.split(",")),
-        inputs=(CLEAN, *faults),
-        degrade=by,
-        only=patterns,
-        fresh=fresh,
-        workers=jobs or os.cpu_count() or 1,
-    )
     with progress_reporter() as progress:
-        report = run_benchmark(request, progress)
+        report = bench(
+            data if data is not None else folder,
+            variants=_variants(configs, ablation=ablation),
+            conditions=listed(conditions),
+            inputs=(CLEAN, *faults),
+            degrade=by,
+            objects=patterns,
+            fresh=fresh,
+            jobs=jobs,
+            progress=progress,
+        )
         if detailed:
             blocks = benchmark_module("tables", "The report").benchmark_blocks(report, earlier)
         else:

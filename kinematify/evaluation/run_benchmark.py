@@ -16,7 +16,7 @@ from kinematify.errors import ConfigError, InputError
 from kinematify.evaluation.benchmark_job import CLEAN, INFER, Job, JobResult, run_job, unscored
 from kinematify.evaluation.benchmark_summary import summaries
 from kinematify.evaluation.datasets import CONDITIONS, Condition, find_objects, matching
-from kinematify.evaluation.result_record import NOT_INFERRING, Header, Report, code_version, new_header
+from kinematify.evaluation.result_record import NOT_INFERRING, Report, code_version, new_header
 from kinematify.processes.pool import TaskFailure
 
 if TYPE_CHECKING:
@@ -47,40 +47,41 @@ class Variant:
         return changed(load_config(self.config), self.changes)
 
 
+ALL_CONDITIONS = tuple(condition.name for condition in CONDITIONS)
 DEFAULT_VARIANTS = (Variant(label="default", config="default"),)
 
 
-@dataclass(frozen=True, kw_only=True)
-class BenchmarkRequest:
-    """Request of a benchmark."""
+def bench(
+    data: str | Path | None = None,
+    *,
+    variants: Sequence[Variant] = DEFAULT_VARIANTS,
+    conditions: Sequence[str] = ALL_CONDITIONS,
+    inputs: Sequence[str] = (CLEAN,),
+    degrade: str = "",
+    objects: Sequence[str] = (),
+    work: Path = WORK_FOLDER,
+    fresh: bool = False,
+    jobs: int | None = None,
+    timeout: float = 900.0,
+    infer: str = INFER,
+    progress: Progress | None = None,
+) -> Report[JobResult]:
+    """Measure the accuracy on objects with known joints, as `kinematify bench` does.
 
-    data: str | Path | None = None
-    """As `find_objects` takes it."""
-    variants: tuple[Variant, ...] = DEFAULT_VARIANTS
-    conditions: tuple[str, ...] = tuple(condition.name for condition in CONDITIONS)
-    """Names of conditions."""
-    inputs: tuple[str, ...] = (CLEAN,)
-    """What is done to the parts: `CLEAN`, and names that `degrade` knows."""
-    degrade: str = ""
-    """Function that degrades parts, as ``module:name``; `Job.degrade` says how it is called."""
-    only: tuple[str, ...] = ()
-    """Patterns for names of objects, categories or kinds; empty for all."""
-    work_folder: Path = WORK_FOLDER
-    """Where finished jobs are kept between runs."""
-    fresh: bool = False
-    """Forget what the work folder holds; otherwise finished jobs are not run again."""
-    workers: int = field(default_factory=lambda: os.cpu_count() or 1)
-    timeout: float = 900.0
-    """Wall time for one object under one condition [s]; H1 is allowed 40 s."""
-    infer: str = INFER
-    """Function under test, as ``module:name``; tests give a quick one."""
-
-
-def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -> Report[JobResult]:
-    """Run the benchmark, taking up what an earlier run with the same code and configuration has finished.
+    What an earlier run with the same code and configuration has finished is taken up.
 
     Args:
-        request: Objects, conditions, configurations and where to work.
+        data: As `find_objects` takes it.
+        variants: Configurations under test.
+        conditions: Names of conditions.
+        inputs: What is done to the parts: `CLEAN`, and names that `degrade` knows.
+        degrade: Function that degrades parts, as ``module:name``; `Job.degrade` says how it is called.
+        objects: Patterns for names of objects, categories or kinds; empty for all.
+        work: Folder in which finished jobs are kept between runs.
+        fresh: Forget what that folder holds; otherwise finished jobs are not run again.
+        jobs: Processes at a time; as many as there are cores if absent.
+        timeout: Wall time for one object under one condition [s]; H1 is allowed 40 s.
+        infer: Function under test, as ``module:name``; tests give a quick one.
         progress: Called with what has just finished and the fraction done in [0, 1].
 
     Returns:
@@ -91,21 +92,31 @@ def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -
         OutputError: The work folder cannot be written.
         KeyboardInterrupt: Ctrl-C; workers are stopped, finished jobs are kept.
     """
-    jobs = jobs_of(request)
-    code = code_version(without=NOT_INFERRING, module=request.degrade.partition(":")[0])
-    keyed = [(job.key(code), job) for job in jobs]
+    items, posed = matching(find_objects(data), objects), [_condition(name) for name in conditions]
+    asked = [
+        Job(
+            item=item, condition=condition, variant=variant.label, config=config, infer=infer, input=given,
+            degrade=degrade,
+        )
+        for variant, config in [(variant, variant.load()) for variant in variants]
+        for given in inputs
+        for item in items
+        for condition in posed
+    ]  # fmt: skip
+    code, workers = code_version(without=NOT_INFERRING, module=degrade.partition(":")[0]), jobs or os.cpu_count() or 1
+    keyed = [(job.key(code), job) for job in asked]
     # The largest objects first, so that no worker is left alone with one at the end.
     by_key = dict(sorted(keyed, key=lambda entry: entry[1].item.mesh_bytes, reverse=True))
-    pool = Pool(folder=request.work_folder, workers=request.workers, fresh=request.fresh)
+    pool = Pool(folder=work, workers=workers, fresh=fresh)
     pool = pool if progress is None else replace(pool, progress=progress)
-    torch_too = ["kinematify.paper.joints"] if any(job.config.joints.method == "cavl" for job in jobs) else []
+    torch_too = ["kinematify.paper.joints"] if any(job.config.joints.method == "cavl" for job in asked) else []
 
     def answered(pool: Pool, tasks: Mapping[str, Callable[[], JobResult]]) -> dict[str, JobResult | TaskFailure]:
         return pool.run(
             tasks,
             RESULT,
             ledger="jobs",
-            timeout=request.timeout,
+            timeout=timeout,
             said=lambda key, result: _line(by_key[key.removesuffix(_SCORED)], result),
             preload=("kinematify.pipeline.infer_assembly", "kinematify.evaluation.benchmark_job", *torch_too),
         )
@@ -121,7 +132,19 @@ def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -
         results[key] = unscored(job, failed[key]) if isinstance(answer, TaskFailure) else answer
     # Two labels can name the same configuration, which is run once.
     ordered = tuple(replace(results[key], variant=job.variant) for key, job in keyed)
-    return Report(header=_header(request, ordered, code), records=ordered, summary={"groups": summaries(ordered)})
+    header = new_header(
+        "bench",
+        workers=workers,
+        seeds=[condition.seed for condition in posed],
+        configuration={
+            "objects": len({result.object for result in ordered}),
+            "conditions": list(conditions),
+            "inputs": list(inputs),
+            "variants": [variant.label for variant in variants],
+        },
+        code=code,
+    )
+    return Report(header=header, records=ordered, summary={"groups": summaries(ordered)})
 
 
 _SCORED = " scored"
@@ -154,31 +177,6 @@ def changed(config: Config, changes: Mapping[str, Any]) -> Config:
         raise ConfigError(f"The changes {dict(changes)} do not fit configuration {config.name}: {error}.") from error
 
 
-def jobs_of(request: BenchmarkRequest) -> list[Job]:
-    """One job per configuration, input, object and condition of a request.
-
-    Raises:
-        InputError: There is no such data, object or condition.
-    """
-    objects = matching(find_objects(request.data), request.only)
-    conditions = [_condition(name) for name in request.conditions]
-    return [
-        Job(
-            item=item,
-            condition=condition,
-            variant=variant.label,
-            config=config,
-            infer=request.infer,
-            input=given,
-            degrade=request.degrade,
-        )
-        for variant, config in [(variant, variant.load()) for variant in request.variants]
-        for given in request.inputs
-        for item in objects
-        for condition in conditions
-    ]
-
-
 def _condition(name: str) -> Condition:
     for condition in CONDITIONS:
         if condition.name == name:
@@ -193,18 +191,3 @@ def _line(job: Job, result: JobResult | TaskFailure) -> str:
     if isinstance(result, JobResult) and result.status == "ok":
         return f"{place}: {result.seconds:.1f} s"
     return f"{place}: {result.status}, {result.message}"
-
-
-def _header(request: BenchmarkRequest, results: Sequence[JobResult], code: str) -> Header:
-    return new_header(
-        "bench",
-        workers=request.workers,
-        seeds=[_condition(name).seed for name in request.conditions],
-        configuration={
-            "objects": len({result.object for result in results}),
-            "conditions": list(request.conditions),
-            "inputs": list(request.inputs),
-            "variants": [variant.label for variant in request.variants],
-        },
-        code=code,
-    )

@@ -16,7 +16,6 @@ from kinematify.assembly.part import Assembly, Part
 from kinematify.cli.options import words_of
 from kinematify.config import load_config
 from kinematify.evaluation.benchmark_job import CLEAN
-from kinematify.evaluation.run_benchmark import run_benchmark
 from tests.secret_cabinets import request, write_object
 
 CONFIG = load_config()
@@ -104,7 +103,7 @@ def test_every_kind_of_input_is_run_and_has_a_line_of_its_own(tmp_path: Path) ->
         inputs=(CLEAN, "gaps", "hulls", "cut-2"),
         degrade="benchmarks.degrade:degraded",
     )
-    report = run_benchmark(wanted)
+    report = wanted()
     assert [(run.input, run.status, run.cuts, run.cuts_mended) for run in report.records] == [
         (CLEAN, "ok", 0, 0),
         ("gaps", "ok", 0, 0),

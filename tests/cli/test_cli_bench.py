@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,7 +14,6 @@ from kinematify.cli.app import run
 from kinematify.evaluation.benchmark_job import JobResult
 from kinematify.evaluation.metrics import JointScore, ObjectScore
 from kinematify.evaluation.result_record import Header, Report
-from kinematify.evaluation.run_benchmark import BenchmarkRequest
 from kinematify.evaluation.tree_metrics import TreeDistance
 
 NO_DISTANCE = TreeDistance(value=0, exact=True)
@@ -67,34 +67,38 @@ def test_only_what_became_worse_is_a_regression(now: JobResult, metrics: set[str
 
 
 @pytest.fixture
-def results(monkeypatch: pytest.MonkeyPatch) -> list[BenchmarkRequest]:
+def results(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
     """Let the benchmark answer at once; the list receives what it was asked."""
-    asked: list[BenchmarkRequest] = []
+    asked: list[dict[str, Any]] = []
 
-    def answer(request: BenchmarkRequest, progress: object) -> Report[JobResult]:
-        asked.append(request)
+    def answer(data: object, **options: Any) -> Report[JobResult]:
+        asked.append({"data": data, **options})
         return report(RESULT)
 
-    monkeypatch.setattr("kinematify.evaluation.run_benchmark.run_benchmark", answer)
+    monkeypatch.setattr("kinematify.evaluation.run_benchmark.bench", answer)
     return asked
 
 
-def test_arguments_become_a_request(results: list[BenchmarkRequest], tmp_path: Path) -> None:
+def test_arguments_become_those_of_the_function(results: list[dict[str, Any]], tmp_path: Path) -> None:
     words = ["--data", "pip", "--conditions", "rest,yaw37", "--jobs", "3", "--fresh", "--objects", "pan*"]
     assert run(["bench", *words, "--config", "paper", "-o", str(tmp_path)]) == 0
     (request,) = results
-    assert (request.data, request.workers, request.fresh) == ("pip", 3, True)
-    assert request.conditions == ("rest", "yaw37")
-    assert request.only == ("pan*",)
-    assert [variant.label for variant in request.variants] == ["paper", "paper without MCTS", "paper without DW-CAVL"]
+    assert (request["data"], request["jobs"], request["fresh"]) == ("pip", 3, True)
+    assert request["conditions"] == ("rest", "yaw37")
+    assert request["objects"] == ("pan*",)
+    assert [variant.label for variant in request["variants"]] == [
+        "paper",
+        "paper without MCTS",
+        "paper without DW-CAVL",
+    ]
     assert run(["bench", *words, "--ablation", "-o", str(tmp_path)]) == 0
-    assert [variant.label for variant in results[1].variants] == [
+    assert [variant.label for variant in results[1]["variants"]] == [
         "default", "default without MCTS", "default with DW-CAVL",
     ]  # fmt: skip
 
 
 def test_report_is_written_and_summed_up(
-    results: list[BenchmarkRequest], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    results: list[dict[str, Any]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(["bench", str(tmp_path), "-o", str(tmp_path / "out"), "--name", "doors"]) == 0
     text = capsys.readouterr().out
@@ -105,14 +109,14 @@ def test_report_is_written_and_summed_up(
 
 
 def test_json_stands_alone_on_stdout(
-    results: list[BenchmarkRequest], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    results: list[dict[str, Any]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(["bench", str(tmp_path), "-o", str(tmp_path), "--json", "-"]) == 0
     assert json.loads(capsys.readouterr().out)["schema"] == 2
 
 
 def test_worse_than_the_baseline_ends_with_1(
-    results: list[BenchmarkRequest], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    results: list[dict[str, Any]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = ["bench", str(tmp_path), "-o", str(tmp_path)]
     assert run([*words, "--name", "first"]) == 0

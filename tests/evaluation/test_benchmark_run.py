@@ -26,7 +26,6 @@ from kinematify.evaluation.run_benchmark import (
     RESULTS,
     Variant,
     changed,
-    run_benchmark,
 )
 from tests.places import ROOT
 from tests.secret_cabinets import request, write_object
@@ -51,7 +50,7 @@ def written(report: Report[JobResult], folder: Path, name: str, baseline: Report
 
 def test_runs_every_object_under_every_condition_and_scores_it(data: Path, tmp_path: Path) -> None:
     reported: list[float] = []
-    report = run_benchmark(request(data, tmp_path / "work", "star"), lambda _, fraction: reported.append(fraction))
+    report = request(data, tmp_path / "work", "star")(progress=lambda _, fraction: reported.append(fraction))
     assert [(result.object, result.condition) for result in report.records[:6]] == [
         ("three_parts", "rest"),
         ("three_parts", "random-0"),
@@ -77,7 +76,7 @@ def test_runs_every_object_under_every_condition_and_scores_it(data: Path, tmp_p
 
 
 def test_truth_never_reaches_the_inference(data: Path, tmp_path: Path) -> None:
-    report = run_benchmark(request(data, tmp_path / "work", "telling_what_it_sees", conditions=("rest", "random-1")))
+    report = request(data, tmp_path / "work", "telling_what_it_sees", conditions=("rest", "random-1"))()
     for result in report.records:
         assert result.status == "error"
         assert "SEEN" in result.message
@@ -87,7 +86,7 @@ def test_truth_never_reaches_the_inference(data: Path, tmp_path: Path) -> None:
 
 
 def test_failed_inference_counts_as_if_nothing_was_predicted(data: Path, tmp_path: Path) -> None:
-    report = run_benchmark(request(data, tmp_path / "work", "telling_what_it_sees", conditions=("rest",)))
+    report = request(data, tmp_path / "work", "telling_what_it_sees", conditions=("rest",))()
     values = summarise(report.records).values
     assert values["angle_deg"] == 90.0
     assert values["types"] == 0.0
@@ -96,7 +95,7 @@ def test_failed_inference_counts_as_if_nothing_was_predicted(data: Path, tmp_pat
 
 
 def test_crashing_worker_ends_its_own_job_only(data: Path, tmp_path: Path) -> None:
-    report = run_benchmark(request(data, tmp_path / "work", "crashing_on_three_parts", conditions=("rest",)))
+    report = request(data, tmp_path / "work", "crashing_on_three_parts", conditions=("rest",))()
     crashed, fine = report.records
     assert (crashed.status, crashed.peak_mb) == ("crash", None)
     assert "SIGSEGV" in crashed.message
@@ -106,8 +105,8 @@ def test_crashing_worker_ends_its_own_job_only(data: Path, tmp_path: Path) -> No
 
 
 def test_hanging_worker_is_stopped_and_its_answer_counts_as_missing(data: Path, tmp_path: Path) -> None:
-    quick = request(data, tmp_path / "work", "endless", conditions=("rest",), only=("two_parts",), timeout=4.0)
-    (result,) = run_benchmark(quick).records
+    quick = request(data, tmp_path / "work", "endless", conditions=("rest",), objects=("two_parts",), timeout=4.0)
+    (result,) = quick().records
     assert result.status == "timeout"
     assert 4.0 <= result.seconds < 20.0
     assert result.score is not None
@@ -117,7 +116,7 @@ def test_hanging_worker_is_stopped_and_its_answer_counts_as_missing(data: Path, 
 def test_unreadable_description_is_reported_and_in_no_mean(data: Path, tmp_path: Path) -> None:
     (data / "broken").mkdir()
     (data / "broken" / "model.urdf").write_text("<robot")
-    report = run_benchmark(request(data, tmp_path / "work", "star", conditions=("rest",)))
+    report = request(data, tmp_path / "work", "star", conditions=("rest",))()
     (broken,) = [result for result in report.records if result.object == "broken"]
     assert broken.status == "unreadable"
     assert broken.score is None
@@ -132,10 +131,10 @@ def test_killed_run_resumes_to_the_same_report(data: Path, tmp_path: Path, end: 
     ledger = work / "jobs.jsonl"
     program = (
         "from pathlib import Path\n"
-        "from kinematify.evaluation.run_benchmark import BenchmarkRequest, run_benchmark\n"
+        "from kinematify.evaluation.run_benchmark import bench\n"
         "if __name__ == '__main__':\n"
-        f"    run_benchmark(BenchmarkRequest(data={str(data)!r}, work_folder=Path({str(work)!r}), workers=2,\n"
-        "        infer='quick_inference:slow_star'))\n"
+        f"    bench({str(data)!r}, work=Path({str(work)!r}), jobs=2,\n"
+        "        infer='quick_inference:slow_star')\n"
     )
     script = tmp_path / "program.py"
     script.write_text(program)
@@ -154,30 +153,30 @@ def test_killed_run_resumes_to_the_same_report(data: Path, tmp_path: Path, end: 
     with ledger.open("ab") as file:
         file.write(b'{"key": "half a li')
 
-    resumed = run_benchmark(request(data, work, "slow_star"))
+    resumed = request(data, work, "slow_star")()
     lines = ledger.read_bytes().splitlines()
     assert lines[: len(finished)] == finished
     assert len(lines) == len(resumed.records) == 10
-    uninterrupted = run_benchmark(request(data, tmp_path / "other", "slow_star"))
+    uninterrupted = request(data, tmp_path / "other", "slow_star")()
     assert without_costs(resumed) == without_costs(uninterrupted)
 
 
 def test_finished_jobs_are_taken_up_unless_something_changed_or_fresh(data: Path, tmp_path: Path) -> None:
     base = request(data, tmp_path / "work", "star", conditions=("rest",))
-    first = run_benchmark(base)
+    first = base()
     ledger = tmp_path / "work" / "jobs.jsonl"
     before = ledger.read_bytes()
-    assert run_benchmark(base).records == first.records
+    assert base().records == first.records
     assert ledger.read_bytes() == before
-    run_benchmark(replace(base, variants=(Variant(label="seeded", config="default", changes={"seed": 7}),)))
+    base(variants=(Variant(label="seeded", config="default", changes={"seed": 7}),))
     assert ledger.read_bytes().count(b"\n") == 4
-    run_benchmark(replace(base, fresh=True))
+    base(fresh=True)
     assert ledger.read_bytes().count(b"\n") == 2
 
 
 def test_report_survives_the_disk_and_compares_with_a_baseline(data: Path, tmp_path: Path) -> None:
     both = (Variant(label="default", config="default"), Variant(label="other", config="default", changes={"seed": 1}))
-    report = run_benchmark(request(data, tmp_path / "work", "star", conditions=("rest",), variants=both))
+    report = request(data, tmp_path / "work", "star", conditions=("rest",), variants=both)()
     text = written(report, tmp_path / "out", "first")
     values = tmp_path / "out" / "first.json"
     assert "2.92 / 22.50" in text
@@ -187,7 +186,7 @@ def test_report_survives_the_disk_and_compares_with_a_baseline(data: Path, tmp_p
     assert read.records == report.records
     assert json.loads(values.read_text())["summary"]["groups"][0]["with_gripper"]["values"]["ted"] == 0.0
 
-    worse = run_benchmark(request(data, tmp_path / "work", "telling_what_it_sees", conditions=("rest",)))
+    worse = request(data, tmp_path / "work", "telling_what_it_sees", conditions=("rest",))()
     compared = written(worse, tmp_path / "out", "second", read)
     assert "22.50 -> 90.00" in compared
     assert "2 runs in both" in compared
@@ -209,9 +208,9 @@ def test_ablations_differ_from_the_paper_in_one_thing() -> None:
 
 def test_unknown_words_are_named(data: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="No object, category or kind matches --objects piano"):
-        run_benchmark(request(data, tmp_path, "star", only=("piano",)))
+        request(data, tmp_path, "star", objects=("piano",))()
     with pytest.raises(InputError, match="no condition upside-down"):
-        run_benchmark(request(data, tmp_path, "star", conditions=("upside-down",)))
+        request(data, tmp_path, "star", conditions=("upside-down",))()
     with pytest.raises(ConfigError, match=r"no field topology\.colour"):
         changed(load_config("default"), {"topology.colour": "red"})
     with pytest.raises(InputError, match="is not a benchmark report"):
@@ -219,7 +218,7 @@ def test_unknown_words_are_named(data: Path, tmp_path: Path) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("")
     with pytest.raises(OutputError, match="Results cannot be kept in"):
-        run_benchmark(request(data, blocked / "work", "star"))
+        request(data, blocked / "work", "star")()
 
 
 def test_objects_are_found_in_folders_files_and_the_environment(

@@ -16,7 +16,7 @@ from kinematify.cli.app import run as run_command
 from kinematify.config.nightly_settings import NightlySettings, load_nightly
 from kinematify.errors import InputError
 from kinematify.evaluation.nightly.comparison import ChangeKind, compare
-from kinematify.evaluation.nightly.run_night import NightRequest, accept, run_night, write_smoke_objects
+from kinematify.evaluation.nightly.run_night import accept, nightly, write_smoke_objects
 from kinematify.evaluation.nightly.runs import Problem, Run
 from tests.manipulation.furniture import write_drawer_cabinet
 from tests.places import ROOT
@@ -119,8 +119,7 @@ def settings(data: Path, **changed: Any) -> NightlySettings:
 
 
 def night(data: Path, out: Path, infer: str = "quick_inference:star", **changed: Any) -> NightResult:
-    request = NightRequest(settings=settings(data, **changed), out=out, workers=2, infer=infer)
-    return run_night(request, lambda what, share: None)
+    return nightly(None, out, config=settings(data, **changed), jobs=2, infer=infer)
 
 
 def kinds(result: NightResult) -> Counter[str]:

@@ -18,17 +18,17 @@ import json
 import os
 import shutil
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
 from kinematify.batch.task_pool import Pool
 from kinematify.config import load_config
-from kinematify.config.nightly_settings import load_nightly
+from kinematify.config.nightly_settings import NightlySettings, load_nightly
 from kinematify.errors import InputError, OutputError
 from kinematify.evaluation.benchmark_job import INFER
 from kinematify.evaluation.datasets import find_objects, matching
@@ -36,7 +36,7 @@ from kinematify.evaluation.nightly.comparison import CHANGES, Night, compare, co
 from kinematify.evaluation.nightly.night_pages import as_junit, night_page, nights_page
 from kinematify.evaluation.nightly.runs import PULLED, RUN, SCHEMA, ModelJob, Run, accuracy_run, digest, validation_run
 from kinematify.evaluation.result_record import code_version, git_commit, replace_text
-from kinematify.evaluation.run_benchmark import BenchmarkRequest, Variant, run_benchmark
+from kinematify.evaluation.run_benchmark import Variant, bench
 from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.reader import read_sentence
 from kinematify.processes.lock import locked
@@ -46,10 +46,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from kinematify.batch.task_pool import Progress
-    from kinematify.config.nightly_settings import NightlySettings
-    from kinematify.evaluation.benchmark_job import JobResult
     from kinematify.evaluation.datasets import BenchObject
-    from kinematify.evaluation.result_record import Report
 
 _ACCURACY = 0.45  # share of the time at which all is inferred, on the benchmark
 _SHOWN = 60
@@ -57,24 +54,6 @@ _SHOWN = 60
 _UNFINISHED = ".unfinished"
 _SMOKE = ("a cabinet with one door", "a cabinet with one drawer")
 """Objects of a night that is small enough for a test suite."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class NightRequest:
-    """Request of a night."""
-
-    settings: NightlySettings
-    out: Path
-    """Folder of all nights."""
-    only: tuple[str, ...] = ()
-    """Patterns for names of objects, categories or kinds; empty for all."""
-    baseline: str | None = None
-    """Name of a night to compare with instead of the accepted one, or the last."""
-    smoke: tuple[str, ...] = ()
-    """Sentences; the built-in generator's objects of these are run instead of the data."""
-    workers: int = field(default_factory=lambda: os.cpu_count() or 1)
-    infer: str = INFER
-    """Function under test, as ``module:name``; tests plant faults with it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,11 +70,12 @@ def nightly(
     data: str | Path | None = None,
     out: str | Path | None = None,
     *,
-    config: str | Path = "nightly",
+    config: str | Path | NightlySettings = "nightly",
     objects: Sequence[str] = (),
     baseline: str | None = None,
     smoke: bool = False,
     jobs: int | None = None,
+    infer: str = INFER,
     progress: Progress | None = None,
 ) -> NightResult:
     """Infer every object, validate its models, and compare with an earlier night, as `kinematify nightly` does.
@@ -103,69 +83,68 @@ def nightly(
     Args:
         data: As `kinematify bench` takes it; as the configuration says if absent.
         out: Folder of all nights; ``results/nightly`` if absent, ``out/nightly-smoke`` with `smoke`.
-        config: Name or path of the settings.
+        config: The settings, or their name or path.
         objects: Patterns for names of objects, categories or kinds; empty for all.
         baseline: Night to compare with instead of the accepted one.
         smoke: Take two objects of the built-in generator, in one pose and in MuJoCo.
         jobs: Processes at a time; as many as there are cores if absent.
+        infer: Function under test, as ``module:name``; tests plant faults with it.
         progress: Called with what has just ended and the fraction done in [0, 1].
 
-    Raises:
-        InputError: See `run_night`.
-        OutputError: See `run_night`.
-    """
-    settings = load_nightly(config, **({} if data is None else {"data": str(data)}))
-    if smoke:
-        settings = settings.model_copy(update={"conditions": ["rest"], "engines": ["mujoco"]})
-    request = NightRequest(
-        settings=settings,
-        out=Path(out or ("out/nightly-smoke" if smoke else "results/nightly")),
-        only=tuple(objects),
-        baseline=baseline,
-        smoke=_SMOKE if smoke else (),
-        workers=jobs or os.cpu_count() or 1,
-    )
-    return run_night(request, progress or (lambda what, share: None))
-
-
-def run_night(request: NightRequest, progress: Progress) -> NightResult:
-    """Run a night; what one of the same code and settings has finished before it was interrupted is taken up.
-
-    Args:
-        request: What to run.
-        progress: Called with what has just ended and the fraction done in [0, 1].
+    What a night of the same code and settings has finished before it was interrupted is taken up.
 
     Raises:
         InputError: A night of a newer version is there; there is no such baseline, data or object.
         ConfigError: A configuration is unknown or malformed.
         OutputError: Another night is running, or the folder cannot be written.
     """
-    with locked(request.out / ".lock", f"The folder of nights {request.out}"):
+    settings = config if isinstance(config, NightlySettings) else load_nightly(config)
+    changes: dict[str, Any] = {} if data is None else {"data": str(data)}
+    if smoke:
+        changes |= {"conditions": ["rest"], "engines": ["mujoco"]}
+    settings, workers = settings.model_copy(update=changes), jobs or os.cpu_count() or 1
+    folder = Path(out or ("out/nightly-smoke" if smoke else "results/nightly"))
+    say = progress or (lambda what, share: None)
+    with locked(folder / ".lock", f"The folder of nights {folder}"):
         start = time.perf_counter()
-        nights, warnings = load_nights(request.out)
-        name = request.baseline or _accepted(request.out)
-        compared = [find_night(nights, name, request.out)] if name else nights
-        work = request.out / _UNFINISHED
-        data: str | Path | None = request.settings.data
-        if request.smoke:
-            data = work / "objects"
-            write_smoke_objects(data, request.smoke)
-        objects = {item.name: item for item in matching(find_objects(data), request.only)}
-        report = _inferred(request, data, progress)
-        accuracy = [accuracy_run(result, objects[result.object], request.settings) for result in report.records]
-        runs = [*accuracy, *_validated(request, list(objects.values()), progress)]
+        nights, warnings = load_nights(folder)
+        name = baseline or _accepted(folder)
+        compared = [find_night(nights, name, folder)] if name else nights
+        work, models = folder / _UNFINISHED, settings.data
+        if smoke:
+            models = str(work / "objects")
+            write_smoke_objects(Path(models), _SMOKE)
+        items = {item.name: item for item in matching(find_objects(models), objects)}
+        report = bench(
+            models,
+            variants=(Variant(label="nightly", config=settings.infer_config),),
+            conditions=settings.conditions,
+            objects=objects,
+            work=work,
+            jobs=workers,
+            timeout=settings.timeout,
+            infer=infer,
+            progress=lambda what, share: say(what.replace(", nightly", ""), _ACCURACY * share),
+        )
+        accuracy = [accuracy_run(result, items[result.object], settings) for result in report.records]
+        pool = Pool(
+            folder=work,
+            workers=workers,
+            progress=lambda what, done: say(what, _ACCURACY + (1.0 - _ACCURACY) * done),
+        )
+        runs = [*accuracy, *_validated(settings, infer, list(items.values()), pool)]
         header = report.header
         processor = header.machine["processor"]
-        changes = compare(
+        found = compare(
             runs,
             _earlier_runs(compared),
             same_machine=bool(compared) and compared[-1].header.get("processor") == processor,
-            complete=not request.only,
+            complete=not objects,
         )
         commit, dirty = git_commit()
         now = datetime.datetime.now(tz=datetime.UTC)
         base = f"{now.date().isoformat()}-{commit}"
-        same_day = sum(path.name.startswith(base) for path in request.out.iterdir())
+        same_day = sum(path.name.startswith(base) for path in folder.iterdir())
         night = Night(
             name=f"{base}-{same_day + 1}" if same_day else base,
             header={
@@ -174,58 +153,36 @@ def run_night(request: NightRequest, progress: Progress) -> NightResult:
                 "commit": commit,
                 "dirty": dirty,
                 "code": header.code,
-                "method": digest(load_config(request.settings.infer_config).model_dump(mode="json")),
+                "method": digest(load_config(settings.infer_config).model_dump(mode="json")),
                 "command": header.command,
                 "processor": processor,
-                "workers": request.workers,
+                "workers": workers,
                 "versions": header.versions,
-                "objects": len(objects),
+                "objects": len(items),
                 "runs": len(runs),
                 "seconds": round(time.perf_counter() - start, 1),
                 "compared": compared[-1].name if compared else None,
-                "counts": counts(changes),
-                "settings": request.settings.model_dump(mode="json"),
+                "counts": counts(found),
+                "settings": settings.model_dump(mode="json"),
             },
             runs=tuple(sorted(runs, key=lambda run: run.place)),
-            changes=changes,
+            changes=found,
         )
-        place = _write(request.out, night, nights)
+        place = _write(folder, night, nights)
         return NightResult(night=night, place=place, notices=warnings)
 
 
-def _inferred(request: NightRequest, data: str | Path | None, progress: Progress) -> Report[JobResult]:
-    """Infer every object in every condition."""
-    return run_benchmark(
-        BenchmarkRequest(
-            data=data,
-            variants=(Variant(label="nightly", config=request.settings.infer_config),),
-            conditions=tuple(request.settings.conditions),
-            only=request.only,
-            work_folder=request.out / _UNFINISHED,
-            workers=request.workers,
-            timeout=request.settings.timeout,
-            infer=request.infer,
-        ),
-        lambda what, share: progress(what.replace(", nightly", ""), _ACCURACY * share),
-    )
-
-
-def _validated(request: NightRequest, objects: Sequence[BenchObject], progress: Progress) -> Iterator[Run]:
+def _validated(settings: NightlySettings, infer: str, objects: Sequence[BenchObject], pool: Pool) -> Iterator[Run]:
     """Validate the models of every object, the largest first, so that nobody waits for one at the end."""
-    settings, code = request.settings, code_version(without=("cli", "evaluation/nightly"))
+    code = code_version(without=("cli", "evaluation/nightly"))
     asked = {
-        digest([item.name, item.content_hash, source, settings.model_dump(mode="json"), request.infer, code]): ModelJob(
-            item=item, source=source, settings=settings, infer=request.infer
+        digest([item.name, item.content_hash, source, settings.model_dump(mode="json"), infer, code]): ModelJob(
+            item=item, source=source, settings=settings, infer=infer
         )
         for item in sorted(objects, key=lambda item: item.mesh_bytes, reverse=True)
         for source in (*settings.sources, PULLED)
         if source != PULLED or any(fnmatchcase(item.name, pattern) for pattern in settings.pulled)
     }
-    pool = Pool(
-        folder=request.out / _UNFINISHED,
-        workers=request.workers,
-        progress=lambda what, done: progress(what, _ACCURACY + (1.0 - _ACCURACY) * done),
-    )
     answers = pool.run(
         {key: partial(validation_run, job) for key, job in asked.items()},
         RUN,
