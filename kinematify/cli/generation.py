@@ -209,7 +209,7 @@ def _shown(value: Any) -> str:
 
 def _not_as_asked(made: BuildResult) -> str:
     lines = [f"Not as asked: {'; '.join(made.differences)}"] if made.differences else []
-    if words := (*made.unread, *made.harmless):
+    if words := made.unread:
         lines.append(f"Words not read: {', '.join(dict.fromkeys(words))}")
     return "\n".join(lines)
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.kind_search import key_of, words_of
-from kinematify.generate.procedural.clearance import may_go
+from kinematify.generate.procedural.clearance import carried_by, may_go
 from kinematify.generate.procedural.family import build, checked
 from kinematify.generate.procedural.materials import MATERIALS, of_one_material, surface_of
 from kinematify.generate.procedural.parameter import pairs
@@ -40,8 +40,8 @@ _GAP = 0.05  # between several [m]
 _SIDES = {"left": (0, -1), "right": (0, 1), "front": (1, -1), "back": (1, 1), "top": (2, 1), "bottom": (2, -1)}
 """Axis and sign of a side of the world."""
 _PICKED = {**_SIDES, "rear": (1, 1), "upper": (2, 1), "lower": (2, -1)}
-_JOINTS = {"hinge": True, "slide": False}
-"""Nouns that mean what moves so where no part is called so -> whether it turns."""
+_JOINTS = words_of("hinge slide tilt pan spin")
+"""Nouns that mean what moves so where no part is called so: what moves most of the object."""
 _ALIKE = pairs(
     "wheel caster|backrest back|canopy hood|bonnet hood|hood bonnet|trunk tailgate|boot tailgate|cover lid cap|cap lid|"
     "cab cabin house|cabin cab house|boom jib|sail blade rotor|wing leaf|screen display lid|display screen|dial knob|"
@@ -66,8 +66,6 @@ class BuildResult:
     """Names of parts of the request that the object does not have."""
     unread: tuple[str, ...] = ()
     """Words of a sentence that were not read, and that may matter."""
-    harmless: tuple[str, ...] = ()
-    """Words of a sentence that ask for no shape and no motion."""
     notes: tuple[str, ...] = ()
     """Spelling that was repaired, and a kind that is only near."""
     facts: Mapping[str, Any] = field(default_factory=dict)
@@ -82,12 +80,6 @@ class BuildResult:
 def stem_of(name: str) -> str:
     """Return the name of a part without its number and side."""
     return _NUMBERED.sub("", name)
-
-
-def nouns_of(parameter: Parameter) -> tuple[str, ...]:
-    """Return what a count or a size is called, singular."""
-    own = parameter.name.replace("_", " ")
-    return (own.removesuffix("s") if isinstance(parameter.default, int) else own, *parameter.words)
 
 
 def names_called(family: Family, blueprint: Blueprint, noun: str) -> list[str]:
@@ -119,7 +111,7 @@ def _called(family: Family, blueprint: Blueprint, noun: str) -> list[Part]:
     wanted = _joined(noun)
     meant = {wanted, *(_joined(stem) for stem, said in family.part_words.items() if wanted in map(_joined, said))}
     for parameter in family.parameters:
-        if isinstance(parameter.default, int) and wanted in (names := set(map(_joined, nouns_of(parameter)))):
+        if isinstance(parameter.default, int) and wanted in (names := set(map(_joined, parameter.nouns))):
             meant |= names
     stems = {part.name: stem_of(part.name) for part in blueprint.parts}
     exact = [part for part in blueprint.parts if _joined(stems[part.name]) in meant]
@@ -129,9 +121,13 @@ def _called(family: Family, blueprint: Blueprint, noun: str) -> list[Part]:
         ends = [part for part in blueprint.parts if _joined(stems[part.name]) in others]
     if exact or ends or wanted not in _JOINTS:
         return exact or ends
-    moving = [joint for joint in blueprint.joints if joint.mimic is None and joint.kind is not JointType.FIXED]
-    names = {joint.child for joint in moving if joint.kind.turns is _JOINTS[wanted]}
-    return [part for part in blueprint.parts if part.name in names]
+    moving = [joint.child for joint in blueprint.joints if joint.mimic is None and moves_so(joint, wanted)]
+    carried = {name: carried_by(name, blueprint.joints) for name in moving}
+    boxes = {part.name: part.bounds for part in blueprint.parts}
+    room = {name: np.array([boxes[part] for part in found]) for name, found in carried.items()}
+    sizes = {name: float(np.prod(box[:, 1].max(axis=0) - box[:, 0].min(axis=0))) for name, box in room.items()}
+    most = stem_of(max(moving, key=sizes.__getitem__, default=""))
+    return [part for part in blueprint.parts if part.name in moving and stem_of(part.name) == most]
 
 
 def _joined(name: str) -> str:
@@ -226,13 +222,14 @@ def _values(family: Family, request: Request, faults: list[str]) -> Iterator[tup
         try:
             yield name, checked(family, name, value)
         except InputError as error:
-            if said not in request.size:  # the whole is scaled where no parameter reaches so far
+            # the whole is scaled where no parameter reaches so far, and a part is measured
+            if said not in request.size and not said.startswith("length of"):
                 faults.append(f"{said}: {str(error).rstrip('.')}")
 
 
 def _count_parameter(family: Family, noun: str) -> Parameter | None:
     counts = [item for item in family.parameters if isinstance(item.default, int)]
-    return next((item for item in counts if noun in nouns_of(item) or noun.replace(" ", "_") == item.name), None)
+    return next((item for item in counts if noun in item.nouns or noun.replace(" ", "_") == item.name), None)
 
 
 def _is_detail(family: Family, noun: str, made: Blueprint) -> bool:
@@ -362,7 +359,8 @@ def _adjusted(made: Blueprint, names: Sequence[str], part: PartRequest) -> Bluep
         made = looking(made, names, part.material or "", part.color or "")
     moving = [name for name in names if name in made.joint_above]
     if part.range is not None:
-        made = _ranged(made, moving, part.range)
+        wanted = part.motion or "move"
+        made = _ranged(made, [name for name in moving if moves_so(made.joint_above[name], wanted)], part.range)
     if part.open is not None:
         made = opened(made, moving, part.open)
     return made
@@ -447,7 +445,7 @@ def _faults(family: Family, made: Blueprint, request: Request, missing: Sequence
     for noun, part in request.parts.items():
         if noun in missing:
             has = sorted({re.sub(r"_?\d+", "", stem_of(item.name)).replace("_", " ") for item in made.parts[1:]})
-            yield f"{noun}: a {kind} has none; it has {listed(has[:12])}"
+            yield f"{noun}: {'an' if kind[0] in 'aeiou' else 'a'} {kind} has none; it has {listed(has[:12])}"
             continue
         names = names_called(family, made, noun)
         yield from (f"{noun}: {why}" for why in part_faults(family, made, noun, names, part))
@@ -499,6 +497,7 @@ def part_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str]
     if part.motion and not (joints and all(moves_so(joint, part.motion) for joint in joints)):
         kinds = listed(sorted({joint.kind.value for joint in joints} or {"part of the base"}))
         yield f"{part.motion} was asked for, it is {kinds}"
+        return
     leading = [joint for joint in joints if joint.mimic is None and joint.kind is not JointType.FIXED]
     if part.range and not (leading and all(_goes(joint, part.range) for joint in leading)):
         yield f"range {_shown(part.range, joints)} was asked for, it is {_ranges(joints)}"
@@ -526,8 +525,12 @@ def _is_at(made: Blueprint, names: Sequence[str], side: str) -> bool:
     axis, sign = _SIDES[side]
     shut = closed(made)
     whole = shut.assembly.bounds[:, axis]
-    places = [item.bounds.mean(axis=0)[axis] - whole.mean() for item in shut.parts if item.name in names]
-    return all(sign * place > _ASIDE * np.ptp(whole) for place in places)
+    near = _ASIDE * np.ptp(whole)
+    places = [sign * (item.bounds[:, axis] - whole.mean()) for item in shut.parts if item.name in names]
+    reach = 0.5 * np.ptp(whole)
+    return all(
+        place.mean() > near or (abs(place.max() - reach) < near and place.min() > near - reach) for place in places
+    )
 
 
 def _is_hinged(made: Blueprint, names: Sequence[str], side: str) -> bool:

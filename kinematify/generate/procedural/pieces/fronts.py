@@ -5,13 +5,42 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.pieces.leaves import Field
 from kinematify.generate.procedural.solids import box, union
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from manifold3d import Manifold
+
+
+@dataclass(frozen=True, kw_only=True)
+class Field:
+    """Opening that one leaf closes: its borders in the plane of the frame [m]."""
+
+    left: float
+    right: float
+    bottom: float
+    top: float
+
+    def box(self, start: float, end: float, *, inset: float = 0.0) -> Manifold:
+        """Return the block over the field from y = `start` to y = `end`, smaller by `inset` on all four sides."""
+        lower = (self.left + inset, start, self.bottom + inset)
+        return box(lower, (self.right - inset, end, self.top - inset))
+
+    @property
+    def width(self) -> float:
+        """[m]."""
+        return self.right - self.left
+
+    @property
+    def height(self) -> float:
+        """[m]."""
+        return self.top - self.bottom
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """X and z."""
+        return 0.5 * (self.left + self.right), 0.5 * (self.bottom + self.top)
 
 
 @dataclass(frozen=True, kw_only=True)
