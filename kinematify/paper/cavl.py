@@ -6,7 +6,7 @@ All lengths in the objective are multiples of `CavlConfig.length_unit` times the
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +18,7 @@ from kinematify.paper.contact_region import ContactRegion, revolve, slide, unit_
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Sequence
 
     from torch import Tensor
 
@@ -36,8 +36,6 @@ class CavlSide:
     field: SignedDistanceField
     points: Tensor
     """World frame [m], float64, shape (N, 3)."""
-    initial: Tensor
-    """s_0 of the paper, signed distance before the motion [m], shape (N,)."""
     anchored: Tensor
     """w_i of the paper times the sample's share of the surface, shape (N,)."""
     free: Tensor
@@ -58,38 +56,10 @@ class CavlSide:
         return CavlSide(
             field=self.field,
             points=self.points[kept],
-            initial=self.initial[kept],
             anchored=self.anchored[kept] * growth,
             free=self.free[kept] * growth,
             direction=self.direction,
         )
-
-
-_STEPS = tuple(2.0**-k for k in range(6))
-"""Shares of the way to a failed motion that are looked at: far along, what got stuck is beyond the wall."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class FailedMotions:
-    """Motions at which simulation found the parts in each other (not in the paper)."""
-
-    angles: tuple[float, ...] = ()
-    """Of those that turned [rad]."""
-    travels: tuple[float, ...] = ()
-    """Of those that slid [m]."""
-    weight: float = 1.0
-    """Price of penetration there, as a multiple of that under Theta."""
-
-    def and_at(self, values: Iterable[float], *, turns: bool) -> FailedMotions:
-        """These and others of one type [rad or m]."""
-        if turns:
-            return replace(self, angles=tuple(sorted({*self.angles, *values})))
-        return replace(self, travels=tuple(sorted({*self.travels, *values})))
-
-    def ways(self, turns: bool) -> Tensor:
-        """Steps on the way to each motion of one type, without signs, for axes have none; float64, shape (F, S)."""
-        ends = torch.tensor([abs(value) for value in (self.angles if turns else self.travels)], dtype=torch.float64)
-        return ends[:, None] * torch.tensor(_STEPS, dtype=torch.float64)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -101,7 +71,6 @@ class CavlScene:
     contact: ContactRegion
     diagonal: float
     """Diagonal of the assembly [m]."""
-    failed: FailedMotions = field(default_factory=FailedMotions)
 
     def thinned(self, count: int) -> CavlScene:
         """The same edge with at most `count` samples a side."""
@@ -160,13 +129,11 @@ def _side(
     beyond = (field.value(coarse).abs() > reach).numpy()
     points = torch.from_numpy(np.concatenate([contact.points, body.points[beyond]]))
     areas = torch.from_numpy(np.concatenate([contact.areas, body.areas[beyond]]))
-    initial = field.value(points)
-    anchored, free = motion_weights(initial, diagonal, config)
+    anchored, free = motion_weights(field.value(points), diagonal, config)
     share = areas / areas.sum()
     return CavlSide(
         field=field,
         points=points,
-        initial=initial,
         anchored=share * anchored,
         free=share * free,
         direction=direction,
@@ -210,22 +177,18 @@ class CavlTerms:
     """L_coll(delta), mean squared penetration of what was free, shape (K, M)."""
     offset: Tensor
     """Squared distance of the pivot from the contact centroid, shape (K,); zero for prismatic joints."""
-    failures: Tensor
-    """Penalty for motions that failed in simulation, each to the side that costs less, shape (K,)."""
     forward: Tensor
     """True for motions in the positive direction, shape (M,)."""
 
     def objective(self, config: CavlConfig) -> Tensor:
         """J of eq. total-loss, shape (K,): the mean over Theta, or over that direction of Theta which costs less.
 
-        A drawer moves one way only; the mean over both would compare how hard it hits the back of its cabinet. Motions
-        that failed in simulation add their L_coll.
+        A drawer moves one way only; the mean over both would compare how hard it hits the back of its cabinet.
         """
         motion = config.consistency_weight * self.consistency + config.collision_weight * self.collision
         groups = [motion[:, self.forward], motion[:, ~self.forward]] if config.better_direction else [motion]
         means = [group.mean(dim=1) for group in groups if group.shape[1]]
-        failures = config.collision_weight * self.failures
-        return torch.stack(means).amin(dim=0) + failures + config.pivot_weight * self.offset
+        return torch.stack(means).amin(dim=0) + config.pivot_weight * self.offset
 
 
 def cavl_terms(
@@ -263,30 +226,8 @@ def cavl_terms(
         consistency=consistency,
         collision=collision,
         offset=offset,
-        failures=_failure_penalty(scene, kind, pivots, axes, config),
         forward=motions > 0.0,
     )
-
-
-def _failure_penalty(scene: CavlScene, kind: JointType, pivots: Tensor, axes: Tensor, config: CavlConfig) -> Tensor:
-    """Mean of L_coll on the way to each motion that failed in simulation, to the freer side, their sum, shape (K,).
-
-    Depths count as multiples of the share of the way gone, or the far steps alone would decide. Unlike in eq. coll,
-    samples of the contact count as well, and from no margin on: simulation has found the parts deeper in each other
-    than at rest, and slides mostly get stuck in their own guides.
-    """
-    shares = torch.tensor(_STEPS, dtype=torch.float64)
-    ways, unit = scene.failed.ways(kind.turns), config.length_unit * scene.diagonal
-    penalty = torch.zeros(len(axes), dtype=torch.float64)
-    for side in scene.sides if len(ways) else ():
-        costs = []
-        for sign in (1.0, -1.0):
-            moved = _move(side, kind, pivots, axes, sign * ways.flatten())
-            deeper = torch.relu(side.initial.clamp(max=0.0) - side.field.value(moved)) / unit
-            collision = _weighted_mean(side.free + side.anchored, deeper, config.epsilon)
-            costs.append((collision.reshape(-1, *ways.shape) / shares.square()).mean(dim=2))
-        penalty = penalty + scene.failed.weight * torch.minimum(*costs).sum(dim=1) / len(scene.sides)
-    return penalty
 
 
 def _move(side: CavlSide, kind: JointType, pivots: Tensor, axes: Tensor, motions: Tensor) -> Tensor:
@@ -397,7 +338,6 @@ def _with_score(candidate: JointCandidate, terms: CavlTerms, row: int, config: C
         "cavl_consistency": float(terms.consistency[row].mean()),
         "cavl_collision": float(terms.collision[row].mean()),
         "cavl_offset": float(terms.offset[row]),
-        "cavl_failures": float(terms.failures[row]),
         "cavl_score": 1.0 / (1.0 + objective),
     }
     return JointCandidate(

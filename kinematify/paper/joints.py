@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, Part
     from kinematify.config import CavlConfig, Config
     from kinematify.contact.graph import ContactGraph
-    from kinematify.paper.cavl import CavlScene, FailedMotions, VirtualMotions
+    from kinematify.paper.cavl import CavlScene, VirtualMotions
     from kinematify.paper.contact_region import ContactRegion
     from kinematify.robot.arrays import FloatArray
 
@@ -99,40 +99,6 @@ class PaperJoints:
         fine, motions = scene.thinned(self._config.refine_points), self._motions(scene, joint)
         own = rank_candidates(fine, [_as_candidate(joint)], self._config, motions)
         return _as_likelihoods(own, joint.evidence[NOISE])[0]
-
-    def optimise_again(self, joint: JointEstimate, failed: FailedMotions, against: float) -> JointEstimate:
-        """The same joint with other candidates, after motions of the edge failed in simulation.
-
-        What failed adds to L_coll, so much that the failed joint pays what the failures weigh. Under this penalty the
-        optimiser runs from every candidate, and from the next best of the pool, for each motion that failed as many of
-        either type as were refined at first. Their scores are without the penalty: the simulation judges them again.
-
-        Args:
-            joint: The chosen one, which failed; it stays among the candidates and does not move.
-            failed: All motions of the edge that have failed so far.
-            against: What the failures weigh [log odds].
-        """
-        scene, noise = self.scene(joint.parent, joint.child), joint.evidence[NOISE]
-        motions = self._motions(scene, joint)
-        fine = scene.thinned(self._config.refine_points)
-        (own,) = rank_candidates(replace(fine, failed=failed), [_as_candidate(joint)], self._config, motions)
-        penalty = own.evidence["cavl_failures"]
-        weight = against * noise / (self._config.collision_weight * penalty) if penalty > 0.0 else 0.0
-        starts = [*joint.alternatives, *self._next_best(scene, motions, len(failed.angles) + len(failed.travels))]
-        penalised = replace(fine, failed=replace(failed, weight=weight))
-        moved = _distinct(refine(penalised, starts, self._config, motions))
-        ranked = rank_candidates(fine, [own, *moved], self._config, motions)
-        return replace(joint, alternatives=_as_likelihoods(ranked, noise))
-
-    def _next_best(self, scene: CavlScene, motions: VirtualMotions, failures: int) -> list[JointCandidate]:
-        """Candidates of the pool after those that were refined at first, of either type as many for each failure."""
-        pool = paper_candidates(scene.contact, scene.diagonal, self._config, self._seed)
-        coarse, top = scene.thinned(self._config.rank_points), self._config.top
-        found = []
-        for turns in (True, False):
-            ranked = rank_candidates(coarse, [item for item in pool if item.kind.turns == turns], self._config, motions)
-            found += _distinct(ranked)[top : (1 + failures) * top]
-        return found
 
     def _motions(self, scene: CavlScene, joint: JointEstimate) -> VirtualMotions:
         """Theta as it was when the candidates of a joint were ranked first."""

@@ -1,8 +1,7 @@
 """Every near-best joint of a tree edge as a joint of its own: with opening direction, limits and evidence.
 
 The inference keeps its candidates as lines with scores; to be simulated, a candidate needs the range that it would
-have been given had it been chosen. A joint that is none of them is scored as the inference would have scored it. Under
-the paper's method, the optimiser makes candidates again after a joint has failed.
+have been given had it been chosen. A joint that is none of them is scored as the inference would have scored it.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ from kinematify.joints.features.workspace import PartCache
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
@@ -34,7 +33,6 @@ if TYPE_CHECKING:
     from kinematify.joints.candidate import JointCandidate
     from kinematify.joints.features.edge_scene import JointScene
     from kinematify.joints.features.frames import BoxFrame
-    from kinematify.paper.cavl import FailedMotions
     from kinematify.paper.joints import PaperJoints
 
 _SAME = np.cos(np.radians(1.0))  # directions that no check tells apart
@@ -53,7 +51,6 @@ class CandidateJoints:
         self._frames: dict[tuple[int, ...], dict[int, BoxFrame]] = {}
         self._scenes: dict[tuple[tuple[int, ...], int], JointScene] = {}
         self._scores: dict[tuple[object, ...], float] = {}
-        self._failed: dict[tuple[int, int], FailedMotions] = {}
 
     @cached_property
     def _paper(self) -> PaperJoints:
@@ -61,24 +58,6 @@ class CandidateJoints:
         from kinematify.paper.joints import PaperJoints  # noqa: PLC0415
 
         return PaperJoints(self._assembly, self._graph, self._all)
-
-    def after_failures(self, joint: JointEstimate, values: Iterable[float], against: float) -> JointEstimate:
-        """A joint with the candidates that its edge has after failures.
-
-        They stay the same but under the paper's method, which optimises under a penalty for all that has failed.
-
-        Args:
-            joint: The chosen one.
-            values: At which it failed [rad or m].
-            against: What the failures weigh [log odds].
-        """
-        if self._config.method != "cavl" or not joint.alternatives or joint.kind is JointType.FIXED:
-            return joint
-        from kinematify.paper.cavl import FailedMotions  # noqa: PLC0415
-
-        edge = joint.parent, joint.child
-        self._failed[edge] = self._failed.get(edge, FailedMotions()).and_at(values, turns=joint.kind.turns)
-        return self._paper.optimise_again(joint, self._failed[edge], against)
 
     def realise(self, tree: KinematicTree, joint: JointEstimate, candidate: JointCandidate) -> JointEstimate:
         """The joint that a candidate of an edge would be.

@@ -95,11 +95,7 @@ class Chooser:
             elif -score > MARGIN or (child in suspected and (feedback.has_error(child) or score < 0.0)):
                 odds[child] = score - feedback.against(child)
         for child in sorted(odds, key=lambda child: (odds[child], child)):
-            against = feedback.against(child)
-            if child in suspected:
-                joint = self.candidates.after_failures(self.plan.joint(child), feedback.failed_at(child), against)
-                self.plan = self.plan.with_joint(joint)
-            self._again(child, against)
+            self._again(child, feedback.against(child))
         moved = {change.part for change in self.changes}
         for signal in feedback.ranges:
             if signal.child not in moved:

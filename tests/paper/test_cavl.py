@@ -160,9 +160,7 @@ def ball_scene(
         tensor = torch.from_numpy(points)
         initial = ball.value(tensor)
         near, free = (weights / len(points) for weights in motion_weights(initial, diagonal, config))
-        sides.append(
-            CavlSide(field=ball, points=tensor, initial=initial, anchored=near, free=free, direction=direction)
-        )
+        sides.append(CavlSide(field=ball, points=tensor, anchored=near, free=free, direction=direction))
     contact = [
         ContactSamples(
             points=points, normals=np.zeros_like(points), distances=np.zeros(len(points)), areas=np.ones(len(points))

@@ -55,8 +55,6 @@ class JointSignal:
     weight: float
     """Log odds against it, positive."""
     check: str
-    at: float | None
-    """Value of the joint at which it failed [rad or m], if one is known."""
     error: bool
     """The check found an error, not only a warning."""
 
@@ -98,11 +96,6 @@ class Feedback:
     def has_error(self, child: str) -> bool:
         """True if an error, not only warnings, speaks against the joint of a part."""
         return any(item.error for item in (*self.lines, *self.types) if item.child == child)
-
-    def failed_at(self, child: str) -> frozenset[float]:
-        """Values of the joint of a part at which it failed for its line or its type [rad or m]."""
-        signals = (*self.lines, *self.types)
-        return frozenset(item.at for item in signals if item.child == child and item.at is not None)
 
 
 def only_collision_meets(finding: Finding) -> bool:
@@ -180,7 +173,6 @@ class _Case:
                     child=joint.child,
                     weight=weights[what],
                     check=finding.check,
-                    at=(finding.q or {}).get(joint.name),
                     error=finding.severity is Severity.ERROR,
                 )
                 signals.append(signal)
