@@ -27,9 +27,12 @@ from scipy.optimize import nnls
 
 from benchmarks.study import Options, Study, explained
 from kinematify.batch.batch_summary import STEP_HEADINGS, step_rows
-from kinematify.batch.corpus import write_corpus
 from kinematify.batch.manifest import RECORD
+from kinematify.config import load_config
 from kinematify.evaluation.result_record import table
+from kinematify.generate.blueprint_files import write_blueprint
+from kinematify.generate.families import FAMILIES
+from kinematify.generate.procedural.family import build
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -79,13 +82,36 @@ class Killed:
     """Times that the driver is killed."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Drawn:
+    """An object to be written: of a kind, a quarter of them ajar."""
+
+    folder: Path
+    family: str
+    seed: list[int]
+
+
+def written_object(asked: Drawn) -> Record:
+    """Write one object; it appears whole or not at all."""
+    rng = np.random.default_rng(asked.seed)
+    seed, share = int(rng.integers(2**31)), round(float(rng.uniform(0.05, 0.6)), 2)
+    name = f"{asked.family}_{asked.seed[1]:03d}"
+    blueprint = build(FAMILIES[asked.family], {"open": share if rng.random() < 0.25 else 0.0}, seed=seed, name=name)
+    asked.folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=asked.folder.parent) as aside:
+        write_blueprint(blueprint, Path(aside, name), load_config())
+        Path(aside, name).replace(asked.folder / name)
+    return {"object": name}
+
+
 def measure(options: BatchOptions, work: Work) -> Measured:
     """Time one worker, several, and Ray where it is installed; then kill."""
     patterns = []
     for count in (options.objects, options.killed):
         folder = work.folder.absolute() / f"families-{count}-{options.seed}"
-        pool = work.pool
-        write_corpus(folder, count, seed=options.seed, progress=pool.progress, workers=pool.workers)
+        names = sorted(FAMILIES)
+        drawn = [Drawn(folder=folder, family=names[k % len(names)], seed=[options.seed, k]) for k in range(count)]
+        work.each(written_object, {f"{count}: {k}": item for k, item in enumerate(drawn)}, reuse=count)
         patterns.append(f"{folder}/*/model.urdf")
     engines = ["local", *(["ray"] if importlib.util.find_spec("ray") else [])]
     runs = {

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -37,7 +36,6 @@ _WIDTH = 100
         'kinematify generate "a chest of drawers, half open" --seed 7 -o out/chest',
         "kinematify generate --blueprint toolbox.yaml -o out/toolbox",
         "kinematify generate --list",
-        "kinematify generate --corpus 100 --seed 1 -o corpus",
         "kinematify generate --image robot.jpg --source rodin --budget 2 -o out/robot",
         'kinematify generate "a cantilever toolbox" --source llm --budget 60000 -o out/box',
         "kinematify generate --image chair.png --source command --command 'partcrafter {image} {out}' -o out/chair",
@@ -79,7 +77,6 @@ _WIDTH = 100
     metavar="FILE",
     help="What to build, as YAML or JSON: parts made of primitives, and joints.",
 )
-@click.option("--corpus", type=click.IntRange(min=1), metavar="N", help="N objects of all categories, as a benchmark.")
 @click.option("--seed", type=int, help="Draw at random what is not asked for; default: the defaults of the category.")
 @click.option("--list", "listing", is_flag=True, help="Show the categories, or the parameters of --category.")
 @click.option(
@@ -154,10 +151,7 @@ def command(**given: Any) -> int:
     if schema is not None or given["listing"]:
         _list(category if schema is None else schema or category, given["json_to"], is_schema=schema is not None)
         return 0
-    if given["corpus"] is not None:
-        _write_corpus(given["corpus"], given["seed"] or 0, _needed(out), text or category)
-        return 0
-    (_check_provided if source is not None else _check_request)(given)
+    _check(given)
     from kinematify.config import load_config
     from kinematify.processes.lock import writing
 
@@ -249,31 +243,43 @@ def _builder(given: dict[str, Any]) -> Callable[[], BuildResult]:
     return build
 
 
-def _check_provided(given: dict[str, Any]) -> None:
-    """Refuse options that mean nothing to another generator."""
-    if any(given[name] for name in ("category", "settings", "blueprint", "request_file", "nearest")):
-        raise click.UsageError(
-            "--category, --set, --request, --nearest and --blueprint cannot be combined with --source. Remove one."
-        )
-    if given["inferred"] and given["source"] != "llm":
-        raise click.UsageError("Joints of this --source are always inferred. Remove --infer.")
+_SOURCES = ("rodin", "command", "llm")
+_TAKEN_BY: dict[str, tuple[str, tuple[str | None, ...]]] = {
+    "--category": ("category", (None,)),
+    "--set": ("settings", (None,)),
+    "--request": ("request_file", (None,)),
+    "--blueprint": ("blueprint", (None,)),
+    "--nearest": ("nearest", (None,)),
+    "--infer": ("inferred", (None, "llm")),
+    "--seed": ("seed", (None, "rodin", "command")),
+    "--image": ("images", _SOURCES),
+    "--command": ("program", ("command",)),
+    "--time-limit": ("time_limit", _SOURCES),
+    "--budget": ("budget", ("rodin", "llm")),
+    "--rounds": ("rounds", ("llm",)),
+    "--record": ("record", _SOURCES),
+    "--replay": ("replay", _SOURCES),
+    "--resend": ("resend", _SOURCES),
+}
+"""Options -> names of their values, and the sources that take them; None is the library."""
 
 
-def _check_request(given: dict[str, Any]) -> None:
-    """Refuse options that do not go together where the library builds."""
-    if given["images"]:
-        raise click.UsageError(
-            "--image needs --source: rodin (a web service, needs a key) or command (your own program) makes parts, "
-            "llm (a language model) writes a blueprint. Without --source, give --text or --category."
-        )
-    if any(given[name] for name in ("program", "time_limit", "budget", "rounds", "record", "replay", "resend")):
-        raise click.UsageError(
-            "--command, --time-limit, --budget, --rounds, --record, --replay and --resend belong to --source."
-        )
-    text, settings = given["text"], given["settings"]
+def _check(given: dict[str, Any]) -> None:
+    """Refuse options that do not go together."""
+    text, settings, source = given["text"], given["settings"], given["source"]
+    for option, (name, takers) in _TAKEN_BY.items():
+        if given[name] not in (None, (), False) and source not in takers:
+            wanted = f"--source {' or '.join(filter(None, takers))}" if takers != (None,) else "no --source"
+            if source is None:
+                raise click.UsageError(f"{option} needs {wanted}. Give it as well.")
+            raise click.UsageError(f"{option} cannot be combined with --source {source}; it needs {wanted}.")
+    if given["record"] is not None and given["replay"] is not None:
+        raise click.UsageError("--record and --replay exclude each other.")
+    if source is not None:
+        return
     asked = {"a sentence": "text", "--category": "category", "--request": "request_file", "--blueprint": "blueprint"}
     if sum(given[name] is not None for name in asked.values()) != 1:
-        raise click.UsageError(f"Give one of {', '.join(asked)} (or --corpus, or --list for all).")
+        raise click.UsageError(f"Give one of {', '.join(asked)} (or --list for all).")
     if given["blueprint"] is not None and (settings or given["seed"] is not None):
         raise click.UsageError("--set and --seed have no effect on a --blueprint. Remove them.")
     if settings and text is not None:
@@ -360,13 +366,3 @@ def _parameters(category: str) -> str:
     table = format_table(PARAMETER_HEADINGS, parameter_rows(family.all_parameters))
     words = f"Also called: {', '.join(family.words)}."
     return f"{family.title}\n\n{table}\n\n{words}"
-
-
-def _write_corpus(count: int, seed: int, out: Path, only: str | None) -> None:
-    from kinematify.batch.corpus import write_corpus
-
-    if only is not None:
-        raise click.UsageError("--corpus takes all categories; remove --text and --category.")
-    with progress_reporter() as progress:
-        manifest = write_corpus(out, count, seed=seed, progress=progress, workers=os.cpu_count() or 1)
-    click.echo(f"{count} objects: {manifest}\nNext: kinematify bench {out} -o results --name corpus")

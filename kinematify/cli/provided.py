@@ -49,34 +49,19 @@ def part_source(given: Mapping[str, Any], config: Config) -> PartSource:
     """The generator that the options ask for.
 
     Raises:
-        click.UsageError: Options do not go together.
+        click.UsageError: There is no program.
     """
-    _refuse_both(given)
-    if given["rounds"] is not None:
-        raise click.UsageError("--rounds belongs to --source llm. Leave it out.")
-    source = _plain_source(given, config)
+    limit, chosen = given["time_limit"], config.sources.rodin
+    if given["source"] == "rodin":
+        asked = chosen if limit is None else chosen.model_copy(update={"job_seconds": limit})
+        source: PartSource = RodinSource(asked, given["budget"])
+    elif given["program"] is None:
+        raise click.UsageError("--source command needs --command 'program {image} {out}'.")
+    else:
+        source = CommandSource(given["program"], limit or config.sources.command_seconds)
     if given["record"] is not None:
         return RecordingSource(source, given["record"])
     return source if given["replay"] is None else ReplayedSource(source, given["replay"])
-
-
-def _plain_source(given: Mapping[str, Any], config: Config) -> PartSource:
-    program, limit = given["program"], given["time_limit"]
-    if given["source"] == "command":
-        if program is None:
-            raise click.UsageError("--source command needs --command 'program {image} {out}'.")
-        if given["budget"] is not None:
-            raise click.UsageError("--budget belongs to --source rodin. Leave it out.")
-        return CommandSource(program, limit or config.sources.command_seconds)
-    if program is not None:
-        raise click.UsageError("--command belongs to --source command.")
-    chosen = config.sources.rodin
-    return RodinSource(chosen if limit is None else chosen.model_copy(update={"job_seconds": limit}), given["budget"])
-
-
-def _refuse_both(given: Mapping[str, Any]) -> None:
-    if given["record"] is not None and given["replay"] is not None:
-        raise click.UsageError("--record and --replay exclude each other.")
 
 
 def model_of_parts(
@@ -135,12 +120,8 @@ def model_asked(given: Mapping[str, Any], config: Config) -> LanguageModel:
     """The language model that the options ask for.
 
     Raises:
-        click.UsageError: Options do not go together.
         InputError: No address is set.
     """
-    _refuse_both(given)
-    if given["program"] is not None or given["seed"] is not None:
-        raise click.UsageError("--command and --seed mean nothing to a language model. Leave them out.")
     asked = {"rounds": given["rounds"], "answer_seconds": given["time_limit"]}
     settings = config.sources.language_model.model_copy(
         update={name: value for name, value in asked.items() if value is not None}

@@ -10,11 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kinematify.batch.corpus import _entry, write_corpus
 from kinematify.cli.app import run
 from kinematify.cli.generation import GeneratedModel
 from kinematify.cli.verdict import describe_briefly
-from kinematify.evaluation.datasets import find_objects
 from kinematify.generate.reader import read_sentence
 from kinematify.robot.read import read_robot
 from kinematify.validation.finding import Severity
@@ -108,44 +106,6 @@ def test_a_category_takes_settings_and_a_seed(tmp_path, capsys):
     assert len(read_robot(tmp_path / "one" / "model.urdf", geometry="none").joints) == 3
     assert run([*command, "--no-preview", "--no-validation", "--collision", "mesh", "--infer", "--force"]) == 0
     assert "Against the known joints: 3 of 3 types right" in capsys.readouterr().out.splitlines()[-1]
-
-
-def test_a_corpus_is_a_benchmark_and_goes_on_where_it_stopped(tmp_path, capsys):
-    out = tmp_path / "corpus"
-    assert run(["generate", "--corpus", "2", "--seed", "1", "-o", str(out)]) == 0
-    first = {item.name: item.urdf.read_bytes() for item in find_objects(out)}
-    assert len(first) == 2
-    assert run(["generate", "--corpus", "3", "--seed", "1", "-o", str(out)]) == 0
-    more = {item.name: item.urdf.read_bytes() for item in find_objects(out)}
-    assert len(more) == 3
-    assert {name: more[name] for name in first} == first
-    assert {item.kind for item in find_objects(out)} == {"procedural"}
-    manifest = json.loads((out / "manifest.json").read_text())
-    assert {entry["name"] for entry in manifest["objects"]} == set(more)
-    assert sum(manifest["categories"].values()) == 3
-    assert run(["generate", "--corpus", "3", "--seed", "2", "-o", str(out)]) == 2
-    assert "seed 1, not 2" in capsys.readouterr().err
-
-
-def test_what_a_killed_process_left_of_a_corpus_is_cleared_away_and_some_objects_stand_ajar(tmp_path):
-    (tmp_path / ".bottle_000.123").mkdir()
-    (tmp_path / ".bottle_000.123" / "model.urdf").write_text("<robot")
-    write_corpus(tmp_path, 1, seed=1, progress=lambda name, done: None)
-    assert not list(tmp_path.glob(".*"))
-    shares = [_entry(k, 1)["open"] for k in range(400)]
-    assert 0.15 < np.mean(np.array(shares) > 0.0) < 0.35
-    assert max(shares) <= 0.6
-
-
-def test_several_processes_write_the_same_corpus_as_one(tmp_path):
-    for name, workers in (("one", 1), ("two", 2)):
-        write_corpus(tmp_path / name, 4, seed=2, progress=lambda name, done: None, workers=workers)
-    one, two = (
-        {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-        for folder in (tmp_path / "one", tmp_path / "two")
-    )
-    assert one == two
-    assert len(list((tmp_path / "two").iterdir())) == 5
 
 
 def test_the_categories_and_their_parameters_are_listed(capsys):

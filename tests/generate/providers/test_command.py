@@ -171,10 +171,10 @@ def test_prompts_that_make_no_sense_are_refused(tmp_path: Path) -> None:
     ("words", "said"),
     [
         (["--image", "x.png"], "--image needs --source"),
-        (["--text", "a box", "--budget", "3"], "belong to --source"),
+        (["--text", "a box", "--budget", "3"], "needs --source rodin or llm"),
         (["--source", "command", "--text", "a box"], "needs --command"),
         (["--source", "rodin", "--text", "a box", "--command", "x {out}"], "--source command"),
-        (["--source", "rodin", "--category", "cabinet"], "cannot be combined with --source"),
+        (["--source", "rodin", "--category", "cabinet"], "cannot be combined with --source rodin"),
         (["--source", "rodin", "--text", "a box", "--record", "a", "--replay", "b"], "exclude each other"),
     ],
 )
