@@ -113,7 +113,7 @@ types: setup
 	$(IN_VENV) mypy -p kinematify -p benchmarks -p tools
 
 bench: setup
-	$(IN_VENV) kinematify bench $(if $(filter pip,$(DATA)),--data pip,$(DATA)) -o results
+	$(IN_VENV) kinematify bench $(DATA) -o results
 
 docs: setup
 	@rm -rf out/pages && mkdir -p out/pages

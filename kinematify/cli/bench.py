@@ -76,7 +76,7 @@ def _list(context: click.Context, _parameter: click.Parameter, asked: bool) -> N
     short_help="Accuracy on models with known joints, beside the paper's.",
     options_metavar="[OPTIONS]",
     epilog=examples(
-        "kinematify bench --data pip",
+        "kinematify bench pip",
         "kinematify bench models/ -o results --name robots",
         "kinematify bench models/ --conditions rest --objects panda --objects cabinet_*",
         "kinematify bench models/ --config default --config paper",
@@ -87,11 +87,10 @@ def _list(context: click.Context, _parameter: click.Parameter, asked: bool) -> N
         "kinematify bench detection --help",
     ),
 )
-@click.argument("folder", metavar="[DATA]", required=False, type=click.Path(path_type=Path))
+@click.argument("data", required=False)
 @click.option(
     "--list", is_flag=True, expose_value=False, is_eager=True, callback=_list, help="Name the studies and end."
 )
-@click.option("--data", metavar="pip|PATH", help="Same as DATA; pip: robots of the package example-robot-data.")
 @click.option(
     "--config",
     "configs",
@@ -138,7 +137,6 @@ def _list(context: click.Context, _parameter: click.Parameter, asked: bool) -> N
 @json_option
 def command(
     *,
-    folder: Path | None,
     data: str | None,
     configs: tuple[str, ...],
     ablation: bool,
@@ -154,10 +152,10 @@ def command(
 ) -> int:
     """Erase the joints of every URDF below DATA, infer them again and measure the errors.
 
-    DATA is a folder with URDF files at any depth, one URDF file, or one of the words pip, robots, everyday,
-    everyday2, articraft, infinigen, kitchen and kinart. Without it robots and everyday objects are measured. The
-    sets are searched in the folder that the variable KINEMATIFY_BENCH names, else in ../shared/bench beside the
-    repository.
+    DATA is a folder with URDF files at any depth, one URDF file, or one of the words pip (robots of the package
+    example-robot-data), robots, everyday, everyday2, articraft, infinigen, kitchen and kinart. Without it robots and
+    everyday objects are measured. The sets are searched in the folder that the variable KINEMATIFY_BENCH names, else in
+    ../shared/bench beside the repository.
 
     The report is written as Markdown and JSON. A run that was interrupted goes on where it stopped; a change of the
     code or of the configuration starts again. Wrong answers do not change the exit status, worse ones than those of
@@ -174,8 +172,6 @@ def command(
     from kinematify.evaluation.result_record import as_json, load_report, table, write_report
     from kinematify.evaluation.run_benchmark import RESULTS, bench
 
-    if folder is not None and data is not None:
-        raise click.UsageError(f"Both DATA ({folder}) and --data ({data}) are given. Leave one out.")
     if degrade != "none" and baseline is not None:
         raise click.UsageError("--degrade cannot be combined with --baseline. Give one of them.")
     earlier = load_report(baseline, RESULTS) if baseline is not None else None
@@ -184,7 +180,7 @@ def command(
     faults, by = _faults(degrade)
     with progress_reporter() as progress:
         report = bench(
-            data if data is not None else folder,
+            data,
             variants=_variants(configs, ablation=ablation),
             conditions=listed(conditions),
             inputs=(CLEAN, *faults),

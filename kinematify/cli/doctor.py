@@ -56,7 +56,7 @@ MODULES = {
     "meshopt": ("meshopt", "glTF files compressed with meshoptimizer"),
     "cascadio": ("cascadio", "STEP files"),
     "viser": ("viser", "viewer in the browser"),
-    "example-robot-data": ("", "robots for `kinematify bench --data pip`"),
+    "example-robot-data": ("", "robots for `kinematify bench pip`"),
     "matplotlib": ("matplotlib", "plots of the benchmark"),
     "playwright": ("playwright", "pages measured in a browser"),
     "fsspec": ("fsspec", "paths and URLs of `kinematify batch`"),

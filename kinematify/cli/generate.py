@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.options import collision_option, complete_categories, examples, say, scale_option, with_collision
+from kinematify.cli.options import complete_categories, examples, say, scale_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus, InputError
@@ -112,7 +112,6 @@ _WIDTH = 100
 @click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder to write.")
 @click.option("--strict", is_flag=True, help="Write nothing unless all is as asked for and every word was read.")
 @click.option("--infer", "inferred", is_flag=True, help="Infer the joints from the parts alone, and compare.")
-@collision_option
 @click.option(
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
 )
@@ -156,7 +155,7 @@ def command(**given: Any) -> int:
     from kinematify.processes.lock import writing
 
     out = _needed(out)
-    config = with_collision(load_config(given["config"]), given["collision"])
+    config = load_config(given["config"])
     if source in ("rodin", "command"):
         from kinematify.cli.provided import model_of_parts
 

@@ -21,7 +21,7 @@ from kinematify.cli.inferred import (
     validation_answer,
     validation_status,
 )
-from kinematify.cli.options import collision_option, examples, pieces_option, scale_option, up_option, with_collision
+from kinematify.cli.options import examples, pieces_option, scale_option, up_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.errors import ExitStatus
 
@@ -114,7 +114,6 @@ def _masses(_context: click.Context, _parameter: click.Parameter, given: tuple[s
     type=click.Path(path_type=Path),
     help="Which pieces are one moving part, as a person or a chat answered `kinematify question`.",
 )
-@collision_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
 @click.option("--no-validation", is_flag=True, help="Do not check the model or load it into engines.")
@@ -137,7 +136,6 @@ def command(
     seed: int | None,
     vlm: str,
     answer: Path | None,
-    collision: str | None,
     force: bool,
     no_preview: bool,
     no_validation: bool,
@@ -170,7 +168,6 @@ def command(
 
     check_output(out, overwrite=force)
     settings = load_config(config) if seed is None else load_config(config, seed=seed)
-    settings = with_collision(settings, collision)
     with writing(out), progress_reporter() as progress:
         if not no_validation:
             load_validation()

@@ -39,8 +39,7 @@ _SHOWN = 20
     type=click.Path(path_type=Path),
     help="Folder of all nights.  [default: results/nightly; with --smoke out/nightly-smoke]",
 )
-@click.argument("folder_of_models", required=False, metavar="[DATA]")
-@click.option("--data", metavar="pip|PATH", help="Same as DATA.")
+@click.argument("data", required=False)
 @click.option(
     "--objects",
     "patterns",
@@ -58,7 +57,6 @@ _SHOWN = 20
 def command(
     *,
     config: str,
-    folder_of_models: str | None,
     out: Path | None,
     data: str | None,
     patterns: tuple[str, ...],
@@ -83,11 +81,9 @@ def command(
         accept(folder, accepted)
         click.echo(f"{accepted} is the baseline of {folder} from now on.")
         return 0
-    if data and folder_of_models:
-        raise click.UsageError(f"DATA {folder_of_models} and --data {data} say the same. Give one of them.")
     with progress_reporter() as progress:
         result = nightly(
-            data or folder_of_models, folder, config=config, objects=patterns, baseline=baseline, smoke=smoke,
+            data, folder, config=config, objects=patterns, baseline=baseline, smoke=smoke,
             jobs=jobs, progress=progress,
         )  # fmt: skip
     if json_to:

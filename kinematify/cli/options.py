@@ -13,8 +13,6 @@ import click
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.config import Config
-
 
 def _package_dirs(context: click.Context, _parameter: click.Parameter, given: tuple[Path, ...]) -> tuple[Path, ...]:
     """Folders as given; ``NAME=DIR`` becomes a folder that has the package under its name, as engines look for it."""
@@ -60,13 +58,6 @@ sampling_seed_option = click.option(
     "--seed", type=int, help="Seed of the sampled configurations, instead of the configuration's."
 )
 
-collision_option = click.option(
-    "--collision",
-    type=click.Choice(["auto", "mesh"]),
-    help="Collision geometry: boxes and convex pieces carved by the motion (auto, the configuration's), or the visual "
-    "meshes, of which engines take the hulls.",
-)
-
 
 def _metres(_context: click.Context, _parameter: click.Parameter, given: str) -> float | None:
     """Metres per unit; None for ``auto``: what the file states."""
@@ -100,13 +91,6 @@ pieces_option = click.option(
     help="How parts come about. auto: pieces of one mesh are grouped into rigid parts, other files have a part per "
     "node or group; group: these are grouped too; cut: after cuts where surfaces fold inwards; keep: all pieces.",
 )
-
-
-def with_collision(config: Config, mode: str | None) -> Config:
-    """A configuration with the collision geometry that was asked for, if any was."""
-    if mode is None:
-        return config
-    return config.model_copy(update={"collision": config.collision.model_copy(update={"mode": mode})})
 
 
 def listed(words: str | None) -> tuple[str, ...]:

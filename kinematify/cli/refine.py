@@ -9,7 +9,7 @@ import click
 
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.inferred import describe, describe_validation, validated, validation_answer, validation_status
-from kinematify.cli.options import collision_option, examples, with_collision
+from kinematify.cli.options import examples
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
@@ -39,7 +39,6 @@ _HEADINGS = ("part", "what", "before", "after", "why")
     "--rounds", type=click.IntRange(min=0), default=3, show_default=True, help="Rounds at most; 0 only simulates."
 )
 @click.option("--base", metavar="NAME", help="Part that the tree is rooted at, if the choice made is wrong.")
-@collision_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder; without -o, the model in FOLDER.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
 @click.option("--no-validation", is_flag=True, help="Do not check the model or load it into engines.")
@@ -50,7 +49,6 @@ def command(
     out: Path | None,
     rounds: int,
     base: str | None,
-    collision: str | None,
     force: bool,
     no_preview: bool,
     no_validation: bool,
@@ -81,7 +79,6 @@ def command(
     with writing(target), progress_reporter() as progress:
         progress("reading the parts", 0.0)
         assembly, config = open_model_folder(folder)
-        config = with_collision(config, collision)
         check_base(base, assembly.names)
         inference = infer(assembly, config=config, base=base, progress=lambda stage, done: progress(stage, 0.4 * done))
         refinement = refine(

@@ -233,7 +233,7 @@ def example_robots() -> Path:
     try:
         package = distribution("example-robot-data")
     except PackageNotFoundError as error:
-        raise EnvironmentFault(not_installed("`--data pip`", "example-robot-data")) from error
+        raise EnvironmentFault(not_installed("`pip`", "example-robot-data")) from error
     share = Path(str(package.locate_file("cmeel.prefix/share")))
     robots = share / "example-robot-data" / "robots"
     if all((robots / place).is_file() for _, _, place, _ in _PIP_ROBOTS):

@@ -80,7 +80,7 @@ def results(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
 
 
 def test_arguments_become_those_of_the_function(results: list[dict[str, Any]], tmp_path: Path) -> None:
-    words = ["--data", "pip", "--conditions", "rest,yaw37", "--jobs", "3", "--fresh", "--objects", "pan*"]
+    words = ["pip", "--conditions", "rest,yaw37", "--jobs", "3", "--fresh", "--objects", "pan*"]
     assert run(["bench", *words, "--config", "paper", "-o", str(tmp_path)]) == 0
     (request,) = results
     assert (request["data"], request["jobs"], request["fresh"]) == ("pip", 3, True)
@@ -135,11 +135,10 @@ def test_worse_than_the_baseline_ends_with_1(
     ("words", "text"),
     [
         (["bench", "no/such/folder"], "no/such/folder"),
-        (["bench", "no/such/folder", "--data", "pip"], "Leave one out"),
-        (["bench", "--data", "pip", "--objects", "zebra*"], "No object, category or kind matches --objects zebra*"),
-        (["bench", "--data", "pip", "--conditions", "upside"], "There is no condition upside"),
-        (["bench", "--data", "pip", "--config", "no-such"], "There is no configuration no-such"),
-        (["bench", "--data", "pip", "--baseline", "no.json"], "no.json"),
+        (["bench", "pip", "--objects", "zebra*"], "No object, category or kind matches --objects zebra*"),
+        (["bench", "pip", "--conditions", "upside"], "There is no condition upside"),
+        (["bench", "pip", "--config", "no-such"], "There is no configuration no-such"),
+        (["bench", "pip", "--baseline", "no.json"], "no.json"),
     ],
 )
 def test_wrong_words_end_with_2(words: list[str], text: str, capsys: pytest.CaptureFixture[str]) -> None:

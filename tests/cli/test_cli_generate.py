@@ -100,11 +100,11 @@ def test_the_inference_sees_nothing_but_the_parts(generated, tmp_path):
 
 def test_a_category_takes_settings_and_a_seed(tmp_path, capsys):
     command = ["generate", "--category", "gripper", "--set", "fingers=3", "--seed", "4", "-o", str(tmp_path / "one")]
-    assert run([*command, "--no-preview", "--no-validation", "--collision", "mesh"]) == 0
+    assert run([*command, "--no-preview", "--no-validation"]) == 0
     assert "Not validated" in capsys.readouterr().out.splitlines()[-1]
     assert not list((tmp_path / "one").glob("validation.*"))
     assert len(read_robot(tmp_path / "one" / "model.urdf", geometry="none").joints) == 3
-    assert run([*command, "--no-preview", "--no-validation", "--collision", "mesh", "--infer", "--force"]) == 0
+    assert run([*command, "--no-preview", "--no-validation", "--infer", "--force"]) == 0
     assert "Against the known joints: 3 of 3 types right" in capsys.readouterr().out.splitlines()[-1]
 
 
