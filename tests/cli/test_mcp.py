@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import os
+import subprocess
 import sys
+import time
 from collections.abc import Awaitable, Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -124,3 +127,36 @@ def test_paths_outside_of_the_root_and_huge_files_are_refused_and_calls_run_side
 
     with_client(root, try_all)
     assert not (tmp_path / "door.xml").exists()
+
+
+_GONE = """
+import asyncio, sys
+from pathlib import Path
+from tests.cli.test_mcp import call, with_client
+with_client(Path(sys.argv[1]), lambda client: call(client, "validate", model="door.urdf", quick=False))
+"""
+
+
+def processes_at(root: Path) -> list[str]:
+    """Command lines of running processes that name a folder."""
+    found = []
+    for file in Path("/proc").glob("[0-9]*/cmdline"):
+        with suppress(OSError):
+            found.append(file.read_bytes().replace(b"\0", b" ").decode(errors="replace"))
+    return [line for line in found if str(root) in line]
+
+
+def waited(condition: Callable[[], bool]) -> bool:
+    deadline = time.monotonic() + 120.0
+    while not condition() and time.monotonic() < deadline:
+        time.sleep(0.1)
+    return condition()
+
+
+def test_a_client_that_goes_away_leaves_no_process(tmp_path: Path) -> None:
+    (tmp_path / "door.urdf").write_text(door())
+    client = subprocess.Popen([sys.executable, "-c", _GONE, str(tmp_path)], env={**os.environ, "PYTHONPATH": str(ROOT)})
+    assert waited(lambda: any(" validate " in line for line in processes_at(tmp_path)))
+    client.kill()
+    client.wait()
+    assert waited(lambda: not processes_at(tmp_path))
