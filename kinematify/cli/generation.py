@@ -5,7 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from kinematify.cli.inferred import describe_files, describe_joints
+from kinematify.cli.inferred import (
+    describe_files,
+    describe_joints,
+    describe_validation,
+    validation_answer,
+    validation_status,
+)
 from kinematify.cli.options import say
 from kinematify.cli.report_files import report_on
 from kinematify.errors import ExitStatus, InputError
@@ -42,7 +48,7 @@ class GeneratedModel:
     @property
     def exit_status(self) -> int:
         """1 if the model has an error or is not as asked, 130 if the validation was interrupted, else 0."""
-        return status_of(self.report) or (0 if self.made.is_complete else ExitStatus.FAILURES)
+        return validation_status(self.report) or (0 if self.made.is_complete else ExitStatus.FAILURES)
 
     @property
     def score(self) -> ObjectScore | None:
@@ -63,7 +69,7 @@ class GeneratedModel:
             "notes": list(self.made.notes),
             "differences": list(self.made.differences),
             "unread": list(self.made.unread),
-            "validation": summary_of(self.report),
+            "validation": validation_answer(self.report),
             "accuracy": None if score is None else _accuracy(score),
         }
 
@@ -75,7 +81,7 @@ class GeneratedModel:
             _read(self.made),
             f"Base: {self.model.root}\n\n{describe_joints(self.model.joints)}",
             "\n".join(describe_files(self.out)),
-            verdict_on(self.report, self.out),
+            describe_validation(self.report, self.out),
             "" if score is None else inferred + _describe_score(score),
             _not_as_asked(self.made),
         ]
@@ -149,38 +155,6 @@ def write_generated(
 def report_after(out: Path, progress: Reporter, done: float) -> ValidationReport:
     """Validate the model of a folder, in the rest of the time, and write its reports."""
     return report_on(out, progress=lambda stage, share: progress(f"validation: {stage}", done + (1.0 - done) * share))
-
-
-def status_of(report: ValidationReport | None) -> int:
-    """Exit status: 1 if the model has an error, 130 if the validation was interrupted, else 0."""
-    if report is None:
-        return 0
-    return ExitStatus.INTERRUPTED if report.environment.get("interrupted") else report.exit_status
-
-
-def verdict_on(report: ValidationReport | None, out: Path) -> str:
-    """Return what a user reads of a validation, or how to get one."""
-    if report is None:
-        return f"Not validated; kinematify validate {out / MODEL_FILE} does that."
-    from kinematify.cli.verdict import describe_briefly
-
-    return f"{describe_briefly(report)}\n{out / 'validation.html'}: every check, with remedies"
-
-
-def summary_of(report: ValidationReport | None) -> dict[str, Any] | None:
-    """The verdict as JSON values."""
-    if report is None:
-        return None
-    from kinematify.validation.finding import Severity
-    from kinematify.validation.run.outcome import severity_counts
-
-    counts = severity_counts(report)
-    return {
-        "verdict": report.verdict,
-        **{f"{severity.value}s": counts.get(severity, 0) for severity in Severity},
-        "failed": sorted({item.check for item in report.counted if item.severity is Severity.ERROR}),
-        "seconds": report.environment.get("seconds"),
-    }
 
 
 def _read(made: BuildResult) -> str:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from kinematify.cli.table import format_table
+from kinematify.errors import ExitStatus
 from kinematify.model.output import MODEL_FILE
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.lengths import length_text, range_text
@@ -122,8 +123,11 @@ def validation_answer(report: ValidationReport | KinematifyError | None) -> dict
 
 
 def validation_status(report: ValidationReport | KinematifyError | None) -> int:
-    """Return 1 for a model with an error, 3 where an engine failed or time ran out, else 0."""
-    return 0 if report is None else int(report.exit_status)
+    """Return 1 for a model with an error, 3 where an engine failed or time ran out, 130 after an interrupt, else 0."""
+    if report is None:
+        return 0
+    interrupted = not isinstance(report, Exception) and report.environment.get("interrupted")
+    return int(ExitStatus.INTERRUPTED if interrupted else report.exit_status)
 
 
 def _range(joint: Joint) -> str:
@@ -165,6 +169,7 @@ def describe_files(out: Path) -> list[str]:
         "inference.json": "every alternative with its evidence, seed and timings",
         "groups.json": "the pieces of every part, to be corrected and given with --groups",
         "preview.png": "the object as given, and with every joint moved",
+        "validation.html": "every check, with remedies",
     }
     present = [name for name in purposes if (out / name).is_file()]
     return [f"{out / name}: {purposes[name]}" for name in present]

@@ -12,8 +12,8 @@ import click
 
 from kinematify.assembly.load import load_assembly
 from kinematify.cli.blueprint_feedback import in_blueprint_words
-from kinematify.cli.generation import report_after, status_of, summary_of, verdict_on
-from kinematify.cli.inferred import describe
+from kinematify.cli.generation import report_after
+from kinematify.cli.inferred import describe, describe_validation, validation_answer, validation_status
 from kinematify.cli.options import say
 from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.providers.command import CommandSource
@@ -107,13 +107,17 @@ def model_of_parts(
         "out": str(out),
         "job": str(job_place),
         "provenance": made.as_json(),
-        "validation": summary_of(report),
+        "validation": validation_answer(report),
     }
     words = (
         f"Parts of {made.provider} ({made.model}), cost: {made.cost or 'unknown'}. Terms: {made.licence}\n"
         f"{job_place}: everything that the generator made; the same request is not sent again"
     )
-    return status_of(report), answer, "\n\n".join([words, describe(inference, out), verdict_on(report, out)])
+    return (
+        validation_status(report),
+        answer,
+        "\n\n".join([words, describe(inference, out), describe_validation(report, out)]),
+    )
 
 
 def model_asked(given: Mapping[str, Any], config: Config) -> LanguageModel:

@@ -48,7 +48,7 @@ def test_a_sentence_becomes_an_exact_model_its_parts_and_what_is_inferred_from_t
 def test_the_model_is_validated(generated):
     out, answer = generated
     assert answer["validation"]["verdict"] in {"pass", "warn"}
-    assert answer["validation"]["failed"] == []
+    assert answer["validation"]["errors"] == []
     report = json.loads((out / "validation.json").read_text())
     assert report["verdict"] == answer["validation"]["verdict"]
     assert sum(check["status"] == "pass" for check in report["checks"]) > 50

@@ -239,7 +239,7 @@ def test_what_the_validation_finds_is_mended(server, tmp_path, monkeypatch):
     assert "<axis>" not in reported
     facts = json.loads(answer.read_text())
     assert facts["language_model"]["rounds"] == 2
-    assert facts["validation"]["failed"] == []
+    assert facts["validation"]["errors"] == []
     assert read_robot(out / "model.urdf").joints[0].axis[0] == -1.0
     assert json.loads((out / "source.json").read_text())["parameters"]["source"] == "llm"
 
