@@ -27,14 +27,18 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, TypedDict
 
+from kinematify.simulation.engines import ENGINES
 from kinematify.validation.finding import Finding, Severity, Status, not_finished
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from kinematify.simulation.engines import EngineEntry
     from kinematify.validation.finding import Cause
+    from kinematify.validation.source import Source
 
     CheckFunction = Callable[["OpenCheck", Any], None]
+    EngineChoice = Callable[[EngineEntry], bool]
     Need = Callable[[Any], str | None]
 
 FAMILIES = {
@@ -86,8 +90,10 @@ class Check:
     """The worst that it reports, and what it reports where nothing else is said."""
     cause: Cause
     """The usual cause."""
-    engines: tuple[str, ...] = ()
-    """Engines that it runs in; empty: none."""
+    runs_in: EngineChoice | None = None
+    """Says of an engine whether it is asked; None: no engine is."""
+    guard: bool = False
+    """After an error of it nothing else is asked of its subject."""
     verifies: str
     """What is looked at and what counts as wrong, thresholds by their setting's name."""
     matters: str
@@ -103,7 +109,18 @@ class Check:
     needs: tuple[Need, ...] = ()
     """Asked before it runs, with the context: each gives the reason why there is nothing to look at, or None."""
     function: CheckFunction
-    """Looks at the context of its stage and adds findings to the open check."""
+    """Looks at its subject and adds findings to the open check."""
+
+    @property
+    def engines(self) -> tuple[str, ...]:
+        """Engines that it runs in; empty: none."""
+        return tuple(name for name, entry in ENGINES.items() if self.runs_in is not None and self.runs_in(entry))
+
+    @property
+    def subject(self) -> str:
+        """What it looks at, and so what is made for it (`validation/needs.py`): the class of its second argument."""
+        _, subject, *_ = self.function.__annotations__.values()
+        return str(subject)
 
     def run(self, result: OpenCheck, context: Any) -> None:
         """Look at a context and add what is found, or say why there is nothing to look at."""
@@ -124,6 +141,8 @@ class OpenCheck:
 
     id: str
     engine: str | None
+    source: Source | None = None
+    """The file, which is written into its findings; None: there is none."""
     findings: list[Finding] = field(default_factory=list)
     measured: dict[str, float] = field(default_factory=dict)
     status: Status | None = None
@@ -159,25 +178,25 @@ class OpenCheck:
         names = [name for name in (joint, link, *(pair or ())) if name is not None]
         message, remedy = (_with_numbers_quoted(text, names) for text in (message, remedy))
         self.is_fatal |= (severity or check.severity) is Severity.ERROR and not harmless
-        self.findings.append(
-            Finding(
-                check=self.id,
-                severity=severity or check.severity,
-                cause=cause or check.cause,
-                message=message,
-                remedy=remedy,
-                joint=joint,
-                link=link,
-                pair=pair,
-                engine=engine or self.engine,
-                q=q,
-                value=None if value is None else float(value),
-                limit=None if limit is None else float(limit),
-                unit=unit,
-                line=line,
-                reproduction=reproduction,
-            )
+        finding = Finding(
+            check=self.id,
+            severity=severity or check.severity,
+            cause=cause or check.cause,
+            message=message,
+            remedy=remedy,
+            joint=joint,
+            link=link,
+            pair=pair,
+            engine=engine or self.engine,
+            q=q,
+            value=None if value is None else float(value),
+            limit=None if limit is None else float(limit),
+            unit=unit,
+            line=line,
+            reproduction=reproduction,
         )
+        told = finding if self.source is None else self.source.told(finding)
+        self.findings += () if told is None else (told,)
 
     def skip(self, reason: str) -> None:
         """Say that it does not apply."""
@@ -210,7 +229,8 @@ def check(
     fails: str,
     severity: Severity,
     cause: Cause,
-    engines: tuple[str, ...] = (),
+    runs_in: EngineChoice | None = None,
+    guard: bool = False,
     feedback: FeedbackRow | None = None,
     doubts: bool = False,
     follows: Mapping[str, CauseScope] | None = None,
@@ -218,7 +238,7 @@ def check(
 ) -> Callable[[CheckFunction], CheckFunction]:
     """Register the decorated function as a check; see `Check` for the arguments.
 
-    The function is called with the open check and the context of its stage, and adds findings to the former. Its
+    The function is called with the open check and what it looks at, and adds findings to the former. Its
     docstring has three paragraphs: what it verifies, ``Why it matters: ...`` and ``Remedy: ...``.
     """
 
@@ -230,7 +250,8 @@ def check(
             fails=fails,
             severity=severity,
             cause=cause,
-            engines=engines,
+            runs_in=runs_in,
+            guard=guard,
             feedback=feedback or (FeedbackRow.EXPORTER if id.startswith(_NOT_OURS) else None),
             doubts=doubts,
             follows=follows or {},

@@ -26,6 +26,8 @@ class Urdf(UrdfDocument):
     """Where relative mesh paths begin."""
     package_dirs: tuple[Path, ...]
     settings: FileSettings
+    losses: tuple[str, ...]
+    """What the file holds and the URDF does not, one sentence each."""
 
     @classmethod
     def of(cls, robot: _Element, request: StageRequest, text: bytes) -> Urdf:
@@ -36,6 +38,7 @@ class Urdf(UrdfDocument):
             folder=request.urdf.resolve().parent,
             package_dirs=tuple(folder.resolve() for folder in request.package_dirs),
             settings=request.settings.file,
+            losses=request.losses,
         )
 
 

@@ -54,6 +54,11 @@ def not_finished(why: str) -> str:
     return f"{_NOT_FINISHED}{why}"
 
 
+def is_unfinished(reason: str | None) -> bool:
+    """True if a check has this reason because time ran out."""
+    return (reason or "").startswith(_NOT_FINISHED)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Finding:
     """One thing that is wrong, or worth knowing, with where, how much and what to do."""
@@ -118,7 +123,7 @@ class CheckResult:
     @property
     def unfinished(self) -> bool:
         """True if time ran out before it was complete; what it found by then stands."""
-        return (self.reason or "").startswith(_NOT_FINISHED)
+        return is_unfinished(self.reason)
 
     def with_findings(self, findings: Iterable[Finding]) -> CheckResult:
         """Return the result with its findings judged again: it has not failed if all of them are notes now."""

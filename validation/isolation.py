@@ -53,7 +53,7 @@ class Stage:
     """A group of checks that runs in one process."""
 
     name: str
-    run: Callable[[StageRequest, Recorder], None]
+    run: Callable[[StageRequest, Recorder], object]
     """What runs in the process; what it measures with is imported there."""
     checks: tuple[tuple[str, str | None], ...]
     """Every (id, engine) that it tells if nothing goes wrong."""
@@ -170,7 +170,7 @@ def _work(stage: Stage, request: StageRequest) -> float:
         # Imported here, and by a server: the sooner the caller starts that, the sooner everything ends.
         from kinematify.validation.stage import Recorder  # noqa: PLC0415
 
-        stage.run(request, Recorder(send, request.selected))
+        stage.run(request, Recorder(send, request))
     except Exception:
         traceback.print_exc()  # its last line becomes the cause
         sys.exit(1)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from kinematify.validation.formats.report_picture import Drawing
     from kinematify.validation.run.outcome import Outcome
     from kinematify.validation.run.report import ValidationReport
-    from kinematify.validation.suppression import Suppression
+    from kinematify.validation.run.suppression_file import Suppression
 
 
 _OPTIONS = {

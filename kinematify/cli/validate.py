@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kinematify.manipulation.plan_request import TaskRequest
     from kinematify.validation.formats.report_picture import Drawing
     from kinematify.validation.run.outcome import Outcome
-    from kinematify.validation.suppression import Suppression
+    from kinematify.validation.run.suppression_file import Suppression
 
 
 _QUICK = "KV1*,KV2*,KV30*,KV31*,KV32*,KV801,KV802,KV803,KV804"
@@ -316,7 +316,7 @@ def _existing(folders: Sequence[Path]) -> tuple[Path, ...]:
 
 
 def _selected(checks: str | None, skip: str | None, *, contract: bool) -> frozenset[str]:
-    from kinematify.validation.run.loaded_findings import CONTRACT
+    from kinematify.validation.run.loaded_words import CONTRACT
 
     parts, wanted = _matching(f"{CONTRACT}*"), _matching(checks or "*")
     if contract:

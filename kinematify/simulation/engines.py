@@ -35,6 +35,8 @@ class EngineEntry:
     holds: tuple[str, ...] = ()
     """What may connect a hand with a part (values of `kinematify.manipulation.plan_request.Hold`) where plans are
     executed and environments run in it."""
+    stands: bool = False
+    """It sets an object on a floor."""
     prints_when_loaded: bool = False
     """True: it may be loaded only where what is printed goes to a file."""
 
@@ -45,7 +47,7 @@ class EngineEntry:
 
 
 _ENTRIES = (
-    EngineEntry(name="mujoco", title="MuJoCo", packages=("mujoco",), holds=("weld", "contact")),
+    EngineEntry(name="mujoco", title="MuJoCo", packages=("mujoco",), holds=("weld", "contact"), stands=True),
     EngineEntry(
         name="pybullet",
         title="PyBullet",

@@ -138,10 +138,10 @@ class FindingGroup:
         return [str(finding.severity) for finding in self.results[check].findings]
 
 
-def tell(run: Callable[[StageRequest, Recorder], None], request: StageRequest) -> FindingGroup:
+def tell(run: Callable[[StageRequest, Recorder], object], request: StageRequest) -> FindingGroup:
     """Run a stage in this process."""
     reported: list[CheckResult | Summary] = []
-    run(request, Recorder(reported.append, request.selected))
+    run(request, Recorder(reported.append, request))
     results = [item for item in reported if isinstance(item, CheckResult)]
     assert len({item.check for item in results}) == len(results)
     return FindingGroup(results={item.check: item for item in results}, work=request.work)

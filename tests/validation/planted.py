@@ -18,8 +18,8 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_about
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult, Finding
+from kinematify.validation.needs import joints
 from kinematify.validation.stage import Recorder, StageRequest
-from kinematify.validation.stages.evidence_stage import run
 from kinematify.validation.summary import JointSummary
 from tests.known import KnownJoint, KnownObject
 
@@ -65,7 +65,7 @@ def reported(urdf: Path, folder: Path, *, seconds: float = 100.0) -> FindingGrou
         selected=SELECTED,
         deadline=time.process_time() + seconds,
     )
-    run(request, Recorder(results.append, SELECTED))
+    joints(request, Recorder(results.append, request))
     return results
 
 

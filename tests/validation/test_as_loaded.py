@@ -15,18 +15,18 @@ import trimesh
 
 from kinematify.config.validation import load_settings
 from kinematify.simulation.engines import DEFAULT_ENGINES, load_file
+from kinematify.validation import needs
 from kinematify.validation.as_loaded_context import AsLoadedContext
 from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.run import validate
-from kinematify.validation.run.loaded_findings import (
-    across_engines,
+from kinematify.validation.run.conclusion import concluded
+from kinematify.validation.run.loaded_words import (
     as_loaded_words,
     contract_words,
 )
 from kinematify.validation.stage import StageRequest
-from kinematify.validation.stages import loaded_file
 from tests.validation.engine_models import Box, FindingGroup, Model, Part, cabinet, tell
 
 ENGINES = ("mujoco", "pybullet")
@@ -48,7 +48,7 @@ def request_of(model: Model, folder: Path) -> StageRequest:
 
 
 def reported(model: Model, folder: Path, engine: str) -> FindingGroup:
-    return tell(partial(loaded_file.run, engine=engine), request_of(model, folder))
+    return tell(partial(needs.engine, name=engine), request_of(model, folder))
 
 
 def collision(model: Model, name: str, *boxes: Box) -> Model:
@@ -154,7 +154,7 @@ def test_what_only_the_flag_for_contacts_shows_is_a_warning_and_plain_pybullet_m
 
 def test_a_pair_that_stops_a_joint_is_in_contact_at_the_value_that_is_named(tmp_path: Path) -> None:
     context = AsLoadedContext(request=request_of(jamming(), tmp_path), engine="pybullet")
-    group = tell(partial(loaded_file.run, engine="pybullet"), context.request)
+    group = tell(partial(needs.engine, name="pybullet"), context.request)
     (finding,) = group.results["KV804"].findings
     assert finding.q is not None
     overlaps = context.loaded.overlaps({**context.values, **finding.q})
@@ -184,7 +184,7 @@ def test_links_across_a_fixed_joint_do_not_jam_in_pybullet(tmp_path: Path) -> No
 def test_a_link_that_is_declared_not_to_collide_with_its_model_does_not(tmp_path: Path, declared: str) -> None:
     request = request_of(jamming(), tmp_path)
     request.urdf.write_text(request.urdf.read_text().replace("</robot>", f"{declared}</robot>"))
-    result = tell(partial(loaded_file.run, engine="pybullet"), request)
+    result = tell(partial(needs.engine, name="pybullet"), request)
     assert result.results["KV804"].findings == ()
 
 
@@ -287,7 +287,7 @@ def test_a_joint_moves_as_far_as_exact_geometry_leaves_free(tmp_path: Path) -> N
     model = collision(cabinet(), "body", WALL)
     free = {"drawer_joint": (0.0, 0.14), "door_joint": (0.0, 0.3)}
     request = replace(request_of(model, tmp_path), free_travel=free)
-    result = tell(partial(loaded_file.run, engine="mujoco"), request)
+    result = tell(partial(needs.engine, name="mujoco"), request)
     assert result.results["KV804"].status is Status.PASS
 
 
@@ -328,14 +328,14 @@ def test_what_works_in_another_engine_is_a_warning_unless_the_engine_was_named()
     opened = [CheckResult(check="KV801", engine=engine, status=Status.PASS) for engine in ENGINES]
     right = replace(jam("pybullet"), status=Status.PASS, findings=(), measured={"joints": 2.0, "right": 2.0})
     one = [*opened, jam("mujoco"), right]
-    (finding,) = across_engines(one, DEFAULT_ENGINES)[2].findings
+    (finding,) = concluded(one, None, DEFAULT_ENGINES)[2].findings
     assert (finding.severity, finding.message) == (Severity.WARNING, "It jams. It works in PyBullet.")
-    assert across_engines(one, ENGINES) == one
+    assert concluded(one, None, tuple(ENGINES)[:1]) == tuple(one)
     late = replace(right, status=Status.SKIPPED, reason=not_finished("time ran out"))
-    (finding,) = across_engines([*opened, jam("mujoco"), late], DEFAULT_ENGINES)[2].findings
+    (finding,) = concluded([*opened, jam("mujoco"), late], None, DEFAULT_ENGINES)[2].findings
     assert (finding.severity, finding.message) == (Severity.WARNING, "It jams. PyBullet did not finish.")
     both = [*opened, jam("mujoco"), jam("pybullet")]
-    assert across_engines(both, DEFAULT_ENGINES) == both
+    assert concluded(both, None, DEFAULT_ENGINES) == tuple(both)
     assert as_loaded_words(one) == "as loaded: MuJoCo 1 of 2 joints move, PyBullet 2 of 2"
 
 
@@ -353,13 +353,13 @@ def energy(engine: str, *, gains: bool) -> CheckResult:
 
 
 def test_energy_that_one_engine_alone_makes_is_its_time_step() -> None:
-    mujoco, pybullet = across_engines([energy("mujoco", gains=False), energy("pybullet", gains=True)], DEFAULT_ENGINES)
+    mujoco, pybullet = concluded([energy("mujoco", gains=False), energy("pybullet", gains=True)], None, DEFAULT_ENGINES)
     assert (mujoco.status, pybullet.status) == (Status.PASS, Status.PASS)
     assert pybullet.findings[0].severity is Severity.NOTE
-    (alone,) = across_engines([energy("pybullet", gains=True)], DEFAULT_ENGINES)
+    (alone,) = concluded([energy("pybullet", gains=True)], None, DEFAULT_ENGINES)
     assert (alone.status, alone.findings[0].severity) == (Status.FAIL, Severity.WARNING)
     both = [energy("mujoco", gains=True), energy("pybullet", gains=True)]
-    assert across_engines(both, DEFAULT_ENGINES) == both
+    assert concluded(both, None, DEFAULT_ENGINES) == tuple(both)
 
 
 def test_the_verdict_says_what_moves_as_loaded(tmp_path: Path) -> None:
@@ -386,7 +386,7 @@ def test_what_an_engine_says_of_a_file_that_it_refuses_is_quoted_with_what_to_do
     door = tmp_path / name.replace("\\", "/")
     door.parent.mkdir(exist_ok=True)
     trimesh.creation.box((0.02, 0.3, 0.4)).export(door)
-    (finding,) = tell(partial(loaded_file.run, engine=engine), request).results["KV801"].findings
+    (finding,) = tell(partial(needs.engine, name=engine), request).results["KV801"].findings
     assert quoted in finding.message
     assert remedy in finding.remedy
     assert "kinematify fix" in finding.remedy

@@ -14,9 +14,9 @@ from kinematify.validation.finding import Cause, CheckResult, Finding, Severity,
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.junit import as_junit
 from kinematify.validation.formats.sarif import as_sarif
-from kinematify.validation.run.causes import with_causes
+from kinematify.validation.run.conclusion import concluded
 from kinematify.validation.run.report import ValidationReport
-from kinematify.validation.suppression import Suppression, suppress
+from kinematify.validation.run.suppression_file import Suppression
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -44,7 +44,7 @@ def report_of(*results: CheckResult, folder: Path | None = None) -> ValidationRe
     if folder is not None:
         (folder / "arm.urdf").write_text(ARM)
         robot = read_robot(folder / "arm.urdf", geometry="none")
-    return ValidationReport(model="arm.urdf", checks=with_causes(results, robot))
+    return ValidationReport(model="arm.urdf", checks=concluded(results, robot))
 
 
 def test_no_check_is_the_cause_of_itself() -> None:
@@ -98,11 +98,11 @@ def test_a_push_that_nothing_blocks_follows_from_what_shakes_the_engine() -> Non
 def test_accepting_a_cause_accepts_what_follows_from_it() -> None:
     pair = ("base", "wrist")
     results = (found("KV301", pair=pair), found("KV804", Severity.ERROR, joint="roll", pair=pair))
-    accepted = suppress(results, [Suppression(check="KV301", reason="a cable runs there")])
-    report = ValidationReport(model="arm.urdf", checks=with_causes(accepted, None))
+    accepted = concluded(results, None, rules=[Suppression(check="KV301", reason="a cable runs there")])
+    report = ValidationReport(model="arm.urdf", checks=accepted)
     assert (report.verdict, {item.suppressed for item in report.findings}) == ("pass", {"a cable runs there"})
-    only = suppress(results, [Suppression(check="KV804", reason="it is never driven")])
-    report = ValidationReport(model="arm.urdf", checks=with_causes(only, None))
+    only = concluded(results, None, rules=[Suppression(check="KV804", reason="it is never driven")])
+    report = ValidationReport(model="arm.urdf", checks=only)
     assert report.verdict == "warn", "what is accepted makes its cause no worse"
 
 

@@ -5,20 +5,22 @@ from __future__ import annotations
 import importlib.util
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
+from kinematify.config.validation import load_settings
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.check import REGISTRY, OpenCheck, check
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Cause, Severity, Status
 from kinematify.validation.isolation import _EVERY_STAGE
-from kinematify.validation.run.plan import (
+from kinematify.validation.needs import (
     keys,
     stages_of,
     task_stage,
 )
-from kinematify.validation.stage import Recorder
+from kinematify.validation.stage import Recorder, StageRequest, Subjects
 from tests.places import ROOT
 
 HEAVY = {"torch", "mujoco", "pybullet", "pinocchio", "coal", "fcl", "igl", "ompl", "trimesh", "scipy", "pydantic"}
@@ -78,15 +80,18 @@ def test_a_check_needs_its_three_paragraphs() -> None:
         decorate(documented)
 
 
-def test_what_a_check_needs_is_the_reason_why_it_is_skipped() -> None:
+def test_what_a_check_needs_is_the_reason_why_it_is_skipped(tmp_path: Path) -> None:
     reported = []  # type: ignore[var-annotated]
-    recorder = Recorder(reported.append, frozenset(("KV331",)))
+    request = StageRequest(
+        urdf=tmp_path, package_dirs=(), work=tmp_path, settings=load_settings(), selected={"KV331"}, deadline=1.0
+    )
 
     class Late:
         random = None
+        scene = type("Scene", (), {"travels": (1,)})
 
-    recorder.run(CHECKS["KV331"], Late())
-    recorder.run(CHECKS["KV333"], Late())  # it was not asked for, and would fail
+    # KV333 was not asked for, and would fail
+    Recorder(reported.append, request).run({"GeometryContext": Subjects(items=lambda: [Late()])})
     (result,) = reported
     assert (result.status, result.reason) == (Status.SKIPPED, "not finished: time ran out before it")
 

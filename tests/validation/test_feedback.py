@@ -14,12 +14,12 @@ from kinematify.robot.robot import Joint
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.failure_rates import CLASSES, LINE, PARENT, TYPE, FailureRates, shipped_rates
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity
+from kinematify.validation.needs import geometry
 from kinematify.validation.run.feedback import Feedback, feedback_from
 from kinematify.validation.stage import Recorder
-from kinematify.validation.stages.geometry import run
 from kinematify.validation.summary import JointSummary
 from tests.validation.engine_models import Box, Model, Part, cabinet
-from tests.validation.test_geometry import SELECTED, beam, block, request_for
+from tests.validation.test_geometry import beam, block, request_for
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -57,7 +57,8 @@ def declared(model: Model) -> dict[str, Joint]:
 def fed_back(model: Model, folder: Path, *more: Finding) -> Feedback:
     """What the checks by geometry say of a model, and some findings of engines, as feedback."""
     reported: list[CheckResult | JointSummary] = []
-    run(request_for(model, folder), Recorder(reported.append, SELECTED))
+    request = request_for(model, folder)
+    geometry(request, Recorder(reported.append, request))
     findings = [finding for item in reported if isinstance(item, CheckResult) for finding in item.findings]
     summaries = [item for item in reported if isinstance(item, JointSummary)]
     return feedback_from([*findings, *more], summaries, declared(model), rates=RATES)

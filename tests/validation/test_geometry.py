@@ -12,8 +12,8 @@ import pytest
 from kinematify.config.validation import load_settings
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
+from kinematify.validation.needs import geometry
 from kinematify.validation.stage import Recorder, StageRequest
-from kinematify.validation.stages.geometry import run
 from kinematify.validation.summary import JointSummary, PairTable
 from tests.validation.engine_models import Box, Model, Part, cabinet, tell
 
@@ -33,7 +33,7 @@ def request_for(model: Model, folder: Path, *, seconds: float = 100.0) -> StageR
 
 def found(model: Model, folder: Path) -> dict[str, list[Finding]]:
     """Warnings and errors by check."""
-    results = tell(run, request_for(model, folder)).results
+    results = tell(geometry, request_for(model, folder)).results
     assert set(results) == {check.id for check in checks_of("KV30", "KV31", "KV32", "KV33")}
     serious = {
         check: [finding for finding in result.findings if finding.severity is not Severity.NOTE]
@@ -43,7 +43,7 @@ def found(model: Model, folder: Path) -> dict[str, list[Finding]]:
 
 
 def notes(model: Model, folder: Path, check: str) -> list[Finding]:
-    return list(tell(run, request_for(model, folder)).results[check].findings)
+    return list(tell(geometry, request_for(model, folder)).results[check].findings)
 
 
 def only(findings: dict[str, list[Finding]], check: str) -> Finding:
@@ -58,7 +58,8 @@ def test_a_good_cabinet_has_no_warning(tmp_path: Path) -> None:
 
 def test_free_travel_is_measured_beyond_the_declared_range(tmp_path: Path) -> None:
     reported: list[CheckResult | JointSummary] = []
-    run(request_for(cabinet().with_part("drawer", limits=(0.0, 0.1)), tmp_path), Recorder(reported.append, SELECTED))
+    request = request_for(cabinet().with_part("drawer", limits=(0.0, 0.1)), tmp_path)
+    geometry(request, Recorder(reported.append, request))
     drawer = next(item for item in reported if isinstance(item, JointSummary) and item.joint == "drawer_joint")
     assert drawer.declared_limits == (0.0, 0.1)
     low, high = drawer.free_travel or (0.0, 0.0)
@@ -69,7 +70,8 @@ def test_free_travel_is_measured_beyond_the_declared_range(tmp_path: Path) -> No
 def test_every_pair_that_meets_is_reported_with_its_reason(tmp_path: Path) -> None:
     reported: list[object] = []
     model = cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0))
-    run(request_for(model, tmp_path), Recorder(reported.append, SELECTED))
+    request = request_for(model, tmp_path)
+    geometry(request, Recorder(reported.append, request))
     (table,) = [item for item in reported if isinstance(item, PairTable)]
     assert table.bodies == ("body", "drawer", "door")
     (pair,) = [item for item in table.pairs if item.meets]
@@ -332,13 +334,13 @@ def test_a_model_that_is_never_free_is_a_warning(tmp_path: Path) -> None:
 
 
 def test_time_that_ran_out_is_said(tmp_path: Path) -> None:
-    results = tell(run, request_for(cabinet(), tmp_path, seconds=-1.0)).results
+    results = tell(geometry, request_for(cabinet(), tmp_path, seconds=-1.0)).results
     assert results["KV310"].status is Status.SKIPPED
     assert "time ran out before 2 joints: drawer_joint, door_joint" in (results["KV310"].reason or "")
 
 
 def test_one_body_has_nothing_to_meet(tmp_path: Path) -> None:
-    results = tell(run, request_for(beam(), tmp_path)).results
+    results = tell(geometry, request_for(beam(), tmp_path)).results
     assert {result.status for result in results.values()} == {Status.SKIPPED}
 
 

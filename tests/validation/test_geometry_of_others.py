@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kinematify.validation.finding import Severity
-from kinematify.validation.stages.geometry import run
+from kinematify.validation.needs import geometry
 from tests.validation.engine_models import Box, Model, Part, tell
 from tests.validation.test_geometry import beam, block, found, request_for
 
@@ -86,7 +86,7 @@ def test_swollen_collision_shapes_of_neighbours_that_engines_let_pass_are_a_note
     above, below = (Box(size=(0.03, 0.03, 0.24), at=(0.0, 0.0, z)) for z in (-0.12, -0.18))
     thigh = Part(name="thigh", parent="beam", at=(0.0, 0.0, -0.2), limits=(-0.1, 0.1), boxes=(above,), **turning)
     shank = Part(name="shank", parent="thigh", at=(0.0, 0.0, -0.3), limits=(-1.2, 1.2), boxes=(below,), **turning)
-    results = tell(run, request_for(beam(thigh, shank), tmp_path)).results
+    results = tell(geometry, request_for(beam(thigh, shank), tmp_path)).results
     reported = [item for check in ("KV310", "KV312") for item in results[check].findings if item.joint == "shank_joint"]
     assert reported
     assert {item.severity for item in reported} == {Severity.NOTE}

@@ -14,8 +14,8 @@ from kinematify.config.validation import load_settings
 from kinematify.robot.robot import Robot
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
+from kinematify.validation.needs import meshes
 from kinematify.validation.stage import Recorder, StageRequest
-from kinematify.validation.stages.asset import check_mesh_files
 
 SETTINGS = load_settings()
 MESH_CHECKS = [check for check in CHECKS if "KV15" <= check < "KV16"]
@@ -58,7 +58,7 @@ def check_model(path: Path) -> tuple[Robot | None, dict[str, CheckResult]]:
         selected=frozenset(CHECKS),
         deadline=time.process_time() + 60.0,
     )
-    model = check_mesh_files(request, Recorder(results.append, request.selected))
+    model = meshes(request, Recorder(results.append, request))
     assert sorted(result.check for result in results) == MESH_CHECKS, "every check is reported once"
     return model, {result.check: result for result in results}
 

@@ -13,8 +13,8 @@ from lxml import etree
 from kinematify.config.validation import load_settings
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
+from kinematify.validation.needs import meshes
 from kinematify.validation.stage import Recorder, StageRequest
-from kinematify.validation.stages.asset import run
 from tests.validation.engine_models import Box, Model, Part
 
 SETTINGS = load_settings()
@@ -83,7 +83,7 @@ def checked(urdf: Path) -> dict[str, CheckResult]:
         selected=frozenset(CHECKS),
         deadline=time.process_time() + 60.0,
     )
-    run(request, Recorder(results.append, request.selected))
+    meshes(request, Recorder(results.append, request))
     return {result.check: result for result in results if result.check.startswith("KV2")}
 
 

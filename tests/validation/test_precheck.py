@@ -13,8 +13,8 @@ from kinematify.errors import DescriptionError
 from kinematify.robot.read import read_robot
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
+from kinematify.validation.needs import file
 from kinematify.validation.stage import Recorder, StageRequest
-from kinematify.validation.stages.precheck import precheck
 
 CLEAN = """\
 <?xml version="1.0"?>
@@ -71,7 +71,7 @@ def check_path(path: Path, package_dirs: tuple[Path, ...] = ()) -> tuple[bool, l
         selected=frozenset(CHECKS),
         deadline=time.process_time() + 60.0,
     )
-    return precheck(request, Recorder(results.append, request.selected)), results
+    return file(request, Recorder(results.append, request)), results
 
 
 def findings(results: list[CheckResult], *, notes: bool = False) -> list[Finding]:

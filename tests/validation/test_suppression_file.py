@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from kinematify.errors import InputError
-from kinematify.validation.run.suppression_file import load_suppressions, unused_suppressions
-from kinematify.validation.suppression import Suppression, suppress
+from kinematify.validation.run.conclusion import concluded
+from kinematify.validation.run.suppression_file import Suppression, load_suppressions, unused_suppressions
 from tests.reports import add_checks, finding, report, result
 
 
@@ -70,7 +70,7 @@ def test_unreadable_files_are_refused(tmp_path: Path) -> None:
 def test_suppressed_errors_do_not_count_but_stay(tmp_path: Path) -> None:
     rules = load_suppressions(written(tmp_path, "- {check: KV396, where: hinge_1, reason: soft seal}"))
     before = report(result(finding()))
-    after = report(*suppress(before.checks, rules))
+    after = report(*concluded(before.checks, None, rules=rules))
     assert (before.verdict, after.verdict) == ("fail", "pass")
     assert [item.suppressed for item in after.findings] == ["soft seal"]
 

@@ -18,7 +18,7 @@ from kinematify.processes.start import ONE_THREAD
 from kinematify.validation import run as validation
 from kinematify.validation.checks import checks_of
 from kinematify.validation.isolation import Stage, StageEnd, run_stages
-from kinematify.validation.run.plan import keys
+from kinematify.validation.needs import keys
 from kinematify.validation.stage import StageRequest
 from tests.validation.engine_models import cabinet
 

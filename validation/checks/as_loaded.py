@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinematify.robot.mesh_paths import GLTF_SUFFIXES
-from kinematify.simulation.engines import ENGINES
 from kinematify.simulation.raw_model import FloatingLink, Unloadable
 from kinematify.validation.check import CauseScope, OpenCheck, check
 from kinematify.validation.checks.follow import AT_REST, NOT_A_BODY
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from kinematify.robot.mechanism import Travel
+    from kinematify.simulation.engines import EngineEntry
     from kinematify.simulation.raw_model import Overlap, RestRun
     from kinematify.validation.as_loaded_context import AsLoadedContext, VelocityProbe
 
-_ENGINES = tuple(ENGINES)
-_RUNNING = tuple(name for name, engine in ENGINES.items() if engine.runs)
+_RUNS = attrgetter("runs")
 _PIECES = (
     "Write convex pieces as collision geometry of {0} and {1} that keep clear of each other along the motion; "
     "kinematify fix MODEL.urdf -o OUT does so."
@@ -46,6 +46,11 @@ _FLOOR_OF_ENERGY = 1e-5
 _SUFFIX = re.compile(r"\.(?:glb|gltf|stl|dae|ply|obj|3mf|off)\b", re.IGNORECASE)
 
 
+def _any(_engine: EngineEntry) -> bool:
+    """Every engine."""
+    return True
+
+
 def not_loaded(context: AsLoadedContext) -> str | None:
     """The engine has the file."""
     if isinstance(context.loading, FloatingLink) and context.floats:
@@ -64,7 +69,7 @@ def nothing_moves(context: AsLoadedContext) -> str | None:
     fails="As loaded: the engine does not open the file as it is",
     severity=Severity.ERROR,
     cause=Cause.ASSET,
-    engines=_ENGINES,
+    runs_in=_any,
     follows={**dict.fromkeys(NOT_A_BODY, CauseScope.BODY), "KV138": CauseScope.MODEL, "KV221": CauseScope.JOINT},
 )
 def opens(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -163,7 +168,7 @@ def _remedy_of_format(context: AsLoadedContext, message: str) -> str:
     fails="As loaded: links overlap at rest",
     severity=Severity.WARNING,
     cause=Cause.PHYSICS,
-    engines=_RUNNING,
+    runs_in=_RUNS,
     follows={**AT_REST, "KV802": CauseScope.PAIR},
     needs=(not_loaded,),
 )
@@ -198,7 +203,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
     fails="As loaded: left alone, a joint leaves its range or is thrown",
     severity=Severity.ERROR,
     cause=Cause.PHYSICS,
-    engines=_RUNNING,
+    runs_in=_RUNS,
     follows={**AT_REST, "KV802": CauseScope.CONTACT, "KV803": CauseScope.JOINT},
     needs=(not_loaded, nothing_moves, late),
 )
@@ -295,7 +300,7 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
     fails="As loaded: a hand cannot move a joint over its range",
     severity=Severity.ERROR,
     cause=Cause.PHYSICS,
-    engines=_RUNNING,
+    runs_in=_RUNS,
     follows={**AT_REST, "KV802": CauseScope.CONTACT, "KV803": CauseScope.CONTACT, "KV804": CauseScope.JOINT},
     needs=(not_loaded, nothing_moves, late),
 )
@@ -401,7 +406,7 @@ def _shown(value: float) -> str:
     fails="As loaded: a joint is pressed through its limit",
     severity=Severity.ERROR,
     cause=Cause.PHYSICS,
-    engines=_RUNNING,
+    runs_in=_RUNS,
     follows={
         **dict.fromkeys(("KV221", "KV801"), CauseScope.JOINT),
         **dict.fromkeys(("KV204", "KV205", "KV207"), CauseScope.BODY),
@@ -447,7 +452,7 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
     fails="As loaded: energy comes out of nothing",
     severity=Severity.ERROR,
     cause=Cause.ENGINE,
-    engines=_RUNNING,
+    runs_in=_RUNS,
     follows=NOT_A_BODY,
     needs=(not_loaded, nothing_moves, late),
 )
@@ -494,7 +499,7 @@ def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
     fails="As loaded: an engine puts a link elsewhere",
     severity=Severity.ERROR,
     cause=Cause.ENGINE,
-    engines=_ENGINES,
+    runs_in=_any,
     follows={"KV801": CauseScope.JOINT},
     needs=(not_loaded,),
 )

@@ -16,7 +16,7 @@ from kinematify.validation.document import shown
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from lxml.etree import _Element
 
@@ -59,6 +59,7 @@ _DOCTYPE = re.compile(rb"<!(DOCTYPE|ENTITY)\b")
     fails="The file is not well-formed XML",
     severity=Severity.ERROR,
     cause=Cause.ASSET,
+    guard=True,
 )
 def syntax_problems(result: OpenCheck, source: UrdfText) -> None:
     """The XML parser reads the whole file.
@@ -82,6 +83,7 @@ def syntax_problems(result: OpenCheck, source: UrdfText) -> None:
     fails="The file has a DOCTYPE or entities",
     severity=Severity.ERROR,
     cause=Cause.ASSET,
+    guard=True,
 )
 def doctype_problems(result: OpenCheck, source: UrdfText) -> None:
     """The file declares neither a DOCTYPE nor entities.
@@ -107,6 +109,7 @@ def doctype_problems(result: OpenCheck, source: UrdfText) -> None:
     fails="The file is larger than the caps",
     severity=Severity.ERROR,
     cause=Cause.ASSET,
+    guard=True,
 )
 def cap_problems(result: OpenCheck, urdf: Urdf) -> None:
     """Elements, links and joints, and how deep links hang one below the other, stay below `max_elements`, `max_links`
@@ -302,14 +305,14 @@ def quaternions(result: OpenCheck, urdf: Urdf) -> None:
     severity=Severity.NOTE,
     cause=Cause.ASSET,
 )
-def losses(result: OpenCheck, unread: Sequence[str]) -> None:
+def losses(result: OpenCheck, urdf: Urdf) -> None:
     """An MJCF, SDF or USD holds nothing that a URDF cannot say: each kind of thing that is not read is a note.
 
     Why it matters: The model that is checked is the file without it.
 
     Remedy: Nothing, unless the model depends on it; MuJoCo opens an MJCF itself for the checks of the file as loaded.
     """
-    for sentence in unread:
+    for sentence in urdf.losses:
         result.find(sentence, "Check what depends on it in an engine that reads the format.")
 
 

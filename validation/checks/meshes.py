@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     severity=Severity.ERROR,
     cause=Cause.ASSET,
     follows={"KV142": CauseScope.BODY},
+    guard=True,
 )
 def unreadable(result: OpenCheck, look: MeshContext) -> None:
     """Every mesh file that the URDF names opens, is complete, not larger than `max_mesh_bytes`, and its faces refer to
@@ -49,6 +50,7 @@ def unreadable(result: OpenCheck, look: MeshContext) -> None:
     fails="Mesh coordinates are not finite",
     severity=Severity.ERROR,
     cause=Cause.ASSET,
+    guard=True,
 )
 def wild_coordinates(result: OpenCheck, look: MeshContext) -> None:
     """Every coordinate is a finite number of at most `max_number`.
@@ -77,6 +79,7 @@ def wild_coordinates(result: OpenCheck, look: MeshContext) -> None:
     fails="A mesh has too few or too many triangles",
     severity=Severity.ERROR,
     cause=Cause.ASSET,
+    guard=True,
 )
 def triangle_counts(result: OpenCheck, look: MeshContext) -> None:
     """All meshes together have at most `max_faces` triangles; a single mesh with more than `stl_faces` is a warning.

@@ -10,6 +10,7 @@ from kinematify.validation.finding import not_finished
 if TYPE_CHECKING:
     from kinematify.validation.as_loaded_context import AsLoadedContext
     from kinematify.validation.asset.rigid_bodies import Physics
+    from kinematify.validation.geometry.look import GeometryContext
 
 
 def something_moves(physics: Physics) -> str | None:
@@ -31,6 +32,11 @@ def something_follows(physics: Physics) -> str | None:
 def something_collides(physics: Physics) -> str | None:
     """A link with collision geometry."""
     return None if physics.collision else "no link has collision geometry"
+
+
+def joints_move(look: GeometryContext) -> str | None:
+    """A joint that moves, by geometry."""
+    return None if look.scene.travels else "no joint moves"
 
 
 def late(context: AsLoadedContext) -> str | None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.validation.check import CauseScope, check
+from kinematify.validation.checks.needs import joints_move
 from kinematify.validation.finding import Cause, Severity, not_finished
 from kinematify.validation.geometry.formatting import configuration
 from kinematify.validation.geometry.mirror_pairs import twins_at_odds
@@ -18,7 +19,8 @@ if TYPE_CHECKING:
 
 
 def _two_joints(look: GeometryContext) -> str | None:
-    return look.late or ("only one joint moves" if len(look.scene.travels) < 2 else None)
+    late = None if look.left is None else not_finished(f"time ran out before {look.left}")
+    return late or ("only one joint moves" if len(look.scene.travels) < 2 else None)
 
 
 @check(
@@ -28,7 +30,7 @@ def _two_joints(look: GeometryContext) -> str | None:
     severity=Severity.WARNING,
     cause=Cause.KINEMATICS,
     follows={"KV301": CauseScope.PAIR, "KV311": CauseScope.PAIR},
-    needs=(lambda look: not_finished("time ran out before it") if look.random is None else None,),
+    needs=(joints_move, lambda look: not_finished("time ran out before it") if look.random is None else None),
 )
 def free_configurations(result: OpenCheck, look: GeometryContext) -> None:
     """Quasi-random configurations of all joints (geometry.random_rows of a Latin hypercube); the share that is free is
@@ -69,7 +71,7 @@ def free_configurations(result: OpenCheck, look: GeometryContext) -> None:
     fails="Twins do not move alike",
     severity=Severity.WARNING,
     cause=Cause.KINEMATICS,
-    needs=(_two_joints,),
+    needs=(joints_move, _two_joints),
 )
 def unlike_twins(result: OpenCheck, look: GeometryContext) -> None:
     """Two parts of one size that mirror or repeat each other at rest have joints of one type that do so too: their axes

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.manipulation.plan_request import Failure, Hold
-from kinematify.simulation.engines import engines_that_hold
 from kinematify.validation.check import check
 from kinematify.validation.finding import Cause, Severity
 
@@ -20,6 +19,7 @@ if TYPE_CHECKING:
     fails="The task cannot be set up",
     severity=Severity.ERROR,
     cause=Cause.TASK,
+    guard=True,
 )
 def task_set_up(result: OpenCheck, task: PullTask) -> None:
     """The object has a joint that moves, its size is that of a thing that an arm can use (objects of common
@@ -138,7 +138,7 @@ def jams(result: OpenCheck, task: PullTask) -> None:
     fails="The plan fails in simulation",
     severity=Severity.ERROR,
     cause=Cause.TASK,
-    engines=engines_that_hold(Hold.WELD),
+    runs_in=lambda engine: Hold.WELD in engine.holds,
 )
 def plan_fails(result: OpenCheck, task: PullTask) -> None:
     """Joint servos track the plan with the hand welded to the part when the fingers have arrived; the joint ends at
@@ -160,7 +160,7 @@ def plan_fails(result: OpenCheck, task: PullTask) -> None:
     fails="Friction alone does not hold",
     severity=Severity.NOTE,
     cause=Cause.TASK,
-    engines=engines_that_hold(Hold.CONTACT),
+    runs_in=lambda engine: Hold.CONTACT in engine.holds,
 )
 def slips(result: OpenCheck, task: PullTask) -> None:
     """The same with real contact: the fingers close with task.execution.grip_force, and nothing but friction

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from kinematify.validation.finding import CheckResult
-    from kinematify.validation.run.causes import FindingGroup
+    from kinematify.validation.run.conclusion import FindingGroup
     from kinematify.validation.run.report import ValidationReport
     from kinematify.validation.summary import JointSummary
 

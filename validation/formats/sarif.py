@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from kinematify.validation.check import Check
     from kinematify.validation.finding import Finding
-    from kinematify.validation.run.causes import FindingGroup
+    from kinematify.validation.run.conclusion import FindingGroup
     from kinematify.validation.run.outcome import Outcome
     from kinematify.validation.run.report import ValidationReport
 

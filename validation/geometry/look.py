@@ -19,7 +19,6 @@ from kinematify.geometry.sweep import Sweeper
 from kinematify.geometry.together import looked_at, random_rows
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import transformed
-from kinematify.validation.finding import not_finished
 from kinematify.validation.geometry.formatting import in_document_order
 from kinematify.validation.summary import PairSummary, PairTable
 
@@ -136,10 +135,10 @@ class GeometryContext:
         return found
 
     @cached_property
-    def late(self) -> str | None:
+    def left(self) -> str | None:
         """Which joints were omitted."""
         left = [travel.joint for travel in self.scene.travels[len(self.sweeps) :]]
-        return not_finished(f"time ran out before {len(left)} joints: {', '.join(left)}") if left else None
+        return f"{len(left)} joints: {', '.join(left)}" if left else None
 
     @cached_property
     def motions(self) -> list[JointMotion]:

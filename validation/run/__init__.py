@@ -19,28 +19,28 @@ from kinematify.manipulation.plan_request import PriorFinding
 from kinematify.robot.description import open_description
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine, why_not_run
+from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.document_copy import LEFT_OUT, readable_copy, resolved_copy
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
-from kinematify.validation.lines import in_source, with_lines
-from kinematify.validation.model_cache import has_model
-from kinematify.validation.run.causes import with_causes
-from kinematify.validation.run.loaded_findings import CONTRACT, across_engines
-from kinematify.validation.run.plan import (
-    asset_stage,
+from kinematify.validation.needs import (
+    file,
     geometry_stage,
+    has_model,
     keys,
     later_stages,
+    mesh_stage,
     needed,
     task_stage,
 )
+from kinematify.validation.run.conclusion import concluded
+from kinematify.validation.run.loaded_words import CONTRACT
 from kinematify.validation.run.report import ValidationReport
+from kinematify.validation.source import Source
 from kinematify.validation.stage import Recorder, StageRequest
-from kinematify.validation.stages.precheck import precheck
 from kinematify.validation.summary import JointSummary, PairTable
-from kinematify.validation.suppression import suppress
 from kinematify.versions import require
 
 if TYPE_CHECKING:
@@ -48,14 +48,13 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import ValidationSettings
     from kinematify.manipulation.plan_request import TaskRequest
-    from kinematify.robot.description import Description
     from kinematify.robot.robot import Robot
     from kinematify.validation.check import Check
     from kinematify.validation.document_copy import DocumentCopy
     from kinematify.validation.isolation import Stage, StageEnd
-    from kinematify.validation.run.plan import CheckKey
+    from kinematify.validation.needs import CheckKey
+    from kinematify.validation.run.suppression_file import Suppression
     from kinematify.validation.summary import Summary
-    from kinematify.validation.suppression import Suppression
 
     Progress = Callable[[str, float], None]
 
@@ -113,7 +112,8 @@ def validate(
         with tempfile.TemporaryDirectory(prefix="kinematify-", ignore_cleanup_errors=True) as folder:
             places = tuple(Path(item).absolute() for item in package_dirs)
             description = open_description(run.path.absolute(), Path(folder), places, arguments)
-            run.description, run.robot = description, _bodies(description.urdf)
+            run.robot = _bodies(description.urdf)
+            run.source = replace(Source.of(description), to_finish=run.command(settings.budget.seconds))
             request = StageRequest(
                 urdf=description.urdf,
                 package_dirs=places,
@@ -124,6 +124,7 @@ def validate(
                 task=task,
                 native=description.path if description.native else None,
                 losses=description.notes,
+                source=run.source,
             )
             run.all(request, workers or os.cpu_count() or 1)
     except KeyboardInterrupt:
@@ -173,14 +174,13 @@ class _Run:
         self.checks = checks
         self.selected = selected
         self.interrupted = False
-        self.description: Description | None = None
+        self.source = Source()
         self.robot: Robot | None = None
         self._progress = progress or (lambda stage, fraction: None)
         self._results: dict[CheckKey, CheckResult] = {}
         self._joints: dict[str, JointSummary] = {}
         self._pairs: PairTable | None = None
         self._why: dict[CheckKey, tuple[Status, str]] = {}
-        self._lacking: DocumentCopy | None = None
         self._started = time.perf_counter()
 
     def all(self, request: StageRequest, workers: int) -> None:
@@ -189,9 +189,9 @@ class _Run:
             request = replace(request, selected=request.selected | _DOUBTS)
         first = needed([geometry_stage()], request.selected)
         later = needed(later_stages(self.engines), request.selected)
-        load_imports(ahead=[asset_stage(), *first, *later])
+        load_imports(ahead=[mesh_stage(), *first, *later])
         asset_request = replace(request, selected=request.selected | _GUARDS)
-        usable = precheck(asset_request, Recorder(self._take, asset_request.selected))
+        usable = file(asset_request, Recorder(self._take, asset_request))
         self._progress("pre-check", 0.05)
         copy = self._readable(asset_request)
         if not usable and copy is None:
@@ -214,9 +214,9 @@ class _Run:
         if late:
             self._explain_rest(Status.SKIPPED, not_finished("time ran out before the meshes were checked"))
             return
-        self._lacking = copy
         self.robot = self.robot or (None if copy is None else _bodies(copy.path))
-        request = replace(request, deadline=max(0.0, request.deadline - spent))
+        source = replace(self.source, copy=copy)
+        request = replace(request, deadline=max(0.0, request.deadline - spent), source=source)
         fault = self._fault_of_meshes(request.work) if copy is None else None
         if copy is not None and copy.joints:
             fault = f"the pre-check found errors in what moves: {self._ids(self._broken())}"
@@ -254,15 +254,11 @@ class _Run:
         self, request: StageRequest, copy: DocumentCopy | None, ahead: Sequence[Stage]
     ) -> tuple[float, bool]:
         """Run the checks of meshes and declared physics; processor time [s], and whether it ran out."""
-        before = dict(self._results)
-        given = request if copy is None else replace(request, urdf=copy.path)
-        (asset,) = run_stages([asset_stage()], given, workers=1, ahead=ahead)
+        before = {key: result for key, result in self._results.items() if _has_error(result)}
+        given = request if copy is None else replace(request, urdf=copy.path, source=replace(self.source, copy=copy))
+        (asset,) = run_stages([mesh_stage()], given, workers=1, ahead=ahead)
         self._take_end(asset)
-        if copy is not None:
-            for key in [key for key in self._results if key[0].startswith(("KV15", "KV2"))]:
-                result = before[key] if key in before and _has_error(before[key]) else self._results[key]
-                sure = (finding for finding in result.findings if result is before.get(key) or not copy.doubts(finding))
-                self._results[key] = result.with_findings(sure)
+        self._results |= before  # of the file, not of the copy
         return asset.seconds, asset.late
 
     def _look_further(self, stages: list[Stage], request: StageRequest, workers: int, readable: Path) -> None:
@@ -287,7 +283,9 @@ class _Run:
     def _use(self, request: StageRequest, engines: Sequence[str]) -> None:
         """Make a robot use the object; it has time of its own."""
         seconds = _task_seconds(request.settings)
-        request = replace(request, deadline=seconds + _LEEWAY, suspects=self._suspects(), task_engines=tuple(engines))
+        source = replace(self.source, to_finish=self.command(seconds))
+        request = replace(request, deadline=seconds + _LEEWAY, source=source)
+        request = replace(request, suspects=self._suspects(), task_engines=tuple(engines))
         self._progress("task", 0.96)
         for end in run_stages([task_stage()], request, workers=1):
             self._take_end(end)
@@ -314,13 +312,9 @@ class _Run:
         if self.interrupted:
             self._explain_rest(Status.SKIPPED, "the run was interrupted")
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
-        results = [self._result(key) for key in keys(list(self.checks.values()))]
+        results = [self._result(key) for key in keys(self.checks.values())]
         robot = self.robot
-        results = across_engines(with_lines(results, robot), self.engines, named=self.named)
-        if self.description is not None and self.description.form != "urdf":
-            results = in_source(results, self.description)
-        checks = suppress([self._with_command(result, settings) for result in results], suppressions)
-        checks = with_causes(checks, robot)
+        checks = concluded(results, robot, self.engines, named=self.named, rules=suppressions)
         facts = environment(settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted)
         return ValidationReport(
             model=str(self.path),
@@ -341,9 +335,6 @@ class _Run:
         elif isinstance(result, PairTable):
             self._pairs = result
         else:
-            if self._lacking is not None and result.check.startswith("KV3"):
-                sure = [finding for finding in result.findings if not self._lacking.doubts(finding)]
-                result = result.with_findings(sure)
             self._results[result.check, result.engine] = result
 
     def _take_end(self, end: StageEnd) -> None:
@@ -357,7 +348,7 @@ class _Run:
             self._explain(left, Status.SKIPPED, not_finished(reason))
             return
         if left:
-            self._results[left[0]] = _fallen(left[0], end)
+            self._results[left[0]] = self._fallen(*left[0], end)
         self._explain(left, Status.BLOCKED, reason)
 
     def _fault_of_meshes(self, work: Path) -> str | None:
@@ -370,7 +361,7 @@ class _Run:
         return f"the meshes cannot be used, see {', '.join(faults)}"
 
     def _missing(self) -> Iterable[CheckKey]:
-        return [key for key in keys(list(self.checks.values())) if key not in self._results and key not in self._why]
+        return [key for key in keys(self.checks.values()) if key not in self._results and key not in self._why]
 
     def _explain_rest(self, status: Status, reason: str) -> None:
         self._explain(self._missing(), status, reason)
@@ -378,6 +369,7 @@ class _Run:
     def _explain(self, which: Iterable[CheckKey], status: Status, reason: str) -> None:
         for key in which:
             unwanted = key[0] not in self.selected
+            reason = self.source.reason(reason) or reason
             self._why.setdefault(key, (Status.SKIPPED, "it was not asked for") if unwanted else (status, reason))
 
     def _result(self, key: CheckKey) -> CheckResult:
@@ -387,13 +379,24 @@ class _Run:
         status, reason = self._why.get(key, (Status.SKIPPED, "it was not asked for"))
         return CheckResult(check=key[0], engine=key[1], status=status, reason=reason)
 
-    def _with_command(self, result: CheckResult, settings: ValidationSettings) -> CheckResult:
-        """Add to the reason of what was not finished how to finish it."""
-        if not result.unfinished:
-            return result
-        seconds = 2.0 * (_task_seconds(settings) if result.check.startswith("KV7") else settings.budget.seconds)
-        command = f"kinematify validate {shlex.quote(str(self.path))} --budget {seconds:g}"
-        return replace(result, reason=f"{result.reason}; to finish: {command}, other options as they were")
+    def command(self, seconds: float) -> str:
+        """Say how to finish what had so much processor time [s]."""
+        words = f"kinematify validate {shlex.quote(str(self.path))} --budget {2.0 * seconds:g}"
+        return f"to finish: {words}, other options as they were"
+
+    def _fallen(self, check: str, engine: str | None, end: StageEnd) -> CheckResult:
+        """A crash as a finding of the check that was under way."""
+        result = OpenCheck(id=check, engine=engine, source=self.source)
+        result.find(
+            f"The stage {end.stage.name} {end.failure} during this check or right before it.",
+            "Fix the other findings first and run again; if it stays, report it with the model.",
+            severity=Severity.WARNING if engine is None else Severity.ERROR,
+            cause=Cause.ENGINE,
+        )
+        reason = f"the stage {end.stage.name} {end.failure}"
+        return CheckResult(
+            check=check, engine=engine, status=Status.BLOCKED, reason=reason, findings=tuple(result.findings)
+        )
 
 
 def _bodies(path: Path) -> Robot | None:
@@ -422,18 +425,3 @@ def _merged(before: JointSummary | None, now: JointSummary) -> JointSummary:
         free_travel=now.free_travel or before.free_travel,
         best_alternative=now.best_alternative or before.best_alternative,
     )
-
-
-def _fallen(key: CheckKey, end: StageEnd) -> CheckResult:
-    """A crash as a finding of the check that was under way."""
-    check, engine = key
-    finding = Finding(
-        check=check,
-        severity=Severity.WARNING if engine is None else Severity.ERROR,
-        cause=Cause.ENGINE,
-        engine=engine,
-        message=f"The stage {end.stage.name} {end.failure} during this check or right before it.",
-        remedy="Fix the other findings first and run again; if it stays, report it with the model.",
-    )
-    reason = f"the stage {end.stage.name} {end.failure}"
-    return CheckResult(check=check, engine=engine, status=Status.BLOCKED, reason=reason, findings=(finding,))

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 from kinematify.errors import ExitStatus
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
-from kinematify.validation.run.causes import group_by_cause
-from kinematify.validation.run.loaded_findings import as_loaded_words
+from kinematify.validation.run.conclusion import group_by_cause
+from kinematify.validation.run.loaded_words import as_loaded_words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.validation.finding import CheckResult, Finding
-    from kinematify.validation.run.causes import FindingGroup
+    from kinematify.validation.run.conclusion import FindingGroup
     from kinematify.validation.summary import JointSummary, PairTable
 
 SCHEMA = 2

@@ -199,10 +199,6 @@ class PullTask:
                 value=factor,
             )
 
-    def plan(self) -> None:
-        """Plan joint by joint."""
-        _ = self.plans
-
     def tell_failures(self, result: OpenCheck, *failures: Failure) -> None:
         """Add what failed at these steps, and cause the joint where the geometry doubts it."""
         for plan in self.plans:

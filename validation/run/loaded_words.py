@@ -1,22 +1,21 @@
-"""Joint result of the checks of the untouched file over all engines that loaded it (KV8xx)."""
+"""What the engines make of the untouched file (KV8xx), in a line or two."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
-from kinematify.validation.finding import Cause, Severity, Status
+from kinematify.validation.finding import Status
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
-    from kinematify.validation.finding import CheckResult, Finding
+    from kinematify.validation.finding import CheckResult
 
 _Z = 1.96
 """Of an interval of 95 %."""
-_FAMILY, _OPENS, _MOVES, _ENERGY = "KV8", "KV801", "KV804", "KV806"
+_OPENS, _MOVES = "KV801", "KV804"
 CONTRACT = "KV82"
 """Begin of the ids of the contract for objects."""
 
@@ -72,69 +71,3 @@ def contract_words(reports: Sequence[Sequence[CheckResult]]) -> str:
     spread = math.sqrt(part * share * (1.0 - share) + part**2 / 4.0)
     low, high = ((share + part / 2.0 + sign * spread) / (1.0 + part) for sign in (-1, 1))
     return f"contract: kept by {kept} of {count} ({share:.0%}, 95 % interval {low:.0%} to {high:.0%}); {others}"
-
-
-def across_engines(checks: Sequence[CheckResult], engines: Sequence[str], *, named: bool = True) -> list[CheckResult]:
-    """Make errors of the untouched file warnings where another engine has none or did not finish, and say which.
-
-    What is laid to an engine and only one shows is a note then, and a warning where no other engine runs the file.
-
-    Args:
-        checks: All results.
-        engines: That were asked for. Where they are not the default ones a user has named them, and errors stay.
-        named: False: the user named no engine, and what the only one shows is a warning.
-    """
-    if tuple(engines) != DEFAULT_ENGINES and named:
-        return list(checks)
-    ran: dict[str, set[str | None]] = {}
-    late: dict[str, set[str | None]] = {}
-    for check in checks:
-        if check.status in (Status.PASS, Status.FAIL):
-            ran.setdefault(check.check, set()).add(check.engine)
-        elif check.unfinished:
-            late.setdefault(check.check, set()).add(check.engine)
-    errors = [
-        finding
-        for check in checks
-        if check.check.startswith(_FAMILY)
-        for finding in check.findings
-        if finding.severity is Severity.ERROR
-    ]
-    return [
-        check.with_findings(_across(finding, errors, ran, late, named=named) for finding in check.findings)
-        if check.check.startswith(_FAMILY)
-        else check
-        for check in checks
-    ]
-
-
-def _across(
-    finding: Finding,
-    errors: Sequence[Finding],
-    ran: Mapping[str, set[str | None]],
-    late: Mapping[str, set[str | None]],
-    *,
-    named: bool,
-) -> Finding:
-    failing = {
-        other.engine
-        for other in errors
-        if other.joint in (None, finding.joint) and (other.check == _ENERGY) <= (finding.check == _ENERGY)
-    }
-    if finding.severity is not Severity.ERROR:
-        return finding
-    works = [entry.title for name, entry in ENGINES.items() if name in ran.get(finding.check, set()) - failing]
-    unknown = [entry.title for name, entry in ENGINES.items() if name in late.get(finding.check, set())]
-    alone = finding.cause is Cause.ENGINE and not any(
-        other.check == finding.check and other.engine != finding.engine for other in errors
-    )
-    if not works and (unknown or not named):
-        why = f"{' and '.join(unknown)} did not finish" if unknown else "No other engine was asked"
-        return replace(finding, severity=Severity.WARNING, message=f"{finding.message} {why}.")
-    if not works:
-        return replace(finding, severity=Severity.WARNING) if alone else finding
-    return replace(
-        finding,
-        severity=Severity.NOTE if alone else Severity.WARNING,
-        message=f"{finding.message} It works in {' and '.join(works)}.",
-    )

@@ -1,6 +1,7 @@
-"""One cause, one finding: what follows from another finding is reported under it and not counted beside it.
+"""What the results of all checks mean together: what engines agree on, what the user accepts, and causes.
 
-Which checks can be the cause of which stands at each check (`Check.follows`), and what both must be about.
+One cause, one finding: what follows from another finding is reported under it and not counted beside it. Which checks
+can be the cause of which stands at each check (`Check.follows`), and what both must be about.
 """
 
 from __future__ import annotations
@@ -9,18 +10,20 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from kinematify.robot.robot import rigid_groups
+from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
 from kinematify.validation.check import CauseScope
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Severity, Status
+from kinematify.validation.finding import Cause, Severity, Status
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from kinematify.robot.robot import Robot
     from kinematify.validation.finding import CheckResult, Finding
+    from kinematify.validation.run.suppression_file import Suppression
 
 _ORDER = tuple(Severity)
-_OPENS = "KV801"
+_FAMILY, _OPENS, _ENERGY = "KV8", "KV801", "KV806"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,16 +48,76 @@ def group_by_cause(findings: Iterable[Finding]) -> tuple[FindingGroup, ...]:
     )
 
 
-def with_causes(results: Sequence[CheckResult], robot: Robot | None) -> tuple[CheckResult, ...]:
-    """Name the cause of every finding that follows from another one.
+def concluded(
+    results: Sequence[CheckResult],
+    robot: Robot | None,
+    engines: Sequence[str] = (),
+    *,
+    named: bool = True,
+    rules: Sequence[Suppression] = (),
+) -> tuple[CheckResult, ...]:
+    """Say what all results mean together.
+
+    What one engine shows of the untouched file is no error where another one has none or did not finish; what is laid
+    to an engine and only one shows is a note then, and a warning where no other engine runs the file.
 
     A cause is as bad as the worst that follows from it, and where it is suppressed, so is what follows. A note is the
     cause of notes alone, unless it is about the link for which an engine refuses the file.
 
     Args:
-        results: Of all checks of a run, suppressed findings marked.
+        results: Of all checks of a run.
         robot: The model, which tells what is one body; None if it cannot be read, and every link is one.
+        engines: That were asked for. Where they are not the default ones a user has named them, and errors stay.
+        named: False: the user named no engine, and what the only one shows is a warning.
+        rules: Findings that the user accepts; the first that fits gives the reason.
     """
+    if tuple(engines) == DEFAULT_ENGINES or not named:
+        results = [
+            result.with_findings(_agreed(item, results, named) for item in result.findings) for result in results
+        ]
+    accepted = ((result, (_suppressed(item, rules) for item in result.findings)) for result in results)
+    return _with_causes([replace(result, findings=tuple(found)) for result, found in accepted], robot)
+
+
+def _agreed(finding: Finding, results: Sequence[CheckResult], named: bool) -> Finding:
+    """Return a finding of the untouched file as severe as it is beside what other engines say."""
+    if finding.severity is not Severity.ERROR or not finding.check.startswith(_FAMILY):
+        return finding
+    errors = [
+        item
+        for result in results
+        for item in result.findings
+        if item.check.startswith(_FAMILY) and item.severity is Severity.ERROR
+    ]
+    failing = {
+        other.engine
+        for other in errors
+        if other.joint in (None, finding.joint) and (other.check == _ENERGY) <= (finding.check == _ENERGY)
+    }
+    same = [result for result in results if result.check == finding.check]
+    ran = {result.engine for result in same if result.status in (Status.PASS, Status.FAIL)} - failing
+    late = {result.engine for result in same if result.unfinished and result.status is Status.SKIPPED}
+    works, unknown = ([entry.title for name, entry in ENGINES.items() if name in some] for some in (ran, late))
+    alone = finding.cause is Cause.ENGINE and not any(
+        other.check == finding.check and other.engine != finding.engine for other in errors
+    )
+    if works:
+        said, severity = f" It works in {' and '.join(works)}.", Severity.NOTE if alone else Severity.WARNING
+    elif unknown or not named:
+        why = f"{' and '.join(unknown)} did not finish" if unknown else "No other engine was asked"
+        said, severity = f" {why}.", Severity.WARNING
+    else:
+        said, severity = "", Severity.WARNING if alone else Severity.ERROR
+    return replace(finding, severity=severity, message=f"{finding.message}{said}")
+
+
+def _suppressed(finding: Finding, rules: Sequence[Suppression]) -> Finding:
+    rule = next((rule for rule in rules if rule.covers(finding)), None)
+    return finding if rule is None else replace(finding, suppressed=rule.reason)
+
+
+def _with_causes(results: Sequence[CheckResult], robot: Robot | None) -> tuple[CheckResult, ...]:
+    """Name the cause of every finding that follows from another one."""
     findings = [finding for result in results for finding in result.findings]
     subjects = _Subjects(robot, frozenset(item.link for item in findings if item.check == _OPENS and item.link))
     above = {id(item): cause for item in findings if (cause := _cause(item, findings, subjects)) is not None}

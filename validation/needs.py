@@ -1,0 +1,239 @@
+"""What checks need, and what makes it once: file, meshes, geometry, joints, an engine, a robot with its task.
+
+Each is made in a process of its own, and what it is made with is imported there. A check says by the class of its
+second argument which of them it looks at.
+"""
+
+from __future__ import annotations
+
+import pickle
+from functools import partial
+from typing import TYPE_CHECKING
+
+from kinematify.robot.urdf_text import read_text
+from kinematify.simulation.engines import ENGINES
+from kinematify.validation.checks import CHECKS
+from kinematify.validation.isolation import Stage
+from kinematify.validation.stage import Subjects
+from kinematify.validation.summary import summary_of
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Sequence
+    from pathlib import Path
+
+    from kinematify.robot.robot import Robot
+    from kinematify.validation.check import Check
+    from kinematify.validation.geometry.look import JointMotion
+    from kinematify.validation.stage import Recorder, StageRequest
+
+CheckKey = tuple[str, str | None]
+"""Id of a check and the engine it runs in."""
+_SHOWN = 50
+"""Findings per check of the text; what a thousand lines have in common is seen in the first fifty."""
+_MODEL = "model.pickle"
+"""In the folder of a run, which nobody else writes to."""
+_SCORERS = "evidence"
+"""Configuration of the scorers; coarser than that of the inference, for the joint is known already."""
+
+
+def file(request: StageRequest, recorder: Recorder) -> bool:
+    """Check the text of a URDF, before any mesh is opened and any engine sees it; True if others may read it.
+
+    Raises:
+        DescriptionError: The file is missing, cannot be opened, or is something else than a URDF.
+    """
+    from kinematify.validation.document import Urdf
+
+    source = read_text(request.urdf)
+    if recorder.run({"UrdfText": Subjects(items=lambda: [source])}, most=_SHOWN) or source.robot is None:
+        return False
+    urdf = Urdf.of(source.robot, request, source.text)
+    recorder.run({"Urdf": Subjects(items=lambda: [urdf])}, most=_SHOWN)
+    return not recorder.fatal
+
+
+def meshes(request: StageRequest, recorder: Recorder) -> Robot | None:
+    """Check the mesh files, then what the file declares beside its kinematics; the model, None if it cannot be read.
+
+    A mesh that nothing can use stops everything. The model is left for the later stages.
+    """
+    from kinematify.validation.asset.mesh_look import MeshContext
+    from kinematify.validation.asset.rigid_bodies import measure
+
+    look = MeshContext(request)
+    if recorder.run({"MeshContext": Subjects(items=lambda: [look])}):
+        return None
+    partly = request.work / f"{_MODEL}.partly"
+    with partly.open("wb") as file:
+        pickle.dump(look.model, file, protocol=pickle.HIGHEST_PROTOCOL)
+    partly.replace(request.work / _MODEL)  # a stage that is stopped leaves no half of it
+    if recorder.is_selected(*(name for name, _ in _told("Physics"))):
+        physics = measure(look.model, request.settings.physics)
+        recorder.run({"Physics": Subjects(items=lambda: [physics])})
+    return look.model
+
+
+def has_model(work: Path) -> bool:
+    """True if a stage of the run with this folder left the model."""
+    return (work / _MODEL).is_file()
+
+
+def model_of(request: StageRequest) -> Robot:
+    """Read the model of a run: what an earlier stage left, or else the files.
+
+    Raises:
+        DescriptionError: As for `read_robot`.
+    """
+    from kinematify.robot.read import read_robot
+
+    path = request.work / _MODEL
+    if not path.is_file():
+        return read_robot(request.urdf, package_dirs=request.package_dirs)
+    with path.open("rb") as file:
+        model: Robot = pickle.load(file)
+    return model
+
+
+def geometry(request: StageRequest, recorder: Recorder) -> None:
+    """Look at collision at rest and along the motion by exact geometry, without an engine."""
+    from kinematify.geometry.scene import colliding_shapes, read_scene
+    from kinematify.validation.geometry.look import GeometryContext
+
+    scene = read_scene(model_of(request), request.settings.geometry, colliding_shapes, thin=True)
+    look = GeometryContext(
+        scene, seed=request.settings.seed, in_time=lambda: request.remaining > 0.0, compare_visible=True
+    )
+    few = "fewer than two bodies have geometry" if len(scene.bodies) < 2 else None
+    fixed = few or (None if scene.travels else "no joint moves")
+
+    def motions() -> Sequence[JointMotion]:
+        for sweep in look.sweeps if "motions" not in vars(look) else ():
+            recorder.summarise(summary_of(scene.model.joint_by_name[sweep.travel.joint], free_travel=sweep.free))
+        return look.motions
+
+    recorder.run(
+        {
+            "GeometryContext": Subjects(items=lambda: [look], nothing=few),
+            "JointMotion": Subjects(items=motions, nothing=fixed, left=lambda: look.left, counted="joints"),
+        }
+    )
+    if fixed is None:
+        motions()
+        recorder.summarise(look.pair_table())
+
+
+def joints(request: StageRequest, recorder: Recorder) -> None:
+    """Hold each declared joint, and each pin without one, against the contact geometry."""
+    from kinematify.config import load_config
+    from kinematify.validation.evidence.bodies_at_rest import read_bodies
+    from kinematify.validation.evidence.case import JointCase, better_joint
+    from kinematify.validation.evidence.loop_pins import shared_pins
+    from kinematify.validation.evidence.measure import measure_joints
+
+    robot, seed, settings = model_of(request), request.settings.seed, request.settings.evidence
+    bodies = read_bodies(robot, load_config(_SCORERS), seed=seed)
+    if bodies is None or not bodies.truth.joints:
+        nothing = Subjects(items=tuple, nothing="no joint moves a body with geometry against another one")
+        recorder.run({"JointCase": nothing, "SharedPin": nothing})
+        return
+    every = measure_joints(bodies, settings, seed=seed)
+    all_cases = (
+        JointCase(bodies=bodies, measures=measures, settings=settings, every=every, doubted=request.doubted)
+        for measures in every
+    )
+    cases = [case for case in all_cases if request.remaining and (not case.examined or case.measures.posterior)]
+    left = len(every) - len(cases)
+    of_joints, of_pins = f"{left} of the joints", "the pins, and before that some of the joints"
+    recorder.run(
+        {
+            "JointCase": Subjects(items=lambda: cases, left=lambda: of_joints if left else None, counted="joints"),
+            "SharedPin": Subjects(
+                items=lambda: () if left else tuple(shared_pins(bodies, robot)), left=lambda: of_pins if left else None
+            ),
+        }
+    )
+    for case in cases:
+        joint = robot.joint_by_name[case.measures.joint.source]
+        recorder.summarise(summary_of(joint, best_alternative=better_joint(robot, case)))
+
+
+def engine(request: StageRequest, recorder: Recorder, *, name: str) -> None:
+    """Load the untouched file into an engine with its defaults."""
+    from kinematify.validation.as_loaded_context import AsLoadedContext
+
+    context = AsLoadedContext(request=request, engine=name)
+    recorder.run({"AsLoadedContext": Subjects(items=lambda: [context])}, engines=(name,))
+
+
+def task(request: StageRequest, recorder: Recorder) -> None:
+    """Let a robot use the object."""
+    from kinematify.validation.task.pull_task import PullTask
+
+    if request.task is None:
+        return
+    robot = PullTask(request, request.task)
+    recorder.run(
+        {"PullTask": Subjects(items=lambda: [robot])},
+        engines=(None, *request.task_engines),
+        stopped="the task cannot be set up, see KV701",
+    )
+
+
+def keys(checks: Iterable[Check]) -> tuple[CheckKey, ...]:
+    """(id, engine) of every result that the checks give."""
+    return tuple((check.id, engine) for check in checks for engine in (check.engines or (None,)))
+
+
+def _told(*subjects: str) -> tuple[CheckKey, ...]:
+    return keys(check for check in CHECKS.values() if check.subject in subjects)
+
+
+def mesh_stage() -> Stage:
+    """Meshes and declared physics; what comes later needs readable meshes."""
+    imports = ("kinematify.validation.asset.rigid_bodies", "kinematify.validation.asset.mesh_look")
+    return Stage(name="asset", run=meshes, checks=_told("MeshContext", "Physics"), imports=imports)
+
+
+def geometry_stage() -> Stage:
+    """Exact geometry at rest and in motion."""
+    imports = ("kinematify.validation.geometry.look",)
+    return Stage(name="geometry", run=geometry, checks=_told("GeometryContext", "JointMotion"), imports=imports)
+
+
+def later_stages(chosen: Sequence[str]) -> list[Stage]:
+    """What comes after the geometry, which tells how far every joint is free and which ones are in doubt.
+
+    The evidence of the contacts, and the untouched file in each engine.
+    """
+    parts = ("bodies_at_rest", "case", "measure", "loop_pins")
+    evidence = Stage(
+        name="evidence",
+        run=joints,
+        checks=_told("JointCase", "SharedPin"),
+        imports=tuple(f"kinematify.validation.evidence.{name}" for name in parts),
+    )
+    return [evidence] + [
+        Stage(
+            name=f"{name} as loaded",
+            run=partial(engine, name=name),
+            checks=tuple(key for key in _told("AsLoadedContext") if key[1] == name),
+            imports=("kinematify.validation.as_loaded_context",),
+            library=None if ENGINES[name].prints_when_loaded else ENGINES[name].module,
+        )
+        for name in chosen
+    ]
+
+
+def task_stage() -> Stage:
+    """A robot uses the object; it comes after all others, since it wants to know which joints they doubt."""
+    return Stage(name="task", run=task, checks=_told("PullTask"))
+
+
+def stages_of(chosen: Sequence[str]) -> list[Stage]:
+    """All stages of a run without a task, in some engines."""
+    return [mesh_stage(), geometry_stage(), *later_stages(chosen)]
+
+
+def needed(stages: Sequence[Stage], selected: Collection[str]) -> list[Stage]:
+    """Return the stages that tell a selected check."""
+    return [stage for stage in stages if any(check in selected for check, _ in stage.checks)]

@@ -1,0 +1,69 @@
+"""The file that findings are about, and what of it is written into each of them when it is found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from kinematify.robot.urdf_text import read_text
+from kinematify.simulation.engines import ENGINES
+from kinematify.validation.finding import is_unfinished
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.robot.description import Description
+    from kinematify.validation.document_copy import DocumentCopy
+    from kinematify.validation.finding import Finding
+
+_RANGE = "KV220"
+_OF_TEXT = ("KV104", "KV143", "KV144")
+"""Checks of the URDF's text, which say nothing about a file of another format."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """A file as findings name it; it crosses a process border, so it holds plain data only."""
+
+    lines: Mapping[tuple[str, str], int] = field(default_factory=dict)
+    """Line that declares a link or joint, by ``link`` or ``joint`` and its name."""
+    form: str | None = None
+    """Name of its format; None for a URDF."""
+    endless: frozenset[str] = frozenset()
+    """Slides without limits, which a URDF cannot say."""
+    native: bool = False
+    """MuJoCo opens the file itself, and not the URDF that represents it."""
+    copy: DocumentCopy | None = None
+    """What is read in its place; None: it is read itself."""
+    to_finish: str = ""
+    """How a check is finished that time ran out for."""
+
+    @classmethod
+    def of(cls, description: Description) -> Source:
+        """Look up what every finding needs."""
+        if description.form != "urdf":
+            form, endless = description.title, description.endless
+            return cls(lines=description.lines, form=form, endless=endless, native=description.native)
+        robot = read_text(description.urdf).robot
+        named = () if robot is None else (item for tag in ("link", "joint") for item in robot.iterfind(tag))
+        return cls(lines={(str(item.tag), item.get("name") or ""): int(str(item.sourceline)) for item in named})
+
+    def told(self, finding: Finding) -> Finding | None:
+        """Return a finding as the user reads it; None if it is about the copy or the URDF, and not about the file."""
+        if self.copy is not None and finding.engine is None and self.copy.doubts(finding):
+            return None
+        links = (finding.link, *(finding.pair or ()))
+        named = [("joint", finding.joint or ""), *(("link", name or "") for name in links)]
+        line = next((line for name in named if (line := self.lines.get(name))), None)
+        if self.form is None:
+            return replace(finding, line=finding.line or line)
+        if finding.check in _OF_TEXT or (finding.check == _RANGE and finding.joint in self.endless):
+            return None
+        message = finding.message
+        if finding.engine is not None and not (finding.engine == "mujoco" and self.native):
+            message += f" ({ENGINES[finding.engine].title} was given the URDF of the {self.form}.)"
+        return replace(finding, line=line, message=message)
+
+    def reason(self, why: str | None) -> str | None:
+        """Return the reason of a check with how to finish it, if time ran out for it."""
+        return f"{why}; {self.to_finish}" if is_unfinished(why) else why
