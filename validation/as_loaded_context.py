@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,8 +12,8 @@ from kinematify.robot.joint_type import FREE_KINDS
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import GRAVITY
+from kinematify.simulation.engine_file import Unloadable, velocity_probe
 from kinematify.simulation.engines import ENGINES, load_file
-from kinematify.simulation.raw_model import FloatingLink, Unloadable, velocity_probe
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -23,15 +23,12 @@ if TYPE_CHECKING:
     from kinematify.geometry.sweep import Sweeper
     from kinematify.robot.mechanism import Travel
     from kinematify.robot.robot import Joint, Robot
-    from kinematify.simulation.raw_model import (
-        MotorFile,
+    from kinematify.simulation.engine_file import (
+        EngineFile,
         Overlap,
         Push,
         Pushed,
-        RawEngineModel,
-        ReleaseRun,
-        RestRun,
-        RunningFile,
+        Run,
     )
     from kinematify.validation.stage import StageRequest
 
@@ -104,16 +101,16 @@ class AsLoadedContext:
         return LeaderMechanism(robot=self.robot)
 
     @cached_property
-    def bare(self) -> RawEngineModel | Unloadable:
+    def bare(self) -> EngineFile | Unloadable:
         """The file in the engine as it is, or what the engine says against it."""
         native = self.request.native if self.engine == "mujoco" else None
         return self._opened(native or self.request.urdf)
 
     @cached_property
-    def loading(self) -> RawEngineModel | Unloadable:
+    def loading(self) -> EngineFile | Unloadable:
         """The file in the engine, from a copy with absolute paths of meshes where it is not opened without."""
         resolved = self.request.resolved
-        if not isinstance(self.bare, Unloadable) or isinstance(self.bare, FloatingLink) or resolved is None:
+        if not isinstance(self.bare, Unloadable) or self.bare.floats or resolved is None:
             return self.bare
         copy = self._opened(resolved)
         if isinstance(copy, Unloadable):
@@ -121,14 +118,14 @@ class AsLoadedContext:
         copy.rename(RESOLVED)
         return copy
 
-    def _opened(self, urdf: Path) -> RawEngineModel | Unloadable:
+    def _opened(self, urdf: Path) -> EngineFile | Unloadable:
         try:
             root = self.mechanism.links[int(np.flatnonzero(self.mechanism.body_of_link == 0)[0])]
             loaded = load_file(self.engine, urdf, root, self.request.package_dirs)
         except Unloadable as error:
             return error
         known = set(loaded.joints) <= set(self.mechanism.joints)
-        return loaded if known or not self.floats else FloatingLink(loaded.lines_of_joints())
+        return loaded if known or not self.floats else Unloadable(reproduction=loaded.script("joints"))
 
     @property
     def floats(self) -> bool:
@@ -136,16 +133,10 @@ class AsLoadedContext:
         return any(joint.declared_kind in FREE_KINDS for joint in self.robot.joints)
 
     @property
-    def loaded(self) -> RawEngineModel:
+    def loaded(self) -> EngineFile:
         """The file in the engine, once it is there."""
         assert not isinstance(self.loading, Unloadable)
         return self.loading
-
-    @property
-    def running(self) -> RunningFile:
-        """The same in an engine that simulates."""
-        assert ENGINES[self.engine].runs
-        return cast("RunningFile", self.loaded)
 
     @cached_property
     def lost(self) -> tuple[str, ...]:
@@ -199,22 +190,22 @@ class AsLoadedContext:
     def overlaps(self) -> tuple[Overlap, ...]:
         """At rest, the deepest first, of links that can move against each other: nothing pushes others apart."""
         body = dict(zip(self.mechanism.links, self.mechanism.body_of_link.tolist(), strict=True))
-        found = self.running.overlaps(self.values)
+        found = self.loaded.overlaps(self.values)
         return tuple(item for item in found if body[item.links[0]] != body[item.links[1]])
 
     @cached_property
-    def passive_run(self) -> RestRun:
+    def passive_run(self) -> Run:
         """Nothing is done."""
-        return self.running.rest(self.values, self.settings.seconds, contacts=True)
+        return self.loaded.rest(self.values, self.settings.seconds, contacts=True)
 
     @cached_property
-    def left_without_contacts(self) -> RestRun:
+    def left_without_contacts(self) -> Run:
         """The same where no links touch each other: what gravity does alone."""
-        return self.running.rest(self.values, self.settings.seconds, contacts=False)
+        return self.loaded.rest(self.values, self.settings.seconds, contacts=False)
 
-    def way(self, run: RestRun, travel: Travel) -> np.ndarray:
+    def way(self, run: Run, travel: Travel) -> np.ndarray:
         """Return the values of a joint in a run [rad or m], shape (steps,)."""
-        return run.values[:, list(self.loaded.joints).index(travel.joint)]
+        return run.seen[:, list(self.loaded.joints).index(travel.joint)]
 
     def still(self, travel: Travel) -> float:
         """Return how far a joint may go that nothing moves [rad or m]."""
@@ -260,7 +251,7 @@ class AsLoadedContext:
         if run.without_contacts is not None and self.reaches_end(run, run.without_contacts):
             return True
         target = run.push.target
-        driven = cast("MotorFile", self.loaded).motor(run.travel.joint, run.values, target, self.settings.seconds)
+        driven = self.loaded.motor(run.travel.joint, run.values, target, self.settings.seconds)
         return self.reaches_end(replace(run, end=target), driven)
 
     def stopped_by(self, run: VelocityProbe) -> tuple[Overlap, float] | None:
@@ -275,7 +266,7 @@ class AsLoadedContext:
             values = dict(run.values)
             for name, ratio in self.ratios(travel).items():
                 values[name] = run.values[name] + ratio * (value - travel.rest)
-            found = self.between(travel, self.running.overlaps(values))
+            found = self.between(travel, self.loaded.overlaps(values))
             if found is not None:
                 return found, value
         return None
@@ -283,12 +274,12 @@ class AsLoadedContext:
     @cached_property
     def inertias(self) -> dict[str, float]:
         """Return what a force at each joint moves at rest [kg or kg m^2]."""
-        return dict(zip(self.loaded.joints, self.running.inertias(self.values).tolist(), strict=True))
+        return dict(zip(self.loaded.joints, self.loaded.inertias(self.values).tolist(), strict=True))
 
     @cached_property
     def max_safe_force(self) -> dict[str, float]:
         """Largest force at each joint at rest that the engine answers rightly [N or N m]."""
-        return dict(zip(self.loaded.joints, self.running.max_safe_force(self.values).tolist(), strict=True))
+        return dict(zip(self.loaded.joints, self.loaded.max_safe_force(self.values).tolist(), strict=True))
 
     def ratios(self, travel: Travel) -> dict[str, float]:
         """Return the motion of a joint, 1, and of those that mimic it."""
@@ -319,7 +310,7 @@ class AsLoadedContext:
         joint = self.robot.joint_by_name[travel.joint]
         resistance = {"resistance": joint.friction or 0.0, "damping": joint.damping or 0.0}
         push = self._push(travel, (travel.rest, end), self.strength(travel), **resistance)
-        pushed = self.running.push(push, self.values, contacts=True)
+        pushed = self.loaded.push(push, self.values, contacts=True)
         run = VelocityProbe(
             travel=travel, values=self.values, push=push, pushed=pushed, end=end, free=self.free(travel) is not None
         )
@@ -329,12 +320,12 @@ class AsLoadedContext:
         run = replace(run, end=seen) if abs(seen - travel.rest) > self._nothing(travel) else replace(run, free=False)
         if self.reaches_end(run, pushed.farthest):
             return run
-        return replace(run, without_contacts=self.running.push(push, self.values, contacts=False).farthest)
+        return replace(run, without_contacts=self.loaded.push(push, self.values, contacts=False).farthest)
 
     def by_motor(self, travel: Travel, end: float, effort: float) -> float:
         """Value that a joint gets to under gravity by no more than an effort, the others held [rad or m]."""
         push = self._push(travel, (travel.rest, end), effort, effort)
-        return self.running.push(push, self.values, contacts=True, gravity=True).farthest
+        return self.loaded.push(push, self.values, contacts=True, gravity=True).farthest
 
     def strength(self, travel: Travel) -> float:
         """Force of the hand [N or N m]."""
@@ -353,7 +344,7 @@ class AsLoadedContext:
             inertias=self.inertias,
             force=force,
             speed=self.speed(travel),
-            time_step=self.running.time_step,
+            time_step=self.loaded.time_step,
             max_safe_force=min(self.max_safe_force[travel.joint], most),
             **more,
         )
@@ -382,7 +373,7 @@ class AsLoadedContext:
             travel, (end, end + outwards * _FAR_BEYOND * self.still(travel)), force, most=force, patience=_YIELDING
         )
         values = self._values({travel.joint: end})
-        pushed = self.running.push(push, values, contacts=False)
+        pushed = self.loaded.push(push, values, contacts=False)
         return VelocityProbe(travel=travel, values=values, push=push, pushed=pushed, end=end)
 
     @cached_property
@@ -396,9 +387,9 @@ class AsLoadedContext:
         return speeds
 
     @cached_property
-    def released(self) -> ReleaseRun:
+    def released(self) -> Run:
         """All joints given a push and let go."""
-        return self.running.release(self.values, self.speeds, self.settings.release_seconds)
+        return self.loaded.release(self.values, self.speeds, self.settings.release_seconds)
 
     @cached_property
     def fall(self) -> float:

@@ -193,7 +193,7 @@ class OpenCheck:
             limit=None if limit is None else float(limit),
             unit=unit,
             line=line,
-            reproduction=reproduction,
+            reproduction=reproduction or None,
         )
         told = finding if self.source is None else self.source.told(finding)
         self.findings += () if told is None else (told,)

@@ -218,7 +218,7 @@ def execute(loaded: Loaded, settings: ExecutionSettings, *, engine: str, hold: H
         What became of it; a world that blows up is no success.
 
     Raises:
-        Refused: The engine cannot load a model.
+        Unloadable: The engine cannot load a model.
     """
     run = _Run(loaded, settings, engine, hold)
     reference = timed(loaded.motion, loaded.fastest(settings), settings, settings.time_step)

@@ -15,14 +15,12 @@ _SECONDS = 300.0
 _CODE = """import sys
 from pathlib import Path
 from kinematify.simulation.engines import load_file
-from kinematify.simulation.raw_model import FloatingLink, Unloadable
+from kinematify.simulation.engine_file import Unloadable
 engine, urdf, *folders = sys.argv[1:]
 try:
     load_file(engine, Path(urdf), "", [Path(folder) for folder in folders])
-except FloatingLink:
-    pass
 except Unloadable as error:
-    sys.exit(f"\\0{error}")
+    sys.exit(f"\\0{error}" if not error.floats else 0)
 """
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from types import ModuleType
 
-    from kinematify.simulation.raw_model import RawEngineModel
+    from kinematify.simulation.engine_file import EngineFile
     from kinematify.simulation.world import EngineWorld, WorldSpec
 
 
@@ -94,17 +94,17 @@ def open_world(name: str, spec: WorldSpec) -> EngineWorld:
 
     Raises:
         EnvironmentFault: The engine is not installed.
-        Refused: It cannot load a model.
+        Unloadable: It cannot load a model.
     """
     world: EngineWorld = _module_of(name).open_world(spec)
     return world
 
 
-def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> RawEngineModel:
+def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> EngineFile:
     """Load a file into an engine as users do, with the engine's own defaults.
 
     Args:
-        name: Of `ENGINES`; what runs gives a `RunningFile`.
+        name: Of `ENGINES`.
         urdf: The file.
         root: Name of its first link.
         package_dirs: Where packages lie, for engines that look for them.
@@ -113,7 +113,7 @@ def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = (
         EnvironmentFault: The engine is not installed.
         Unloadable: The engine does not open the file.
     """
-    loaded: RawEngineModel = _module_of(name).load_raw(urdf, root, package_dirs)
+    loaded: EngineFile = _module_of(name).load_raw(urdf, root, package_dirs)
     return loaded
 
 

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import mujoco
 import numpy as np
 
+from kinematify.simulation.engine_file import EngineFile, Unloadable
 from kinematify.simulation.mujoco_world import MujocoWorld
-from kinematify.simulation.raw_model import FloatingLink, Reproductions, RunningFile, Unloadable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.raw_model import Start
     from kinematify.simulation.world import WorldSpec
 
 
@@ -80,24 +79,23 @@ print(max(seen) - seen[0])
 )
 
 
-class MujocoFile(RunningFile):
+class MujocoFile(EngineFile):
     """Raw model: a file as `MjModel.from_xml_path` loads it."""
 
-    code = Reproductions(
-        joints=_JOINTS,
-        overlap=_OVERLAP,
-        rest=_REST,
-        push=_PUSH.replace("{off}", ""),
-        push_alone=_PUSH.replace("{off}", _NO_CONTACTS),
-        release=_RELEASE,
-    )
+    code: ClassVar = {
+        "joints": _JOINTS,
+        "overlap": _OVERLAP,
+        "rest": _REST,
+        "push": _PUSH.replace("{off}", ""),
+        "push_alone": _PUSH.replace("{off}", _NO_CONTACTS),
+        "release": _RELEASE,
+    }
 
     def __init__(self, urdf: Path, root: str) -> None:
         """Load it.
 
         Raises:
-            Unloadable: MuJoCo does not open it.
-            FloatingLink: It moves a link in other ways than by turning or sliding.
+            Unloadable: MuJoCo does not open it, or moves a link in other ways than by turning or sliding.
         """
         self._file, self._root = {"path": str(urdf)}, root
         try:
@@ -105,7 +103,7 @@ class MujocoFile(RunningFile):
         except ValueError as error:
             raise Unloadable(str(error), _OPEN.format(path=str(urdf))) from error
         if self._model.nq != self._model.nv or self._model.nv != self._model.njnt:
-            raise FloatingLink(_OPEN.format(path=str(urdf)) + "print(model.jnt_type)\n")
+            raise Unloadable(reproduction=_OPEN.format(path=str(urdf)) + "print(model.jnt_type)\n")
         self._data, option = mujoco.MjData(self._model), self._model.opt
         self._flags, self._gravity = option.disableflags, option.gravity.copy()
         option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
@@ -114,47 +112,57 @@ class MujocoFile(RunningFile):
         self.limits = {name: tuple(ends) if limited else (-np.inf, np.inf) for name, limited, ends in ranges}
         self.time_step = float(option.timestep)
 
-    def _start(self, start: Start) -> None:
+    def begin(
+        self,
+        values: Mapping[str, float],
+        speeds: Mapping[str, float] | None = None,
+        *,
+        contacts: bool,
+        gravity: bool = True,
+        released: Sequence[int] | None = None,
+    ) -> None:
+        """Implement `EngineFile`; MuJoCo gives a URDF no motors."""
+        del released
         model, data, option = self._model, self._data, self._model.opt
         option.disableflags, option.gravity[:] = self._flags, self._gravity
         mujoco.mj_resetData(model, data)
-        data.qpos[:] = start.q
+        data.qpos[:] = self.row(values)
         mujoco.mj_forward(model, data)
-        data.qvel[:] = start.v
+        data.qvel[:] = 0.0 if speeds is None else self.row(speeds)
         mujoco.mj_energyVel(model, data)
-        option.disableflags |= 0 if start.contacts else int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
-        option.gravity[:] *= start.gravity
+        option.disableflags |= 0 if contacts else int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        option.gravity[:] *= gravity
 
     def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
-        """Implement `RawEngineModel`; links that fixed joints join are one."""
+        """Implement `EngineFile`; links that fixed joints join are one."""
         self.begin(values, contacts=False)
         bodies = map(self._data.body, range(1, self._model.nbody))
         return {body.name: np.column_stack([body.xmat.reshape(3, 3), body.xpos]) for body in bodies}
 
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
-        """Implement `RunningFile`."""
+        """Implement `EngineFile`."""
         for done in range(every, count + 1, every):
             mujoco.mj_step(self._model, self._data, nstep=every)
             yield done
 
     def state(self) -> tuple[FloatArray, FloatArray]:
-        """Implement `RunningFile`."""
+        """Implement `EngineFile`."""
         return self._data.qpos.copy(), self._data.qvel.copy()
 
     def set_state(self, q: FloatArray, v: FloatArray) -> None:
-        """Implement `RunningFile`."""
+        """Implement `EngineFile`."""
         self._data.qpos[:], self._data.qvel[:] = q, v
 
     def apply(self, joint: int, force: float) -> None:
-        """Implement `RunningFile`."""
+        """Implement `EngineFile`."""
         self._data.qfrc_applied[joint] = force
 
     def energy(self) -> tuple[float, float]:
-        """Implement `RunningFile`; of the state before the last step."""
+        """Implement `EngineFile`; of the state before the last step."""
         return float(self._data.energy[0]), float(self._data.energy[1])
 
     def touching(self) -> Iterator[tuple[str, str, float]]:
-        """Implement `RunningFile`."""
+        """Implement `EngineFile`."""
         mujoco.mj_forward(self._model, self._data)
         for contact in self._data.contact:
             bodies = sorted(int(self._model.geom_bodyid[geom]) for geom in contact.geom)
@@ -169,7 +177,7 @@ class MujocoFile(RunningFile):
         return f"MuJoCo warns {', '.join(broken)}" if broken else None
 
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
-        """Implement `RunningFile`."""
+        """Implement `EngineFile`."""
         self.begin(values, contacts=True)
         inverse = np.zeros((self._model.nv, self._model.nv))
         mujoco.mj_solveM(self._model, self._data, inverse, np.eye(self._model.nv))

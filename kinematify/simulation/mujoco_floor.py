@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from kinematify.simulation.raw_model import Unloadable
+from kinematify.simulation.engine_file import Unloadable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -42,7 +42,7 @@ def stand(urdf: Path, values: Mapping[str, float], seconds: float) -> dict[str, 
         world.attach(source, prefix=_PART, frame=base.add_frame())
         model = world.compile()
     except ValueError as error:
-        raise Unloadable(str(error), "") from error
+        raise Unloadable(str(error)) from error
     data = mujoco.MjData(model)
     for name, value in values.items():
         data.qpos[model.joint(_PART + name).qposadr] = value

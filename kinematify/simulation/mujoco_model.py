@@ -9,7 +9,7 @@ import mujoco
 from lxml import etree
 
 from kinematify.simulation.configurations import GRAVITY, PIN_SOLIMP, PIN_SOLREF
-from kinematify.simulation.raw_model import Refused
+from kinematify.simulation.engine_file import Unloadable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -37,7 +37,7 @@ def parse(urdf: Path, mechanism: LeaderMechanism, *, step: float) -> ParsedModel
     """Parse a file.
 
     Raises:
-        Refused: MuJoCo cannot.
+        Unloadable: MuJoCo cannot.
     """
     robot = etree.parse(str(urdf)).getroot()
     stand_in = _free_name(mechanism.links)
@@ -48,7 +48,7 @@ def parse(urdf: Path, mechanism: LeaderMechanism, *, step: float) -> ParsedModel
     try:
         spec = mujoco.MjSpec.from_string(etree.tostring(robot, encoding="unicode", pretty_print=True))
     except ValueError as error:
-        raise Refused(_sentence(error)) from error
+        raise Unloadable(_sentence(error)) from error
     spec.modelfiledir = str(urdf.parent)
     spec.compiler.fusestatic = False
     set_options(spec, step)

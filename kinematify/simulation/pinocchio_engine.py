@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 import pinocchio as pin
 
-from kinematify.simulation.raw_model import FloatingLink, RawEngineModel, Reproductions, Unloadable
+from kinematify.simulation.engine_file import EngineFile, Unloadable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -33,17 +33,16 @@ def load_raw(urdf: Path, root: str, package_dirs: Sequence[Path]) -> PinocchioFi
     return PinocchioFile(urdf)
 
 
-class PinocchioFile(RawEngineModel):
-    """See `RawEngineModel`: a file as `buildModelFromUrdf` reads it, which opens no mesh."""
+class PinocchioFile(EngineFile):
+    """See `EngineFile`: a file as `buildModelFromUrdf` reads it, which opens no mesh."""
 
-    code = Reproductions(joints=_JOINTS)
+    code: ClassVar = {"joints": _JOINTS}
 
     def __init__(self, urdf: Path) -> None:
         """Load it.
 
         Raises:
-            Unloadable: Pinocchio does not open it.
-            FloatingLink: It moves a link in other ways than by turning or sliding.
+            Unloadable: Pinocchio does not open it, or moves a link in other ways than by turning or sliding.
         """
         self._file = {"path": str(urdf)}
         try:
@@ -51,7 +50,7 @@ class PinocchioFile(RawEngineModel):
         except ValueError as error:
             raise Unloadable(str(error), _OPEN.format(**self._file)) from error
         if any(joint.nv != 1 for joint in list(model.joints)[1:]):
-            raise FloatingLink(_JOINTS.format(**self._file))
+            raise Unloadable(reproduction=_JOINTS.format(**self._file))
         self.joints = tuple(model.names)[1:]  # the first is the world
         self.limits = {}
         for name, joint in zip(self.joints, list(model.joints)[1:], strict=True):
@@ -59,7 +58,7 @@ class PinocchioFile(RawEngineModel):
             self.limits[name] = ends if joint.nq == 1 else (-np.inf, np.inf)
 
     def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
-        """See `RawEngineModel`; a joint that turns without end is a point on a circle."""
+        """See `EngineFile`; a joint that turns without end is a point on a circle."""
         model, data = self._model, self._model.createData()
         q = pin.neutral(model)
         for name, joint in zip(self.joints, list(model.joints)[1:], strict=True):

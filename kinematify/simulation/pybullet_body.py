@@ -18,7 +18,7 @@ import pybullet as bullet
 from kinematify.robot.mechanism import LeaderMechanism, joints_between
 from kinematify.robot.transforms import quaternion_of
 from kinematify.simulation.configurations import GRAVITY
-from kinematify.simulation.raw_model import Refused
+from kinematify.simulation.engine_file import Unloadable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -184,7 +184,7 @@ def load(mechanism: LeaderMechanism, urdf: Path, *, step: float, itself: bool = 
         itself: Its links collide with each other.
 
     Raises:
-        Refused: PyBullet cannot.
+        Unloadable: PyBullet cannot.
     """
     client = Client()
     client.setPhysicsEngineParameter(enableFileCaching=0, fixedTimeStep=step)
@@ -208,7 +208,7 @@ def load_with_loops(client: int, robot: Robot, urdf: Path) -> int:
         urdf: The file.
 
     Raises:
-        Refused: PyBullet cannot.
+        Unloadable: PyBullet cannot.
     """
     loaded = _loaded(Client(client), LeaderMechanism(robot=robot), urdf, useFixedBase=True)
     if loaded.complete:
@@ -229,7 +229,7 @@ def load_at(
         itself: Links that no joint connects collide with each other.
 
     Raises:
-        Refused: PyBullet cannot.
+        Unloadable: PyBullet cannot.
     """
     flags = bullet.URDF_USE_INERTIA_FROM_FILE | (bullet.URDF_USE_SELF_COLLISION if itself else 0)
     place, turn = T_world_root[:3, 3].tolist(), quaternion_of(T_world_root[:3, :3], real_last=True).tolist()
@@ -241,7 +241,7 @@ def _loaded(client: Client, mechanism: LeaderMechanism, urdf: Path, **options: A
     try:
         body = client.loadURDF(str(urdf), **options)
     except bullet.error as error:
-        raise Refused(str(error)) from error
+        raise Unloadable(str(error)) from error
     infos = [client.getJointInfo(body, k) for k in range(client.getNumJoints(body))]
     links = {text_of(info[12]): info[0] for info in infos}
     links.setdefault(mechanism.robot.root, _BASE)

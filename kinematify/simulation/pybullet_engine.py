@@ -8,7 +8,7 @@ import re
 import tempfile
 from contextlib import suppress
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 import pybullet as bullet
@@ -16,16 +16,16 @@ import pybullet as bullet
 from kinematify.robot.urdf_numbers import passing_links
 from kinematify.robot.urdf_text import parse_description
 from kinematify.simulation.configurations import GRAVITY
+from kinematify.simulation.engine_file import EngineFile, Unloadable
 from kinematify.simulation.pybullet_body import Client, text_of
 from kinematify.simulation.pybullet_world import PybulletWorld
-from kinematify.simulation.raw_model import MotorFile, Reproductions, Unloadable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.raw_model import Push, Start
+    from kinematify.simulation.engine_file import Push
     from kinematify.simulation.world import WorldSpec
 
 
@@ -111,22 +111,22 @@ _MOTOR = 240.0
 """Of a joint that was pushed, afterwards [N or N m]: about what motors have when a file is loaded."""
 
 
-class PybulletFile(MotorFile):
-    """See `RunningFile`: a file as `loadURDF` loads it, its base fixed, its motors as they are.
+class PybulletFile(EngineFile):
+    """See `EngineFile`: a file as `loadURDF` loads it, its base fixed, its motors as they are.
 
     Contacts of links are those of `URDF_USE_SELF_COLLISION`, but for links that fixed joints alone hold together, for
     those of neighbours (as `URDF_MERGE_FIXED_LINKS` has it), and for links that the file declares not to collide with
     their own model.
     """
 
-    code = Reproductions(
-        joints=_JOINTS,
-        overlap=_OVERLAP,
-        rest=_REST,
-        push=_PUSH,
-        push_alone=_without_contacts(_PUSH),
-        release=_RELEASE.replace("{looks}", "8"),
-    )
+    code: ClassVar = {
+        "joints": _JOINTS,
+        "overlap": _OVERLAP,
+        "rest": _REST,
+        "push": _PUSH,
+        "push_alone": _without_contacts(_PUSH),
+        "release": _RELEASE.replace("{looks}", "8"),
+    }
 
     look_steps = 8
 
@@ -151,17 +151,25 @@ class PybulletFile(MotorFile):
         above = {k: info[16] for k, info in enumerate(infos)}
         self._below = {k: [link for link in above if k in _chain(above, link)] for k in self._index.values()}
 
-    def _start(self, start: Start) -> None:
-        """The world as it was after loading; motors of joints that were released are put back."""
-        world = self._worlds.get(start.contacts)
-        if world is None or (start.released is None and world.pushed):
-            world = self._opened(contacts=start.contacts, seen=False)
-        self._now = self._worlds[start.contacts] = world
+    def begin(
+        self,
+        values: Mapping[str, float],
+        speeds: Mapping[str, float] | None = None,
+        *,
+        contacts: bool,
+        gravity: bool = True,
+        released: Sequence[int] | None = None,
+    ) -> None:
+        """See `EngineFile`: the world as it was after loading; motors of joints that were released are put back."""
+        world = self._worlds.get(contacts)
+        if world is None or (released is None and world.pushed):
+            world = self._opened(contacts=contacts, seen=False)
+        self._now = self._worlds[contacts] = world
         world.client.restoreState(world.state)
-        for k, value, speed in zip(self._places, start.q.tolist(), start.v.tolist(), strict=True):
-            world.client.resetJointState(world.body, k, value, speed)
-        world.client.setGravity(0.0, 0.0, -GRAVITY if start.gravity else 0.0)
-        freed = [self._places[number] for number in start.released or ()]
+        for name, k in self._index.items():
+            world.client.resetJointState(world.body, k, values[name], 0.0 if speeds is None else speeds[name])
+        world.client.setGravity(0.0, 0.0, -GRAVITY if gravity else 0.0)
+        freed = [self._places[number] for number in released or ()]
         for k in world.freed - set(freed):
             world.client.setJointMotorControl2(world.body, k, bullet.VELOCITY_CONTROL, force=_MOTOR)
         for k in freed:
@@ -172,7 +180,7 @@ class PybulletFile(MotorFile):
         return _LoadedWorld(self._path, contacts=contacts, seen=seen, root=self._root, passing=self._passing)
 
     def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
-        """See `RawEngineModel`; of all links but the base."""
+        """See `EngineFile`; of all links but the base."""
         self.begin(values, contacts=True)
         world, links = self._now, [link for link in self._links if link != -1]
         states = world.client.getLinkStates(world.body, links, computeForwardKinematics=True) if links else ()
@@ -182,29 +190,29 @@ class PybulletFile(MotorFile):
         }
 
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
-        """See `RunningFile`."""
+        """See `EngineFile`."""
         for done in range(1, count + 1):
             self._now.client.stepSimulation()
             if done % every == 0:
                 yield done
 
     def state(self) -> tuple[FloatArray, FloatArray]:
-        """See `RunningFile`."""
+        """See `EngineFile`."""
         states = self._now.client.getJointStates(self._now.body, self._places)
         return np.array([state[0] for state in states]), np.array([state[1] for state in states])
 
     def set_state(self, q: FloatArray, v: FloatArray) -> None:
-        """See `RunningFile`."""
+        """See `EngineFile`."""
         self._now.client.resetJointStatesMultiDof(
             self._now.body, self._places, q[:, None].tolist(), v[:, None].tolist()
         )
 
     def apply(self, joint: int, force: float) -> None:
-        """See `RunningFile`."""
+        """See `EngineFile`."""
         self._now.client.setJointMotorControl2(self._now.body, self._places[joint], bullet.TORQUE_CONTROL, force=force)
 
     def touching(self) -> Iterator[tuple[str, str, float]]:
-        """See `RunningFile`."""
+        """See `EngineFile`."""
         world = self._now
         world.client.performCollisionDetection()
         for contact in world.client.getContactPoints(world.body, world.body):
@@ -212,7 +220,7 @@ class PybulletFile(MotorFile):
             yield self._links[first], self._links[second], -contact[8]
 
     def energy(self) -> tuple[float, float]:
-        """See `RunningFile`; of all links but the base."""
+        """See `EngineFile`; of all links but the base."""
         world, links = self._now, [link for link in self._links if link != -1]
         states = world.client.getLinkStates(world.body, links, computeLinkVelocity=True, computeForwardKinematics=True)
         potential = kinetic = 0.0
@@ -224,7 +232,7 @@ class PybulletFile(MotorFile):
         return potential, float(kinetic)
 
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
-        """See `RunningFile`; the motors of the others hold them within a step."""
+        """See `EngineFile`; the motors of the others hold them within a step."""
         self.begin(values, contacts=True, released=())
         return np.array([self._inertia(self._now, k) for k in self._places])
 
@@ -246,7 +254,7 @@ class PybulletFile(MotorFile):
         return total
 
     def max_safe_force(self, values: Mapping[str, float]) -> FloatArray:
-        """See `RunningFile`.
+        """See `EngineFile`.
 
         Bullet lets no joint be faster than 100 rad/s within a step either, before motors hold the others: a joint that
         is light where those give way is thrown back by more.
@@ -263,7 +271,7 @@ class PybulletFile(MotorFile):
         return 0.5 * _FASTEST * torques / np.maximum(speeds, 1e-12)
 
     def motor(self, joint: str, values: Mapping[str, float], target: float, seconds: float) -> float:
-        """See `MotorFile`; the motors of the other joints hold them, gravity is off."""
+        """See `EngineFile`; the motors of the other joints hold them, gravity is off."""
         self.begin(values, contacts=False, gravity=False, released=())
         for name, k in self._index.items():
             wanted = target if name == joint else values[name]

@@ -37,7 +37,7 @@ class PybulletWorld:
         """Load both models.
 
         Raises:
-            Refused: PyBullet cannot.
+            Unloadable: PyBullet cannot.
         """
         self._spec, self._mechanism = spec, spec.object.mechanism
         placed, mechanism = spec.object, spec.object.mechanism

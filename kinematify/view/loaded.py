@@ -185,12 +185,12 @@ class LoadedModel:
             InputError: PyBullet refuses the file.
         """
         _engine("pybullet", "pybullet")
+        from kinematify.simulation.engine_file import Unloadable  # noqa: PLC0415  # with PyBullet
         from kinematify.simulation.pybullet_body import load_with_loops  # noqa: PLC0415
-        from kinematify.simulation.raw_model import Refused  # noqa: PLC0415  # with PyBullet
 
         try:
             return load_with_loops(client, self.robot, self.path)
-        except Refused as refusal:
+        except Unloadable as refusal:
             raise InputError(f"PyBullet does not load {self.path}: {refusal}") from refusal
 
     def to_pinocchio(self) -> Any:

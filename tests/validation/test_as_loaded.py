@@ -124,7 +124,7 @@ def test_the_code_of_a_run_at_rest_repeats_it(tmp_path: Path, engine: str) -> No
     (door,) = (travel for travel in context.travels if travel.joint == "door_joint")
     way = context.way(context.passive_run, door)
     assert np.ptp(way) > 0.01, "it falls"
-    code = context.loaded.lines_of_rest(door.joint, context.values, context.settings.seconds)
+    code = context.loaded.script("rest", context.values, joint=door.joint, seconds=context.settings.seconds)
     assert printed(code) == pytest.approx([way.min(), way.max()], abs=1e-6)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.mesh_paths import GLTF_SUFFIXES
-from kinematify.simulation.raw_model import FloatingLink, Unloadable
+from kinematify.simulation.engine_file import Unloadable
 from kinematify.validation.check import CauseScope, OpenCheck, check
 from kinematify.validation.checks.follow import AT_REST, NOT_A_BODY
 from kinematify.validation.checks.needs import late
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from kinematify.robot.mechanism import Travel
+    from kinematify.simulation.engine_file import Overlap, Run
     from kinematify.simulation.engines import EngineEntry
-    from kinematify.simulation.raw_model import Overlap, RestRun
     from kinematify.validation.as_loaded_context import AsLoadedContext, VelocityProbe
 
 _RUNS = attrgetter("runs")
@@ -53,7 +53,7 @@ def _any(_engine: EngineEntry) -> bool:
 
 def not_loaded(context: AsLoadedContext) -> str | None:
     """The engine has the file."""
-    if isinstance(context.loading, FloatingLink) and context.floats:
+    if isinstance(context.loading, Unloadable) and context.loading.floats and context.floats:
         return f"the file lets a link float in {context.title}, where no joint can be pushed alone"
     return f"{context.title} does not open the file (KV801)" if isinstance(context.loading, Unloadable) else None
 
@@ -83,7 +83,7 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     Remedy: Do what the engine's message asks for. MuJoCo resolves no package:// and reads STL, OBJ and MSH only; it
     looks for meshes beside the file unless `<mujoco><compiler strippath="false"/></mujoco>` is in it.
     """
-    if isinstance(context.loading, FloatingLink) and context.floats:
+    if isinstance(context.loading, Unloadable) and context.loading.floats and context.floats:
         return
     if isinstance(context.bare, Unloadable) and not isinstance(context.loading, Unloadable):
         result.find(
@@ -108,7 +108,7 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
             f"The joint {name} of the file does not move in {context.title}, which has lost it or taken it for fixed.",
             f"Write the joint {name} with a type, axis and limits that {context.title} reads.",
             joint=name,
-            reproduction=context.loaded.lines_of_joints(),
+            reproduction=context.loaded.script("joints"),
         )
     result.measured["read"] = float(len(context.mechanism.joints) - len(context.lost) - len(context.misread))
     for joint in context.misread:
@@ -119,7 +119,7 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
             f"in {context.title}.",
             f"Give {joint.name} a lower limit that is less than the upper one; what does not move has a fixed joint.",
             joint=joint.name,
-            reproduction=context.loaded.lines_of_joints(),
+            reproduction=context.loaded.script("joints"),
         )
 
 
@@ -193,7 +193,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
                 value=overlap.depth,
                 limit=limit,
                 unit="m",
-                reproduction=context.running.lines_of_overlap(overlap.links, context.values),
+                reproduction=context.loaded.script("overlap", context.values, links=overlap.links),
             )
 
 
@@ -224,8 +224,8 @@ def stays(result: OpenCheck, context: AsLoadedContext) -> None:
             f"Left alone, the model comes apart in {context.title}: {complaint}.",
             "Give every moving link a plausible mass and inertia, and fix overlaps at rest first.",
             severity=_at_most_warning(context, plainly=context.left_without_contacts.complaint is not None),
-            reproduction=context.running.lines_of_rest(
-                context.travels[0].joint, context.values, context.settings.seconds
+            reproduction=context.loaded.script(
+                "rest", context.values, joint=context.travels[0].joint, seconds=context.settings.seconds
             ),
         )
         return
@@ -254,14 +254,14 @@ def _at_most_warning(context: AsLoadedContext, *, plainly: bool) -> Severity | N
 def _thrown_by(context: AsLoadedContext, travel: Travel) -> Overlap | None:
     """Return the overlap at rest that moves a joint which stays where it is without contacts."""
 
-    def stays_in(run: RestRun) -> bool:
+    def stays_in(run: Run) -> bool:
         return float(np.abs(context.way(run, travel) - travel.rest).max()) <= context.still(travel)
 
     thrown = not stays_in(context.passive_run) and stays_in(context.left_without_contacts)
     return context.between(travel, context.overlaps) if thrown else None
 
 
-def _beyond(context: AsLoadedContext, travel: Travel, run: RestRun | None = None) -> float:
+def _beyond(context: AsLoadedContext, travel: Travel, run: Run | None = None) -> float:
     """Return how far beyond its range a joint ends that was left alone [rad or m]; 0 without limits."""
     last = float(context.way(run or context.passive_run, travel)[-1])
     return max(travel.lower - last, last - travel.upper) if travel.limited else 0.0
@@ -290,7 +290,9 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
         q={travel.joint: farthest},
         value=farthest,
         unit=travel.unit,
-        reproduction=context.running.lines_of_rest(travel.joint, context.values, context.settings.seconds),
+        reproduction=context.loaded.script(
+            "rest", context.values, joint=travel.joint, seconds=context.settings.seconds
+        ),
     )
 
 
@@ -371,7 +373,7 @@ def _find_short(result: OpenCheck, context: AsLoadedContext, run: VelocityProbe,
         value=stop,
         limit=run.end,
         unit=travel.unit,
-        reproduction=context.running.push_script(push, run.values, run.pushed.steps, contacts=True),
+        reproduction=context.loaded.script("push", run.values, push=(push, run.pushed.steps)),
     )
 
 
@@ -442,7 +444,7 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
                 value=stop,
                 limit=end,
                 unit=travel.unit,
-                reproduction=context.running.push_script(run.push, run.values, run.pushed.steps, contacts=False),
+                reproduction=context.loaded.script("push_alone", run.values, push=(run.push, run.pushed.steps)),
             )
 
 
@@ -468,7 +470,8 @@ def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
     too: PyBullet gives a link without them 1 kg.
     """
     run = context.released
-    reproduction = context.running.lines_of_release(context.values, context.speeds, context.settings.release_seconds)
+    seconds = context.settings.release_seconds
+    reproduction = context.loaded.script("release", context.values, speeds=context.speeds, seconds=seconds)
     if run.complaint is not None:
         result.find(
             f"Given a push and let go in {context.title}, the model comes apart: {run.complaint}.",
@@ -477,7 +480,7 @@ def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
             reproduction=reproduction,
         )
         return
-    total, kinetic = run.energy.sum(axis=1), float(run.energy[:, 1].max())
+    total, kinetic = run.seen.sum(axis=1), float(run.seen[:, 1].max())
     growth = float(np.max(total - total[0]))
     limit = max(_FLOOR_OF_ENERGY * context.fall, context.settings.energy * kinetic)
     result.measured |= {"growth_J": max(0.0, growth), "kinetic_J": kinetic}

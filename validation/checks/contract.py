@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.simulation.raw_model import Unloadable
+from kinematify.simulation.engine_file import Unloadable
 from kinematify.validation.check import CauseScope, check
 from kinematify.validation.checks.as_loaded import not_loaded, nothing_moves
 from kinematify.validation.finding import Cause, Severity

@@ -24,25 +24,21 @@ PATIENCE = 0.8
 """Of a push, which has grown to its full force long before [s]."""
 
 
-class Refused(Exception):
-    """An engine does not build a world; the text is its own message."""
+_FLOATS = "it gives links other joints than hinges and slides"
 
 
 class Unloadable(Exception):
-    """An engine does not open a file; the message is the engine's."""
+    """An engine does not open a file, or does not build a world; the message is the engine's."""
 
-    def __init__(self, message: str, reproduction: str) -> None:
-        """Keep the message and plain code of the engine that shows it."""
+    def __init__(self, message: str = _FLOATS, reproduction: str = "") -> None:
+        """Keep the message and plain code of the engine that shows it.
+
+        Args:
+            message: Of the engine; none: it opens the file and lets a link float, which no hand can push to an end.
+            reproduction: Plain code of the engine.
+        """
         super().__init__(" ".join(message.split())[:400].rstrip("."))
-        self.reproduction = reproduction
-
-
-class FloatingLink(Unloadable):
-    """An engine opens a file and lets a link float, which no hand can push to an end."""
-
-    def __init__(self, reproduction: str) -> None:
-        """Keep plain code that prints the joints."""
-        super().__init__("it gives links other joints than hinges and slides", reproduction)
+        self.floats, self.reproduction = message == _FLOATS, reproduction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,21 +51,11 @@ class Overlap:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class RestRun:
-    """Motion of joints without any action."""
+class Run:
+    """Run of a model that is left alone, or that was given a push and let go."""
 
-    values: FloatArray
-    """Of the joints in the order in which they were asked for [rad or m], shape (steps, joints)."""
-    complaint: str | None
-    """What the engine says of the run; None if nothing."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ReleaseRun:
-    """Energy of a model that was given a push and let go."""
-
-    energy: FloatArray
-    """Potential and kinetic [J], shape (looks, 2), the first right after the push; ends where it is no number."""
+    seen: FloatArray
+    """Values of all joints [rad or m], shape (steps, joints); or potential and kinetic energy [J], shape (looks, 2)."""
     complaint: str | None
     """What the engine says of the run; None if nothing."""
 
@@ -122,84 +108,33 @@ class Pushed:
     """Where it ended, the deepest first."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Start:
-    """Start of a run."""
+class EngineFile(ABC):
+    """A file in an engine as its users load it, and the runs that are made of it; joints are known by their names.
 
-    q: FloatArray
-    """Values of all joints [rad or m], shape (joints,)."""
-    v: FloatArray
-    """Their speeds [rad/s or m/s], shape (joints,)."""
-    contacts: bool
-    """Links collide with each other."""
-    gravity: bool
-    """It acts."""
-    released: Sequence[int] | None
-    """Indices of joints without motors, where an engine gives joints some; None: motors as loaded."""
+    An engine that only reads implements `poses`, one that simulates all methods to `inertias`. Arrays have the order of
+    `joints`.
+    """
 
-
-@dataclass(frozen=True, kw_only=True)
-class Reproductions:
-    """Templates of plain code of an engine, which repeats what was found; `RawEngineModel` fills them in."""
-
-    joints: str
-    """Prints a joint in each line: its name, lower and upper limit."""
-    overlap: str = ""
-    """Prints how deep two links are in each other."""
-    rest: str = ""
-    """Repeats `RunningFile.rest`, and prints the least and the largest value of a joint."""
-    push: str = ""
-    """Repeats `RunningFile.push`, and prints how far the joint gets [rad or m]."""
-    push_alone: str = ""
-    """The same without contacts."""
-    release: str = ""
-    """Repeats `RunningFile.release`, and prints by how much the energy grows [J]."""
-
-
-class RawEngineModel(ABC):
-    """A file in an engine. Every joint that the engine moves is known by its name."""
-
-    code: ClassVar[Reproductions]
+    code: ClassVar[Mapping[str, str]]
+    """Plain code of the engine, which repeats what was found: templates by `joints` (prints each one with its limits),
+    `overlap` (how deep two links are in each other), `rest` (the least and largest value of a joint), `push` (how far a
+    joint gets), `push_alone` (without contacts), `release` (by how much the energy grows)."""
     joints: Sequence[str]
     """Names of the joints that move."""
     limits: Mapping[str, tuple[float, float]]
     """Lower and upper limit of each joint as the engine has read them [rad or m], infinite where there are none."""
+    time_step: float = 1.0
+    """Of the engine [s]."""
+    look_steps: ClassVar[int] = 1
+    """Between two looks at the energy."""
     _file: Mapping[str, object]
     """What the code says of the file, by the names in the templates."""
+
+    # ---- what an engine implements -------------------------------------------------------------------------------
 
     @abstractmethod
     def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
         """Return T_root_link of each link that the engine keeps apart, joints at `values`, shape (3, 4) each."""
-
-    def rename(self, path: str) -> None:
-        """Let the code open another file than the one that was loaded."""
-        self._file = {**self._file, "path": path}
-
-    def lines_of_joints(self) -> str:
-        """Return plain code of the engine that prints a joint in each line: its name, lower and upper limit."""
-        return self.code.joints.format(**self._file, values=self._script_values(dict.fromkeys(self.joints, 0.0)))
-
-    def _script_values(self, values: Mapping[str, float]) -> object:
-        """Values of all joints as the code has them."""
-        return [float(values[name]) for name in self.joints]
-
-
-class RunningFile(RawEngineModel):
-    """A file in an engine that simulates: what an engine can do, and the runs that are made of it."""
-
-    time_step: float
-    """Of the engine [s]."""
-    look_steps: ClassVar[int] = 1
-    """Between two looks at the energy."""
-
-    @property
-    def complaint(self) -> str | None:
-        """Return what the engine says of the run since `begin`; None if nothing."""
-        return None
-
-    @abstractmethod
-    def _start(self, start: Start) -> None:
-        """Begin a run."""
 
     def begin(
         self,
@@ -210,69 +145,84 @@ class RunningFile(RawEngineModel):
         gravity: bool = True,
         released: Sequence[int] | None = None,
     ) -> None:
-        """Set all joints, and whether links touch and weigh.
+        """Begin a run.
 
         Args:
             values: Of all joints [rad or m].
             speeds: The same [rad/s or m/s]; None: all stand still.
-            contacts: See `Start`; so are the others.
+            contacts: Links collide with each other.
             gravity: It acts.
-            released: Indices of joints without motors.
+            released: Indices of joints without motors, where an engine gives joints some; None: motors as loaded.
         """
-        q = self.row(values)
-        v = np.zeros_like(q) if speeds is None else self.row(speeds)
-        self._start(Start(q=q, v=v, contacts=contacts, gravity=gravity, released=released))
+        raise NotImplementedError
 
-    @abstractmethod
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
         """Simulate, yielding the number of steps done after every few; ends early where the engine gives up."""
+        raise NotImplementedError
 
-    @abstractmethod
     def state(self) -> tuple[FloatArray, FloatArray]:
         """Copies of values and speeds of all joints, shape (joints,) each."""
+        raise NotImplementedError
 
-    @abstractmethod
     def set_state(self, q: FloatArray, v: FloatArray) -> None:
         """Set values and speeds of all joints in the course of a run."""
+        raise NotImplementedError
 
-    @abstractmethod
     def apply(self, joint: int, force: float) -> None:
         """Apply a force to a joint in the next step [N or N m]."""
+        raise NotImplementedError
 
-    @abstractmethod
     def energy(self) -> tuple[float, float]:
         """Potential and kinetic [J]."""
+        raise NotImplementedError
 
-    @abstractmethod
     def touching(self) -> Iterable[tuple[str, str, float]]:
         """Two links and their depth [m] of every contact; the order of the links is that of the engine."""
+        raise NotImplementedError
 
-    @abstractmethod
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
         """Return what a force at each joint moves in a step of a push [kg or kg m^2], shape (joints,)."""
+        raise NotImplementedError
+
+    @property
+    def complaint(self) -> str | None:
+        """Return what the engine says of the run since `begin`; None if nothing."""
+        return None
 
     def max_safe_force(self, values: Mapping[str, float]) -> FloatArray:
         """Largest force at each joint that the engine answers rightly [N or N m], shape (joints,)."""
         return np.full(len(values), np.inf)
 
-    def row(self, values: Mapping[str, float]) -> FloatArray:
-        """Values of all joints in the engine's order."""
-        return np.array([values[name] for name in self.joints])
+    def motor(self, joint: str, values: Mapping[str, float], target: float, seconds: float) -> float:
+        """Drive a joint by its motor, without flags; the farthest value [rad or m]."""
+        del target, seconds
+        return values[joint]
 
-    def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
-        """Return plain code of the engine that prints how deep two links are in each other with the joints at `values`.
-
-        Args:
-            links: Of an `Overlap`.
-            values: Of all joints [rad or m].
-        """
-        return self.code.overlap.format(
-            **self._file, values=self._script_values(values), links=self._links_in_code(links)
-        )
+    def _script_values(self, values: Mapping[str, float]) -> object:
+        """Values of all joints as the code has them."""
+        return [float(values[name]) for name in self.joints]
 
     def _links_in_code(self, links: tuple[str, str]) -> object:
         """Two links as the code has them."""
         return links
+
+    def _index_of(self, joint: str) -> int:
+        """The engine's index of a joint."""
+        return self.joints.index(joint)
+
+    def _moved_in_code(self, push: Push) -> object:
+        """Return what a push moves as the code has it."""
+        return [self._index_of(name) for name in push.moved]
+
+    # ---- what is made of that ------------------------------------------------------------------------------------
+
+    def rename(self, path: str) -> None:
+        """Let the code open another file than the one that was loaded."""
+        self._file = {**self._file, "path": path}
+
+    def row(self, values: Mapping[str, float]) -> FloatArray:
+        """Values of all joints in the engine's order."""
+        return np.array([values[name] for name in self.joints])
 
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
         """Pairs of links that overlap with the joints at `values` [rad or m], the deepest first."""
@@ -285,24 +235,27 @@ class RunningFile(RawEngineModel):
             depths[first, second] = max(depths.get((first, second), 0.0), depth)
         return deepest_first(depths)
 
-    def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> RestRun:
+    def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> Run:
         """Make go at `values`, with or without contacts among the links."""
         self.begin(values, contacts=contacts)
         seen = [self.state()[0] for _ in self.steps(self._steps(seconds))]
         values_seen = np.array(seen).reshape(len(seen), len(self.joints))
         finite = bool(np.isfinite(values_seen).all())
-        return RestRun(values=values_seen, complaint=self.complaint or (None if finite else NO_NUMBERS))
+        return Run(seen=values_seen, complaint=self.complaint or (None if finite else NO_NUMBERS))
 
-    def release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> ReleaseRun:
-        """Make go at `values` with `speeds` [rad/s or m/s], without motors and without contacts among the links."""
+    def release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> Run:
+        """Make go at `values` with `speeds` [rad/s or m/s], without motors and without contacts among the links.
+
+        The energy is seen, first right after the push; it ends where it is no number.
+        """
         self.begin(values, speeds, contacts=False, released=range(len(self.joints)))
         seen = [self.energy()]
         for _ in self.steps(self._steps(seconds), self.look_steps):
             energy = self.energy()
             if not math.isfinite(sum(energy)):
-                return ReleaseRun(energy=np.array(seen), complaint="the energy is no number any more")
+                return Run(seen=np.array(seen), complaint="the energy is no number any more")
             seen.append(energy)
-        return ReleaseRun(energy=np.array(seen), complaint=self.complaint)
+        return Run(seen=np.array(seen), complaint=self.complaint)
 
     def push(self, push: Push, values: Mapping[str, float], *, contacts: bool, gravity: bool = False) -> Pushed:
         """Push a joint from `values`, the others held there."""
@@ -324,41 +277,40 @@ class RunningFile(RawEngineModel):
             self.apply(pushed, progress.force(speed))
         return Pushed(farthest=progress.value, steps=done, overlaps=self._overlaps())
 
-    def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
-        """Return plain code of the engine that repeats `rest` and prints the least and the largest value of a joint."""
-        return self._filled(self.code.rest, values, joint=self._index_of(joint), steps=self._steps(seconds))
+    def script(
+        self,
+        template: str,
+        values: Mapping[str, float] | None = None,
+        *,
+        joint: str | None = None,
+        seconds: float = 0.0,
+        links: tuple[str, str] | None = None,
+        speeds: Mapping[str, float] | None = None,
+        push: tuple[Push, int] | None = None,
+    ) -> str:
+        """Return plain code of the engine that shows what was found; empty where the engine has none for that.
 
-    def push_script(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
-        """Return plain code of the engine that repeats `push` and prints how far the joint gets [rad or m]."""
-        facts = vars(push) | {"joint": self._index_of(push.joint), "moved": self._moved_in_code(push)}
-        code = self.code.push if contacts else self.code.push_alone
-        return self._filled(code, values, **facts | {"farthest": push.farthest, "steps": steps})
-
-    def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
-        """Return plain code of the engine that repeats `release` and prints by how much the energy grows [J]."""
-        return self._filled(self.code.release, values, speeds=self._script_values(speeds), steps=self._steps(seconds))
-
-    def _filled(self, code: str, values: Mapping[str, float], **facts: object) -> str:
-        return code.format(**self._file, values=self._script_values(values), **facts)
+        Args:
+            template: Of `code`.
+            values: Of all joints [rad or m]; None: zero.
+            joint: That is printed.
+            seconds: Length of the run [s].
+            links: Of an overlap.
+            speeds: Of all joints at a release.
+            push: With its steps.
+        """
+        facts: dict[str, object] = {"steps": self._steps(seconds)}
+        if push is not None:
+            joint, facts = push[0].joint, vars(push[0]) | {"farthest": push[0].farthest, "steps": push[1]}
+            facts["moved"] = self._moved_in_code(push[0])
+        facts["joint"] = None if joint is None else self._index_of(joint)
+        facts["links"] = None if links is None else self._links_in_code(links)
+        facts["speeds"] = None if speeds is None else self._script_values(speeds)
+        known = dict.fromkeys(self.joints, 0.0) if values is None else values
+        return self.code.get(template, "").format(**self._file, values=self._script_values(known), **facts)
 
     def _steps(self, seconds: float) -> int:
         return round(seconds / self.time_step)
-
-    def _index_of(self, joint: str) -> int:
-        """The engine's index of a joint."""
-        return self.joints.index(joint)
-
-    def _moved_in_code(self, push: Push) -> object:
-        """Return what a push moves as the code has it."""
-        return [self._index_of(name) for name in push.moved]
-
-
-class MotorFile(RunningFile):
-    """A file in an engine that lets its links collide only where a flag asks for it, and gives joints motors."""
-
-    @abstractmethod
-    def motor(self, joint: str, values: Mapping[str, float], target: float, seconds: float) -> float:
-        """Drive a joint by its motor from `values` without flags; the value that is farthest on its way [rad or m]."""
 
 
 def velocity_probe(
