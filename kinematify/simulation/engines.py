@@ -23,7 +23,7 @@ class EngineEntry:
     """Entry of an engine, known without loading it."""
 
     name: str
-    """As users write it; ``kinematify.simulation.NAME_engine`` has `load_raw`, and `open_world` if it `holds`."""
+    """As users write it."""
     title: str
     """As it is written in messages."""
     packages: tuple[str, ...]
@@ -40,10 +40,13 @@ class EngineEntry:
     prints_when_loaded: bool = False
     """True: it may be loaded only where what is printed goes to a file."""
 
+    in_module: str | None = None
+    """Has `load_raw`, and `open_world` if it `holds`; None: ``kinematify.simulation.NAME_engine``."""
+
     @property
     def module(self) -> str:
         """Name of its module."""
-        return f"kinematify.simulation.{self.name}_engine"
+        return self.in_module or f"kinematify.simulation.{self.name}_engine"
 
 
 _ENTRIES = (

@@ -1,11 +1,20 @@
-"""The registry of engines."""
+"""The registry of engines, and one that is added to it."""
 
 from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
 
 import pytest
 
 from kinematify.errors import EnvironmentFault
 from kinematify.simulation.engines import ENGINES, EngineEntry, require_engine
+from kinematify.validation import needs
+from kinematify.validation.finding import Severity, Status
+from tests.simulation.point_engine import ENTRY
+from tests.validation.engine_models import cabinet, tell
+from tests.validation.test_as_loaded import request_of
 
 
 def test_engine_that_is_not_installed_is_reported_with_the_way_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -13,3 +22,23 @@ def test_engine_that_is_not_installed_is_reported_with_the_way_to_get_it(monkeyp
     monkeypatch.setitem(ENGINES, "absent", absent)
     with pytest.raises(EnvironmentFault, match=r"Absent needs no-such-engine, .* install .*no-such-engine"):
         require_engine("absent")
+
+
+def test_an_engine_of_one_file_runs_all_checks_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(ENGINES, ENTRY.name, ENTRY)
+    results = tell(partial(needs.engine, name="point"), request_of(cabinet(), tmp_path)).results
+    assert {check: result.status for check, result in results.items()} == {
+        f"KV80{number}": Status.PASS for number in range(1, 8)
+    }
+    assert results["KV804"].measured == {"joints": 2.0, "right": 2.0}
+
+
+def test_what_a_new_engine_does_not_open_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(ENGINES, ENTRY.name, ENTRY)
+    request, broken = request_of(cabinet(), tmp_path), tmp_path / "broken.urdf"
+    broken.write_text('<robot name="broken"><joint/></robot>')
+    results = tell(partial(needs.engine, name="point"), replace(request, urdf=broken, resolved=request.urdf)).results
+    (finding,) = results["KV801"].findings
+    assert (finding.engine, finding.severity) == ("point", Severity.WARNING)
+    assert "Point does not open the file as it is" in finding.message
+    assert results["KV804"].status is Status.PASS, "it is asked about the copy that it opens"
