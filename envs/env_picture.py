@@ -68,7 +68,7 @@ class Renderer:
         require("A picture of an environment", "pybullet")
         import pybullet  # noqa: PLC0415  # not every installation has it
 
-        from kinematify.simulation.pybullet_body import Client  # noqa: PLC0415
+        from kinematify.simulation.pybullet_engine import Client  # noqa: PLC0415
 
         self._pieces = tuple(pieces)
         self._pybullet, self._client = pybullet, Client()

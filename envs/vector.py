@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.mujoco_world import MujocoWorld
+    from kinematify.simulation.mujoco_engine import MujocoWorld
     from kinematify.simulation.world import ObjectState
 
     BoolArray = NDArray[np.bool_]

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.robot_plan import EnvRobot, RobotPlan
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.mujoco_world import MujocoWorld
+    from kinematify.simulation.mujoco_engine import MujocoWorld
     from kinematify.simulation.world import EngineWorld
 
 LAG = 0.08  # with this share of the way between hand and part the spring pulls with full force

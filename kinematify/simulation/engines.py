@@ -10,7 +10,7 @@ from kinematify.errors import EnvironmentFault
 from kinematify.versions import is_installed, not_installed, require
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
     from types import ModuleType
 
@@ -36,7 +36,7 @@ class EngineEntry:
     """What may connect a hand with a part (values of `kinematify.manipulation.plan_request.Hold`) where plans are
     executed and environments run in it."""
     stands: bool = False
-    """It sets an object on a floor."""
+    """It sets an object on a floor (`stand`)."""
     prints_when_loaded: bool = False
     """True: it may be loaded only where what is printed goes to a file."""
 
@@ -118,6 +118,26 @@ def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = (
     """
     loaded: EngineFile = _module_of(name).load_raw(urdf, root, package_dirs)
     return loaded
+
+
+def stand(name: str, urdf: Path, values: Mapping[str, float], seconds: float) -> dict[str, float]:
+    """Set a file on a floor with its lowest point, and leave it alone.
+
+    Args:
+        name: Of an engine that `EngineEntry.stands`.
+        urdf: The file.
+        values: Of its joints [rad or m].
+        seconds: How long.
+
+    Returns:
+        How far its base has moved [m] and turned [rad], how deep the deepest contact is [m], and how many contacts
+        there are with the floor.
+
+    Raises:
+        Unloadable: The engine does not build it, such as without any mass.
+    """
+    run: dict[str, float] = _module_of(name).stand(urdf, values, seconds)
+    return run
 
 
 def _module_of(name: str) -> ModuleType:

@@ -186,7 +186,7 @@ class LoadedModel:
         """
         _engine("pybullet", "pybullet")
         from kinematify.simulation.engine_file import Unloadable  # noqa: PLC0415  # with PyBullet
-        from kinematify.simulation.pybullet_body import load_with_loops  # noqa: PLC0415
+        from kinematify.simulation.pybullet_engine import load_with_loops  # noqa: PLC0415
 
         try:
             return load_with_loops(client, self.robot, self.path)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.simulation.engine_file import Unloadable
+from kinematify.simulation.engines import stand
 from kinematify.validation.check import CauseScope, check
 from kinematify.validation.checks.as_loaded import not_loaded, nothing_moves
 from kinematify.validation.finding import Cause, Severity
@@ -40,11 +41,9 @@ def rests_on_floor(result: OpenCheck, context: AsLoadedContext) -> None:
 
     Remedy: Write collision geometry where the visible geometry is, and masses and inertias that belong to it.
     """
-    from kinematify.simulation.mujoco_floor import stand  # noqa: PLC0415 - reading the checks loads no engine
-
     request, values = context.request, {} if isinstance(context.loading, Unloadable) else context.values
     try:
-        run = stand(request.native or request.resolved or request.urdf, values, _SECONDS)
+        run = stand(context.engine, request.native or request.resolved or request.urdf, values, _SECONDS)
     except Unloadable as error:
         result.block(f"MuJoCo does not set it on a floor: {error}")
         return
