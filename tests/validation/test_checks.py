@@ -96,8 +96,8 @@ def test_what_a_check_needs_is_the_reason_why_it_is_skipped(tmp_path: Path) -> N
     assert (result.status, result.reason) == (Status.SKIPPED, "not finished: time ran out before it")
 
 
-def test_the_example_of_contributing_is_the_code() -> None:
-    section = (ROOT / "CONTRIBUTING.md").read_text("utf-8").split("### Add a check")[1].split("\n## ")[0]
+def test_the_example_of_the_page_is_the_code() -> None:
+    section = (ROOT / "docs/write_checks.md").read_text("utf-8").split("## Add a check")[1].split("\n## ")[0]
     function, test = (part.split("```")[0].strip() for part in section.split("```python")[1:])
     assert function in (ROOT / "validation/checks/declared_limits.py").read_text("utf-8")
     assert test in (ROOT / "tests/validation/test_physics.py").read_text("utf-8")
