@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Joint, Robot
     from kinematify.simulation.engine_file import (
         EngineFile,
+        EngineRun,
         Overlap,
         Push,
         Pushed,
-        Run,
     )
     from kinematify.validation.stage import StageRequest
 
@@ -194,16 +194,16 @@ class AsLoadedContext:
         return tuple(item for item in found if body[item.links[0]] != body[item.links[1]])
 
     @cached_property
-    def passive_run(self) -> Run:
+    def passive_run(self) -> EngineRun:
         """Nothing is done."""
         return self.loaded.rest(self.values, self.settings.seconds, contacts=True)
 
     @cached_property
-    def left_without_contacts(self) -> Run:
+    def left_without_contacts(self) -> EngineRun:
         """The same where no links touch each other: what gravity does alone."""
         return self.loaded.rest(self.values, self.settings.seconds, contacts=False)
 
-    def way(self, run: Run, travel: Travel) -> np.ndarray:
+    def way(self, run: EngineRun, travel: Travel) -> np.ndarray:
         """Return the values of a joint in a run [rad or m], shape (steps,)."""
         return run.seen[:, list(self.loaded.joints).index(travel.joint)]
 
@@ -293,7 +293,7 @@ class AsLoadedContext:
         """Return the visible surfaces in motion, for joints that fall short; None where they are what collides."""
         from kinematify.geometry.scene import read_scene, simplified, visible_shapes  # noqa: PLC0415 - for these only
         from kinematify.geometry.sweep import Sweeper  # noqa: PLC0415
-        from kinematify.validation.needs import model_of  # noqa: PLC0415
+        from kinematify.validation.model_cache import model_of  # noqa: PLC0415
 
         model = model_of(self.request)
         if not simplified(model) and len(self.request.free_travel) == len(self.mechanism.travels):
@@ -387,7 +387,7 @@ class AsLoadedContext:
         return speeds
 
     @cached_property
-    def released(self) -> Run:
+    def released(self) -> EngineRun:
         """All joints given a push and let go."""
         return self.loaded.release(self.values, self.speeds, self.settings.release_seconds)
 

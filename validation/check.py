@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from kinematify.simulation.engines import EngineEntry
     from kinematify.validation.finding import Cause
-    from kinematify.validation.source import Source
+    from kinematify.validation.validated_file import ValidatedFile
 
     CheckFunction = Callable[["OpenCheck", Any], None]
     EngineChoice = Callable[[EngineEntry], bool]
@@ -118,7 +118,7 @@ class Check:
 
     @property
     def subject(self) -> str:
-        """What it looks at, and so what is made for it (`validation/needs.py`): the class of its second argument."""
+        """Class of its second argument: the thing that it looks at, which `validation/run/needs.py` makes."""
         _, subject, *_ = self.function.__annotations__.values()
         return str(subject)
 
@@ -141,7 +141,7 @@ class OpenCheck:
 
     id: str
     engine: str | None
-    source: Source | None = None
+    source: ValidatedFile | None = None
     """The file, which is written into its findings; None: there is none."""
     findings: list[Finding] = field(default_factory=list)
     measured: dict[str, float] = field(default_factory=dict)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from lxml import etree
@@ -11,6 +10,7 @@ from kinematify.errors import DescriptionError
 from kinematify.robot.mesh_paths import find_mesh
 from kinematify.robot.urdf_text import parse_description
 from kinematify.validation.finding import Severity
+from kinematify.validation.validated_file import DocumentCopy
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -32,23 +32,6 @@ _NUMBERS = "KV132"
 _MIMICS = ("KV127", "KV128")
 """The same with a joint that follows no other one, as most engines read it."""
 _NO_LIMIT = "KV136"
-
-
-@dataclass(frozen=True, kw_only=True)
-class DocumentCopy:
-    """A copy, and what it does without."""
-
-    path: Path
-    shapes: frozenset[str] = frozenset()
-    """Links that lack a shape."""
-    joints: frozenset[str] = frozenset()
-    """Joints that are fixed in it."""
-
-    def doubts(self, finding: Finding) -> bool:
-        """Whether a finding on the copy may come of what it lacks."""
-        return (
-            finding.link in self.shapes or finding.joint in self.joints or bool({*(finding.pair or ())} & self.shapes)
-        )
 
 
 def readable_copy(request: StageRequest, errors: Iterable[Finding], name: str) -> DocumentCopy | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from fnmatch import fnmatchcase
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -132,3 +133,21 @@ class CheckResult:
         if status is Status.FAIL and all(finding.severity is Severity.NOTE for finding in found):
             status = Status.SKIPPED if self.unfinished else Status.PASS
         return replace(self, findings=found, status=status)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Suppression:
+    """Findings of `check` at `where` do not count, because of `reason`."""
+
+    check: str
+    """Id or glob, e.g. ``KV3*``."""
+    reason: str
+    where: str = "*"
+    """Glob that the joint, the link or one link of the pair must match; ``*`` is anywhere."""
+
+    def covers(self, finding: Finding) -> bool:
+        """True if the rule applies to the finding."""
+        if not fnmatchcase(finding.check, self.check):
+            return False
+        names = [name for name in (finding.joint, finding.link, *(finding.pair or ())) if name is not None]
+        return self.where == "*" or any(fnmatchcase(name, self.where) for name in names)

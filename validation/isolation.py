@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.validation.finding import CheckResult
-    from kinematify.validation.stage import Recorder, StageRequest
+    from kinematify.validation.stage import StageRequest
     from kinematify.validation.summary import Summary
 
 _SHOWN = 200
@@ -41,7 +41,6 @@ _VARIABLES = {**ONE_THREAD, "MUJOCO_GL": "disable"}
 _EVERY_STAGE = (
     "numpy",
     "kinematify.validation.isolation",
-    "kinematify.validation.stage",
     "kinematify.config.validation",
     "kinematify.manipulation.plan_request",
 )
@@ -53,8 +52,8 @@ class Stage:
     """A group of checks that runs in one process."""
 
     name: str
-    run: Callable[[StageRequest, Recorder], object]
-    """What runs in the process; what it measures with is imported there."""
+    run: Callable[[StageRequest, Callable[[CheckResult | Summary], None]], object]
+    """What runs in the process and tells each result at once; what it measures with is imported there."""
     checks: tuple[tuple[str, str | None], ...]
     """Every (id, engine) that it tells if nothing goes wrong."""
     imports: tuple[str, ...] = ()
@@ -167,10 +166,7 @@ def _work(stage: Stage, request: StageRequest) -> float:
     except FileNotFoundError:
         sys.exit()  # the run was stopped meanwhile, and its folder is gone
     try:
-        # Imported here, and by a server: the sooner the caller starts that, the sooner everything ends.
-        from kinematify.validation.stage import Recorder  # noqa: PLC0415
-
-        stage.run(request, Recorder(send, request))
+        stage.run(request, send)
     except Exception:
         traceback.print_exc()  # its last line becomes the cause
         sys.exit(1)

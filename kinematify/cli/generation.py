@@ -113,7 +113,7 @@ def write_generated(
     if validated:
         from kinematify.simulation.engines import DEFAULT_ENGINES
         from kinematify.validation.isolation import start_server
-        from kinematify.validation.needs import stages_of
+        from kinematify.validation.run.needs import stages_of
 
         # Its imports take a second, on another core than the inference.
         start_server(stages_of(DEFAULT_ENGINES))

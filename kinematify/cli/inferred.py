@@ -88,7 +88,7 @@ def load_validation() -> None:
     """Start to load what `validated` needs, on another core than the inference."""
     from kinematify.simulation.engines import DEFAULT_ENGINES
     from kinematify.validation.isolation import start_server
-    from kinematify.validation.needs import needed, stages_of
+    from kinematify.validation.run.needs import needed, stages_of
 
     start_server(needed(stages_of(DEFAULT_ENGINES), _checks()))
 

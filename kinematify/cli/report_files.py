@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from kinematify.cli.progress import Reporter
+    from kinematify.validation.finding import Suppression
     from kinematify.validation.formats.report_picture import Drawing
     from kinematify.validation.run.outcome import Outcome
     from kinematify.validation.run.report import ValidationReport
-    from kinematify.validation.run.suppression_file import Suppression
 
 
 _OPTIONS = {

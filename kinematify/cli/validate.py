@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import ValidationSettings
     from kinematify.manipulation.plan_request import TaskRequest
+    from kinematify.validation.finding import Suppression
     from kinematify.validation.formats.report_picture import Drawing
     from kinematify.validation.run.outcome import Outcome
-    from kinematify.validation.run.suppression_file import Suppression
 
 
 _QUICK = "KV1*,KV2*,KV30*,KV31*,KV32*,KV801,KV802,KV803,KV804"

@@ -32,12 +32,11 @@ from kinematify.validation.run.outcome import Unusable, counted_words, severity_
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from kinematify.validation.finding import Finding
+    from kinematify.validation.finding import Finding, Suppression
     from kinematify.validation.formats.report_content import FindingBlock, Table
     from kinematify.validation.run.conclusion import FindingGroup
     from kinematify.validation.run.outcome import Outcome
     from kinematify.validation.run.report import ValidationReport
-    from kinematify.validation.run.suppression_file import Suppression
 
 MANY = 3
 """From so many findings on that differ in names and numbers only, they are a table."""

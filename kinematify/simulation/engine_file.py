@@ -51,8 +51,8 @@ class Overlap:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Run:
-    """Run of a model that is left alone, or that was given a push and let go."""
+class EngineRun:
+    """EngineRun of a model that is left alone, or that was given a push and let go."""
 
     seen: FloatArray
     """Values of all joints [rad or m], shape (steps, joints); or potential and kinetic energy [J], shape (looks, 2)."""
@@ -235,15 +235,15 @@ class EngineFile(ABC):
             depths[first, second] = max(depths.get((first, second), 0.0), depth)
         return deepest_first(depths)
 
-    def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> Run:
+    def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> EngineRun:
         """Make go at `values`, with or without contacts among the links."""
         self.begin(values, contacts=contacts)
         seen = [self.state()[0] for _ in self.steps(self._steps(seconds))]
         values_seen = np.array(seen).reshape(len(seen), len(self.joints))
         finite = bool(np.isfinite(values_seen).all())
-        return Run(seen=values_seen, complaint=self.complaint or (None if finite else NO_NUMBERS))
+        return EngineRun(seen=values_seen, complaint=self.complaint or (None if finite else NO_NUMBERS))
 
-    def release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> Run:
+    def release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> EngineRun:
         """Make go at `values` with `speeds` [rad/s or m/s], without motors and without contacts among the links.
 
         The energy is seen, first right after the push; it ends where it is no number.
@@ -253,9 +253,9 @@ class EngineFile(ABC):
         for _ in self.steps(self._steps(seconds), self.look_steps):
             energy = self.energy()
             if not math.isfinite(sum(energy)):
-                return Run(seen=np.array(seen), complaint="the energy is no number any more")
+                return EngineRun(seen=np.array(seen), complaint="the energy is no number any more")
             seen.append(energy)
-        return Run(seen=np.array(seen), complaint=self.complaint)
+        return EngineRun(seen=np.array(seen), complaint=self.complaint)
 
     def push(self, push: Push, values: Mapping[str, float], *, contacts: bool, gravity: bool = False) -> Pushed:
         """Push a joint from `values`, the others held there."""

@@ -35,7 +35,7 @@ class EngineEntry:
     holds: tuple[str, ...] = ()
     """What may connect a hand with a part (values of `kinematify.manipulation.plan_request.Hold`) where plans are
     executed and environments run in it."""
-    stands: bool = False
+    floor: bool = False
     """It sets an object on a floor (`stand`)."""
     prints_when_loaded: bool = False
     """True: it may be loaded only where what is printed goes to a file."""
@@ -50,7 +50,7 @@ class EngineEntry:
 
 
 _ENTRIES = (
-    EngineEntry(name="mujoco", title="MuJoCo", packages=("mujoco",), holds=("weld", "contact"), stands=True),
+    EngineEntry(name="mujoco", title="MuJoCo", packages=("mujoco",), holds=("weld", "contact"), floor=True),
     EngineEntry(
         name="pybullet",
         title="PyBullet",
@@ -124,7 +124,7 @@ def stand(name: str, urdf: Path, values: Mapping[str, float], seconds: float) ->
     """Set a file on a floor with its lowest point, and leave it alone.
 
     Args:
-        name: Of an engine that `EngineEntry.stands`.
+        name: Of an engine that `EngineEntry.floor`.
         urdf: The file.
         values: Of its joints [rad or m].
         seconds: How long.

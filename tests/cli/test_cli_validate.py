@@ -18,7 +18,7 @@ from kinematify.cli.app import run
 from kinematify.errors import InputError
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity
-from kinematify.validation.needs import keys
+from kinematify.validation.run.needs import keys
 from kinematify.validation.run.report import ValidationReport
 from kinematify.validation.run.suppression_file import load_suppressions
 from tests.reports import add_checks, finding, full_report, report, result

@@ -10,8 +10,8 @@ import pytest
 
 from kinematify.errors import EnvironmentFault
 from kinematify.simulation.engines import ENGINES, EngineEntry, require_engine
-from kinematify.validation import needs
 from kinematify.validation.finding import Severity, Status
+from kinematify.validation.run import needs
 from tests.simulation.point_engine import ENTRY
 from tests.validation.engine_models import cabinet, tell
 from tests.validation.test_as_loaded import request_of

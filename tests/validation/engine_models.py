@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinematify.validation.finding import CheckResult
-from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.run.recorder import Recorder
+from kinematify.validation.stage import StageRequest
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -18,8 +18,9 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_about
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult, Finding
-from kinematify.validation.needs import joints
-from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.run.needs import joints
+from kinematify.validation.run.recorder import Recorder
+from kinematify.validation.stage import StageRequest
 from kinematify.validation.summary import JointSummary
 from tests.known import KnownJoint, KnownObject
 

@@ -15,12 +15,11 @@ import trimesh
 
 from kinematify.config.validation import load_settings
 from kinematify.simulation.engines import DEFAULT_ENGINES, load_file
-from kinematify.validation import needs
 from kinematify.validation.as_loaded_context import AsLoadedContext
 from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status, not_finished
-from kinematify.validation.run import validate
+from kinematify.validation.run import needs, validate
 from kinematify.validation.run.conclusion import concluded
 from kinematify.validation.run.loaded_words import (
     as_loaded_words,

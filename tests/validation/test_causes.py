@@ -10,13 +10,12 @@ from lxml import etree
 
 from kinematify.robot.read import read_robot
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
+from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status, Suppression
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.junit import as_junit
 from kinematify.validation.formats.sarif import as_sarif
 from kinematify.validation.run.conclusion import concluded
 from kinematify.validation.run.report import ValidationReport
-from kinematify.validation.run.suppression_file import Suppression
 
 if TYPE_CHECKING:
     from pathlib import Path

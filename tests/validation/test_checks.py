@@ -15,12 +15,13 @@ from kinematify.validation.check import REGISTRY, OpenCheck, check
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Cause, Severity, Status
 from kinematify.validation.isolation import _EVERY_STAGE
-from kinematify.validation.needs import (
+from kinematify.validation.run.needs import (
     keys,
     stages_of,
     task_stage,
 )
-from kinematify.validation.stage import Recorder, StageRequest, Subjects
+from kinematify.validation.run.recorder import Recorder, Subjects
+from kinematify.validation.stage import StageRequest
 from tests.places import ROOT
 
 HEAVY = {"torch", "mujoco", "pybullet", "pinocchio", "coal", "fcl", "igl", "ompl", "trimesh", "scipy", "pydantic"}

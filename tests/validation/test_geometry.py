@@ -12,8 +12,9 @@ import pytest
 from kinematify.config.validation import load_settings
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
-from kinematify.validation.needs import geometry
-from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.run.needs import geometry
+from kinematify.validation.run.recorder import Recorder
+from kinematify.validation.stage import StageRequest
 from kinematify.validation.summary import JointSummary, PairTable
 from tests.validation.engine_models import Box, Model, Part, cabinet, tell
 

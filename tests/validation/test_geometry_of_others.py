@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kinematify.validation.finding import Severity
-from kinematify.validation.needs import geometry
+from kinematify.validation.run.needs import geometry
 from tests.validation.engine_models import Box, Model, Part, tell
 from tests.validation.test_geometry import beam, block, found, request_for
 

@@ -14,8 +14,9 @@ from kinematify.config.validation import load_settings
 from kinematify.robot.robot import Robot
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
-from kinematify.validation.needs import meshes
-from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.run.needs import meshes
+from kinematify.validation.run.recorder import Recorder
+from kinematify.validation.stage import StageRequest
 
 SETTINGS = load_settings()
 MESH_CHECKS = [check for check in CHECKS if "KV15" <= check < "KV16"]

@@ -13,8 +13,9 @@ from lxml import etree
 from kinematify.config.validation import load_settings
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
-from kinematify.validation.needs import meshes
-from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.run.needs import meshes
+from kinematify.validation.run.recorder import Recorder
+from kinematify.validation.stage import StageRequest
 from tests.validation.engine_models import Box, Model, Part
 
 SETTINGS = load_settings()

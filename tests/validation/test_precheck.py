@@ -13,8 +13,9 @@ from kinematify.errors import DescriptionError
 from kinematify.robot.read import read_robot
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
-from kinematify.validation.needs import file
-from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.run.needs import file
+from kinematify.validation.run.recorder import Recorder
+from kinematify.validation.stage import StageRequest
 
 CLEAN = """\
 <?xml version="1.0"?>

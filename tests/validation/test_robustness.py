@@ -9,8 +9,8 @@ import pytest
 from benchmarks.corruption.bases import Base, built_base
 from benchmarks.corruption.cases import KINDS, READY, CorruptionTask, run_case, write_case
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.needs import needed, stages_of
 from kinematify.validation.run import validate
+from kinematify.validation.run.needs import needed, stages_of
 
 FILE_CHECKS = tuple(check for check in CHECKS if check.startswith(("KV1", "KV2")))
 

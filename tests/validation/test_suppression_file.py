@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from kinematify.errors import InputError
+from kinematify.validation.finding import Suppression
 from kinematify.validation.run.conclusion import concluded
-from kinematify.validation.run.suppression_file import Suppression, load_suppressions, unused_suppressions
+from kinematify.validation.run.suppression_file import load_suppressions, unused_suppressions
 from tests.reports import add_checks, finding, report, result
 
 

@@ -18,7 +18,7 @@ from kinematify.processes.start import ONE_THREAD
 from kinematify.validation import run as validation
 from kinematify.validation.checks import checks_of
 from kinematify.validation.isolation import Stage, StageEnd, run_stages
-from kinematify.validation.needs import keys
+from kinematify.validation.run.needs import keys
 from kinematify.validation.stage import StageRequest
 from tests.validation.engine_models import cabinet
 
@@ -26,33 +26,32 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from kinematify.validation.stage import Recorder
 
 CHECKS_LEFT = keys(checks_of("KV34"))
 
 
-def spin(_request: StageRequest, _recorder: Recorder) -> None:
+def spin(_request: StageRequest, _tell: object) -> None:
     """Work without end."""
     while True:
         pass
 
 
-def sleep(_request: StageRequest, _recorder: Recorder) -> None:
+def sleep(_request: StageRequest, _tell: object) -> None:
     """Wait for what never comes."""
     time.sleep(600.0)
 
 
-def nap(_request: StageRequest, _recorder: Recorder) -> None:
+def nap(_request: StageRequest, _tell: object) -> None:
     """Wait as a process does whose machine is busy: longer on the clock than its processor time may be."""
     time.sleep(2.5)
 
 
-def crash(_request: StageRequest, _recorder: Recorder) -> None:
+def crash(_request: StageRequest, _tell: object) -> None:
     """Die as an engine does."""
     os.kill(os.getpid(), signal.SIGSEGV)
 
 
-def end_of(folder: Path, work: Callable[[StageRequest, Recorder], None], *, seconds: float) -> StageEnd:
+def end_of(folder: Path, work: Callable[[StageRequest, object], None], *, seconds: float) -> StageEnd:
     """How a stage ends."""
     request = StageRequest(
         urdf=folder / "model.urdf",
@@ -67,7 +66,7 @@ def end_of(folder: Path, work: Callable[[StageRequest, Recorder], None], *, seco
 
 
 @pytest.mark.parametrize("work", [spin, sleep])
-def test_a_stage_out_of_time_is_late(work: Callable[[StageRequest, Recorder], None], tmp_path: Path) -> None:
+def test_a_stage_out_of_time_is_late(work: Callable[[StageRequest, object], None], tmp_path: Path) -> None:
     end = end_of(tmp_path, work, seconds=0.1)
     assert end.late
     assert "was stopped" in (end.failure or "")
@@ -99,7 +98,7 @@ assert worker_context().get_start_method() == "fork", "a library was loaded that
 
 @pytest.mark.parametrize(("work", "status"), [(spin, 3), (crash, 0)])
 def test_what_was_not_finished_is_no_finding_and_ends_with_3(
-    work: Callable[[StageRequest, Recorder], None],
+    work: Callable[[StageRequest, object], None],
     status: int,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,

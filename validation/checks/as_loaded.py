@@ -11,15 +11,14 @@ import numpy as np
 from kinematify.robot.mesh_paths import GLTF_SUFFIXES
 from kinematify.simulation.engine_file import Unloadable
 from kinematify.validation.check import CauseScope, OpenCheck, check
-from kinematify.validation.checks.follow import AT_REST, NOT_A_BODY
-from kinematify.validation.checks.needs import late
+from kinematify.validation.checks.shared import AT_REST, NOT_A_BODY, late
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from kinematify.robot.mechanism import Travel
-    from kinematify.simulation.engine_file import Overlap, Run
+    from kinematify.simulation.engine_file import EngineRun, Overlap
     from kinematify.simulation.engines import EngineEntry
     from kinematify.validation.as_loaded_context import AsLoadedContext, VelocityProbe
 
@@ -254,14 +253,14 @@ def _at_most_warning(context: AsLoadedContext, *, plainly: bool) -> Severity | N
 def _thrown_by(context: AsLoadedContext, travel: Travel) -> Overlap | None:
     """Return the overlap at rest that moves a joint which stays where it is without contacts."""
 
-    def stays_in(run: Run) -> bool:
+    def stays_in(run: EngineRun) -> bool:
         return float(np.abs(context.way(run, travel) - travel.rest).max()) <= context.still(travel)
 
     thrown = not stays_in(context.passive_run) and stays_in(context.left_without_contacts)
     return context.between(travel, context.overlaps) if thrown else None
 
 
-def _beyond(context: AsLoadedContext, travel: Travel, run: Run | None = None) -> float:
+def _beyond(context: AsLoadedContext, travel: Travel, run: EngineRun | None = None) -> float:
     """Return how far beyond its range a joint ends that was left alone [rad or m]; 0 without limits."""
     last = float(context.way(run or context.passive_run, travel)[-1])
     return max(travel.lower - last, last - travel.upper) if travel.limited else 0.0

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.validation.check import check
-from kinematify.validation.checks.needs import something_collides
+from kinematify.validation.checks.shared import something_collides
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:

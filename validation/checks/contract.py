@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from kinematify.validation.as_loaded_context import AsLoadedContext
     from kinematify.validation.check import OpenCheck
 
-_STANDS = attrgetter("stands")
+_FLOOR = attrgetter("floor")
 _SECONDS = 3.0
 """For which an object is left alone [s]."""
 _LIMITS = {"moved": 0.05, "turned": np.radians(5.0), "deepest": 1e-3}
@@ -30,7 +30,7 @@ _LIMITS = {"moved": 0.05, "turned": np.radians(5.0), "deepest": 1e-3}
     fails="Contract: the object does not rest on a floor",
     severity=Severity.ERROR,
     cause=Cause.PHYSICS,
-    runs_in=_STANDS,
+    runs_in=_FLOOR,
 )
 def rests_on_floor(result: OpenCheck, context: AsLoadedContext) -> None:
     """Only with `--contract`. The unchanged file, its base free, is set on a floor in MuJoCo with its lowest point and
@@ -63,7 +63,7 @@ def rests_on_floor(result: OpenCheck, context: AsLoadedContext) -> None:
     fails="Contract: a motor does not move a joint",
     severity=Severity.ERROR,
     cause=Cause.PHYSICS,
-    runs_in=_STANDS,
+    runs_in=_FLOOR,
     follows={"KV804": CauseScope.JOINT},
     needs=(not_loaded, nothing_moves),
 )

@@ -9,7 +9,7 @@ import numpy as np
 
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.check import CauseScope, check
-from kinematify.validation.checks.needs import something_follows, something_moves
+from kinematify.validation.checks.shared import something_follows, something_moves
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.validation.check import CauseScope, check
-from kinematify.validation.checks.needs import something_moves, something_weighs
+from kinematify.validation.checks.shared import something_moves, something_weighs
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:

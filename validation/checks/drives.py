@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.check import CauseScope, check
-from kinematify.validation.checks.needs import something_moves, something_weighs
+from kinematify.validation.checks.shared import something_moves, something_weighs
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:

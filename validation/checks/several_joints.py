@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.validation.check import CauseScope, check
-from kinematify.validation.checks.needs import joints_move
+from kinematify.validation.checks.shared import joints_move
 from kinematify.validation.finding import Cause, Severity, not_finished
 from kinematify.validation.geometry.formatting import configuration
 from kinematify.validation.geometry.mirror_pairs import twins_at_odds

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from kinematify.robot.appearance import Appearance
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.robot import RigidGroup, Robot
-    from kinematify.validation.stage import Recorder
 
 _FILE = "picture.png"
 _SCENE = "scene.json"
@@ -110,7 +109,7 @@ def _scene(robot: Robot, model: KinematicModel) -> str:
     return "" if scene is None else json.dumps(scene, allow_nan=False)
 
 
-def run(request: StageRequest, _recorder: Recorder) -> None:
+def run(request: StageRequest, _tell: object) -> None:
     """Draw the model of a request into its folder; body of the process."""
     robot = read_robot(request.urdf, package_dirs=request.package_dirs, appearance=True)
     model = shown_model(robot)

@@ -25,22 +25,23 @@ from kinematify.validation.document_copy import LEFT_OUT, readable_copy, resolve
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
-from kinematify.validation.needs import (
+from kinematify.validation.model_cache import has_model
+from kinematify.validation.run.conclusion import concluded
+from kinematify.validation.run.loaded_words import CONTRACT
+from kinematify.validation.run.needs import (
     file,
     geometry_stage,
-    has_model,
     keys,
     later_stages,
     mesh_stage,
     needed,
     task_stage,
 )
-from kinematify.validation.run.conclusion import concluded
-from kinematify.validation.run.loaded_words import CONTRACT
+from kinematify.validation.run.recorder import Recorder
 from kinematify.validation.run.report import ValidationReport
-from kinematify.validation.source import Source
-from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.stage import StageRequest
 from kinematify.validation.summary import JointSummary, PairTable
+from kinematify.validation.validated_file import ValidatedFile
 from kinematify.versions import require
 
 if TYPE_CHECKING:
@@ -50,11 +51,11 @@ if TYPE_CHECKING:
     from kinematify.manipulation.plan_request import TaskRequest
     from kinematify.robot.robot import Robot
     from kinematify.validation.check import Check
-    from kinematify.validation.document_copy import DocumentCopy
+    from kinematify.validation.finding import Suppression
     from kinematify.validation.isolation import Stage, StageEnd
-    from kinematify.validation.needs import CheckKey
-    from kinematify.validation.run.suppression_file import Suppression
+    from kinematify.validation.run.needs import CheckKey
     from kinematify.validation.summary import Summary
+    from kinematify.validation.validated_file import DocumentCopy
 
     Progress = Callable[[str, float], None]
 
@@ -113,7 +114,7 @@ def validate(
             places = tuple(Path(item).absolute() for item in package_dirs)
             description = open_description(run.path.absolute(), Path(folder), places, arguments)
             run.robot = _bodies(description.urdf)
-            run.source = replace(Source.of(description), to_finish=run.command(settings.budget.seconds))
+            run.source = replace(ValidatedFile.of(description), to_finish=run.command(settings.budget.seconds))
             request = StageRequest(
                 urdf=description.urdf,
                 package_dirs=places,
@@ -174,7 +175,7 @@ class _Run:
         self.checks = checks
         self.selected = selected
         self.interrupted = False
-        self.source = Source()
+        self.source = ValidatedFile()
         self.robot: Robot | None = None
         self._progress = progress or (lambda stage, fraction: None)
         self._results: dict[CheckKey, CheckResult] = {}

@@ -1,4 +1,4 @@
-"""What the results of all checks mean together: what engines agree on, what the user accepts, and causes.
+"""The meaning of all results together: what engines agree on, what the user accepts, and causes.
 
 One cause, one finding: what follows from another finding is reported under it and not counted beside it. Which checks
 can be the cause of which stands at each check (`Check.follows`), and what both must be about.
@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from kinematify.robot.robot import Robot
-    from kinematify.validation.finding import CheckResult, Finding
-    from kinematify.validation.run.suppression_file import Suppression
+    from kinematify.validation.finding import CheckResult, Finding, Suppression
 
 _ORDER = tuple(Severity)
 _FAMILY, _OPENS, _ENERGY = "KV8", "KV801", "KV806"

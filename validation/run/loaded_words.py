@@ -1,4 +1,4 @@
-"""What the engines make of the untouched file (KV8xx), in a line or two."""
+"""The lines of a report on the untouched file in engines (KV8xx), and on the contract for objects."""
 
 from __future__ import annotations
 

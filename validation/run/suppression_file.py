@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any
 
@@ -17,13 +16,12 @@ import yaml
 
 from kinematify.errors import InputError
 from kinematify.validation.checks import CHECKS, find_check
-from kinematify.validation.finding import Severity
+from kinematify.validation.finding import Severity, Suppression
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kinematify.validation.finding import Finding
     from kinematify.validation.run.report import ValidationReport
 
 _KEYS = ("check", "where", "reason")
@@ -33,24 +31,6 @@ _SPECIAL = re.compile(r"([\[*?])")
 _REMOVED = re.compile(r"KV[4569]\d\d$|KV332$|KV34[123567]$")
 """Checks of earlier releases: a rule that names one covers nothing, and is listed as such."""
 _FORM = "Each rule is `- check: KV302`, `where: NAME` (joint or link, * if omitted) and `reason: WHY`."
-
-
-@dataclass(frozen=True, kw_only=True)
-class Suppression:
-    """Findings of `check` at `where` do not count, because of `reason`."""
-
-    check: str
-    """Id or glob, e.g. ``KV3*``."""
-    reason: str
-    where: str = "*"
-    """Glob that the joint, the link or one link of the pair must match; ``*`` is anywhere."""
-
-    def covers(self, finding: Finding) -> bool:
-        """True if the rule applies to the finding."""
-        if not fnmatchcase(finding.check, self.check):
-            return False
-        names = [name for name in (finding.joint, finding.link, *(finding.pair or ())) if name is not None]
-        return self.where == "*" or any(fnmatchcase(name, self.where) for name in names)
 
 
 def load_suppressions(path: Path) -> tuple[Suppression, ...]:

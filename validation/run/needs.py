@@ -1,4 +1,4 @@
-"""What checks need, and what makes it once: file, meshes, geometry, joints, an engine, a robot with its task.
+"""Needs of checks, and what makes each once: file, meshes, geometry, joints, an engine, a robot with its task.
 
 Each is made in a process of its own, and what it is made with is imported there. A check says by the class of its
 second argument which of them it looks at.
@@ -6,7 +6,6 @@ second argument which of them it looks at.
 
 from __future__ import annotations
 
-import pickle
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -14,24 +13,26 @@ from kinematify.robot.urdf_text import read_text
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.isolation import Stage
-from kinematify.validation.stage import Subjects
+from kinematify.validation.model_cache import cache_model, model_of
+from kinematify.validation.run.recorder import Recorder, Subjects
 from kinematify.validation.summary import summary_of
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Sequence
-    from pathlib import Path
+    from collections.abc import Callable, Collection, Iterable, Sequence
 
     from kinematify.robot.robot import Robot
     from kinematify.validation.check import Check
+    from kinematify.validation.finding import CheckResult
     from kinematify.validation.geometry.look import JointMotion
-    from kinematify.validation.stage import Recorder, StageRequest
+    from kinematify.validation.stage import StageRequest
+    from kinematify.validation.summary import Summary
+
+    Run = Callable[[StageRequest, Recorder], object]
 
 CheckKey = tuple[str, str | None]
 """Id of a check and the engine it runs in."""
 _SHOWN = 50
 """Findings per check of the text; what a thousand lines have in common is seen in the first fifty."""
-_MODEL = "model.pickle"
-"""In the folder of a run, which nobody else writes to."""
 _SCORERS = "evidence"
 """Configuration of the scorers; coarser than that of the inference, for the joint is known already."""
 
@@ -63,35 +64,11 @@ def meshes(request: StageRequest, recorder: Recorder) -> Robot | None:
     look = MeshContext(request)
     if recorder.run({"MeshContext": Subjects(items=lambda: [look])}):
         return None
-    partly = request.work / f"{_MODEL}.partly"
-    with partly.open("wb") as file:
-        pickle.dump(look.model, file, protocol=pickle.HIGHEST_PROTOCOL)
-    partly.replace(request.work / _MODEL)  # a stage that is stopped leaves no half of it
+    cache_model(look.model, request.work)
     if recorder.is_selected(*(name for name, _ in _told("Physics"))):
         physics = measure(look.model, request.settings.physics)
         recorder.run({"Physics": Subjects(items=lambda: [physics])})
     return look.model
-
-
-def has_model(work: Path) -> bool:
-    """True if a stage of the run with this folder left the model."""
-    return (work / _MODEL).is_file()
-
-
-def model_of(request: StageRequest) -> Robot:
-    """Read the model of a run: what an earlier stage left, or else the files.
-
-    Raises:
-        DescriptionError: As for `read_robot`.
-    """
-    from kinematify.robot.read import read_robot
-
-    path = request.work / _MODEL
-    if not path.is_file():
-        return read_robot(request.urdf, package_dirs=request.package_dirs)
-    with path.open("rb") as file:
-        model: Robot = pickle.load(file)
-    return model
 
 
 def geometry(request: StageRequest, recorder: Recorder) -> None:
@@ -166,7 +143,7 @@ def engine(request: StageRequest, recorder: Recorder, *, name: str) -> None:
 
 
 def task(request: StageRequest, recorder: Recorder) -> None:
-    """Let a robot use the object."""
+    """Plan, execute and film how a robot uses the object."""
     from kinematify.validation.task.pull_task import PullTask
 
     if request.task is None:
@@ -188,16 +165,25 @@ def _told(*subjects: str) -> tuple[CheckKey, ...]:
     return keys(check for check in CHECKS.values() if check.subject in subjects)
 
 
+def _stage(name: str, run: Run, checks: tuple[CheckKey, ...], *imports: str, library: str | None = None) -> Stage:
+    imports = ("kinematify.validation.run.recorder", *imports)
+    return Stage(name=name, run=partial(_recorded, run), checks=checks, imports=imports, library=library)
+
+
+def _recorded(run: Run, request: StageRequest, tell: Callable[[CheckResult | Summary], None]) -> None:
+    """Run a stage in its process."""
+    run(request, Recorder(tell, request))
+
+
 def mesh_stage() -> Stage:
     """Meshes and declared physics; what comes later needs readable meshes."""
-    imports = ("kinematify.validation.asset.rigid_bodies", "kinematify.validation.asset.mesh_look")
-    return Stage(name="asset", run=meshes, checks=_told("MeshContext", "Physics"), imports=imports)
+    imports = "kinematify.validation.asset.rigid_bodies", "kinematify.validation.asset.mesh_look"
+    return _stage("asset", meshes, _told("MeshContext", "Physics"), *imports)
 
 
 def geometry_stage() -> Stage:
     """Exact geometry at rest and in motion."""
-    imports = ("kinematify.validation.geometry.look",)
-    return Stage(name="geometry", run=geometry, checks=_told("GeometryContext", "JointMotion"), imports=imports)
+    return _stage("geometry", geometry, _told("GeometryContext", "JointMotion"), "kinematify.validation.geometry.look")
 
 
 def later_stages(chosen: Sequence[str]) -> list[Stage]:
@@ -206,18 +192,18 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
     The evidence of the contacts, and the untouched file in each engine.
     """
     parts = ("bodies_at_rest", "case", "measure", "loop_pins")
-    evidence = Stage(
-        name="evidence",
-        run=joints,
-        checks=_told("JointCase", "SharedPin"),
-        imports=tuple(f"kinematify.validation.evidence.{name}" for name in parts),
+    evidence = _stage(
+        "evidence",
+        joints,
+        _told("JointCase", "SharedPin"),
+        *(f"kinematify.validation.evidence.{name}" for name in parts),
     )
     return [evidence] + [
-        Stage(
-            name=f"{name} as loaded",
-            run=partial(engine, name=name),
-            checks=tuple(key for key in _told("AsLoadedContext") if key[1] == name),
-            imports=("kinematify.validation.as_loaded_context",),
+        _stage(
+            f"{name} as loaded",
+            partial(engine, name=name),
+            tuple(key for key in _told("AsLoadedContext") if key[1] == name),
+            "kinematify.validation.as_loaded_context",
             library=None if ENGINES[name].prints_when_loaded else ENGINES[name].module,
         )
         for name in chosen
@@ -226,7 +212,7 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
 
 def task_stage() -> Stage:
     """A robot uses the object; it comes after all others, since it wants to know which joints they doubt."""
-    return Stage(name="task", run=task, checks=_told("PullTask"))
+    return _stage("task", task, _told("PullTask"))
 
 
 def stages_of(chosen: Sequence[str]) -> list[Stage]:

@@ -11,9 +11,9 @@ from kinematify.validation.finding import is_unfinished
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from pathlib import Path
 
     from kinematify.robot.description import Description
-    from kinematify.validation.document_copy import DocumentCopy
     from kinematify.validation.finding import Finding
 
 _RANGE = "KV220"
@@ -22,7 +22,24 @@ _OF_TEXT = ("KV104", "KV143", "KV144")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Source:
+class DocumentCopy:
+    """A copy, and what it does without."""
+
+    path: Path
+    shapes: frozenset[str] = frozenset()
+    """Links that lack a shape."""
+    joints: frozenset[str] = frozenset()
+    """Joints that are fixed in it."""
+
+    def doubts(self, finding: Finding) -> bool:
+        """True if a finding on the copy may come of what it lacks."""
+        return (
+            finding.link in self.shapes or finding.joint in self.joints or bool({*(finding.pair or ())} & self.shapes)
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ValidatedFile:
     """A file as findings name it; it crosses a process border, so it holds plain data only."""
 
     lines: Mapping[tuple[str, str], int] = field(default_factory=dict)
@@ -39,7 +56,7 @@ class Source:
     """How a check is finished that time ran out for."""
 
     @classmethod
-    def of(cls, description: Description) -> Source:
+    def of(cls, description: Description) -> ValidatedFile:
         """Look up what every finding needs."""
         if description.form != "urdf":
             form, endless = description.title, description.endless

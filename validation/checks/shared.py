@@ -1,16 +1,28 @@
-"""Needs of several checks, each as the reason why there is nothing to look at, or None."""
+"""Shared by several checks: needs, each as the reason why there is nothing to look at, or None, and causes."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from kinematify.robot.joint_type import JointType
+from kinematify.validation.check import CauseScope
 from kinematify.validation.finding import not_finished
 
 if TYPE_CHECKING:
     from kinematify.validation.as_loaded_context import AsLoadedContext
     from kinematify.validation.asset.rigid_bodies import Physics
     from kinematify.validation.geometry.look import GeometryContext
+
+
+AT_REST = {"KV301": CauseScope.PAIR, "KV302": CauseScope.PAIR}
+"""Two bodies are in each other as the file is."""
+NOT_A_BODY = {
+    "KV201": CauseScope.MODEL,
+    "KV202": CauseScope.MODEL,
+    "KV204": CauseScope.MODEL,
+    "KV205": CauseScope.MODEL,
+}
+"""Masses and inertias that no engine can compute with."""
 
 
 def something_moves(physics: Physics) -> str | None:
