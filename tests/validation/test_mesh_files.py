@@ -56,7 +56,7 @@ def check_model(path: Path) -> tuple[Robot | None, dict[str, CheckResult]]:
         package_dirs=(),
         work=path.parent,
         settings=SETTINGS,
-        selected=frozenset(CHECKS),
+        selected=frozenset(MESH_CHECKS),
         deadline=time.process_time() + 60.0,
     )
     model = meshes(request, Recorder(results.append, request))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from kinematify.robot.urdf_text import read_text
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.checks import CHECKS
+from kinematify.validation.finding import Status
 from kinematify.validation.isolation import Stage
 from kinematify.validation.model_cache import cache_model, model_of
 from kinematify.validation.run.recorder import Recorder, Subjects
@@ -62,7 +63,8 @@ def meshes(request: StageRequest, recorder: Recorder) -> Robot | None:
     from kinematify.validation.asset.rigid_bodies import measure
 
     look = MeshContext(request)
-    if recorder.run({"MeshContext": Subjects(items=lambda: [look])}):
+    unusable = Status.BLOCKED, "a mesh cannot be used"
+    if recorder.run({"MeshContext": Subjects(items=lambda: [look])}, stopped=unusable):
         return None
     cache_model(look.model, request.work)
     if recorder.is_selected(*(name for name, _ in _told("Physics"))):
@@ -152,7 +154,7 @@ def task(request: StageRequest, recorder: Recorder) -> None:
     recorder.run(
         {"PullTask": Subjects(items=lambda: [robot])},
         engines=(None, *request.task_engines),
-        stopped="the task cannot be set up, see KV701",
+        stopped=(Status.SKIPPED, "the task cannot be set up, see KV701"),
     )
 
 

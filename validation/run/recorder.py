@@ -67,7 +67,7 @@ class Recorder:
         engines: Sequence[str | None] = (None,),
         *,
         most: int | None = None,
-        stopped: str | None = None,
+        stopped: tuple[Status, str] | None = None,
     ) -> bool:
         """Run all checks of some subjects that were asked for; True if a guard forbids to go on.
 
@@ -75,7 +75,7 @@ class Recorder:
             subjects: By the class that checks ask for (`Check.subject`).
             engines: In which they run; None: in none.
             most: Findings of a check that are kept.
-            stopped: Why the others do not apply where a guard forbids to go on; None: nothing is said of them.
+            stopped: Status and reason of the others where a guard forbids to go on; None: nothing is said of them.
         """
         checks = [check for check in CHECKS.values() if check.subject in subjects and self.is_selected(check.id)]
         for check in sorted(checks, key=lambda check: not check.guard):
@@ -84,8 +84,8 @@ class Recorder:
                 break
             for engine in [engine for engine in check.engines or (None,) if engine in engines]:
                 with self._check(check.id, engine) as result:
-                    if forbidden:
-                        result.skip(stopped or "")
+                    if forbidden and stopped is not None:
+                        result.status, result.reason = stopped
                     else:
                         self._look(result, subjects[check.subject])
                     if most is not None:
