@@ -162,8 +162,10 @@ def command(**given: Any) -> int:
         with writing(out), progress_reporter() as progress:
             status, answer, said = model_of_parts(given, out, config, progress)
         return _ended(status, answer, given["json_to"], lambda: say(said))
-    from kinematify.cli.generation import write_generated
+    from kinematify.processes.start import ONE_THREAD, environment_variables
 
+    with environment_variables(ONE_THREAD):  # several cost more than they gain, and NumPy reads them as it loads
+        from kinematify.cli.generation import write_generated
     ready = None if source is not None else _builder(given)
     by: list[Any] = []
 

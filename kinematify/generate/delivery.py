@@ -147,7 +147,12 @@ def deliver(request: Request, *, seed: int | None = None) -> BuildResult:
     Raises:
         InputError: A parameter is out of its bounds, or nothing can be built.
     """
-    family, faults = request.family, list[str]()
+    family, faults, size = request.family, list[str](), request.size
+    sides = {item.name: item.default for item in family.parameters if item.name in ("width", "depth")}
+    if len(sides) == 2 and {"length", "width"} <= size.keys() and "depth" not in size:  # how long is one of them
+        short = min(sides, key=lambda name: float(sides[name]))
+        across = {"length": "depth" if short == "width" else "width", "width": short}
+        request = request.model_copy(update={"size": {across.get(name, name): far for name, far in size.items()}})
     values = dict(_values(family, request, faults))
     made = build(family, values, seed=seed)
     if fitted := _refitted(family, made, request):
@@ -494,15 +499,22 @@ def part_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str]
     if part.hinge and not _is_hinged(made, names, part.hinge):
         yield f"not hinged on the {part.hinge}"
     joints = [made.joint_above[name] for name in names if name in made.joint_above]
-    if part.motion and not (joints and all(moves_so(joint, part.motion) for joint in joints)):
+    how = part.motion
+    if how and not (joints and all(moves_so(joint, how) or _is_carried_so(made, joint, how) for joint in joints)):
         kinds = listed(sorted({joint.kind.value for joint in joints} or {"part of the base"}))
-        yield f"{part.motion} was asked for, it is {kinds}"
+        yield f"{how} was asked for, it is {kinds}"
         return
     leading = [joint for joint in joints if joint.mimic is None and joint.kind is not JointType.FIXED]
     if part.range and not (leading and all(_goes(joint, part.range) for joint in leading)):
         yield f"range {_shown(part.range, joints)} was asked for, it is {_ranges(joints)}"
     if part.open is not None and not (leading and all(_stands(joint, part.open) for joint in leading)):
         yield f"it does not open so far; its range is {_ranges(joints)}"
+
+
+def _is_carried_so(made: Blueprint, joint: BlueprintJoint, motion: str) -> bool:
+    """True if what carries a part that turns without end moves so: the fork of a caster."""
+    above = made.joint_above.get(joint.parent)
+    return above is not None and joint.kind is JointType.CONTINUOUS and moves_so(above, motion)
 
 
 def _size_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str], part: PartRequest) -> Iterator[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from functools import cache, cached_property
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -61,8 +61,8 @@ class CountParameters(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    title: str
-    """A few words for lists."""
+    title: str = ""
+    """A few words for lists; the first of its words if empty."""
     words: tuple[str, ...] = Field(min_length=1)
     """How people call it, singular."""
     part_words: dict[str, tuple[str, ...]] = Field({})
@@ -81,7 +81,7 @@ class CountParameters(BaseModel):
         """The object as a family that leaves nothing to choose but its counts and what every family does."""
         return Family(
             name=self.category,
-            title=self.title,
+            title=self.title or self.words[0],
             words=self.words,
             parameters=details_of(self.details) + tuple(_repeated(word, said) for word, said in self.counts.items()),
             material=material,
@@ -89,27 +89,6 @@ class CountParameters(BaseModel):
             part_words=self.part_words,
             build=build,
         )
-
-
-class WrittenObject(CountParameters):
-    """An object whose blueprint is only read once it is built, since it is most of a file."""
-
-    name: Name
-    text: str
-    """Of its file."""
-
-    @cached_property
-    def described(self) -> ObjectDescription:
-        """Return what the file says."""
-        return ObjectDescription.model_validate(parse_table(self.text))
-
-    def family(self) -> Family:
-        """Implement `ObjectDescription`."""
-        material = re.search(r"\nparts:\n- name: .*\n  material: (\w+)", self.text)
-        return self.as_family(material[1] if material else "plastic", self._build)
-
-    def _build(self, values: Values, workshop: Workshop) -> None:
-        self.described.build(values, workshop)
 
 
 class ObjectDescription(CountParameters, BlueprintDescription):
@@ -129,10 +108,6 @@ class ObjectDescription(CountParameters, BlueprintDescription):
             if copy.repeated is not None:
                 self._refuse_unknown_count(copy.repeated)
         return self
-
-    def family(self) -> Family:
-        """The object as a family."""
-        return self.as_family(self.parts[0].material, self.build)
 
     def build(self, values: Values, workshop: Workshop) -> None:
         """Add the object to a workshop."""
@@ -190,14 +165,24 @@ def _joint_elsewhere(joint: BlueprintJoint, names: Mapping[str, str], transform:
     )
 
 
+def _kind_in(file: Path) -> Family:
+    """The kind of a file, of which all but its heading is only read once one is built."""
+    text = file.read_text(encoding="utf-8")
+
+    @cache
+    def described() -> ObjectDescription:
+        return ObjectDescription.model_validate({"name": file.stem, "category": file.stem, **parse_table(text)})
+
+    said = CountParameters.model_validate({"category": file.stem, **parse_table(text.partition("\nparts:\n")[0])})
+    material = re.search(r"\nparts:\n- name: .*\n  material: (\w+)", text)
+    return said.as_family(material[1] if material else "plastic", lambda *given: described().build(*given))
+
+
 @cache
 def library() -> Mapping[str, Family]:
     """Kinds that are no members of `FAMILIES`, keyed by name: those that are drawn, and blueprints."""
     found = [(item.module, item) for item in all_kinds().values() if item.name not in FAMILIES]
-    for file in sorted(_FOLDER.glob("*.yaml")):
-        text = file.read_text(encoding="utf-8")
-        said = parse_table(text.partition("\nparts:\n")[0])
-        found.append((file.stem, WrittenObject.model_validate({**said, "text": text}).family()))
+    found += [(file.stem, _kind_in(file)) for file in sorted(_FOLDER.glob("*.yaml"))]
     return {item.name: item for _, item in sorted(found, key=lambda pair: pair[0])}
 
 

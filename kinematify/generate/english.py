@@ -69,7 +69,7 @@ motion hinge: turns turning rotate rotates rotating rotatable drop tip tips tipp
 motion hinge: bends curls steers spread spreads leans hinged hinges hinge
 motion spin: spin spins spinning revolve revolves revolving
 motion tilt: tilt tilts tilting recline reclines reclining rocks rocking
-motion pan: pan pans panning swivel swivels swiveling swivelling
+motion pan: yaws pan pans panning swivel swivels swiveling swivelling
 state 0: closed shut
 state 0.15: ajar
 state 1: open opened pulled pushed propped raised lowered lifted tilted turned swung extended drawn moved folded rotated

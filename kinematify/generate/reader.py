@@ -238,7 +238,7 @@ class Sentence:
         if self._is(k, "beside") and self._cell(self.subject) and count:
             self.things[self.subject].facts["grid"] = (count, 1)
             return k + 1
-        if said is None or (self._text(k) == "one" and after in ("", "of", "side")):
+        if said is None or (self._text(k) == "one" and after in ("", "of", "side", "end")):
             return 0
         value = float(said.replace(",", "."))
         if self._is(k + 1, "lines"):
@@ -286,6 +286,8 @@ class Sentence:
         if not name or (other and k > self.stop and ("part" not in meanings or self._is_part(after))):
             return 0
         if meanings.get("part") and ("count" in waits or words != lemma(words)):
+            return 0
+        if words.startswith("hinge") and self._is(after, "side place"):
             return 0
         if waits.pop("without", False):
             value = "no" if value == "yes" else "none"

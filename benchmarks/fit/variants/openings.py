@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.generate.kinds.openings import surround
 from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import knob, lever
-from kinematify.generate.library.panels import leaf, pane, seam, surround
+from kinematify.generate.library.panels import leaf, pane, seam
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, vector
 
 if TYPE_CHECKING:

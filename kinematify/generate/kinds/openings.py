@@ -5,11 +5,35 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.library.kind import angle, kind, length, whole, yes
-from kinematify.generate.library.panels import grip, leaf, pane, seam, surround
+from kinematify.generate.library.panels import grip, leaf, pane, seam
 from kinematify.generate.procedural.solids import X, Y, Z, box
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
+
+
+def surround(d: ObjectBuilder, name: str, wide: float, low: float, high: float, front: float, *, sill: bool) -> None:
+    """Return what a leaf closes: a frame, a wall with an opening, or two posts, from `front` backward."""
+    kind = d.pick("frame", "frame", "wall", "posts")
+    side = d.draw(0.3, 1.0) if kind == "wall" else d.draw(0.03, 0.12)
+    back = front + d.draw(0.05, 0.2)
+    for s in (-1.0, 1.0):
+        d.part(name, box((s * wide / 2, front, low), (s * (wide / 2 + side), back, high)), material="wood")
+    if kind != "posts":
+        d.part(name, box((-wide / 2 - side, front, high), (wide / 2 + side, back, high + side)))
+    if sill or d.maybe(0.2):
+        d.part(name, box((-wide / 2 - side, front, low - d.draw(0.02, 0.06)), (wide / 2 + side, back, low)))
+    elif kind == "posts":
+        d.part(
+            name, box((-wide / 2 - side, front, low - 0.05), (wide / 2 + side, back, low - d.draw(0.0, 0.02) - 0.01))
+        )
+        for s in (-1.0, 1.0):
+            d.part(name, box((s * wide / 2, front, low - 0.05), (s * (wide / 2 + side), back, low)))
+    if kind == "frame" and d.maybe(0.3):  # a trim around it, on the far side
+        trim = side + d.draw(0.02, 0.05)
+        for s in (-1.0, 1.0):
+            d.part(name, box((s * wide / 2, back - 0.01, low), (s * (wide / 2 + trim), back + 0.01, high)))
+        d.part(name, box((-wide / 2 - trim, back - 0.01, high), (wide / 2 + trim, back + 0.01, high + trim)))
 
 
 @kind(

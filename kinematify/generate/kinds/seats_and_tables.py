@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.errors import InputError
 from kinematify.generate.library.builder import drawn_on
 from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.library.mechanisms import caster
 from kinematify.generate.library.panels import add_door, add_drawer
-from kinematify.generate.procedural.layout import drawer_stacks, parse_layout, stacked
+from kinematify.generate.procedural.layout import parse_layout, stacked
 from kinematify.generate.procedural.pieces.bearing_pieces import at, bent_fork, stub
 from kinematify.generate.procedural.pieces.fronts import Bay, Fitting, carcass, room
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod, union
@@ -24,6 +25,32 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.layout import Cell
     from kinematify.generate.procedural.pieces.fronts import Bay
     from kinematify.generate.procedural.workshop import Workshop
+
+
+_MOST_STACKS = 5  # of a table, and drawers in one
+
+
+def drawer_stacks(text: str) -> list[int]:
+    """Return how many drawers each stack of a table has, from left to right.
+
+    Raises:
+        InputError: The layout has other fields, or too many.
+    """
+    cells = parse_layout(text)
+    kinds = {cell.kind for cell in cells}
+    if "drawer" not in kinds or not kinds <= {"drawer", "panel"}:
+        raise InputError(
+            f"The layout {text!r} of a table needs drawers, and panels where none are, and nothing else. Write for "
+            "example '2*drawer | drawer'; for doors ask for a cabinet."
+        )
+    lefts = sorted({cell.left for cell in cells})
+    counts = [sum(cell.left == left and cell.kind == "drawer" for cell in cells) for left in lefts]
+    if len(counts) > _MOST_STACKS or max(counts) > _MOST_STACKS:
+        raise InputError(
+            f"The layout {text!r} has {len(counts)} stacks of up to {max(counts)} drawers; a table has at most "
+            f"{_MOST_STACKS} of at most {_MOST_STACKS}."
+        )
+    return counts
 
 
 @kind(

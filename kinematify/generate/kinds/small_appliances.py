@@ -6,6 +6,7 @@ from math import asin, cos, degrees, pi, radians, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
+from manifold3d import Manifold
 
 from kinematify.generate.library import mechanisms
 from kinematify.generate.library.builder import drawn_on
@@ -14,13 +15,11 @@ from kinematify.generate.library.mechanisms import button, knob
 from kinematify.generate.library.panels import add_door, add_drawer
 from kinematify.generate.procedural.pieces.bearing_pieces import FRONT, BackEdge, add_barrels, at, bent_fork, stub
 from kinematify.generate.procedural.pieces.fronts import Bay, Fitting, room
-from kinematify.generate.procedural.solids import Y, Z, ball, box, cylinder, frustum, hull, rod, union, vector
+from kinematify.generate.procedural.solids import SEGMENTS, Y, Z, ball, box, cylinder, hull, rod, union, vector
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Any
-
-    from manifold3d import Manifold
 
     from kinematify.generate.procedural.solids import Point
     from kinematify.generate.procedural.workshop import Workshop
@@ -478,8 +477,8 @@ def desk_lamp(
     def shade_of(neck: FloatArray, lean: float) -> Sequence[Manifold]:
         wide = shade
         deep = 1.1 * shade
-        cone = frustum(deep, 0.35 * wide, wide)
-        inner = frustum(deep, 0.35 * wide - 0.002, wide - 0.002).translate((0, 0, 0.004))
+        cone = Manifold.cylinder(deep, 0.35 * wide, wide, SEGMENTS)
+        inner = Manifold.cylinder(deep, 0.35 * wide - 0.002, wide - 0.002, SEGMENTS).translate((0, 0, 0.004))
         bulb = ball(0.3 * wide, (0, 0, 0.45 * deep)) + cylinder(0.12 * wide, (0, 0, 0.002), (0, 0, 0.4 * deep))
         socket = cylinder(0.3 * wide, (0, 0, -0.03), (0, 0, 0.002))
         made = [cone - inner, bulb, socket]

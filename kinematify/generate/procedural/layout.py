@@ -65,32 +65,6 @@ def parse_layout(text: str) -> tuple[Cell, ...]:
     return tuple(cells)
 
 
-_MOST_STACKS = 5  # of a table, and drawers in one
-
-
-def drawer_stacks(text: str) -> list[int]:
-    """Return how many drawers each stack of a table has, from left to right.
-
-    Raises:
-        InputError: The layout has other fields, or too many.
-    """
-    cells = parse_layout(text)
-    kinds = {cell.kind for cell in cells}
-    if "drawer" not in kinds or not kinds <= {"drawer", "panel"}:
-        raise InputError(
-            f"The layout {text!r} of a table needs drawers, and panels where none are, and nothing else. Write for "
-            "example '2*drawer | drawer'; for doors ask for a cabinet."
-        )
-    lefts = sorted({cell.left for cell in cells})
-    counts = [sum(cell.left == left and cell.kind == "drawer" for cell in cells) for left in lefts]
-    if len(counts) > _MOST_STACKS or max(counts) > _MOST_STACKS:
-        raise InputError(
-            f"The layout {text!r} has {len(counts)} stacks of up to {max(counts)} drawers; a table has at most "
-            f"{_MOST_STACKS} of at most {_MOST_STACKS}."
-        )
-    return counts
-
-
 def stacked(counts: Sequence[tuple[int, str]]) -> str:
     """Return the layout of so many fields of each kind, one kind below the other."""
     return " / ".join(f"{count}*{kind}" for count, kind in counts if count) or "shelf"

@@ -101,11 +101,6 @@ def _upright(origin: Point, towards: Point) -> FloatArray:
     return np.column_stack([side, np.cross(direction, side), direction, np.asarray(origin, dtype=np.float64)])
 
 
-def frustum(length: float, radius: float, top_radius: float) -> Manifold:
-    """Return the cone on the z axis from the origin upwards, cut off at `length`."""
-    return Manifold.cylinder(length, radius, top_radius, SEGMENTS)
-
-
 def bore(radius: float, clearance: float, start: Point, end: Point, *, segments: int = SEGMENTS) -> Manifold:
     """Return what to take away so that a shaft of `radius` turns freely with `clearance` at the tightest place."""
     return cylinder((radius + clearance) / np.cos(np.pi / segments), start, end, segments=segments)
