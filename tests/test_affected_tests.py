@@ -21,7 +21,7 @@ def affected(path: str) -> set[str]:
         ("kinematify/generate/procedural/pieces/leaves.py", "tests/generate/procedural/test_families.py"),
         ("tests/known.py", "tests/joints/test_kind.py"),
         ("tests/joints/test_kind.py", "tests/joints/test_kind.py"),
-        ("configs/fast.yaml", "tests/assembly/test_load.py"),
+        ("configs/paper.yaml", "tests/assembly/test_load.py"),
         ("CONTRIBUTING.md", "tests/test_readme.py"),
         ("validation/formats/assets/viewer.js", "tests/validation/test_formats.py"),
     ],

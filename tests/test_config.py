@@ -92,7 +92,7 @@ def test_values_of_one_configuration_are_its_own() -> None:
         ("joints: {knid: {}}", r"joints\.knid: Extra inputs"),
         ("joints: {guide: {kept: .nan}}", r"joints\.guide\.kept: .*finite"),
         ("joints:", r"joints: Input should be"),
-        ("extends: validation", "no configuration validation. Give one of default, evidence, fast, paper,"),
+        ("extends: validation", "no configuration validation. Give one of default, evidence, paper,"),
         ("extends: mine", "no configuration mine"),
         ("- joints", "must hold `key: value` lines"),
     ],
@@ -112,4 +112,4 @@ def test_settings_of_another_kind_are_refused() -> None:
     with pytest.raises(ConfigError, match="no configuration default"):
         load_settings("default")
     with pytest.raises(ConfigError, match="no configuration default"):
-        load_settings("fast")
+        load_settings("paper")

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     """Name, how it is worded and what is meant; None where there is no such golden."""
 
 _WIDTH = 100
-_CONFIGURATIONS = ("default", "fast", "evidence", "paper", "paper-base", "paper-open", "paper-plus")
+_CONFIGURATIONS = ("default", "evidence", "paper", "paper-base", "paper-open", "paper-plus")
 _COMMANDS = (
     "--version", "no-such-command", "generate --list", "generate --category no -o out",
     "generate --text a_purple_idea -o out", "generate --category cabinet --set width=99 -o out",

@@ -3,10 +3,10 @@
 The command as a user runs it, start-up included, on robots of the PyPI packages example-robot-data and pybullet_data,
 on two folders of models from elsewhere, and on furniture, appliances and vehicles: one model of each source of the
 benchmark's set everyday2, which keeps what is seen and the joints and leaves collision geometry and masses out, and
-files of other PyPI packages. Every error and warning was judged by hand once, with a reason (`configs/published.yaml`):
-*right* if the makers would agree, *wrong* if the model is fine there, *debatable* between. What nobody has judged
-counts as *unjudged*. A check that was not finished is no finding. A model whose findings changed what the command says
-counts as *seen* from then on.
+files of other PyPI packages. Every error and warning was judged by hand once, with a reason
+(`benchmarks/studies/published.yaml`): *right* if the makers would agree, *wrong* if the model is fine there,
+*debatable* between. What nobody has judged counts as *unjudged*. A check that was not finished is no finding. A model
+whose findings changed what the command says counts as *seen* from then on.
 
 With `--fix`, `kinematify fix` writes each model of the two folders. A link or joint that differs in the result, apart
 from folder and format of its meshes, and that no error, warning or note names of the look before a repair is changed
@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from benchmarks.study import Measured, Record, Work
     from kinematify.evaluation.result_record import Report
 
-_JUDGED = "published"
+_JUDGED = Path(__file__).with_suffix(".yaml")
 """Configuration with what was judged by hand."""
 _VERDICTS = ("wrong", "debatable", "right", "unjudged")
 

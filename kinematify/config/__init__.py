@@ -14,7 +14,6 @@ from kinematify.config.cavl_settings import CavlConfig
 from kinematify.config.cues import GateConfig, PanelsConfig, SlidesConfig
 from kinematify.config.joint_settings import (
     ClearanceConfig,
-    CompoundConfig,
     ConfidenceConfig,
     FramesConfig,
     FrontCuesConfig,
@@ -50,7 +49,6 @@ __all__ = [
     "CavlConfig",
     "ClearanceConfig",
     "CollisionConfig",
-    "CompoundConfig",
     "ConfidenceConfig",
     "Config",
     "ContactConfig",
@@ -111,7 +109,7 @@ class Config(StageConfig):
 
 
 def load_config(name_or_path: str | Path = "default", **overrides: Any) -> Config:
-    """Load a shipped configuration by name (``default``, ``fast``, ``paper``) or any YAML file by path.
+    """Load a shipped configuration by name (``default``, ``paper``) or any YAML file by path.
 
     Args:
         name_or_path: ``default``, for the values of the classes; name of a file in `kinematify/configs`; or a path.

@@ -64,7 +64,7 @@ def _read_layers(name_or_path: str | Path, defaults: str | None, seen: tuple[Pat
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         raise ConfigError(f"The configuration {path} cannot be read as YAML: {error}.") from error
     if not isinstance(values, dict):
-        raise ConfigError(f"The configuration {path} must hold `key: value` lines, like fast.yaml.")
+        raise ConfigError(f"The configuration {path} must hold `key: value` lines, like paper.yaml.")
     parent = values.pop("extends", None)
     return values if parent is None else _merge(_read_layers(parent, defaults, (*seen, path)), values)
 

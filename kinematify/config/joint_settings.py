@@ -190,21 +190,6 @@ class FrontCuesConfig(StageConfig):
     """Length of the sum of the unit directions of all such parts, at least."""
 
 
-class CompoundConfig(StageConfig):
-    """Joints that are one mechanism together: this is reported and changes no joint."""
-
-    meeting: float = 2.0e-3  # fits of bearings are within a thousandth of the diagonal
-    """How near axes come to one point, fraction of the object's diagonal."""
-    spread: float = 0.5  # wrists and hips are square; axes within 30 deg of a plane are a bent arm
-    """Volume that three unit axes span, at least: 1 for right angles, 0 in one plane."""
-    square: float = 0.1  # 6 deg
-    """Cosine up to which two axes count as square; also how near to opposite the axes of fingers are."""
-    cross: float = 0.6  # a cross is smaller than the forks around it
-    """Largest diagonal of the part between the axes of a universal joint, fraction of either neighbour's."""
-    beside: float = 0.1  # fingers face each other; drawers that open to both sides do so too, and rarely
-    """How far fingers may be beside each other, fraction of their distance along the axis."""
-
-
 class RailsConfig(StageConfig):
     """When the rail of a contact speaks for sliding.
 
@@ -284,4 +269,3 @@ class JointsConfig(StageConfig):
     guide: GuideConfig = section()
     rockers: RockersConfig = section()
     front_cues: FrontCuesConfig = section()
-    compound: CompoundConfig = section()

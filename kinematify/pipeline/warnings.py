@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from kinematify.assembly.part import Assembly
-    from kinematify.config import CompoundConfig, Config
+    from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
@@ -41,7 +41,7 @@ def warnings_of(
         *assembly.warnings,
         *_doubtful_base(assembly, trees, config.topology.base_doubt),
         *floating_parts(assembly, graph, trees[0]),
-        *_compound_joints(assembly, joints, graph, config.joints.compound),
+        *_compound_joints(assembly, joints, graph),
         *_followed_twins(assembly, joints, bearings),
         *unlike_twins(assembly, graph, trees[0], joints, config),
         *missed_linkages(assembly, graph, bearings, joints, config),
@@ -117,11 +117,9 @@ def floating_parts(assembly: Assembly, graph: ContactGraph, tree: KinematicTree)
     return warnings
 
 
-def _compound_joints(
-    assembly: Assembly, joints: Sequence[JointEstimate], graph: ContactGraph, config: CompoundConfig
-) -> list[str]:
+def _compound_joints(assembly: Assembly, joints: Sequence[JointEstimate], graph: ContactGraph) -> list[str]:
     """Tell of joints that are one mechanism together."""
-    found = compounds(assembly, joints, graph.clusters, config)
+    found = compounds(assembly, joints, graph.clusters)
     return [described(compound, assembly.names) for compound in found]
 
 
@@ -198,6 +196,18 @@ def cut_parts(assembly: Assembly, groups: Sequence[Sequence[int]], mains: Sequen
     return warnings
 
 
+_MEETING = 2.0e-3  # fits of bearings are within a thousandth of the diagonal
+"""How near axes come to one point, fraction of the object's diagonal."""
+_SPREAD = 0.5  # wrists and hips are square; axes within 30 deg of a plane are a bent arm
+"""Volume that three unit axes span, at least: 1 for right angles, 0 in one plane."""
+_SQUARE = 0.1  # 6 deg
+"""Cosine up to which two axes count as square; also how near to opposite the axes of fingers are."""
+_CROSS = 0.6  # a cross is smaller than the forks around it
+"""Largest diagonal of the part between the axes of a universal joint, fraction of either neighbour's."""
+_BESIDE = 0.1  # fingers face each other; drawers that open to both sides do so too, and rarely
+"""How far fingers may be beside each other, fraction of their distance along the axis."""
+
+
 class CompoundKind(StrEnum):
     """Kind of a group of joints."""
 
@@ -216,7 +226,7 @@ class Compound:
 
 
 def compounds(
-    assembly: Assembly, joints: Sequence[JointEstimate], clusters: Sequence[Sequence[int]], config: CompoundConfig
+    assembly: Assembly, joints: Sequence[JointEstimate], clusters: Sequence[Sequence[int]]
 ) -> tuple[Compound, ...]:
     """Find joints that are one mechanism together, which a tree of single joints cannot say.
 
@@ -227,28 +237,27 @@ def compounds(
         assembly: The parts, world frame.
         joints: The chosen joints of the tree.
         clusters: Parts that are congruent, by index.
-        config: How exact lines must meet, and what counts as a cross.
 
     Returns:
         Ball joints first, then universal ones that are no piece of a ball joint, then pairs of fingers, then caps.
     """
     by_child = {joint.child: joint for joint in joints}
-    near = config.meeting * assembly.diagonal
+    near = _MEETING * assembly.diagonal
     balls = [
         Compound(kind=CompoundKind.BALL, children=tuple(joint.child for joint in chain))
         for chain in _chains(by_child, 3)
-        if _one_point(chain, near) and abs(np.linalg.det([joint.axis for joint in chain])) > config.spread
+        if _one_point(chain, near) and abs(np.linalg.det([joint.axis for joint in chain])) > _SPREAD
     ]
     taken = {frozenset(pair) for ball in balls for pair in combinations(ball.children, 2)}
     universals = [
         Compound(kind=CompoundKind.UNIVERSAL, children=(first.child, second.child))
         for first, second in _chains(by_child, 2)
         if frozenset((first.child, second.child)) not in taken
-        and abs(float(first.axis @ second.axis)) < config.square
+        and abs(float(first.axis @ second.axis)) < _SQUARE
         and _one_point((first, second), near)
-        and _is_cross(assembly, first, second, config)
+        and _is_cross(assembly, first, second)
     ]
-    return (*balls, *universals, *_fingers(assembly, joints, clusters, config))
+    return (*balls, *universals, *_fingers(assembly, joints, clusters))
 
 
 def described(compound: Compound, names: Sequence[str]) -> str:
@@ -285,14 +294,14 @@ def _one_point(chain: Sequence[JointEstimate], near: float) -> bool:
     return bool(np.all(np.linalg.norm(gaps, axis=1) < near))
 
 
-def _is_cross(assembly: Assembly, first: JointEstimate, second: JointEstimate, config: CompoundConfig) -> bool:
+def _is_cross(assembly: Assembly, first: JointEstimate, second: JointEstimate) -> bool:
     """True if the part between two joints is small beside those that it joins."""
     middle, ends = assembly.parts[first.child], (assembly.parts[first.parent], assembly.parts[second.child])
-    return all(middle.diagonal < config.cross * end.diagonal for end in ends)
+    return all(middle.diagonal < _CROSS * end.diagonal for end in ends)
 
 
 def _fingers(
-    assembly: Assembly, joints: Sequence[JointEstimate], clusters: Sequence[Sequence[int]], config: CompoundConfig
+    assembly: Assembly, joints: Sequence[JointEstimate], clusters: Sequence[Sequence[int]]
 ) -> Iterator[Compound]:
     """Congruent parts that carry nothing and slide towards each other on one body."""
     label = {part: index for index, cluster in enumerate(clusters) for part in cluster}
@@ -304,11 +313,11 @@ def _fingers(
     ]
     for one, other in combinations(leaves, 2):
         twins = one.parent == other.parent and label[one.child] == label[other.child]
-        if twins and float(one.axis @ other.axis) < -1.0 + config.square and _face(assembly, one, other, config):
+        if twins and float(one.axis @ other.axis) < -1.0 + _SQUARE and _face(assembly, one, other):
             yield Compound(kind=CompoundKind.FINGERS, children=(one.child, other.child))
 
 
-def _face(assembly: Assembly, one: JointEstimate, other: JointEstimate, config: CompoundConfig) -> bool:
+def _face(assembly: Assembly, one: JointEstimate, other: JointEstimate) -> bool:
     """True if two parts stand opposite each other along their axis, no farther apart than they travel together."""
     between: FloatArray = assembly.parts[other.child].centroid - assembly.parts[one.child].centroid
     along = float(between @ one.axis)
@@ -316,4 +325,4 @@ def _face(assembly: Assembly, one: JointEstimate, other: JointEstimate, config: 
     spans = [np.sort(assembly.parts[joint.child].vertices @ one.axis)[[0, -1]] for joint in (one, other)]
     gap = max(spans[0][0], spans[1][0]) - min(spans[0][1], spans[1][1])
     reach = (one.upper - one.lower) + (other.upper - other.lower)
-    return beside < config.beside * abs(along) and gap < reach
+    return beside < _BESIDE * abs(along) and gap < reach
