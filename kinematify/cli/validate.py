@@ -155,7 +155,7 @@ def command(**given: Any) -> int:
     from kinematify.validation.isolation import load_imports
 
     load_imports()  # before anything loads NumPy
-    from kinematify.cli.verdict import describe_listed
+    from kinematify.cli.verdict import describe_briefly
     from kinematify.robot.description import form_of
     from kinematify.validation.models import find_models
     from kinematify.validation.run import validate
@@ -203,7 +203,7 @@ def command(**given: Any) -> int:
                 except InputError as error:
                     outcomes.append(Unusable(model=str(model), message=str(error)))
                 if several and not quiet:
-                    say(f"{describe_listed(outcomes[-1])}\n")
+                    say(f"{describe_briefly(outcomes[-1])}\n")
                 interrupted = _is_interrupted(outcomes[-1])
                 if interrupted:
                     break

@@ -123,8 +123,10 @@ def describe_table(outcomes: Sequence[Outcome]) -> str:
     return "\n".join(filter(None, (table, contract)))
 
 
-def describe_briefly(report: ValidationReport) -> str:
+def describe_briefly(report: Outcome) -> str:
     """Every error of one model in full, the warnings by what they are about, a line each, and the verdict last."""
+    if isinstance(report, Unusable):
+        return describe(report)
     groups = [item for item in report.groups if item.finding.suppressed is None]
     errors = blocks((item for item in groups if item.finding.severity is Severity.ERROR), alike=False)
     warnings: dict[tuple[str, str | None], list[FindingGroup]] = {}
@@ -223,15 +225,6 @@ def _code(text: str) -> list[str]:
 def _table(table: Table, empty: str = "") -> str:
     rows = [tuple(printable(cell) or empty for cell in row) for row in table.rows]
     return format_table(table.headings, rows) if rows else ""
-
-
-def describe_listed(outcome: Outcome) -> str:
-    """The verdict of one of several models, with its errors and warnings in a line each."""
-    if isinstance(outcome, Unusable):
-        return describe(outcome)
-    groups = [item for item in outcome.groups if item.finding.suppressed is None]
-    shown = blocks(item for item in groups if item.finding.severity is not Severity.NOTE)
-    return "\n".join([_first_lines(outcome), *(_line(block, outcome.model) for block in shown)])
 
 
 def _line(block: FindingBlock, model: str, indent: int = 0) -> str:
