@@ -20,11 +20,24 @@ from kinematify.errors import ExitStatus, KinematifyError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-COMMANDS = (
-    "generate", "infer", "question", "refine", "validate", "explain", "fix", "view", "export", "erase", "batch",
-    "bench", "nightly", "doctor", "mcp",
-)  # fmt: skip
-"""Each is a module of this package that defines `command`."""
+COMMANDS = {
+    "generate": "A sentence, a request or a photo -> a model; sentences and requests work offline.",
+    "infer": "Segmented meshes -> URDF with joints, axes, limits and masses.",
+    "question": "A picture of numbered pieces and a question: which of them move together.",
+    "refine": "Simulate an inferred model and choose the joints that fail again.",
+    "validate": "URDFs from anywhere -> verdict, findings with cause and remedy.",
+    "explain": "What a check of `validate` verifies, why, and how to fix what it finds.",
+    "fix": "URDF -> the same URDF, repaired where validate finds something.",
+    "view": "A model in a browser, to move; a mesh, to click its pieces.",
+    "export": "URDF -> MJCF, USD, SDF, GLB, SRDF, URDF.",
+    "erase": "URDF -> anonymous part meshes, and the ground truth in a file beside them.",
+    "batch": "A library of assets -> models, resumable, on one machine or many.",
+    "bench": "Accuracy on models with known joints, beside the paper's.",
+    "nightly": "Benchmark and validation, compared with the night before.",
+    "doctor": "Versions, engines, what is missing and how to install it.",
+    "mcp": "The commands as tools for coding agents (Model Context Protocol).",
+}
+"""Each is a module of this package that defines `command`, here with what it does."""
 
 
 @dataclass
@@ -93,6 +106,11 @@ class _LazyGroup(click.Group):
             command.params.append(_TRACEBACK)
         return command
 
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands; importing all of them would take longer than the rest."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
+
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
@@ -100,7 +118,7 @@ class _LazyGroup(click.Group):
         try:
             return super().resolve_command(ctx, args)
         except NoSuchCommand as error:
-            raise NoSuchCommand(error.command_name, possibilities=COMMANDS, ctx=ctx) from None
+            raise NoSuchCommand(error.command_name, possibilities=list(COMMANDS), ctx=ctx) from None
 
 
 def _ask_for_traceback(ctx: click.Context, _parameter: click.Parameter, value: bool) -> None:

@@ -31,7 +31,6 @@ def _share(_context: click.Context, _parameter: click.Parameter, words: str) -> 
 
 @click.command(
     "batch",
-    short_help="A library of assets -> models, resumable, on one machine or many.",
     epilog=examples(
         "kinematify batch 'assets/**/*.glb' -o out/library",
         "kinematify batch 'assets/**/*.glb' -o out/library --resume",

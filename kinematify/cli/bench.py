@@ -73,7 +73,6 @@ def _list(context: click.Context, _parameter: click.Parameter, asked: bool) -> N
 @click.command(
     "bench",
     cls=_BenchCommand,
-    short_help="Accuracy on models with known joints, beside the paper's.",
     options_metavar="[OPTIONS]",
     epilog=examples(
         "kinematify bench pip",

@@ -96,7 +96,6 @@ class PackageState:
 
 @click.command(
     "doctor",
-    short_help="Versions, engines, what is missing and how to install it.",
     epilog=examples("kinematify doctor", "kinematify doctor --json - | python -m json.tool"),
 )
 @json_option

@@ -13,7 +13,6 @@ from kinematify.cli.options import arguments_argument, examples, package_dirs_op
 
 @click.command(
     "erase",
-    short_help="URDF -> anonymous part meshes, and the ground truth in a file beside them.",
     epilog=examples(
         "kinematify erase franka/model.urdf -o panda-parts",
         "kinematify erase robot.urdf -o robot-parts --pose random --seed 3 --yaw 37",

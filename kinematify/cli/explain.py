@@ -22,7 +22,6 @@ _WIDTH = 100
 
 @click.command(
     "explain",
-    short_help="What a check of `validate` verifies, why, and how to fix what it finds.",
     epilog=examples(
         "kinematify explain KV301",
         "kinematify explain kv301 kv401 --json -",

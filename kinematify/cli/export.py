@@ -21,7 +21,6 @@ from kinematify.cli.table import format_table
 
 @click.command(
     "export",
-    short_help="URDF -> MJCF, USD, SDF, GLB, SRDF, URDF.",
     epilog=examples(
         "kinematify export model.urdf --to mjcf -o model.xml",
         "kinematify export out/cabinet --to mjcf -o cabinet.xml --json losses.json",

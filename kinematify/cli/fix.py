@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 @click.command(
     "fix",
-    short_help="URDF -> the same URDF, repaired where validate finds something.",
     epilog=examples(
         "kinematify fix robot.urdf -o robot_fixed.urdf",
         "kinematify fix cabinet/model.urdf -o cabinet/fixed.urdf --package-dir packages",

@@ -27,7 +27,6 @@ _WIDTH = 100
 
 @click.command(
     "generate",
-    short_help="A sentence, a request or a photo -> a model; sentences and requests work offline.",
     epilog=examples(
         'kinematify generate "a kitchen cabinet with two doors above three drawers, 80 cm wide" -o out/cabinet',
         "kinematify generate --category cabinet --set doors=2 --set drawer.color=red --set size.width=80cm -o out/c2",

@@ -48,7 +48,6 @@ def _masses(_context: click.Context, _parameter: click.Parameter, given: tuple[s
 
 @click.command(
     "infer",
-    short_help="Segmented meshes -> URDF with joints, axes, limits and masses.",
     epilog=examples(
         "kinematify infer examples/cabinet -o out/cabinet",
         "kinematify infer robot.glb -o out/robot --up z --base torso",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 import sys
 import tempfile
@@ -37,7 +36,6 @@ _INSTRUCTIONS = (
 
 @click.command(
     "mcp",
-    short_help="The commands as tools for coding agents (Model Context Protocol).",
     epilog=examples("kinematify mcp robots/", "kinematify mcp ."),
 )
 @click.argument("root", type=click.Path(path_type=Path), default=".")
@@ -145,6 +143,8 @@ async def _run(*words: str, findings: bool = False) -> str:
     Raises:
         ToolError: It ends with another status than 0, or 1 where that means findings.
     """
+    import asyncio
+
     command = [sys.executable, "-m", "kinematify", *words]
     process = await asyncio.create_subprocess_exec(
         *command, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE

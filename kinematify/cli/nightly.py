@@ -22,7 +22,6 @@ _SHOWN = 20
 
 @click.command(
     "nightly",
-    short_help="Benchmark and validation, compared with the night before.",
     epilog=examples(
         "kinematify nightly",
         "kinematify nightly models/ -o out/nights",

@@ -13,7 +13,6 @@ from kinematify.errors import OutputError
 
 @click.command(
     "question",
-    short_help="A picture of numbered pieces and a question: which of them move together.",
     epilog=examples(
         "kinematify question whole.glb -o Q",
         "kinematify question scan.stl -o Q --up y --scale 0.001",

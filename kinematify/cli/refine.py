@@ -23,7 +23,6 @@ _HEADINGS = ("part", "what", "before", "after", "why")
 
 @click.command(
     "refine",
-    short_help="Simulate an inferred model and choose the joints that fail again.",
     epilog=examples(
         "kinematify refine out -o refined",
         "kinematify refine out --force",

@@ -38,7 +38,6 @@ _PICTURE_SECONDS = 15.0
 
 @click.command(
     "validate",
-    short_help="URDFs from anywhere -> verdict, findings with cause and remedy.",
     epilog=examples(
         "kinematify validate model.urdf",
         "kinematify validate models/ 'more/**/*.urdf' --junit report.xml",

@@ -31,7 +31,6 @@ _SHOWN_TITLE = 60
 
 @click.command(
     "view",
-    short_help="A model in a browser, to move; a mesh, to click its pieces.",
     epilog=examples(
         "kinematify view out/cabinet/model.urdf",
         "kinematify view out/cabinet",
