@@ -291,9 +291,7 @@ def _run(name: str, study: Study[Any], values: dict[str, Any]) -> int:
             report = run_study(name, options, pool)
     written = write_study(report, values["out"], stem)
     faults = study.faults(report)
-    if values["json_to"]:
-        write_answer(as_json(report, RECORDS), values["json_to"])
-    if values["json_to"] != "-":
+    if write_answer(as_json(report, RECORDS), values["json_to"]):
         click.echo(f"{len(report.records)} records. Report: {', '.join(map(str, written))}")
     for fault in faults:
         click.echo(fault, err=True)

@@ -19,16 +19,21 @@ json_option = click.option(
 """The option of every command that answers; the command calls `write_answer` with its value."""
 
 
-def write_answer(answer: Mapping[str, Any], target: str) -> None:
-    """Write `answer` as JSON to a file, or to stdout if `target` is ``-``.
+def write_answer(answer: Mapping[str, Any], target: str | None) -> bool:
+    """Write `answer` as JSON to a file, to stdout if `target` is ``-``, or nowhere if it is None.
+
+    Returns:
+        Whether people read stdout.
 
     Raises:
         OutputError: The file cannot be written.
     """
+    if target is None:
+        return True
     text = json.dumps(answer, indent=2, allow_nan=False)
     if target == "-":
         click.echo(text)
-        return
+        return False
     try:
         Path(target).write_text(text + "\n", encoding="utf-8")
     except OSError as error:
@@ -36,3 +41,4 @@ def write_answer(answer: Mapping[str, Any], target: str) -> None:
             f"The answer cannot be written to {target}: {error.strerror}. Give --json a file in a folder that exists "
             "and is writable, or - for stdout."
         ) from error
+    return True

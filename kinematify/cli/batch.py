@@ -120,9 +120,7 @@ def command(**values: Any) -> int:
     with progress_reporter() as progress:
         result = batch(**values, progress=progress)
     page = write_page(result.out)
-    if json_to:
-        write_answer(_answer(result), json_to)
-    if json_to != "-":
+    if write_answer(_answer(result), json_to):
         click.echo(f"{_described(result)}\n{page}")
     if result.interrupted:
         click.echo(f"Interrupted, {result.left} objects are left. Go on with --resume.", err=True)

@@ -195,9 +195,7 @@ def command(
             blocks = [table(_HEADINGS, _rows(report))]
         written = write_report(report, RESULTS, blocks, out, name=name, title=name)
     regressions = () if find is None else find(report, earlier)
-    if json_to:
-        write_answer(as_json(report, RESULTS), json_to)
-    if json_to != "-":
+    if write_answer(as_json(report, RESULTS), json_to):
         click.echo(f"{_describe(report)}\n\nReport: {', '.join(map(str, written))}")
     for worse in regressions:
         click.echo(worse.sentence, err=True)

@@ -106,9 +106,7 @@ def command(json_to: str | None) -> int:
     """
     findings = examine_packages()
     failed = [finding for finding in findings if finding.state != "ok" and not finding.optional]
-    if json_to:
-        write_answer(_as_answer(findings), json_to)
-    if json_to != "-":
+    if write_answer(_as_answer(findings), json_to):
         click.echo(_describe(findings))
     return ExitStatus.FAULT if failed else 0
 

@@ -60,10 +60,8 @@ def command(
     truth = write_erased(erased, out, overwrite=force)
     for note in robot.notes:
         click.echo(f"Note: {note}", err=True)
-    if json_to is not None:
-        answer = {"schema": 1, "out": str(out), "parts": len(erased.parts), "joints": len(erased.truth.joints)}
-        write_answer({**answer, "truth": str(truth)}, json_to)
-    if json_to == "-":
+    answer = {"schema": 1, "out": str(out), "parts": len(erased.parts), "joints": len(erased.truth.joints)}
+    if not write_answer({**answer, "truth": str(truth)}, json_to):
         return
     click.echo(
         f"{len(erased.parts)} parts in {out}, {len(erased.truth.joints)} joints erased. The ground truth: {truth}"

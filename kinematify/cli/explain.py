@@ -43,9 +43,7 @@ def command(*, checks: tuple[str, ...], as_list: bool, json_to: str | None) -> N
     if not (checks or as_list or json_to):
         raise click.UsageError("Give the id of a check, such as KV301, or --list.")
     chosen = [find_check(name) for name in checks] or list(CHECKS.values())
-    if json_to:
-        write_answer({"schema": 1, "checks": [_as_answer(check) for check in chosen]}, json_to)
-    if json_to == "-":
+    if not write_answer({"schema": 1, "checks": [_as_answer(check) for check in chosen]}, json_to):
         return
     if as_list:
         click.echo(_as_table(chosen))

@@ -105,8 +105,7 @@ def command(
             package_dirs=package_dirs,
             settings=settings,
         )
-    if json_to == "-":
-        write_answer(done.as_json(), json_to)
+    if not write_answer(done.as_json(), json_to):
         return
     click.echo(f"Wrote {done.path}")
     for sentence in done.notes:
@@ -114,5 +113,3 @@ def command(
     if done.lost:
         rows = [(loss.what, str(loss.count), loss.became) for loss in done.lost]
         click.echo("\n" + format_table((f"changed or lost in {form.upper()}", "count", "what became of it"), rows))
-    if json_to:
-        write_answer(done.as_json(), json_to)

@@ -86,9 +86,7 @@ def command(
             kinematics=kinematics,
             progress=progress,
         )
-    if json_to is not None:
-        write_answer(done.as_json(), json_to)
-    if json_to != "-":
+    if write_answer(done.as_json(), json_to):
         urdf = Path(done.before.report.model)
         for note in notes_of(urdf):
             click.echo(note)

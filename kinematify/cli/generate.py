@@ -202,9 +202,7 @@ def command(**given: Any) -> int:
 
 def _ended(status: int, answer: dict[str, Any], json_to: str | None, print_text: Callable[[], None]) -> int:
     """Write the answer, print the words unless a machine reads stdout, and return the exit status."""
-    if json_to:
-        write_answer(answer, json_to)
-    if json_to != "-":
+    if write_answer(answer, json_to):
         print_text()
         if status == ExitStatus.INTERRUPTED:
             click.echo("Interrupted. The model is complete, its validation is not.", err=True)
@@ -322,9 +320,7 @@ def _list(category: str | None, json_to: str | None, *, is_schema: bool) -> None
 
         click.echo(json.dumps(schema_of(category), indent=1))
         return
-    if json_to:
-        write_answer(_listing(category), json_to)
-    if json_to != "-":
+    if write_answer(_listing(category), json_to):
         click.echo(_parameters(category) if category else _categories())
 
 

@@ -148,13 +148,8 @@ def write_generated(
             )  # fmt: skip
 
     write_model_folder(out, write, overwrite=overwrite)
-    report = report_after(out, progress, _WRITTEN) if validated else None
+    report = report_on(out, progress, _WRITTEN) if validated else None
     return GeneratedModel(out=out, made=made, model=models[0], inference=inference, report=report)
-
-
-def report_after(out: Path, progress: Reporter, done: float) -> ValidationReport:
-    """Validate the model of a folder, in the rest of the time, and write its reports."""
-    return report_on(out, progress=lambda stage, share: progress(f"validation: {stage}", done + (1.0 - done) * share))
 
 
 def _read(made: BuildResult) -> str:

@@ -194,9 +194,7 @@ def command(
             report = validated(out / MODEL_FILE)
         progress("done", 1.0)
     asked = inference.vision or {}
-    if json_to:
-        write_answer({**_as_answer(inference, out), **validation_answer(report)}, json_to)
-    if json_to != "-":
+    if write_answer({**_as_answer(inference, out), **validation_answer(report)}, json_to):
         blocks = (asked.get("described", ""), describe(inference, out), describe_validation(report, out))
         click.echo("\n\n".join(block for block in blocks if block))
     return int(ExitStatus.FAULT) if asked.get("fault") else validation_status(report)

@@ -85,13 +85,11 @@ def command(
             data, folder, config=config, objects=patterns, baseline=baseline, smoke=smoke,
             jobs=jobs, progress=progress,
         )  # fmt: skip
-    if json_to:
-        from kinematify.evaluation.nightly.comparison import CHANGES
+    from kinematify.evaluation.nightly.comparison import CHANGES
 
-        night, changes = result.night, CHANGES.dump_python(result.night.changes, mode="json")
-        facts = {**night.header, "gate": night.gate, "changes": changes}
-        write_answer({**facts, "folder": str(result.place), "notices": list(result.notices)}, json_to)
-    if json_to != "-":
+    night, changes = result.night, CHANGES.dump_python(result.night.changes, mode="json")
+    facts = {**night.header, "gate": night.gate, "changes": changes}
+    if write_answer({**facts, "folder": str(result.place), "notices": list(result.notices)}, json_to):
         click.echo(_described(result))
     for notice in result.notices:
         click.echo(notice, err=True)

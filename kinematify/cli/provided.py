@@ -12,9 +12,9 @@ import click
 
 from kinematify.assembly.load import load_assembly
 from kinematify.cli.blueprint_feedback import in_blueprint_words
-from kinematify.cli.generation import report_after
 from kinematify.cli.inferred import describe, describe_validation, validation_answer, validation_status
 from kinematify.cli.options import say
+from kinematify.cli.report_files import report_on
 from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.providers.command import CommandSource
 from kinematify.generate.providers.job import open_job
@@ -101,7 +101,7 @@ def model_of_parts(
         ),
         overwrite=given["force"],
     )  # fmt: skip
-    report = None if given["no_validation"] else report_after(out, progress, _WRITTEN)
+    report = None if given["no_validation"] else report_on(out, progress, _WRITTEN)
     answer = {
         "schema": 1,
         "out": str(out),

@@ -78,7 +78,6 @@ def command(
     with writing(target), progress_reporter() as progress:
         progress("reading the parts", 0.0)
         assembly, config = open_model_folder(folder)
-        check_base(base, assembly.names)
         inference = infer(assembly, config=config, base=base, progress=lambda stage, done: progress(stage, 0.4 * done))
         refinement = refine(
             stored_state(inference, read_record(folder)),
@@ -92,9 +91,7 @@ def command(
         if not (no_validation or refinement.interrupted):
             progress("checking the geometry and loading the file into engines", 0.94)
             report = validated(target / MODEL_FILE)
-    if json_to:
-        write_answer({**as_answer(refinement, target), **validation_answer(report)}, json_to)
-    if json_to != "-":
+    if write_answer({**as_answer(refinement, target), **validation_answer(report)}, json_to):
         blocks = (
             describe_refinement(refinement.inference),
             describe(refinement.inference, target),
@@ -143,18 +140,6 @@ def as_answer(refinement: Refinement, folder: Path) -> dict[str, Any]:
         "passes": kept is not None and kept.errors == 0,
         "refinement": history.as_json(),
     }
-
-
-def check_base(base: str | None, names: tuple[str, ...]) -> None:
-    """Refuse a base link that is no part.
-
-    Raises:
-        InputError: It is none.
-    """
-    from kinematify.errors import InputError
-
-    if base is not None and base not in names:
-        raise InputError(f"There is no part {base} to be the base link. The parts are {', '.join(names)}.")
 
 
 def _target(folder: Path, out: Path | None, *, force: bool) -> Path:

@@ -89,13 +89,23 @@ def write_reports(
         click.echo(texts["--json"](), nl=False)
 
 
-def report_on(folder: Path, *, progress: Reporter | None = None) -> ValidationReport:
-    """Validate the model of a folder and write its reports, with the picture of the folder if there is one."""
+def report_on(folder: Path, progress: Reporter, done: float) -> ValidationReport:
+    """Validate the model of a folder and write its reports, with the picture of the folder if there is one.
+
+    Args:
+        folder: Of a model.
+        progress: Called with each stage and the share done.
+        done: Share of all work that is done before.
+    """
     from kinematify.model.output import MODEL_FILE, PREVIEW_FILE
     from kinematify.validation.formats.report_picture import Drawing, scene_of
     from kinematify.validation.run import validate
 
-    report = validate(folder / MODEL_FILE, workers=os.cpu_count() or 1, progress=progress)
+    report = validate(
+        folder / MODEL_FILE,
+        workers=os.cpu_count() or 1,
+        progress=lambda stage, share: progress(f"validation: {stage}", done + (1.0 - done) * share),
+    )
     picture = folder / PREVIEW_FILE
     drawing = Drawing(picture=picture.read_bytes() if picture.is_file() else b"", scene=scene_of(folder / MODEL_FILE))
     files = {"--json": folder / "validation.json", "--html": folder / "validation.html"}
