@@ -31,8 +31,8 @@ _INFERRED = 0.8
 def infer(
     assembly: Assembly | Grouping | str | Path,
     *,
-    groups: Path | None = None,
-    answer: Path | None = None,
+    groups: str | Path | None = None,
+    answer: str | Path | None = None,
     vlm: str = "off",
     density: float | None = None,
     masses: Mapping[str, float] | None = None,
@@ -75,7 +75,7 @@ def infer(
             progress("reading the parts" if vlm == "off" else "asking about the pieces", 0.0)
             vote = _asked(parts, vlm, answer, config)
         if groups is not None:
-            parts = read_groups(groups, parts)
+            parts = read_groups(Path(groups), parts)
         elif not parts.segmented:
             progress("grouping the pieces", 0.0)
             parts = vote.grouping(config) if vote else group_pieces(parts, config.grouping)
@@ -96,12 +96,12 @@ def infer(
     return repaired(inference, base=base, settings=settings)
 
 
-def _asked(given: Assembly, vlm: str, answer: Path | None, config: Config) -> PieceVote | None:
+def _asked(given: Assembly, vlm: str, answer: str | Path | None, config: Config) -> PieceVote | None:
     if answer is None and vlm == "off":
         return None
     from kinematify.vision.ask import ask_pieces  # noqa: PLC0415 - what draws a sheet takes time to load
 
-    return ask_pieces(given, vlm, answer, config)
+    return ask_pieces(given, vlm, None if answer is None else Path(answer), config)
 
 
 def _masses(masses: Mapping[str, float], names: Sequence[str]) -> dict[str, float]:
