@@ -142,7 +142,7 @@ def tried_as_loaded(case: TriedFile) -> Record:
         }
         blueprint = _generated(case)
         if case.made == "exact":
-            return {**facts, **_written(true_model(blueprint, config), config, case.engines)}
+            return {**facts, **_written(true_model(blueprint, config), config, case.engines, powered=True)}
         inference = infer(blueprint.assembly, config=config)
         right = "right" if _joints_right(blueprint, inference) else "wrong"
         facts["set"] += f", joints {right}"
@@ -174,9 +174,9 @@ def _generated(case: TriedFile) -> Blueprint:
     return build(known_families()[case.family], {}, seed=case.seed, name=f"{case.family}_{case.seed}")
 
 
-def _written(model: KinematicModel, config: Config, engines: Sequence[str]) -> Record:
+def _written(model: KinematicModel, config: Config, engines: Sequence[str], *, powered: bool = False) -> Record:
     start = time.process_time()
-    made = simulable_model(model, config)
+    made = simulable_model(model, config, powered=powered)
     seconds = time.process_time() - start
     with tempfile.TemporaryDirectory() as folder:
         tried = _judged(write_model(made.robot, Path(folder)), engines)

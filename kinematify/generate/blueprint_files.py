@@ -119,7 +119,7 @@ def write_blueprint(
     """
     folder.mkdir(parents=True, exist_ok=True)
     model = true_model(blueprint, config)
-    write_model(simulable_model(model, config).robot, folder)
+    write_model(simulable_model(model, config, powered=True).robot, folder)
     (folder / "truth.json").write_text(ground_truth(blueprint).to_json() + "\n", encoding="utf-8")
     known = {"kind": "procedural", "category": blueprint.family, "parameters": dict(blueprint.parameters)}
     (folder / SOURCE_FILE).write_text(json.dumps({**known, **(facts or {})}, indent=1) + "\n", encoding="utf-8")

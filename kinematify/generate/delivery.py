@@ -160,7 +160,7 @@ def deliver(request: Request, *, seed: int | None = None) -> BuildResult:
             made = build(family, {**values, **fitted}, seed=seed)
     made = _sized(made, request, faults)
     if _mirror_helps(family, made, request):
-        made = mirrored(made)
+        made = made.scaled(1.0, mirrored=True)
     missing = []
     for noun, part in request.parts.items():
         names = names_called(family, made, noun)
@@ -317,31 +317,6 @@ def _extent(extents: FloatArray, name: str) -> float:
 
 def _same(one: float, other: float) -> bool:
     return math.isclose(one, other, rel_tol=_SAME)
-
-
-def mirrored(blueprint: Blueprint) -> Blueprint:
-    """Return an object as it is seen in a mirror that swaps left and right; turns go round the other way."""
-    flip = np.array([-1.0, 1.0, 1.0])
-
-    def joint(given: BlueprintJoint) -> BlueprintJoint:
-        axis = flip * given.axis * (-1.0 if given.kind.turns else 1.0)
-        return replace(given, axis=axis, pivot=flip * given.pivot)
-
-    parts = tuple(
-        replace(
-            part,
-            vertices=part.vertices * flip,
-            faces=part.faces[:, ::-1],
-            appearance=part.appearance
-            and replace(
-                part.appearance,
-                uv=None if part.appearance.uv is None else np.ascontiguousarray(part.appearance.uv[:, ::-1]),
-            ),
-        )
-        for part in blueprint.parts
-    )
-    loops = tuple(replace(loop, pivot=flip * loop.pivot) for loop in blueprint.loops)
-    return replace(blueprint, parts=parts, joints=tuple(map(joint, blueprint.joints)), loops=loops)
 
 
 def _mirror_helps(family: Family, made: Blueprint, request: Request) -> bool:

@@ -63,7 +63,8 @@ relation -1: below under beneath
 motion move: move moves moving open opens opening close closes closing lift lifts lifting raise raises go goes going
 motion move: come comes travel travels travelling traveling adjust adjusts press presses extend extends extending
 motion move: movable moveable adjustable raisable raising drops rises rise rising falls removable detachable lowers
-motion slide: slide slides sliding pull pulls telescope telescopes telescopic telescoping retract retracts retractable
+motion slide: slide slides sliding pull pulls roll telescope telescopes telescopic telescoping retract retracts
+motion slide: retractable
 motion hinge: swing swings swinging pivot pivots pivoting pivoted fold folds folding foldable flip flips flipping turn
 motion hinge: turns turning rotate rotates rotating rotatable drop tip tips tipping oscillates oscillating
 motion hinge: bends curls steers spread spreads leans hinged hinges hinge

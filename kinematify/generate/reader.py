@@ -225,7 +225,7 @@ class Sentence:
 
     def _sign(self, k: int) -> int:
         word = self._mean(k, "sign")
-        if word in (*",;:.()",):
+        if word and word in ",;:.()":
             self._settle()
             self.fresh = True
         elif word and word not in "\"'?!":
@@ -475,8 +475,6 @@ class Sentence:
             if place:
                 self._wait(place, "hinge", self._mean(place, "side"))
                 return place + 1
-            if self._text(step) in _OPPOSITE and self._is(k - 1, "side"):
-                return step
             self._wait(k, "motion", motion)
         else:
             return 0
@@ -635,7 +633,7 @@ class Sentence:
             self.fresh = self.fresh and (word == "all" or not self._is(k, "refers"))
         elif self._is(k, "where both"):
             moving = any(self._is(j, "motion state where") for j in range(k - 5, k))
-            self.waiting.odd += [] if moving or self._text(k - 1) in ("roll", "push") else [word]
+            self.waiting.odd += [] if moving else [word]
         elif not self._is(k, "plain"):
             return 0
         return k + 1

@@ -76,7 +76,7 @@ class JointLoad:
     """Length of the range [rad or m]."""
 
 
-def with_dynamics(robot: Robot, *, measured: bool = False) -> Robot:
+def with_dynamics(robot: Robot, *, measured: bool = False, powered: bool = False) -> Robot:
     """Return the robot with damping and friction for every joint that has none, and with parts that can be moved.
 
     Friction holds what rests in the middle of its range against its weight; damping lets a hand's force move it over
@@ -88,15 +88,19 @@ def with_dynamics(robot: Robot, *, measured: bool = False) -> Robot:
     Args:
         robot: Links with mass properties; zero is their pose as given.
         measured: Masses and efforts stay; friction and damping leave motors enough to move.
+        powered: What is too heavy for a hand has a motor, and is not made lighter for the hand.
     """
+    by_hand = {joint.name for joint in robot.joints if moved_by_hand(robot, joint)}
+    if powered:
+        by_hand = {name for name in by_hand if not _is_heavy(joint_load(robot, it := robot.joint_by_name[name]), it)}
     for joint in () if measured else reversed(robot.joints_downward):
         if joint.leads:
-            robot = _lightened(robot, joint)
+            robot = _lightened(robot, joint, by_hand=joint.name in by_hand)
     joints = tuple(
         joint
         if joint.kind is JointType.FIXED or joint.damping is not None or joint.friction is not None
         else _with_dynamics(robot, joint, measured=measured)
-        if moved_by_hand(robot, joint)
+        if joint.name in by_hand
         else _with_motor(robot, joint, measured=measured)
         for joint in robot.joints
     )
@@ -181,11 +185,11 @@ def _longest_below(robot: Robot, link: str) -> int:
     return max((_longest_below(robot, item.child) + (item.kind is not JointType.FIXED) for item in below), default=0)
 
 
-def _lightened(robot: Robot, joint: Joint) -> Robot:
+def _lightened(robot: Robot, joint: Joint, *, by_hand: bool) -> Robot:
     """Scale the masses that a joint carries so that a hand, or a motor, moves them against weight and friction."""
     load = joint_load(robot, joint)
-    if moved_by_hand(robot, joint):
-        needed, max_safe_force = load.largest + _rubbing(load), HAND_SHARE * _hand(joint)
+    if by_hand:
+        needed, max_safe_force = _by_hand(load), HAND_SHARE * _hand(joint)
     else:
         needed = _Motor.of(load).effort
         max_safe_force = _motor(joint)
@@ -279,6 +283,15 @@ def _with_motor(robot: Robot, joint: Joint, *, measured: bool) -> Joint:
 
 def _stated(joint: Joint, damping: float, friction: float) -> Joint:
     return replace(joint, damping=float(f"{damping:.3g}"), friction=float(f"{friction:.3g}"))
+
+
+def _is_heavy(load: JointLoad, joint: Joint) -> bool:
+    return _by_hand(load) > HAND_SHARE * _hand(joint)
+
+
+def _by_hand(load: JointLoad) -> float:
+    """What a hand works against: weight and friction [N m or N]."""
+    return load.largest + _rubbing(load)
 
 
 def _rubbing(load: JointLoad) -> float:

@@ -75,9 +75,15 @@ def _rounded_inertial(inertial: Inertial | None) -> Inertial | None:
     )
 
 
-def simulable_model(model: KinematicModel, config: Config) -> SimulableModel:
-    """Return the model with friction, damping, liftable parts and collision geometry that leaves the motion free."""
-    robot = with_dynamics(rounded(model_robot(model)))
+def simulable_model(model: KinematicModel, config: Config, *, powered: bool = False) -> SimulableModel:
+    """Return the model with friction, damping, liftable parts and collision geometry that leaves the motion free.
+
+    Args:
+        model: The model.
+        config: Of all stages.
+        powered: As of `with_dynamics`.
+    """
+    robot = with_dynamics(rounded(model_robot(model)), powered=powered)
     if config.collision.mode == "mesh":
         return SimulableModel(robot=robot, collision=None)
     settings = load_settings()

@@ -68,6 +68,14 @@ def test_a_hand_lifts_what_friction_holds(mass: float, lower: float) -> None:
     assert load.largest + joint.friction < HAND_TORQUE
 
 
+def test_what_is_too_heavy_for_a_hand_has_a_motor_where_it_may() -> None:
+    by_hand, powered = (with_dynamics(lid(200.0, 0.0), powered=flag) for flag in (False, True))
+    masses = [robot.link_by_name["lid"].inertial.mass for robot in (by_hand, powered)]
+    assert masses[0] < 5.0
+    assert masses[1] == 200.0
+    assert powered.joints[0].effort > joint_load(powered, powered.joints[0]).largest
+
+
 def test_what_leads_others_has_the_effort_to_move_them() -> None:
     alone = lid(0.5, 0.0)
     other = replace(

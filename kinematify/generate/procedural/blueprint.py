@@ -128,22 +128,31 @@ class Blueprint:
         )
         return replace(self, parts=parts, joints=tuple(joints), loops=loops)
 
-    def scaled(self, factor: float) -> Blueprint:
-        """Return the object larger or smaller in all directions, about the origin of the world frame."""
+    def scaled(self, factor: float, *, mirrored: bool = False) -> Blueprint:
+        """Return the object larger or smaller about the world's origin, or as a mirror shows it: left is right.
+
+        Turns go round the other way in a mirror.
+        """
+        flip = np.array([-1.0 if mirrored else 1.0, 1.0, 1.0])
 
         def joint(given: BlueprintJoint) -> BlueprintJoint:
             way = factor if given.kind is JointType.PRISMATIC else 1.0
             return replace(
                 given,
-                pivot=factor * given.pivot,
+                axis=flip * given.axis * (flip[0] if given.kind.turns else 1.0),
+                pivot=factor * flip * given.pivot,
                 lower=way * given.lower,
                 upper=way * given.upper,
                 value=way * given.value,
             )
 
-        parts = tuple(replace(part, vertices=factor * part.vertices) for part in self.parts)
-        loops = tuple(replace(loop, pivot=factor * loop.pivot) for loop in self.loops)
-        return replace(self, parts=parts, joints=tuple(joint(item) for item in self.joints), loops=loops)
+        def part(given: Part) -> Part:
+            moved = replace(given, vertices=factor * flip * given.vertices)
+            look = given.appearance and given.appearance.mirrored()
+            return replace(moved, faces=given.faces[:, [0, 2, 1]], appearance=look) if mirrored else moved
+
+        loops = tuple(replace(loop, pivot=factor * flip * loop.pivot) for loop in self.loops)
+        return replace(self, parts=tuple(map(part, self.parts)), joints=tuple(map(joint, self.joints)), loops=loops)
 
     def repeated(self, count: int, pitch: float) -> Blueprint:
         """Return several of it along x, their base links one part.
