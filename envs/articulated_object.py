@@ -26,7 +26,7 @@ from kinematify.model.output import urdf_of
 from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rigid_groups
-from kinematify.robot.transforms import transformed
+from kinematify.robot.transforms import pose_at, transformed
 from kinematify.simulation.engines import engines_that_hold
 
 if TYPE_CHECKING:
@@ -344,9 +344,7 @@ def _standing(scene: Scene) -> FloatArray:
     )
     low, high = corners.min(axis=0), corners.max(axis=0)
     sinks = min(lowest) < low[2] - 0.01 * float(high[2] - low[2])
-    T_world_root = np.eye(4)
-    T_world_root[:3, 3] = [*(-0.5 * (low + high)[:2]), -min(lowest) + (_PLINTH if sinks else 0.0)]
-    return T_world_root
+    return pose_at([*(-0.5 * (low + high)[:2]), -min(lowest) + (_PLINTH if sinks else 0.0)])
 
 
 def shared_articulated_object(model: str | Path | None) -> ArticulatedObject:

@@ -38,7 +38,7 @@ _FACE_PLANES = 6
 """Planes of faces that are tried per axis, the largest first."""
 _PER_AXIS = 2
 """Planes across each axis that are tried in earnest."""
-_ALONG = 0.99
+ALONG = 0.99
 """Cosine from which a face counts as lying across an axis."""
 _RIND = 0.01
 """Planes nearer to the end of a piece are moved there, fraction of its extent: walls may have no thickness."""
@@ -300,20 +300,34 @@ def _offsets(triangles: FloatArray, heights: FloatArray, axis: FloatArray, *, cl
     rind = _RIND * (high - low)
     if rind == 0.0:
         return np.empty(0)
-    normals = triangle_normals(triangles)
-    areas = lengths_of(normals)
-    across = (np.abs(normals @ axis) > _ALONG * areas) & (areas > 0.0)
-    levels = heights[across].mean(axis=1)
-    places = np.maximum(np.round((levels - low) / rind).astype(np.int64), 0)  # means of equal heights are rounded
-    total = np.bincount(places, weights=areas[across])
-    largest = [place for place in np.argsort(-total, kind="stable")[:_FACE_PLANES] if total[place] > 0.0]
-    exact = np.array([np.median(levels[places == place]) for place in largest])
+    exact = face_levels(triangles, heights, axis, rind, _FACE_PLANES)
     at_end = (exact < low + rind) | (exact > high - rind)
     uniform = low + (high - low) * np.array(_UNIFORM)
     # A face in the very plane belongs to one side; which one is not known where surfaces are open.
     beside = (exact[~at_end, None] + _BESIDE * rind * np.array([-1.0, 1.0])).reshape(-1)
     ordered = [beside, uniform, exact[at_end]] if closed else [exact[at_end], beside, uniform]
     return np.asarray(np.clip(np.concatenate(ordered), low + rind, high - rind))
+
+
+def face_levels(triangles: FloatArray, heights: FloatArray, axis: FloatArray, cell: float, most: int) -> FloatArray:
+    """Heights across an axis at which faces lie, those with the largest area first, shape (n,).
+
+    Args:
+        triangles: Corners, shape (n, 3, 3).
+        heights: Of the corners across the axis, shape (n, 3).
+        axis: Unit direction, shape (3,).
+        cell: Faces that are no farther apart lie at one height.
+        most: Heights.
+    """
+    normals = triangle_normals(triangles)
+    areas = lengths_of(normals)
+    across = (np.abs(normals @ axis) > ALONG * areas) & (areas > 0.0)
+    levels = heights[across].mean(axis=1)
+    # The mean of three equal heights may lie below them by a rounding, which counts where there is hardly any extent.
+    places = np.maximum(np.round((levels - float(heights.min())) / cell).astype(np.int64), 0)
+    total = np.bincount(places, weights=areas[across])
+    order = [place for place in np.argsort(-total, kind="stable")[:most] if total[place] > 0.0]
+    return np.array([np.median(levels[places == place]) for place in order])
 
 
 def split(triangles: FloatArray, signed: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -15,7 +15,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from kinematify.geometry.convex import ConvexPiece
-from kinematify.geometry.cut import Chunk, cut_worst_first, split
+from kinematify.geometry.cut import ALONG, Chunk, cut_worst_first, face_levels, split
 from kinematify.robot.vectors import lengths_of, triangle_normals
 
 if TYPE_CHECKING:
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 
-_ALONG = 0.99
-"""Cosine from which a face counts as lying across an axis."""
 _SQUARE = 0.8
 """Share of the surface that lies across some axis in what is made of boards."""
 _FACES = 10
@@ -94,7 +92,7 @@ def split_by_boards(body: Concave, most: int) -> list[Chunk] | None:
 
 def _share_across(triangles: FloatArray, axes: FloatArray) -> float:
     normals = triangle_normals(triangles)
-    across = (np.abs(normals @ axes.T) > _ALONG * lengths_of(normals)[:, None]).any(axis=1)
+    across = (np.abs(normals @ axes.T) > ALONG * lengths_of(normals)[:, None]).any(axis=1)
     areas = lengths_of(normals)
     return float(areas[across].sum() / max(float(areas.sum()), 1e-300))
 
@@ -130,17 +128,7 @@ def _planes(triangles: FloatArray, heights: FloatArray, axis: FloatArray) -> Ite
     extent = high - low
     if extent <= 0.0:
         return
-    normals = triangle_normals(triangles)
-    areas = lengths_of(normals)
-    across = (np.abs(normals @ axis) > _ALONG * areas) & (areas > 0.0)
-    levels = heights[across].mean(axis=1)
-    # The mean of three equal heights may lie below them by a rounding, which counts where there is hardly any extent.
-    places = np.maximum(np.round((levels - low) / (_SAME * extent)).astype(np.int64), 0)
-    total = np.bincount(places, weights=areas[across])
-    for place in np.argsort(-total, kind="stable")[:_FACES]:
-        if total[place] <= 0.0:
-            return
-        level = float(np.median(levels[places == place]))
+    for level in face_levels(triangles, heights, axis, _SAME * extent, _FACES).tolist():
         for offset in (level - _BESIDE * extent, level + _BESIDE * extent):
             if low + 2.0 * _BESIDE * extent < offset < high - 2.0 * _BESIDE * extent:
                 yield offset

@@ -14,6 +14,7 @@ from kinematify.model.kinematic_model import KinematicModel, ModelLink
 from kinematify.model.masses import inertial_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Joint
+from kinematify.robot.transforms import pose_at
 from kinematify.robot.vectors import referenced
 
 _SNAP = 1e-3  # [rad] fits of bearings are off by 0.02 deg in the median
@@ -77,12 +78,10 @@ def build_model(
 def _link(assembly: Assembly, index: int, origin: FloatArray, *, thickness: float, config: ModelConfig) -> ModelLink:
     part = assembly.parts[index]
     original = assembly.originals.get(part.name)
-    T_world_link = np.eye(4)
-    T_world_link[:3, 3] = origin
     return ModelLink(
         name=part.name,
         part=part,
-        T_world_link=T_world_link,
+        T_world_link=pose_at(origin),
         inertial=_inertial(original or part, origin, thickness, config),
         fixed_visuals=tuple(item.part for item in assembly.set_aside if item.nearest == part.name),
         original=original,
@@ -124,15 +123,13 @@ def _joint(
     estimate: JointEstimate, links: Sequence[ModelLink], name: str, diagonal: float, config: ModelConfig
 ) -> Joint:
     parent, child = links[estimate.parent], links[estimate.child]
-    T_parent_child = np.eye(4)
-    T_parent_child[:3, 3] = child.T_world_link[:3, 3] - parent.T_world_link[:3, 3]
     kind, lower, upper = _limits(estimate, diagonal, config)
     return Joint(
         name=name,
         kind=kind,
         parent=parent.name,
         child=child.name,
-        T_parent_child=T_parent_child,
+        T_parent_child=pose_at(child.T_world_link[:3, 3] - parent.T_world_link[:3, 3]),
         axis=snapped(estimate.axis),
         lower=lower,
         upper=upper,

@@ -33,7 +33,7 @@ from kinematify.model.collision_pieces import decomposed, fewer_pieces, shapes_o
 from kinematify.model.urdf import MESH_FOLDER
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import LinkMesh, Shape, forward_kinematics, joint_ends, rest_configuration
-from kinematify.robot.transforms import rotation_from_x, transformed
+from kinematify.robot.transforms import pose_at, rotation_from_x, transformed
 from kinematify.robot.vectors import as_one, crossed, lengths_of
 from kinematify.robot.weld import snapped
 
@@ -402,10 +402,8 @@ def _left_out(link: Link, shapes: Sequence[Shape]) -> float:
     points = _on_surface(link.meshes, _PROBES)
     nearest = np.full(len(points), np.inf)
     for shape in shapes:
-        a, b, c = (shape.mesh.vertices[shape.mesh.faces[:, k]] for k in range(3))
-        normals = crossed(b - a, c - a)
-        normals /= np.maximum(lengths_of(normals), 1e-300)[:, None]
-        beyond = (points @ normals.T - np.einsum("ij,ij->i", normals, a)).max(axis=1)
+        normals, offsets = _face_planes(shape.mesh)
+        beyond = (points @ normals.T - offsets).max(axis=1)
         nearest = np.minimum(nearest, np.maximum(beyond, 0.0))
     return float(nearest.max())
 
@@ -437,7 +435,9 @@ def fitted_shape(piece: ConvexPiece, most_beyond: float) -> tuple[Shape, float]:
         along = piece.vertices @ axes.T
         low, high = along.min(axis=0), along.max(axis=0)
         x, y, z = (high - low).tolist()
-        return Shape(kind="box", mesh=mesh, size=(x, y, z), T_link_shape=_pose(axes.T, 0.5 * (low + high) @ axes)), 0.0
+        return Shape(
+            kind="box", mesh=mesh, size=(x, y, z), T_link_shape=pose_at(0.5 * (low + high) @ axes, axes.T)
+        ), 0.0
     for shape, beyond in (_cylinder(piece, mesh), _sphere(piece, mesh)):
         if shape is not None and beyond <= most_beyond:
             return shape, beyond
@@ -445,13 +445,7 @@ def fitted_shape(piece: ConvexPiece, most_beyond: float) -> tuple[Shape, float]:
     return Shape(mesh=LinkMesh(vertices=plain.vertices, faces=plain.faces)), 0.0
 
 
-def _pose(rotation: FloatArray, place: FloatArray) -> FloatArray:
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = rotation, place
-    return T
-
-
-def _face_planes(piece: ConvexPiece) -> tuple[FloatArray, FloatArray]:
+def _face_planes(piece: ConvexPiece | LinkMesh) -> tuple[FloatArray, FloatArray]:
     """Unit normals (F, 3) and offsets (F,) of the faces."""
     a, b, c = (piece.vertices[piece.faces[:, k]] for k in range(3))
     normals = crossed(b - a, c - a)
@@ -500,7 +494,7 @@ def _cylinder(piece: ConvexPiece, mesh: LinkMesh) -> tuple[Shape | None, float]:
     beyond = radius * (1.0 - np.cos(0.5 * gaps.max()))
     middle = R_link_axis @ np.append(center, 0.5 * (low[end] + high[end]))
     size = (radius, float(high[end] - low[end]))
-    return Shape(kind="cylinder", mesh=mesh, size=size, T_link_shape=_pose(R_link_axis, middle)), float(beyond)
+    return Shape(kind="cylinder", mesh=mesh, size=size, T_link_shape=pose_at(middle, R_link_axis)), float(beyond)
 
 
 def _sphere(piece: ConvexPiece, mesh: LinkMesh) -> tuple[Shape | None, float]:
@@ -510,7 +504,7 @@ def _sphere(piece: ConvexPiece, mesh: LinkMesh) -> tuple[Shape | None, float]:
         return None, 0.0
     normals, offsets = _face_planes(piece)
     beyond = radius - float((offsets - normals @ center).min())
-    return Shape(kind="sphere", mesh=mesh, size=(radius,), T_link_shape=_pose(np.eye(3), center)), beyond
+    return Shape(kind="sphere", mesh=mesh, size=(radius,), T_link_shape=pose_at(center)), beyond
 
 
 def _sphere_through(points: FloatArray) -> tuple[FloatArray | None, float]:

@@ -53,12 +53,11 @@ class CavlSide:
         met = torch.searchsorted(density.cumsum(0), steps).clamp_max(len(density) - 1)
         kept, hits = torch.unique(met, return_counts=True)
         growth = hits * density.sum() / (count * density[kept])
-        return CavlSide(
-            field=self.field,
+        return replace(
+            self,
             points=self.points[kept],
             anchored=self.anchored[kept] * growth,
             free=self.free[kept] * growth,
-            direction=self.direction,
         )
 
 
@@ -340,14 +339,8 @@ def _with_score(candidate: JointCandidate, terms: CavlTerms, row: int, config: C
         "cavl_offset": float(terms.offset[row]),
         "cavl_score": 1.0 / (1.0 + objective),
     }
-    return JointCandidate(
-        kind=candidate.kind,
-        axis=candidate.axis,
-        pivot=candidate.pivot,
-        score=evidence["cavl_score"] * (1.0 if candidate.kind.turns else config.type_ratio),
-        source=candidate.source,
-        evidence={**candidate.evidence, **evidence},
-    )
+    score = evidence["cavl_score"] * (1.0 if candidate.kind.turns else config.type_ratio)
+    return replace(candidate, score=score, evidence={**candidate.evidence, **evidence})
 
 
 def refine(
@@ -396,13 +389,6 @@ def _descended(
             objective.sum().backward()  # type: ignore[no-untyped-call]
             adam.step()
     return [
-        JointCandidate(
-            kind=candidate.kind,
-            axis=axis.numpy(),
-            pivot=pivot.numpy(),
-            score=candidate.score,
-            source=candidate.source,
-            evidence=candidate.evidence,
-        )
+        replace(candidate, axis=axis.numpy(), pivot=pivot.numpy())
         for candidate, axis, pivot in zip(candidates, best_axes, best_pivots, strict=True)
     ]

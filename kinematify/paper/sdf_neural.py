@@ -20,7 +20,7 @@ from kinematify.geometry.sampling import sample_surface
 from kinematify.paper.sdf_grid import exact_signed_distance
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from torch import Tensor
 
@@ -48,11 +48,6 @@ class NeuralSignedDistanceField:
         self._middle = torch.from_numpy(box.middle)
         self._half = torch.from_numpy(box.half)
 
-    @property
-    def memory_bytes(self) -> int:
-        """Memory of the weights [bytes]."""
-        return sum(t.numel() * t.element_size() for t in (*self._weights, *self._biases))
-
     def value(self, points: Tensor) -> Tensor:
         """Signed distance [m] at world points, shape (..., 3) -> (...), differentiable."""
         local = points.to(torch.float64) - self._middle
@@ -75,17 +70,13 @@ class _Box:
     """Half of the part's diagonal, the unit of the network [m]."""
 
 
-def train_fields(
-    parts: Sequence[Part], config: NeuralSdfConfig, *, seed: int,
-    progress: Callable[[float], None] = lambda share: None,
-) -> tuple[NeuralSignedDistanceField, ...]:  # fmt: skip
+def train_fields(parts: Sequence[Part], config: NeuralSdfConfig, *, seed: int) -> tuple[NeuralSignedDistanceField, ...]:
     """Train the fields of some parts in one batched network.
 
     Args:
         parts: Meshes with positive extent.
         config: Size of the networks, samples and training.
         seed: Of samples and weights.
-        progress: Called with the share that is done.
 
     Returns:
         One field per part, in their order; the same for the same seed on the same device.
@@ -99,7 +90,7 @@ def train_fields(
     distances = torch.from_numpy(np.stack([d for _, d in found])).to(device, torch.float32)
     generator = torch.Generator().manual_seed(seed)
     weights, biases = _network(len(parts), config, generator, device)
-    _train(weights, biases, (points, distances), config, generator=generator, progress=progress)
+    _train(weights, biases, (points, distances), config, generator)
     return tuple(
         NeuralSignedDistanceField(
             [w[k].detach().clone() for w in weights], [b[k].detach().clone() for b in biases], box, config.frequency
@@ -156,8 +147,8 @@ def _forward(weights: Sequence[Tensor], biases: Sequence[Tensor], points: Tensor
 
 
 def _train(
-    weights: list[Tensor], biases: list[Tensor], samples: tuple[Tensor, Tensor], config: NeuralSdfConfig, *,
-    generator: torch.Generator, progress: Callable[[float], None],
+    weights: list[Tensor], biases: list[Tensor], samples: tuple[Tensor, Tensor], config: NeuralSdfConfig,
+    generator: torch.Generator,
 ) -> None:  # fmt: skip
     """Minimise the clamped distance error and the eikonal term; every part sees batches of its own points."""
     points, distances = samples
@@ -177,8 +168,6 @@ def _train(
         loss.backward()  # type: ignore[no-untyped-call]
         optimizer.step()
         schedule.step()
-        if step % 50 == 0:
-            progress(step / config.steps)
 
 
 def _distance_loss(found: Tensor, wanted: Tensor, config: NeuralSdfConfig) -> Tensor:

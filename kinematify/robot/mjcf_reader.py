@@ -13,7 +13,7 @@ from kinematify.errors import DescriptionError
 from kinematify.robot.body_tree import WORLD, tree_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Inertial, Joint, Link, LoopJoint, Mimic
-from kinematify.robot.transforms import joint_motion, rotation_from_quaternion
+from kinematify.robot.transforms import joint_motion, pose_at, rotation_from_quaternion
 from kinematify.robot.urdf_geometry import ellipsoid, mesh_shape, primitive
 
 if TYPE_CHECKING:
@@ -86,9 +86,7 @@ def _line(item: Any) -> int:
 
 
 def _pose(position: FloatArray, quaternion: FloatArray) -> FloatArray:
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = rotation_from_quaternion(np.asarray(quaternion, dtype=np.float64)), position
-    return T
+    return pose_at(position, rotation_from_quaternion(np.asarray(quaternion, dtype=np.float64)))
 
 
 def _chain(model: Any, body: int, names: list[str]) -> list[Edge]:
@@ -108,8 +106,7 @@ def _chain(model: Any, body: int, names: list[str]) -> list[Edge]:
     edges: list[Edge] = []
     for k in range(first, first + count):
         child = name if k == first + count - 1 else f"{name}_{k - first + 1}"
-        anchor = np.eye(4)
-        anchor[:3, 3] = model.jnt_pos[k]
+        anchor = pose_at(model.jnt_pos[k])
         joint = _joint(model, k, parent, child)
         start = joint_motion(joint.kind, joint.axis, np.zeros(3), -_reference(model, k))
         edges.append((replace(joint, T_parent_child=T_above @ anchor @ start), anchor))

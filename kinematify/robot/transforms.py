@@ -12,6 +12,8 @@ import numpy as np
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from kinematify.robot.arrays import FloatArray
 
 _LEVEL = 1e-9
@@ -23,6 +25,15 @@ _PARALLEL = 1e-12
 def transformed(points: FloatArray, T: FloatArray) -> FloatArray:
     """Points (n, 3) moved by a transform (4, 4)."""
     return np.asarray(points @ T[:3, :3].T + T[:3, 3])
+
+
+def pose_at(place: FloatArray | Sequence[float], rotation: FloatArray | None = None) -> FloatArray:
+    """Pose (4, 4) of a frame with its origin at a place (3,), turned by a rotation (3, 3) if one is given."""
+    T = np.eye(4)
+    T[:3, 3] = place
+    if rotation is not None:
+        T[:3, :3] = rotation
+    return T
 
 
 def rotation_about(axis: FloatArray, angle: float | FloatArray) -> FloatArray:

@@ -19,7 +19,7 @@ from kinematify.robot.appearance import joined, linear_of, srgb_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Inertial, Joint, forward_kinematics, joint_values, rest_configuration, rigid_groups
-from kinematify.robot.transforms import transformed
+from kinematify.robot.transforms import pose_at, transformed
 from kinematify.validation.formats.view_data import view_data
 from kinematify.validation.isolation import Stage, run_stages
 from kinematify.validation.stage import StageRequest
@@ -170,7 +170,7 @@ def _link(standing: _Standing, group: RigidGroup) -> ModelLink:
     corners, triangles = np.concatenate(vertices), np.concatenate(faces)
     color = None if look is None else look.mean_color(corners, triangles)[:3]
     part = Part(name=group.top, vertices=corners, faces=triangles, color=color, appearance=look)
-    return ModelLink(name=group.top, part=part, T_world_link=_at(standing.place(group.top)), inertial=_NO_INERTIAL)
+    return ModelLink(name=group.top, part=part, T_world_link=pose_at(standing.place(group.top)), inertial=_NO_INERTIAL)
 
 
 def _joint(standing: _Standing, joint: Joint) -> Joint:
@@ -181,7 +181,7 @@ def _joint(standing: _Standing, joint: Joint) -> Joint:
         kind=joint.kind,
         parent=parent,
         child=joint.child,
-        T_parent_child=_at(standing.place(joint.child) - standing.place(parent)),
+        T_parent_child=pose_at(standing.place(joint.child) - standing.place(parent)),
         axis=standing.T_world_link[joint.child][:3, :3] @ joint.axis,
         lower=lower,
         upper=upper,
@@ -202,9 +202,3 @@ def _range(standing: _Standing, joint: Joint) -> tuple[float, float]:
         joint_values(standing.robot, {leader.name: end})[joint.name] - at_rest for end in (leader.lower, leader.upper)
     ]
     return min(ends), max(ends)
-
-
-def _at(place: FloatArray) -> FloatArray:
-    transform = np.eye(4)
-    transform[:3, 3] = place
-    return transform
