@@ -80,9 +80,9 @@ def env_robot(articulated_object: ArticulatedObject, robot: str | None, tool: st
     folder = articulated_object.folder / hashlib.sha256(f"{robot} {tool}".encode()).hexdigest()[:12]
     folder.mkdir(parents=True, exist_ok=True)
     found = builtin_robot() if robot is None or tool is None else user_robot(Path(robot), tool, folder=folder)
-    settings, loaded = load_settings(), loadable(found.urdf, folder)
-    scene = read_scene(read_robot(loaded), settings.geometry)
-    return EnvRobot(robot=found, arm=Arm(found, settings.task.plan), loaded=loaded, scene=scene)
+    loaded = loadable(found.urdf, folder)
+    scene = read_scene(read_robot(loaded), load_settings().geometry)
+    return EnvRobot(robot=found, arm=Arm(found), loaded=loaded, scene=scene)
 
 
 @lru_cache(maxsize=16)
@@ -109,9 +109,7 @@ def robot_plan(articulated_object: ArticulatedObject, joint: str, robot: EnvRobo
 
 
 def _planned(articulated_object: ArticulatedObject, joint: str, robot: EnvRobot) -> dict[str, object]:
-    settings = load_settings().task
-    plan_settings = settings.plan.model_copy(update={"seconds": _PLAN_SECONDS})
-    settings = settings.model_copy(update={"plan": plan_settings})
+    settings = load_settings().task.plan.model_copy(update={"seconds": _PLAN_SECONDS})
     plan = plan_pull(robot.arm, articulated_object.scene, joint, settings)
     if plan.place is None or plan.reach is None or plan.pull is None or plan.opened is None:
         raise InputError(

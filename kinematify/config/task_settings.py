@@ -31,10 +31,6 @@ class ExecutionSettings(StageConfig):
     """Of each finger with its drive [kg or kg m^2]; light fingers sink into what they hold."""
     grip_force: float = 60.0  # grippers of research arms exert 40 to 140 N
     """Of each finger [N]."""
-    pad_width: float = 0.02  # those of the built-in arm
-    """Of the pads, across approach and closing direction [m]."""
-    pad_length: float = 0.02
-    """Of the pads, along the approach direction [m]."""
     friction: float = 1.0  # rubber on varnish
     """Of pads on the object."""
     weld_force: float = 500.0  # doors of appliances need up to 70 N
@@ -47,33 +43,6 @@ class ExecutionSettings(StageConfig):
     """Speed of the joint that counts as rest, fraction of the planned way [1/s]."""
     depth: float = 0.008  # convex pieces of the object reach up to 7 mm beyond its surface
     """Depth of the robot in the object that does not count [m]."""
-    frame_rate: float = 25.0
-    """States that are kept for the film [Hz]."""
-
-
-class FilmSettings(StageConfig):
-    """The film of a run and its still."""
-
-    frames: int = 24  # 8 pictures a second of motion; each takes 0.15 s to draw
-    """Pictures of the film at most."""
-    width: int = 360
-    """Of the film [pixels]."""
-    height: int = 290
-    """Of the film [pixels]."""
-    still_width: int = 360
-    """Of each of the three panels of the still [pixels]."""
-    still_height: int = 330
-    """The same for their height [pixels]."""
-    colors: int = 64  # shades of five colours; a film of 3 s has 0.2 MB
-    """Of the film's palette."""
-    last_seconds: float = 1.5
-    """The last picture is shown so long [s]."""
-    azimuths: int = 12
-    """Sides from which the view is tried."""
-    subsamples: int = 2
-    """Rays per pixel side where edges are smoothed."""
-    rays: int = 3
-    """Rays per pixel for how much of the sky a point sees."""
 
 
 class TaskSettings(StageConfig):
@@ -83,7 +52,6 @@ class TaskSettings(StageConfig):
     """Wall time for a task with one object, beside that of the other checks [s]."""
     plan: PlanSettings = section()
     execution: ExecutionSettings = section()
-    film: FilmSettings = section()
     # pairs that meet in one configuration of a thousand are found; MoveIt takes 10,000 by default
     srdf_rows: int = 4096
     """Configurations in which pairs of links are looked at for an SRDF."""

@@ -19,12 +19,12 @@ from kinematify.geometry.scene import judged_shapes
 from kinematify.manipulation.grasp import moved_bodies
 from kinematify.manipulation.manipulator import hand_links
 from kinematify.robot.robot import rigid_groups
+from kinematify.robot.transforms import pose_at
 from kinematify.robot.vectors import referenced
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from kinematify.config.planning_settings import PlanSettings
     from kinematify.geometry.scene import Scene
     from kinematify.manipulation.kinematics import Arm
     from kinematify.robot.arrays import FloatArray, IntArray
@@ -35,6 +35,7 @@ _FAR = 50.0  # half of the floor's extent [m]
 _COLUMN = (0.16, 0.16, 4.0)  # of which the upper part stands above the floor [m]
 _GAP = 0.002  # between the column and what stands on it [m]
 _THICKNESS, _DIRECTIONS = 1e-4, 200  # of hulls: flat parts are so thick [m], large ones keep so many corners
+_ALWAYS = 0.9  # parts of the robot that collide in more than this share of configurations are built that way
 _SAMPLES = 60  # configurations for what the robot's own parts always do
 
 
@@ -51,16 +52,16 @@ class Hit:
 class CollisionWorld:
     """One arm and one object."""
 
-    def __init__(self, arm: Arm, scene: Scene, joint: str, settings: PlanSettings) -> None:
+    def __init__(self, arm: Arm, scene: Scene, joint: str, margin: float) -> None:
         """Gather the geometry; the robot stands at the origin until it is placed.
 
         Args:
             arm: The robot.
             scene: The object, in metres.
             joint: Joint of the object that is to be moved.
-            settings: Margins.
+            margin: Between arm and object, without the hand [m].
         """
-        self._arm, self._settings = arm, settings
+        self._arm = arm
         self._geometry = pin.GeometryModel()
         self._links: list[str] = []
         self._add_robot(arm.declared)
@@ -80,9 +81,7 @@ class CollisionWorld:
         self._holding = pin.GeometryData(self._geometry)
         for k, (first, _, kind, held) in enumerate(pairs):
             for data in (self._free, self._holding):
-                data.collisionRequests[k].security_margin = (
-                    settings.margin if kind == "object" and first not in hand else 0.0
-                )
+                data.collisionRequests[k].security_margin = margin if kind == "object" and first not in hand else 0.0
             if held:
                 self._holding.deactivateCollisionPair(k)
         self._data = arm.model.createData()
@@ -95,10 +94,10 @@ class CollisionWorld:
         back = np.linalg.inv(T_world_base)
         self._T_base_object = back @ T_world_object
         height = float(T_world_base[2, 3])
-        self._put(self._floor, back @ _shifted(T_world_base[:2, 3], -1.0 - _GAP))
+        self._put(self._floor, back @ pose_at([*T_world_base[:2, 3], -1.0 - _GAP]))
         standing = column and height > 0.0
         middle = -_GAP - 0.5 * _COLUMN[2] if standing else -10.0 * _FAR
-        self._put(self._column, _shifted(np.zeros(2), middle))
+        self._put(self._column, pose_at([0.0, 0.0, middle]))
 
     def pose_object(self, poses: FloatArray, gap: float) -> None:
         """Pose the bodies of the object, frame of its root, shape (B, 4, 4), and open the fingers [m]."""
@@ -188,15 +187,9 @@ class CollisionWorld:
         pin.computeCollisions(self._arm.model, self._data, self._geometry, self._free, home, False)
         for k, kind in enumerate(self._kinds):
             at_home = self._free.collisionResults[k].isCollision()
-            if kind == "self" and (at_home or hits[k] > self._settings.always * len(rows)):
+            if kind == "self" and (at_home or hits[k] > _ALWAYS * len(rows)):
                 for data in (self._free, self._holding):
                     data.deactivateCollisionPair(k)
-
-
-def _shifted(place: FloatArray, z: float) -> FloatArray:
-    T = np.eye(4)
-    T[:2, 3], T[2, 3] = place, z
-    return T
 
 
 def _convex(shape: Shape) -> tuple[coal.CollisionGeometry, FloatArray] | None:

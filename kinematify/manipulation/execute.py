@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from kinematify.simulation.world import EngineWorld
 
 
+_FRAME_RATE = 25.0  # states that are kept for the film [Hz]
 _BLOWN_UP = {"badqpos", "badqvel", "badqacc"}
 """Warnings of MuJoCo after which a run counts for nothing."""
 
@@ -136,20 +137,14 @@ class Execution:
     hold: Hold
     share: float
     """How far the joint opened, fraction of the planned way."""
-    rest_speed: float
-    """Speed of the joint at the end, fraction of the planned way [1/s]."""
     depth: float
     """Deepest that the robot got into the object, the hand in the held part omitted [m]."""
     deepest: tuple[str, str] | None
     """Link of the robot and link of the object."""
-    tracking: float
-    """Largest lag of an arm joint behind its command [rad or m]."""
     success: bool
     """Opened far enough, at rest, and no deeper than the tolerance."""
     reason: str | None
     """What kept it from success."""
-    simulated: float
-    """[s]."""
     grasped: float
     """Time at which the fingers have closed and the pull begins [s]."""
     frames: tuple[Frame, ...]
@@ -235,7 +230,7 @@ class _Run:
     def __init__(self, loaded: Loaded, settings: ExecutionSettings, engine: str, hold: Hold) -> None:
         self._motion, self._settings, self._hold = loaded.motion, settings, hold
         self._frames: list[Frame] = []
-        self._depth, self._tracking = 0.0, 0.0
+        self._depth = 0.0
         self._deepest: tuple[str, str] | None = None
         self._robot, self._object = (LeaderMechanism(robot=model) for model in (loaded.robot, loaded.object))
         start = {**self._motion.start, self._motion.joint: float(self._motion.opened[0])}
@@ -283,7 +278,7 @@ class _Run:
                 hand=loaded.hand_links,
                 part=loaded.held_links,
                 link=held,
-                piece=grip_piece(loaded.object, held, leaders, motion.grasp, settings) if friction else None,
+                piece=grip_piece(loaded.object, held, leaders, motion.grasp) if friction else None,
                 weld_force=settings.weld_force,
             ),
         )
@@ -291,7 +286,7 @@ class _Run:
     def tracked(self, reference: Reference) -> FloatArray:
         """Track the reference; returns the value of the object's joint after every step, shape (steps,)."""
         settings, world = self._settings, self.world
-        every = max(1, round(1.0 / (settings.frame_rate * settings.time_step)))
+        every = max(1, round(1.0 / (_FRAME_RATE * settings.time_step)))
         steps = len(reference.arm)
         values = np.full(steps, np.nan)
         for step, wanted in enumerate(reference.arm):
@@ -306,7 +301,6 @@ class _Run:
             if not world.stable() or _BLOWN_UP & world.warnings().keys():
                 break
             values[step] = world.values()[self._opened]
-            self._tracking = max(self._tracking, float(np.abs(world.driven()[0][: len(wanted)] - wanted).max()))
             if (contact := world.deeper(self._depth)) is not None:
                 self._depth, self._deepest = contact
             if step % every == 0 or step == steps - 1:
@@ -324,7 +318,7 @@ class _Run:
         speed = float(np.ptp(values[-tail:])) / (tail * settings.time_step) / max(abs(way), 1e-9)
         reason = None
         if not np.isfinite(values).all():
-            share, speed, reason = 0.0, float("inf"), "the simulation blew up"
+            share, reason = 0.0, "the simulation blew up"
         elif share < settings.opened:
             reason = f"the joint stops at {max(share, 0.0):.0%} of the planned way"
         elif speed > settings.rest_speed:
@@ -335,13 +329,10 @@ class _Run:
             engine=engine,
             hold=self._hold,
             share=share,
-            rest_speed=speed,
             depth=self._depth,
             deepest=self._deepest,
-            tracking=self._tracking,
             success=reason is None,
             reason=reason,
-            simulated=len(values) * settings.time_step,
             grasped=reference.pulls * settings.time_step,
             frames=tuple(self._frames),
         )

@@ -9,8 +9,9 @@ from PIL import Image, ImageDraw, ImageFont
 
 from kinematify.config import load_config
 from kinematify.manipulation.robot_place import column_mesh
-from kinematify.model.picture_scene import camera_for
-from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
+from kinematify.render.camera import camera_for
+from kinematify.render.film import draw_all, write_gif
+from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh
 from kinematify.robot.robot import forward_kinematics, rigid_groups
 from kinematify.robot.transforms import transformed
 from kinematify.robot.vectors import as_one
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from kinematify.config.task_settings import FilmSettings
     from kinematify.manipulation.execute import Execution, Frame, Loaded
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.robot import Robot
@@ -28,11 +28,16 @@ _ARM, _HAND = np.array([0.80, 0.83, 0.88]), np.array([0.96, 0.58, 0.20])
 _HELD, _OTHERS, _CARCASS = np.array([0.16, 0.62, 0.56]), np.array([0.62, 0.72, 0.80]), np.array([0.86, 0.80, 0.71])
 _STAND = np.array([0.55, 0.58, 0.63])
 _INK = (45, 50, 60)
-_MARGIN = 14  # [pixels]
+_FRAMES = 24  # of the film at most: 8 pictures a second of motion, each takes 0.15 s to draw
+_SIZE, _STILL_SIZE = (360, 290), (360, 330)  # of the film, and of each of the three panels of the still [pixels]
+_COLORS = 64  # of the film's palette, shades of five colours: a film of 3 s has 0.2 MB
+_LAST_SECONDS = 1.5  # that the last picture is shown
+_AZIMUTHS = 12  # sides from which the view is tried
+_MARGIN = 14.0  # [pixels]
 _CAPTION = 34  # height of the line above a panel of the still [pixels]
 
 
-def write_film(loaded: Loaded, execution: Execution, film: Path, still: Path, settings: FilmSettings) -> None:
+def write_film(loaded: Loaded, execution: Execution, film: Path, still: Path) -> None:
     """Write a GIF of a run and a PNG with its start, the grasp and the end side by side.
 
     Args:
@@ -40,16 +45,14 @@ def write_film(loaded: Loaded, execution: Execution, film: Path, still: Path, se
         execution: The run, with at least one frame.
         film: GIF file to write.
         still: PNG file to write.
-        settings: Size and length.
 
     Raises:
         OSError: A file cannot be written.
     """
-    quality = {"subsamples": settings.subsamples, "openness_rays": settings.rays, "floor_cells": 48}
-    config = load_config("default").preview.model_copy(update=quality)
+    config = load_config("default").preview
     all_frames = execution.frames
     at_grasp = min(all_frames, key=lambda frame: abs(frame.time - execution.grasped))
-    scenes, watched = _scenes(loaded, [all_frames[0], at_grasp, all_frames[-1], *_thinned(all_frames, settings.frames)])
+    scenes, watched = _scenes(loaded, [all_frames[0], at_grasp, all_frames[-1], *_thinned(all_frames, _FRAMES)])
     moments, frames = scenes[:3], scenes[3:]
 
     def worth(azimuth: float) -> float:
@@ -57,18 +60,13 @@ def write_film(loaded: Loaded, execution: Execution, film: Path, still: Path, se
         camera = camera_for(moments, azimuth, config, size=size, margin=2.0)
         return sum(float(np.sqrt(scene.visible_pixels(camera)[:watched]).sum()) for scene in moments)
 
-    step = 2.0 * np.pi / settings.azimuths
-    azimuth = max((step * (index + 0.4) for index in range(settings.azimuths)), key=worth)
+    step = 2.0 * np.pi / _AZIMUTHS
+    azimuth = max((step * (index + 0.4) for index in range(_AZIMUTHS)), key=worth)
 
-    def drawn(chosen: Sequence[PictureScene], size: tuple[int, int]) -> list[Image.Image]:
-        """Draw scenes with one camera, which shows everything that happens in them."""
-        camera = camera_for(chosen, azimuth, config, size=size, margin=float(_MARGIN))
-        return [render_scene(scene, camera, config) for scene in chosen]
-
-    pictures = drawn(frames, (settings.width, settings.height))
+    pictures = draw_all(frames, camera_for(frames, azimuth, config, size=_SIZE, margin=_MARGIN))
     seconds = all_frames[-1].time - all_frames[0].time
-    _write_gif(pictures, film, seconds / max(len(pictures) - 1, 1), settings)
-    panels = drawn(moments, (settings.still_width, settings.still_height))
+    write_gif(pictures, film, seconds / max(len(pictures) - 1, 1), colors=_COLORS, last=_LAST_SECONDS)
+    panels = draw_all(moments, camera_for(moments, azimuth, config, size=_STILL_SIZE, margin=_MARGIN))
     _write_still(panels, still, ("before", "at the grasp", f"after {execution.share:.0%} of the planned way"))
 
 
@@ -127,14 +125,6 @@ def _thinned(frames: Sequence[Frame], most: int) -> list[Frame]:
     """At most so many frames at equal steps, the first and the last among them."""
     chosen = np.unique(np.linspace(0, len(frames) - 1, min(most, len(frames))).round().astype(np.int64))
     return [frames[index] for index in chosen]
-
-
-def _write_gif(pictures: Sequence[Image.Image], path: Path, pace: float, settings: FilmSettings) -> None:
-    """Write frames with one palette, `pace` [s] apart; the last one is shown longer."""
-    palette = pictures[-1].quantize(settings.colors, method=Image.Quantize.MEDIANCUT)
-    reduced = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
-    durations = [max(20, round(1e3 * pace))] * (len(reduced) - 1) + [round(1e3 * settings.last_seconds)]
-    reduced[0].save(path, save_all=True, append_images=reduced[1:], duration=durations, loop=0, optimize=True)
 
 
 def _write_still(panels: Sequence[Image.Image], path: Path, captions: Sequence[str]) -> None:

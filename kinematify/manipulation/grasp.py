@@ -21,6 +21,7 @@ from kinematify.manipulation.grasp_search import (
     GraspSearch,
 )
 from kinematify.robot.robot import forward_kinematics
+from kinematify.robot.transforms import pose_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -299,17 +300,11 @@ def _alike(found: Candidates, row: int) -> BoolArray:
 
 
 def _frame(found: Candidates, row: int) -> FloatArray:
-    T = np.eye(4)
-    T[:3, :3] = np.column_stack([found.side[row], found.closing[row], found.approach[row]])
-    T[:3, 3] = found.center[row]
-    return T
+    return pose_at(found.center[row], np.column_stack([found.side[row], found.closing[row], found.approach[row]]))
 
 
 def _inverse(T: FloatArray) -> FloatArray:
-    back = np.eye(4)
-    back[:3, :3] = T[:3, :3].T
-    back[:3, 3] = -T[:3, :3].T @ T[:3, 3]
-    return back
+    return pose_at(-T[:3, :3].T @ T[:3, 3], T[:3, :3].T)
 
 
 def _around(point: FloatArray, seed: int) -> FloatArray:

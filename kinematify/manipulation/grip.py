@@ -20,17 +20,15 @@ from kinematify.robot.vectors import referenced
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.config.task_settings import ExecutionSettings
     from kinematify.manipulation.grasp import Grasp
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.robot import Robot
 
+_PAD = 0.02  # length and width of the pads, those of the built-in arm [m]
 _THIN = 1e-3  # sheets are made so thick [m]
 
 
-def grip_piece(
-    model: Robot, link: str, values: Mapping[str, float], grasp: Grasp, settings: ExecutionSettings
-) -> tuple[FloatArray, IntArray]:
+def grip_piece(model: Robot, link: str, values: Mapping[str, float], grasp: Grasp) -> tuple[FloatArray, IntArray]:
     """Cut out what lies between the pads and return its convex hull.
 
     Args:
@@ -38,13 +36,12 @@ def grip_piece(
         link: Link in whose frame the grasp is stated.
         values: Leading joints of the object [rad or m].
         grasp: How it is held.
-        settings: Size of the pads.
 
     Returns:
         Vertices in the frame of the link [m], shape (V, 3), and faces (F, 3). Where nothing lies between the pads, a
         block as thick as the grasp says.
     """
-    high = np.array([0.5 * settings.pad_width, 0.5 * grasp.spread, 0.5 * settings.pad_length])
+    high = np.array([0.5 * _PAD, 0.5 * grasp.spread, 0.5 * _PAD])
     low = -high
     back = np.asarray(np.linalg.inv(grasp.T_link_grasp), dtype=np.float64)
     points = _clipped(transformed(_triangles(model, link, grasp.held, values), back), low, high)

@@ -23,26 +23,30 @@ except ImportError as error:
     raise EnvironmentFault(not_installed("A robot arm", "pin", "coal", "ompl")) from error
 
 if TYPE_CHECKING:
-    from kinematify.config.planning_settings import PlanSettings
     from kinematify.manipulation.manipulator import TaskRobot
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
 
+_ITERATIONS = 40  # of inverse kinematics: from the nearest sample a dozen are enough
+_DAMPING = 0.02  # of its least squares, relative to the remaining error
+_CENTERING = 0.02  # share of the way back to the middle of the range in each step, as far as there is freedom
+_LARGEST_STEP = 0.4  # of a joint [rad or m]: beyond that the linear model means nothing
+_SAME_PLACE, _SAME_TURN = 5e-5, 5e-4  # error of the tool that counts as none [m, rad]
+_RADIAN = 0.2  # an error of direction of one radian counts like so much error of position [m]: of a hand of 20 cm
 _BATCH = 14  # two to this power configurations represent what the arm can reach
 
 
 class Arm:
     """Arm and fingers of a robot, all other joints at rest; frame: the robot's root link."""
 
-    def __init__(self, robot: TaskRobot, settings: PlanSettings, *, seed: int = 0) -> None:
+    def __init__(self, robot: TaskRobot, *, seed: int = 0) -> None:
         """Read the robot.
 
         Args:
             robot: As planning needs it.
-            settings: Iterations and tolerances.
             seed: Of restarts and of the samples that represent what can be reached.
         """
-        self.robot, self.settings, self._seed = robot, settings, seed
+        self.robot, self._seed = robot, seed
         self.declared = read_robot(robot.urdf)
         text = etree.tostring(robot_element(_without_endless_joints(self.declared)), encoding="unicode")
         self.model = self._reduced(pin.buildModelFromXML(text))
@@ -100,22 +104,22 @@ class Arm:
         Returns:
             Values of the arm joints, shape (dof,), or None where it did not get there.
         """
-        settings, q = self.settings, np.clip(start, self.lower, self.upper)
+        q = np.clip(start, self.lower, self.upper)
         goal, middle = pin.SE3(target), 0.5 * (self.lower + self.upper)
-        weight = settings.centering / np.maximum(self.upper - self.lower, 1e-6) ** 2
-        for _ in range(settings.iterations):
+        weight = _CENTERING / np.maximum(self.upper - self.lower, 1e-6) ** 2
+        for _ in range(_ITERATIONS):
             gap = self._placement(q).actInv(goal)
             error = np.asarray(pin.log6(gap).vector)
-            if np.linalg.norm(error[:3]) < settings.same_place and np.linalg.norm(error[3:]) < settings.same_turn:
+            if np.linalg.norm(error[:3]) < _SAME_PLACE and np.linalg.norm(error[3:]) < _SAME_TURN:
                 return q
             jacobian = self.jacobian(q)
-            gram = jacobian @ jacobian.T + settings.damping * (1e-3 + float(error @ error)) * np.eye(6)
+            gram = jacobian @ jacobian.T + _DAMPING * (1e-3 + float(error @ error)) * np.eye(6)
             step = jacobian.T @ np.linalg.solve(gram, error)
             if center:
                 wish = -weight * (q - middle)
                 step += wish - jacobian.T @ np.linalg.solve(gram, jacobian @ wish)
             largest = float(np.abs(step).max())
-            q = np.clip(q + step * min(1.0, settings.largest_step / max(largest, 1e-9)), self.lower, self.upper)
+            q = np.clip(q + step * min(1.0, _LARGEST_STEP / max(largest, 1e-9)), self.lower, self.upper)
         return None
 
     def solve_all(self, target: FloatArray, tries: int) -> list[FloatArray]:
@@ -140,7 +144,7 @@ class Arm:
 
     def distances(self, targets: FloatArray) -> FloatArray:
         """Return how far the nearest sample is from poses (n, 4, 4): metres and half metres per radian, shape (n,)."""
-        return np.asarray(self._map.query(_features(targets, self.settings.radian))[0])
+        return np.asarray(self._map.query(_features(targets))[0])
 
     @cached_property
     def shoulder(self) -> FloatArray:
@@ -176,10 +180,10 @@ class Arm:
 
     @cached_property
     def _map(self) -> KDTree:
-        return KDTree(_features(self.sampled_poses, self.settings.radian))
+        return KDTree(_features(self.sampled_poses))
 
     def _nearest(self, target: FloatArray, count: int) -> list[int]:
-        rows = self._map.query(_features(target[None], self.settings.radian)[0], k=count)[1]
+        rows = self._map.query(_features(target[None])[0], k=count)[1]
         return [int(row) for row in np.atleast_1d(rows)]
 
     def _placement(self, q: FloatArray) -> pin.SE3:
@@ -201,9 +205,9 @@ class Arm:
         return pin.buildReducedModel(model, locked, q)
 
 
-def _features(poses: FloatArray, radian: float) -> FloatArray:
+def _features(poses: FloatArray) -> FloatArray:
     """Position and approach direction of poses (n, 4, 4), shape (n, 6); the last joint sees to the rest."""
-    return np.concatenate([poses[:, :3, 3], radian * poses[:, :3, 2]], axis=1)
+    return np.concatenate([poses[:, :3, 3], _RADIAN * poses[:, :3, 2]], axis=1)
 
 
 def _without_endless_joints(robot: Robot) -> Robot:

@@ -29,13 +29,14 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config.planning_settings import PlanSettings
-    from kinematify.config.task_settings import TaskSettings
     from kinematify.geometry.scene import Scene
     from kinematify.manipulation.kinematics import Arm
     from kinematify.manipulation.manipulator import TaskRobot
     from kinematify.manipulation.robot_place import RobotPlacement
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import Travel
+
+_OPENERS = 2  # so many other joints at most are opened before one that they cover: two doors before a wide drawer
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -64,14 +65,14 @@ def clear_way(scene: Scene, joint: str, settings: PlanSettings) -> OpenedObject:
     Args:
         scene: The object at rest.
         joint: Leading joint that is to be opened.
-        settings: What counts as open, and how many others may be opened first.
+        settings: What counts as open.
 
     Returns:
         The object with the others opened; as it is where that would not help.
     """
     leader = [travel.joint for travel in scene.travels].index(joint)
     start = found = _freedom(scene, leader, settings, {})
-    for _ in range(settings.openers):
+    for _ in range(_OPENERS):
         if found.share >= settings.opened:
             break
         steps = []
@@ -143,7 +144,7 @@ def plan_pull(
     arm: Arm,
     scene: Scene,
     joint: str,
-    settings: TaskSettings,
+    settings: PlanSettings,
     *,
     point: FloatArray | None = None,
     base: FloatArray | None = None,
@@ -155,7 +156,7 @@ def plan_pull(
         arm: The robot.
         scene: The object at its real size, in metres.
         joint: Joint that leads.
-        settings: Thresholds of grasps and plans.
+        settings: Thresholds.
         point: Hold the part there, frame of the object's root link [m], shape (3,); anywhere if None.
         base: Pose of the robot's root link in the frame of the object's root link, shape (4, 4); searched if None.
         seed: Of all that is random.
@@ -163,7 +164,7 @@ def plan_pull(
     Raises:
         InputError: The object has no such joint, or `point` is not on what it moves.
     """
-    return _Planning(arm, scene, joint, settings.plan, point=point, base=base, seed=seed).run()
+    return _Planning(arm, scene, joint, settings, point=point, base=base, seed=seed).run()
 
 
 def depend(plans: Sequence[PullPlan]) -> tuple[PullPlan, ...]:
@@ -186,7 +187,7 @@ def _longest_way(scene: Scene, joint: str, settings: PlanSettings) -> float:
     """Longest way of the middle of a moved part's corners, from rest to the open end [m]."""
     own, carried = moved_bodies(scene, joint)
     travel = next(travel for travel in scene.travels if travel.joint == joint)
-    motion = object_motion(scene, joint, pull_end(travel, settings), settings)
+    motion = object_motion(scene, joint, pull_end(travel, settings))
     ways = [0.0]
     for body in [*own, *carried]:
         corners = np.concatenate(scene.bodies[body].shapes)
@@ -208,7 +209,7 @@ class _Planning:
         self._arm, self._joint, self._plan, self._point, self._seed = arm, joint, plan, point, seed
         opened = self._opened.scene
         travel = next(travel for travel in opened.travels if travel.joint == joint)
-        self._motion = object_motion(opened, joint, pull_end(travel, plan), plan)
+        self._motion = object_motion(opened, joint, pull_end(travel, plan))
         self._base = None if base is None else self._motion.T_world_object @ base
         self._places = Places(arm, self._motion, object_box(opened), plan)
         self._tried = 0
@@ -229,9 +230,9 @@ class _Planning:
         found = search_grasps(free.scene, self._joint, opening, point=self._point, seed=self._seed)
         if not found.grasps:
             return self._ended(Failure.NO_GRASP, found.reason or "")
-        world = CollisionWorld(self._arm, free.scene, self._joint, self._plan)
+        world = CollisionWorld(self._arm, free.scene, self._joint, self._plan.margin)
         places = self._places.ranked(found.grasps, self._base)
-        return self._search(world, Puller(self._arm, world, self._motion, self._plan), places)
+        return self._search(world, Puller(self._arm, world, self._motion), places)
 
     def _search(self, world: CollisionWorld, puller: Puller, places: list[RobotPlacement]) -> PullPlan:
         """Try the most promising places until one lets the arm open the joint."""
@@ -289,7 +290,7 @@ class _Planning:
             return None
         world.place(pull.place.T_world_base, self._motion.T_world_object, column=column)
         world.pose_object(self._motion.body_poses[0], pull.place.grasp.spread)
-        reach = plan_reach(self._arm, world, pull.path[0], self._plan, seed=self._seed)
+        reach = plan_reach(self._arm, world, pull.path[0], seed=self._seed)
         if isinstance(reach, str):
             self._ways[reach] += 1
             return None

@@ -14,7 +14,6 @@ import numpy as np
 import pinocchio as pin
 
 if TYPE_CHECKING:
-    from kinematify.config.planning_settings import PlanSettings
     from kinematify.manipulation.collision_world import CollisionWorld, Hit
     from kinematify.manipulation.kinematics import Arm
     from kinematify.manipulation.robot_place import ObjectMotion, RobotPlacement
@@ -24,6 +23,12 @@ LIMIT, SINGULAR, JUMP, SELF, OBJECT, FLOOR, UNREACHED, ITSELF = (
     "arm limit", "singularity", "jump", "self-collision", "arm against object", "arm against floor", "out of reach",
     "object against itself",
 )  # fmt: skip
+RESTARTS = 3
+"""Samples of the arm from which inverse kinematics starts."""
+JUMP_AT = 0.6  # 25 poses over a turn of the wrist
+"""Larger changes of a joint from one pose to the next are no continuous motion [rad or m]."""
+_NEAR_LIMIT = 0.005  # of its range: a joint that is so near is at its limit
+_SINGULAR = 0.02  # smallest singular value of the Jacobian (lengths in half metres) that an arm can follow with
 _KINDS = {"self": SELF, "object": OBJECT, "floor": FLOOR}
 
 
@@ -59,9 +64,9 @@ class Pull:
 class Puller:
     """Follows one joint of the object with one arm."""
 
-    def __init__(self, arm: Arm, world: CollisionWorld, motion: ObjectMotion, settings: PlanSettings) -> None:
+    def __init__(self, arm: Arm, world: CollisionWorld, motion: ObjectMotion) -> None:
         """Keep what is given."""
-        self.arm, self.world, self.motion, self.settings = arm, world, motion, settings
+        self.arm, self.world, self.motion = arm, world, motion
 
     def targets(self, place: RobotPlacement) -> FloatArray:
         """Poses of the tool in the frame of the robot's root, shape (k, 4, 4)."""
@@ -83,7 +88,7 @@ class Puller:
         anchor = 0 if from_start else len(targets) // 2
         best: Pull | None = None
         stop: Stop | None = None
-        for q in self.arm.solve_all(targets[anchor], self.settings.restarts):
+        for q in self.arm.solve_all(targets[anchor], RESTARTS):
             stop = self._blocked(q, anchor, place)
             if stop is not None:
                 continue
@@ -120,7 +125,7 @@ class Puller:
             now = self.arm.solve(targets[row], q + (q - before) if found else q)
             if now is None:
                 return found, self._why_not(q, targets[row])
-            if float(np.abs(now - q).max()) > self.settings.jump:
+            if float(np.abs(now - q).max()) > JUMP_AT:
                 return found, Stop(kind=JUMP, words="its posture would have to change all at once")
             stop = self._blocked(now, row, place)
             if stop is not None:
@@ -142,14 +147,14 @@ class Puller:
 
     def _why_not(self, q: FloatArray, target: FloatArray) -> Stop:
         """Why inverse kinematics gets no farther than a posture."""
-        arm, near = self.arm, self.settings.near_limit * (self.arm.upper - self.arm.lower)
+        arm, near = self.arm, _NEAR_LIMIT * (self.arm.upper - self.arm.lower)
         jacobian = arm.jacobian(q)
         step = jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + 1e-4 * np.eye(6), arm.error(q, target))
         held = ((q < arm.lower + near) & (step < 0.0)) | ((q > arm.upper - near) & (step > 0.0))
         if held.any():
             name = arm.robot.arm_joints[int(np.argmax(held * np.abs(step)))]
             return Stop(kind=LIMIT, words=f"its {name} is at the end of its range")
-        if arm.manipulability(q) < self.settings.singular:
+        if arm.manipulability(q) < _SINGULAR:
             return Stop(kind=SINGULAR, words="it is stretched out or its wrist is aligned (singular)")
         return Stop(kind=UNREACHED, words="the next pose is out of its reach")
 

@@ -16,7 +16,7 @@ from kinematify.geometry.convex import convex_hull
 from kinematify.manipulation.grasp import moved_bodies
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration
-from kinematify.robot.transforms import transformed
+from kinematify.robot.transforms import pose_at, transformed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,6 +32,13 @@ _GRASP_RANK, _PLACE_RANK = 0.01, 0.02  # dearness of one more try with the same 
 _SINKS = 0.005  # a part that folds down gets so much lower than it was [m]
 _ALIKE = np.cos(np.radians(30.0))
 _COLUMN_WIDTH, _ON_FLOOR = 0.14, 0.01  # of what a robot stands on; lower ones stand on the floor [m]
+_PLINTH = 0.4  # what swings down ends so far above the floor [m]: room for a hand below the handle of an oven door
+_TABLETOP = 0.6  # what measures less along every axis stands on a table as high as a plinth [m]: laptops, boxes
+_STEPS = 25  # poses in which a pull is planned, both ends included
+_GRASPS, _PER_DIRECTION = 14, 3  # that are planned with, of nearly the same direction: the ends of a bar and its middle
+_HEIGHT_STEP = 0.05  # columns have heights of multiples of this [m]
+_FOOTPRINT = 0.16  # from the object at rest to the arm's base [m]: half of that and a hand's width
+_PLACES = 480  # that are looked at closely, 2 to 20 ms each; with 160 it depends on the seed whether a house door opens
 _QUALITY = 0.06  # a grasp of no quality at all may be so much easier to reach [m]
 
 
@@ -81,7 +88,7 @@ def column_mesh(height: float) -> tuple[FloatArray, IntArray] | None:
     return convex_hull(box * [_COLUMN_WIDTH, _COLUMN_WIDTH, height])
 
 
-def object_motion(scene: Scene, joint: str, end: float, settings: PlanSettings) -> ObjectMotion:
+def object_motion(scene: Scene, joint: str, end: float) -> ObjectMotion:
     """Stand the object in the world and move one joint from rest to a value.
 
     An object whose part swings down to the floor, such as an oven to be built in, stands on a plinth, and a small
@@ -91,20 +98,18 @@ def object_motion(scene: Scene, joint: str, end: float, settings: PlanSettings) 
         scene: The object, in metres.
         joint: One of its leading joints.
         end: Value at the end [rad or m].
-        settings: Number of values, and room for a hand above the floor.
     """
     leader = [travel.joint for travel in scene.travels].index(joint)
-    values = np.linspace(scene.travels[leader].rest, end, settings.steps)
-    rows = np.tile(scene.mechanism.rest, (settings.steps, 1))
+    values = np.linspace(scene.travels[leader].rest, end, _STEPS)
+    rows = np.tile(scene.mechanism.rest, (_STEPS, 1))
     rows[:, leader] = values
     box = object_box(scene)
     body_poses = scene.poses(rows)
     lowest = np.array([_lowest(scene, joint, poses) for poses in body_poses])
     sinks = float(lowest.min()) < float(lowest[0]) - _SINKS
-    raised = sinks or float(np.ptp(box, axis=0).max()) < settings.tabletop
-    bottom = min(float(box[0, 2]), float(lowest.min()) - settings.plinth) if raised else float(box[0, 2])
-    T_world_object = np.eye(4)
-    T_world_object[:3, 3] = [*(-0.5 * box.sum(axis=0)[:2]), -bottom]
+    raised = sinks or float(np.ptp(box, axis=0).max()) < _TABLETOP
+    bottom = min(float(box[0, 2]), float(lowest.min()) - _PLINTH) if raised else float(box[0, 2])
+    T_world_object = pose_at([*(-0.5 * box.sum(axis=0)[:2]), -bottom])
     names = [travel.joint for travel in scene.travels]
     child = scene.model.joint_by_name[joint].child
     links = [forward_kinematics(scene.model, dict(zip(names, row.tolist(), strict=True)))[child] for row in rows]
@@ -145,7 +150,7 @@ class Places:
             arm: The robot.
             motion: What the hand must follow.
             box: Of the object at rest, frame of its root link [m], shape (2, 3).
-            settings: The grid.
+            settings: Directions, distances and heights.
         """
         self._arm, self._motion, self._settings = arm, motion, settings
         self._box = box + motion.T_world_object[:3, 3]
@@ -170,18 +175,17 @@ class Places:
                     for spot, far in enumerate(self._far(bases, tools))
                 ]  # fmt: skip
         found.sort(key=lambda item: item[0])
-        return [place for _, place in sorted(self._spread(found), key=lambda item: item[0])][: self._settings.places]
+        return [place for _, place in sorted(self._spread(found), key=lambda item: item[0])][:_PLACES]
 
     def _diverse(self, grasps: Sequence[Grasp]) -> list[Grasp]:
         """The best grasps, but of each approach direction a few: what one cannot follow, another one may."""
-        settings = self._settings
         chosen: list[Grasp] = []
         for grasp in grasps:
             approach = grasp.T_link_grasp[:3, 2]
             alike = sum(float(other.T_link_grasp[:3, 2] @ approach) > _ALIKE for other in chosen)
-            if alike < settings.per_direction:
+            if alike < _PER_DIRECTION:
                 chosen.append(grasp)
-        return chosen[: settings.grasps]
+        return chosen[:_GRASPS]
 
     def _spread(self, found: list[tuple[float, int, int, RobotPlacement]]) -> list[tuple[float, RobotPlacement]]:
         """Make further tries of the same grasp, or of the same place, dearer."""
@@ -226,15 +230,14 @@ class Places:
 
     def _clear(self, place: FloatArray) -> bool:
         beyond = np.maximum(np.maximum(self._box[0, :2] - place, place - self._box[1, :2]), 0.0)
-        return float(np.linalg.norm(beyond)) > self._settings.footprint
+        return float(np.linalg.norm(beyond)) > _FOOTPRINT
 
     def _heights(self, level: float) -> list[float]:
         """Heights of the root link above the floor [m]."""
         if not self.on_column:
             return [self._standing]
-        step = self._settings.height_step
         wanted = [level + share * self._arm.reach - float(self._arm.shoulder[2]) for share in self._settings.heights]
-        return sorted({max(0.0, step * round(height / step)) for height in wanted})
+        return sorted({max(0.0, _HEIGHT_STEP * round(height / _HEIGHT_STEP)) for height in wanted})
 
     @cached_property
     def on_column(self) -> bool:

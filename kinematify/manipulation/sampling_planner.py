@@ -17,10 +17,11 @@ from ompl import base as ob
 from ompl import geometric as og
 from ompl import util as ou
 
+from kinematify.manipulation.pull import JUMP_AT, RESTARTS
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.config.planning_settings import PlanSettings
     from kinematify.manipulation.collision_world import CollisionWorld
     from kinematify.manipulation.kinematics import Arm
     from kinematify.manipulation.pull import Pull, Puller
@@ -31,6 +32,12 @@ _HALF_METRES = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
 _DELTA = 1e-4  # of the share, for its derivative
 _STEP = 0.02  # between states on the manifold: the middles deviate with its square
 _HALVINGS = 5
+_MANIFOLD_CHECKS = 8000  # evaluations of the constraint, and configurations, in a search on the manifold: a second
+_RESIDUAL = 1e-3  # deviation from the joint's constraint that a plan may have [m, and half metres per radian]
+_APPROACH, _APPROACH_STEPS = 0.06, 6  # the hand comes in along a straight line of so many poses from so far off [m]
+# Configurations that are checked in search of a path from one place, so far apart at most [rad or m]: most paths need a
+# few hundred, 5 cm at the elbow. A search that counts finds the same on any machine.
+_REACH_CHECKS, _REACH_STEP = 6000, 0.08
 _SEEDED: list[int] = []
 
 
@@ -60,7 +67,7 @@ class _HoldsOn(ob.Constraint):  # type: ignore[misc]
     def __init__(self, puller: Puller, targets: FloatArray) -> None:
         super().__init__(puller.arm.dof + 1, 6)
         self._puller, self.targets = puller, targets
-        self.counter = Counter(puller.settings.manifold_checks)
+        self.counter = Counter(_MANIFOLD_CHECKS)
 
     def function(self, x: FloatArray, out: FloatArray) -> None:
         self.counter.count += 1
@@ -92,7 +99,7 @@ def search_pull(puller: Puller, pull: Pull, *, column: bool, seed: int) -> Pull:
     place = pull.place
     puller.world.place(place.T_world_base, puller.motion.T_world_object, column=column)
     targets = puller.targets(place)
-    ends = [q for q in puller.arm.solve_all(targets[-1], puller.settings.restarts) if puller.free_at(q, 1.0, place)]
+    ends = [q for q in puller.arm.solve_all(targets[-1], RESTARTS) if puller.free_at(q, 1.0, place)]
     if not ends:
         return pull
     start = np.append(pull.path[0], 0.0)
@@ -171,14 +178,14 @@ def _refined(puller: Puller, constraint: _HoldsOn, states: FloatArray) -> FloatA
 
     Whoever follows the path goes straight from state to state, so the straight lines must keep the constraint too.
     """
-    most, targets = puller.settings.residual, constraint.targets
-    if any(float(np.linalg.norm(constraint.residual(x))) > most for x in states):
+    targets = constraint.targets
+    if any(float(np.linalg.norm(constraint.residual(x))) > _RESIDUAL for x in states):
         return None
     for _ in range(_HALVINGS):
         rows, kept = [states[0]], True
         for before, after in pairwise(states):
             middle = 0.5 * (before + after)
-            if float(np.linalg.norm(constraint.residual(middle))) > most:
+            if float(np.linalg.norm(constraint.residual(middle))) > _RESIDUAL:
                 q = puller.arm.solve(puller.target_at(targets, float(middle[-1])), middle[:-1], center=False)
                 if q is None:
                     return None
@@ -191,44 +198,41 @@ def _refined(puller: Puller, constraint: _HoldsOn, states: FloatArray) -> FloatA
     return None
 
 
-def plan_reach(
-    arm: Arm, world: CollisionWorld, grasp: FloatArray, settings: PlanSettings, *, seed: int
-) -> FloatArray | str:
+def plan_reach(arm: Arm, world: CollisionWorld, grasp: FloatArray, *, seed: int) -> FloatArray | str:
     """Plan the way to a posture.
 
     Args:
         arm: The robot.
         world: Everything posed as it is before the pull.
         grasp: Arm joints at the grasp, shape (dof,).
-        settings: Times and steps.
         seed: Of OMPL.
 
     Returns:
         Arm joints from home to the grasp [rad or m], shape (n, dof), or why there is no way.
     """
-    straight = _straight_in(arm, world, grasp, settings)
+    straight = _straight_in(arm, world, grasp)
     if isinstance(straight, str):
         return straight
     home = _free_start(arm, world)
     if home is None:
         return "the arm finds no free posture to start from beside the object"
-    way = _free_path(arm, world, home, straight[0], settings, seed=seed)
+    way = _free_path(arm, world, home, straight[0], seed=seed)
     if way is None:
         return "no way free of collisions leads to the grasp"
     return np.concatenate([way, straight[1:]])
 
 
-def _straight_in(arm: Arm, world: CollisionWorld, grasp: FloatArray, settings: PlanSettings) -> FloatArray | str:
+def _straight_in(arm: Arm, world: CollisionWorld, grasp: FloatArray) -> FloatArray | str:
     """Postures from before the part along the fingers to the grasp, or why that fails."""
     hit = world.hit(grasp, holding=False)
     if hit is not None:
         return f"at the grasp its {hit.first} meets {hit.second}"
     path, q, end = [grasp], grasp, arm.pose(grasp)
-    for share in np.linspace(0.0, 1.0, settings.approach_steps + 1)[1:]:
+    for share in np.linspace(0.0, 1.0, _APPROACH_STEPS + 1)[1:]:
         target = end.copy()
-        target[:3, 3] -= share * settings.approach * end[:3, 2]
+        target[:3, 3] -= share * _APPROACH * end[:3, 2]
         moved = arm.solve(target, q)
-        if moved is None or float(np.abs(moved - q).max()) > settings.jump:
+        if moved is None or float(np.abs(moved - q).max()) > JUMP_AT:
             return "the straight way in is out of its reach"
         hit = world.hit(moved, holding=False)
         if hit is not None:
@@ -244,9 +248,7 @@ def _free_start(arm: Arm, world: CollisionWorld) -> FloatArray | None:
     return next((q for q in (arm.home, *arm.samples[order]) if world.free(q, holding=False)), None)
 
 
-def _free_path(
-    arm: Arm, world: CollisionWorld, start: FloatArray, goal: FloatArray, settings: PlanSettings, *, seed: int
-) -> FloatArray | None:
+def _free_path(arm: Arm, world: CollisionWorld, start: FloatArray, goal: FloatArray, *, seed: int) -> FloatArray | None:
     """Shortened path of RRTConnect, shape (n, dof)."""
     quiet_and_seeded(seed)
     space = ob.RealVectorStateSpace(arm.dof)
@@ -255,10 +257,10 @@ def _free_path(
         bounds.setLow(k, float(arm.lower[k]) - 1e-6)
         bounds.setHigh(k, float(arm.upper[k]) + 1e-6)
     space.setBounds(bounds)
-    space.setLongestValidSegmentFraction(settings.reach_step / float(space.getMaximumExtent()))
+    space.setLongestValidSegmentFraction(_REACH_STEP / float(space.getMaximumExtent()))
     setup = og.SimpleSetup(space)
     rows = range(arm.dof)
-    counter = Counter(settings.reach_checks)
+    counter = Counter(_REACH_CHECKS)
 
     def valid(state: ob.State) -> bool:
         counter.count += 1

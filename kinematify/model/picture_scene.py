@@ -13,7 +13,7 @@ from kinematify.geometry.overlap import OverlapQueries
 from kinematify.geometry.rest_pairs import DepthAllowance
 from kinematify.geometry.scene import read_scene
 from kinematify.model.urdf import link_colors, model_robot
-from kinematify.render.camera import fit_camera
+from kinematify.render.camera import camera_for
 from kinematify.render.picture import PosedMesh
 from kinematify.robot.appearance import joined, plain
 from kinematify.robot.joint_type import JointType
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
     from kinematify.config import PreviewConfig
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.render.camera import Camera
     from kinematify.render.picture import PictureScene
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.robot import Joint
@@ -215,20 +214,6 @@ def best_azimuth(model: KinematicModel, scenes: Sequence[PictureScene], config: 
 
     step = 2.0 * np.pi / config.azimuths
     return max((step * (index + _OFF_AXIS) for index in range(config.azimuths)), key=worth)
-
-
-def camera_for(
-    scenes: Sequence[PictureScene], azimuth: float, config: PreviewConfig, *, size: tuple[int, int], margin: float
-) -> Camera:
-    """Camera that shows all scenes inside a margin [pixels] of a picture of some width and height [pixels]."""
-    return fit_camera(
-        np.concatenate([scene.outline for scene in scenes]),
-        azimuth=azimuth,
-        elevation=float(np.deg2rad(config.elevation)),
-        field_of_view=float(np.deg2rad(config.field_of_view)),
-        size=size,
-        margin=margin,
-    )
 
 
 def _arrow_at_rest(

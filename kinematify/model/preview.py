@@ -12,7 +12,6 @@ from scipy.ndimage import distance_transform_edt
 from kinematify.model.picture_scene import (
     GLYPH_COLORS,
     best_azimuth,
-    camera_for,
     glyph_color,
     joint_glyphs,
     moving_joints,
@@ -20,6 +19,7 @@ from kinematify.model.picture_scene import (
     posed_meshes,
 )
 from kinematify.model.urdf import distinct_colors, link_colors, link_shades
+from kinematify.render.camera import camera_for
 from kinematify.render.picture import BACKGROUND, PictureScene, render_scene
 from kinematify.robot.appearance import linear_of, srgb_of
 

@@ -11,7 +11,14 @@ import numpy as np
 from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.config import PreviewConfig
+    from kinematify.render.picture import PictureScene
     from kinematify.robot.arrays import FloatArray
+
+_STEEPEST = 0.98
+"""Vertical part of a direction at most: a camera that looks straight down has no upper side."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -92,3 +99,27 @@ def fit_camera(
     return Camera(
         position=far.position, forward=far.forward, focal=focal * zoom, width=width, height=height, shift=shift
     )
+
+
+def camera_for(
+    scenes: Sequence[PictureScene], azimuth: float, config: PreviewConfig, *, size: tuple[int, int], margin: float
+) -> Camera:
+    """Camera that shows all scenes inside a margin [pixels] of a picture of some width and height [pixels]."""
+    return fit_camera(
+        np.concatenate([scene.outline for scene in scenes]),
+        azimuth=azimuth,
+        elevation=float(np.deg2rad(config.elevation)),
+        field_of_view=float(np.deg2rad(config.field_of_view)),
+        size=size,
+        margin=margin,
+    )
+
+
+def camera_at(eye: FloatArray, target: FloatArray, field_of_view: float, size: tuple[int, int]) -> Camera:
+    """Camera at a place that looks at another one [m], shape (3,) each; the field of view [rad] is the vertical one."""
+    width, height = size
+    forward = (target - eye) / np.linalg.norm(target - eye)
+    forward[2] = np.clip(forward[2], -_STEEPEST, _STEEPEST)
+    forward /= np.linalg.norm(forward)
+    focal = 0.5 * height / np.tan(0.5 * field_of_view)
+    return Camera(position=eye, forward=forward, focal=float(focal), width=width, height=height)

@@ -81,16 +81,12 @@ class PictureScene:
     @cached_property
     def outline(self) -> FloatArray:
         """Extreme points in many directions, glyphs included, shape (n, 3): enough to fit a camera, and few."""
-        index = np.arange(_OUTLINE_DIRECTIONS)
-        height, turn = 1.0 - (2.0 * index + 1.0) / _OUTLINE_DIRECTIONS, index * np.pi * (3.0 - np.sqrt(5.0))
-        radius = np.sqrt(1.0 - height**2)
-        directions = np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=1)
         used = np.zeros(len(self.rays.vertices), dtype=bool)
         used[self.rays.faces] = True
         # A dense mesh has another vertex next to the one that is omitted.
         vertices = self.rays.vertices[used][:: 1 + np.count_nonzero(used) // _OUTLINE_VERTICES]
         points = np.concatenate([vertices, *(glyph.vertices for glyph in self.glyphs)])
-        extremes: FloatArray = points[np.unique((directions @ points.T).argmax(axis=1))]
+        extremes: FloatArray = points[np.unique((_even_directions(_OUTLINE_DIRECTIONS) @ points.T).argmax(axis=1))]
         return extremes
 
     def mesh_of_pixel(self, camera: Camera, every: int = 1) -> IntArray:

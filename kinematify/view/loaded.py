@@ -133,8 +133,8 @@ class LoadedModel:
             InputError: As for `pose`, or the model has no geometry.
         """
         from kinematify.config import load_config  # noqa: PLC0415  # and the renderer: half a second
-        from kinematify.model.picture_scene import camera_for  # noqa: PLC0415
         from kinematify.model.urdf import usual_colors  # noqa: PLC0415
+        from kinematify.render.camera import camera_for  # noqa: PLC0415
         from kinematify.render.picture import PictureScene, PosedMesh, render_scene  # noqa: PLC0415
 
         poses, colors = self.pose(q), usual_colors(len(self.robot.links))

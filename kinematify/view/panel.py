@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Joint
     from kinematify.view.inference_view import FindingMarker, ViewModel
     from kinematify.view.keep import SavedEdit
-    from kinematify.view.viewer_scene import Touch
 
 _AS_WRITTEN, _OWN = "as in the file", "-"
 _TYPES = {
@@ -259,14 +258,14 @@ def _introduction(shown: ViewModel) -> str:
     return "\n\n".join(said)
 
 
-def collision_text(touches: Sequence[Touch] | Exception) -> str:
+def collision_text(touches: Sequence[tuple[tuple[str, str], float, bool]] | Exception) -> str:
     """Collisions in Markdown, or why they cannot be looked for."""
     if isinstance(touches, Exception):
         return f"Collisions cannot be looked for. {plain(str(touches))}"
-    bad = [touch for touch in touches if not touch.tolerated]
+    bad = [(pair, depth) for pair, depth, tolerated in touches if not tolerated]
     lines = [
-        f"- **{plain(' and '.join(touch.pair))}** interpenetrate by {1e3 * touch.depth:.3g} mm"
-        for touch in bad[:_LISTED_PAIRS]
+        f"- **{plain(' and '.join(pair))}** interpenetrate by {1e3 * depth:.3g} mm"
+        for pair, depth in bad[:_LISTED_PAIRS]
     ]
     more = [f"- and {len(bad) - _LISTED_PAIRS} more pairs"] if len(bad) > _LISTED_PAIRS else []
     return "\n".join([*lines, *more]) or "Nothing collides."

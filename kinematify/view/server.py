@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Joint
     from kinematify.view.inference_view import FindingMarker, ViewModel
     from kinematify.view.keep import ModelFolder, SavedEdit
+    from kinematify.view.viewer_scene import ViewScene
 
 _CHOSEN, _MARKED, _WRONG = (66, 133, 244), (245, 166, 35), (219, 40, 40)
 """Of the part whose joint is chosen, of what a finding is about, and of what collides."""
@@ -42,12 +43,30 @@ _HEAD_START = 1.5
 """That the first client has for its first picture, before more is drawn and collisions are looked for, which keeps a
 processor busy for a second [s]."""
 _PICTURE = (1600, 1200)
+_FILM, _FRAMES, _FILM_SECONDS = (480, 360), 24, 3.0
 
 
 def _connect(widget: Any, action: Callable[[Any], object]) -> None:
     """Call an action with the event when a person uses a widget; what the program sets on it has no client."""
     subscribe = widget.on_click if hasattr(widget, "on_click") else widget.on_update
     subscribe(lambda event: None if event.client is None else action(event))
+
+
+def _film(scene: ViewScene, ends: Mapping[str, tuple[float, float]], camera: Any) -> bytes:
+    """GIF of joints that go from one end to the other and back, the others at rest, as a camera of a page sees them."""
+    from kinematify.render.camera import camera_at  # noqa: PLC0415  # loads the ray caster
+    from kinematify.render.film import draw_all, write_gif  # noqa: PLC0415
+    from kinematify.render.picture import PictureScene  # noqa: PLC0415
+
+    scenes = []
+    for number in range(_FRAMES):
+        share = 0.5 - 0.5 * math.cos(2.0 * math.pi * number / _FRAMES)
+        q = {**scene.rest, **{name: lower + share * (upper - lower) for name, (lower, upper) in ends.items()}}
+        scenes.append(PictureScene(meshes=scene.posed(q)))
+    content = io.BytesIO()
+    seen = camera_at(camera.position, camera.look_at, float(camera.fov), _FILM)
+    write_gif(draw_all(scenes, seen), content, _FILM_SECONDS / _FRAMES)
+    return content.getvalue()
 
 
 class ModelViewer:
@@ -477,12 +496,7 @@ class ModelViewer:
             ends = {joint.name: self._scene.range_of(joint) for joint in joints}
         waiting = client.add_notification("Drawing the film ...", "It takes some seconds.", loading=True)
         try:
-            camera = client.camera
-            from kinematify.view.model_film import film_of  # noqa: PLC0415  # loads the ray caster
-
-            film = film_of(
-                self._scene, ends, eye=camera.position, target=camera.look_at, field_of_view=float(camera.fov)
-            )
+            film = _film(self._scene, ends, client.camera)
         finally:
             waiting.remove()
         client.send_file_download(f"{self._scene.robot.name}.gif", film)
@@ -507,7 +521,7 @@ class ModelViewer:
         with self._lock:
             self._stale = False
             touches = self._scene.touches(self._q)
-            self._colliding = frozenset(top for touch in touches if not touch.tolerated for top in touch.pair)
+            self._colliding = frozenset(top for pair, _, tolerated in touches if not tolerated for top in pair)
             self._panel.status.content = collision_text(touches)
             self._glow()
 

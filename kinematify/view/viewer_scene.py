@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import colorsys
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -35,18 +34,6 @@ if TYPE_CHECKING:
 
 _ARC_STEPS = 24
 _SWEEP = 36
-
-
-@dataclass(frozen=True, kw_only=True)
-class Touch:
-    """Two bodies whose surfaces meet in a configuration."""
-
-    pair: tuple[str, str]
-    """Top links of their groups."""
-    depth: float
-    """[m]."""
-    tolerated: bool
-    """They touch as deep at rest, or as deep as a bearing does."""
 
 
 class ViewScene:
@@ -234,21 +221,23 @@ class ViewScene:
         """
         _ = self._collisions
 
-    def touches(self, q: Mapping[str, float]) -> list[Touch]:
-        """Pairs that meet in a configuration, those that are not tolerated first.
+    def touches(self, q: Mapping[str, float]) -> list[tuple[tuple[str, str], float, bool]]:
+        """Pairs whose surfaces meet in a configuration, those that are not tolerated first.
 
         Args:
             q: Leader -> value [rad or m].
+
+        Returns:
+            Of each pair the top links of both groups, the depth [m], and whether it is tolerated: they touch as deep at
+            rest, or as deep as a bearing does.
         """
         scene, allowance = self._collisions
         poses = self.poses(q)
         tops = [self.groups[body.group].top for body in scene.bodies]
         placed = np.array([poses[top] for top in tops])
-        found = [
-            Touch(pair=(tops[pair[0]], tops[pair[1]]), depth=depth, tolerated=tolerated)
-            for pair, depth, tolerated in allowance.meeting(placed)
-        ]
-        return sorted(found, key=lambda touch: (touch.tolerated, -touch.depth))
+        meeting = allowance.meeting(placed)
+        found = [((tops[a], tops[b]), depth, tolerated) for (a, b), depth, tolerated in meeting]
+        return sorted(found, key=lambda touch: (touch[2], -touch[1]))
 
     def free_range(self, joint: Joint) -> tuple[float, float]:
         """Return how far a joint moves as it is tried until something collides, all others at rest [rad or m].
@@ -262,7 +251,7 @@ class ViewScene:
             free = 0.0
             for step in range(1, _SWEEP + 1):
                 value = direction * reach * step / _SWEEP
-                if not all(touch.tolerated for touch in self.touches({**self.rest, joint.name: value})):
+                if not all(tolerated for *_, tolerated in self.touches({**self.rest, joint.name: value})):
                     break
                 free = value
             ends.append(free)

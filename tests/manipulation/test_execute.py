@@ -114,13 +114,13 @@ def test_an_arm_that_goes_through_the_object_is_noticed(drawer: tuple[Loaded, Pa
 
 def test_the_film_moves_and_the_still_has_three_panels(drawer: tuple[Loaded, Path], pulled: Execution) -> None:
     loaded, folder = drawer
-    quick = SETTINGS.task.film.model_copy(update={"frames": 4, "width": 120, "height": 100, "still_width": 100})
-    write_film(loaded, pulled, folder / "film.gif", folder / "still.png", quick)
+    few = replace(pulled, frames=(*pulled.frames[:1], *pulled.frames[20::24], *pulled.frames[-1:]))
+    write_film(loaded, few, folder / "film.gif", folder / "still.png")
     with Image.open(folder / "film.gif") as film:
-        assert film.n_frames == 4
-        assert film.size == (120, 100)
+        assert film.n_frames == len(few.frames)
+        assert film.size == (360, 290)
         first = np.asarray(film.convert("RGB"))
-        film.seek(3)
+        film.seek(film.n_frames - 1)
         assert (first != np.asarray(film.convert("RGB"))).mean() > 0.01
     with Image.open(folder / "still.png") as still:
-        assert still.width == 300
+        assert still.width == 3 * 360

@@ -28,7 +28,7 @@ PLAN = SETTINGS.task.plan
 
 @pytest.fixture(scope="module")
 def arm() -> Arm:
-    return Arm(builtin_robot(), PLAN)
+    return Arm(builtin_robot())
 
 
 def scene_of(urdf: Path) -> Scene:
@@ -42,7 +42,7 @@ def drawer(tmp_path_factory: pytest.TempPathFactory) -> Scene:
 
 @pytest.fixture(scope="module")
 def drawer_plan(arm: Arm, drawer: Scene) -> PullPlan:
-    return plan_pull(arm, drawer, "slide", SETTINGS.task)
+    return plan_pull(arm, drawer, "slide", PLAN)
 
 
 def test_inverse_kinematics_reaches_poses_that_the_arm_can_take(arm: Arm) -> None:
@@ -87,7 +87,7 @@ def test_way_to_the_grasp_is_free_of_collisions_between_its_rows_too(
     assert plan.pull is not None
     assert plan.place is not None
     assert np.array_equal(plan.reach[-1], plan.pull[0])
-    world = CollisionWorld(arm, drawer, "slide", PLAN)
+    world = CollisionWorld(arm, drawer, "slide", PLAN.margin)
     world.place(plan.place.T_world_base, plan.T_world_object, column=plan.on_column)
     world.pose_object(drawer.at_rest, plan.place.grasp.spread)
     for first, second in zip(plan.reach[:-1], plan.reach[1:], strict=True):
@@ -98,35 +98,35 @@ def test_way_to_the_grasp_is_free_of_collisions_between_its_rows_too(
 
 def test_drawer_that_slides_sideways_points_to_its_joint(arm: Arm, tmp_path: Path) -> None:
     scene = scene_of(write_drawer_cabinet(tmp_path / "cabinet.urdf", axis="0 1 0"))
-    plan = plan_pull(arm, scene, "slide", SETTINGS.task)
+    plan = plan_pull(arm, scene, "slide", PLAN)
     assert plan.failure is Failure.JAMS
     assert plan.fraction < 0.5
 
 
 def test_handle_wider_than_the_gripper_is_no_hold(arm: Arm, tmp_path: Path) -> None:
     scene = scene_of(write_drawer_cabinet(tmp_path / "cabinet.urdf"))
-    narrow = Arm(replace(arm.robot, opening=0.004), PLAN)
-    assert plan_pull(narrow, scene, "slide", SETTINGS.task).failure is Failure.NO_GRASP
+    narrow = Arm(replace(arm.robot, opening=0.004))
+    assert plan_pull(narrow, scene, "slide", PLAN).failure is Failure.NO_GRASP
 
 
 def test_grasp_beside_the_object_is_refused(arm: Arm, drawer: Scene) -> None:
     with pytest.raises(InputError, match="grasp point"):
-        plan_pull(arm, drawer, "slide", SETTINGS.task, point=np.array([3.0, 0.0, 0.0]))
+        plan_pull(arm, drawer, "slide", PLAN, point=np.array([3.0, 0.0, 0.0]))
 
 
 def test_door_is_opened_before_the_drawer_behind_it(arm: Arm, tmp_path: Path) -> None:
     scene = scene_of(write_covered_drawer(tmp_path / "cabinet.urdf"))
-    door, drawer = depend([plan_pull(arm, scene, joint, SETTINGS.task) for joint in ("hinge", "slide")])
+    door, drawer = depend([plan_pull(arm, scene, joint, PLAN) for joint in ("hinge", "slide")])
     assert door.failure is None
     assert not door.first
     assert drawer.failure is None
     assert drawer.first == {"hinge": pytest.approx(-1.4)}
     assert drawer.pull is not None
     assert drawer.place is not None
-    world = CollisionWorld(arm, scene, "slide", PLAN)
+    world = CollisionWorld(arm, scene, "slide", PLAN.margin)
     world.place(drawer.place.T_world_base, drawer.T_world_object, column=drawer.on_column)
     opened = scene.standing(drawer.first)
-    motion = object_motion(opened, "slide", 0.2, PLAN)
+    motion = object_motion(opened, "slide", 0.2)
     assert np.array_equal(motion.T_world_object, drawer.T_world_object)
     for poses, q in ((motion.body_poses[0], drawer.pull[0]), (motion.body_poses[-1], drawer.pull[-1])):
         world.pose_object(poses, drawer.place.grasp.spread)

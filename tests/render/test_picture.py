@@ -15,13 +15,13 @@ from kinematify.contact.tree import KinematicTree
 from kinematify.model.picture_scene import (
     GLYPH_COLORS,
     best_azimuth,
-    camera_for,
     joint_glyphs,
     opened_configuration,
     posed_meshes,
 )
 from kinematify.model.preview import render_preview
 from kinematify.model.urdf import distinct_colors, link_colors, link_shades
+from kinematify.render.camera import camera_for
 from kinematify.render.picture import PictureScene, PosedMesh, render_scene
 from kinematify.robot.appearance import linear_of, srgb_of
 from kinematify.robot.joint_type import JointType

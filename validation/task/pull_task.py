@@ -65,7 +65,7 @@ class PullTask:
     @cached_property
     def arm(self) -> Arm:
         """The robot."""
-        return Arm(robot_of(self.task, self.request.work), self.settings.plan, seed=self.request.settings.seed)
+        return Arm(robot_of(self.task, self.request.work), seed=self.request.settings.seed)
 
     @property
     def joints(self) -> list[str]:
@@ -100,7 +100,7 @@ class PullTask:
                 continue
             found.append(
                 plan_pull(
-                    self.arm, self.scene, joint, self.settings, point=self.point, base=self.base,
+                    self.arm, self.scene, joint, self.settings.plan, point=self.point, base=self.base,
                     seed=self.request.settings.seed,
                 )
             )  # fmt: skip
@@ -148,7 +148,7 @@ class PullTask:
         assert self.task.films is not None
         safe = "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in joint)
         film = self.task.films / f"{self.task.stem}_{safe}.gif"
-        write_film(loaded, execution, film, film.with_suffix(".png"), self.settings.film)
+        write_film(loaded, execution, film, film.with_suffix(".png"))
         return film
 
     @property
