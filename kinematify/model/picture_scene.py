@@ -18,7 +18,7 @@ from kinematify.render.picture import PosedMesh
 from kinematify.robot.appearance import joined, plain
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics
-from kinematify.robot.transforms import transformed
+from kinematify.robot.transforms import across, transformed
 from kinematify.robot.vectors import as_one, box_around
 
 if TYPE_CHECKING:
@@ -284,13 +284,13 @@ def sliding_arrow(center: FloatArray, axis: FloatArray, length: float, radius: f
 
 
 def _circular_arrow(center: FloatArray, axis: FloatArray, radius: float, sweep: float) -> Mesh:
-    side, across = _perpendiculars(axis)
+    side = across(axis)
     ring = _ARC_RADIUS * radius
     head = 0.75 * _HEAD_LENGTH / _ARC_RADIUS  # [rad] along the ring
     angles = np.linspace(0.0, sweep - head, _ARC_STEPS)
     tips = np.linspace(sweep - head, sweep, 5)
     turns = np.concatenate([angles, tips])
-    path = center + ring * (np.cos(turns)[:, None] * side + np.sin(turns)[:, None] * across)
+    path = center + ring * (np.cos(turns)[:, None] * side + np.sin(turns)[:, None] * np.cross(axis, side))
     radii = np.concatenate([np.full(len(angles), _ARC_THICKNESS), np.linspace(0.85 * _HEAD_RADIUS, 0.0, len(tips))])
     return _tube(path, radii * radius)
 
@@ -302,12 +302,12 @@ def _tube(path: FloatArray, radii: FloatArray) -> Mesh:
     tangents /= np.maximum(np.linalg.norm(tangents, axis=1, keepdims=True), 1e-300)
     turns = np.linspace(0.0, 2.0 * np.pi, _SEGMENTS, endpoint=False)
     sides = np.empty_like(path)
-    side, _ = _perpendiculars(tangents[0])
+    side = across(tangents[0])
     for index, tangent in enumerate(tangents):
         side = side - (side @ tangent) * tangent  # carried along the path, so that rings do not twist
         sides[index] = side = side / np.sqrt(side @ side)
-    across = np.cross(tangents, sides)
-    circles = np.cos(turns)[:, None] * sides[:, None] + np.sin(turns)[:, None] * across[:, None]
+    other = np.cross(tangents, sides)
+    circles = np.cos(turns)[:, None] * sides[:, None] + np.sin(turns)[:, None] * other[:, None]
     rings = path[:, None] + radii[:, None, None] * circles
     vertices = np.concatenate([rings.reshape(-1, 3), path[:1], path[-1:]])
     return vertices, _tube_faces(len(path))
@@ -323,11 +323,3 @@ def _tube_faces(count: int) -> IntArray:
     foot = np.stack([following, ring, np.full(_SEGMENTS, count * _SEGMENTS)], axis=1)
     head = foot[:, [1, 0, 2]] + [(count - 1) * _SEGMENTS, (count - 1) * _SEGMENTS, 1]
     return np.concatenate([sides, foot, head])
-
-
-def _perpendiculars(axis: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Two unit vectors that form a right-handed frame with the axis."""
-    helper = np.eye(3)[np.argmin(np.abs(axis))]
-    side = np.cross(axis, helper)
-    side /= np.linalg.norm(side)
-    return side, np.cross(axis, side)

@@ -16,7 +16,7 @@ from scipy.ndimage import binary_dilation, gaussian_filter, map_coordinates
 
 from kinematify.geometry.rays import RayScene
 from kinematify.robot.appearance import linear_of, srgb_of
-from kinematify.robot.vectors import triangle_normals
+from kinematify.robot.vectors import vertex_normals
 
 if TYPE_CHECKING:
     from kinematify.config import PreviewConfig
@@ -338,11 +338,7 @@ class _Painter:
 
 def _swollen(mesh: PosedMesh, distance: float) -> tuple[FloatArray, IntArray]:
     """A mesh whose surface lies farther out [m]."""
-    corners = mesh.vertices[mesh.faces]
-    normals = np.zeros(mesh.vertices.shape)
-    np.add.at(normals, mesh.faces, triangle_normals(corners)[:, None])
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    return mesh.vertices + distance * normals / np.maximum(lengths, 1e-300), mesh.faces
+    return mesh.vertices + distance * vertex_normals(mesh.vertices, mesh.faces), mesh.faces
 
 
 def _pixel_centers(rows: range, columns: range) -> FloatArray:

@@ -54,13 +54,18 @@ def joint_motion(kind: JointType, axis: FloatArray, pivot: FloatArray, value: fl
         pivot: Point on the line [m], shape (3,).
         value: Of the joint [rad or m].
     """
-    transform = np.eye(4)
     if kind is JointType.PRISMATIC:
-        transform[:3, 3] = value * axis
-    elif kind.turns:
-        transform[:3, :3] = rotation_about(axis, value)
-        transform[:3, 3] = pivot - transform[:3, :3] @ pivot
-    return transform
+        return pose_at(value * axis)
+    if not kind.turns:
+        return np.eye(4)
+    turn = rotation_about(axis, value)
+    return pose_at(pivot - turn @ pivot, turn)
+
+
+def across(axis: FloatArray) -> FloatArray:
+    """Return a unit direction perpendicular to a unit axis, shape (3,)."""
+    side = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    return np.asarray(side / np.linalg.norm(side))
 
 
 def rotation_from_x(axis: FloatArray) -> FloatArray:

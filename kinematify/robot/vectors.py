@@ -43,6 +43,13 @@ def triangle_normals(corners: FloatArray) -> FloatArray:
     return crossed(corners[..., 1, :] - first, corners[..., 2, :] - first)
 
 
+def vertex_normals(vertices: FloatArray, faces: IntArray) -> FloatArray:
+    """Unit normals of vertices, means over their faces weighted by area, zero where none has one, shape (V, 3)."""
+    sums = np.zeros_like(vertices)
+    np.add.at(sums, faces, triangle_normals(vertices[faces])[:, None])
+    return np.asarray(sums / np.maximum(lengths_of(sums), np.finfo(float).tiny)[:, None])
+
+
 def lengths_of(vectors: FloatArray) -> FloatArray:
     """Lengths as ``np.linalg.norm(vectors, axis=-1)``, (..., 3) -> (...)."""
     return np.sqrt(dots(vectors, vectors))

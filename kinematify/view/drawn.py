@@ -13,7 +13,7 @@ from trimesh.exchange.gltf import export_glb
 from kinematify.formats.glb import surface_mesh
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import quaternion_of, rotation_from_x
-from kinematify.robot.vectors import crossed, dots, lengths_of
+from kinematify.robot.vectors import crossed, dots, vertex_normals
 from kinematify.robot.weld import is_closed
 
 if TYPE_CHECKING:
@@ -175,7 +175,7 @@ class DrawnModel:
 
     def _add_glow(self, top: str, color: Color) -> Any:
         vertices, faces = self._scene.meshes[top]
-        swollen = vertices + _SWOLLEN * self._scene.size * _normals(vertices, faces)
+        swollen = vertices + _SWOLLEN * self._scene.size * vertex_normals(vertices, faces)
         handle = self._server.scene.add_mesh_simple(
             f"/parts/{top}/glow",
             swollen.astype(np.float32),
@@ -266,13 +266,3 @@ def _is_solid(vertices: FloatArray, faces: IntArray) -> bool:
     """True if a mesh is closed and its triangles look outward."""
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     return is_closed(vertices, faces) and float(dots(a, crossed(b, c)).sum()) > 0.0
-
-
-def _normals(vertices: FloatArray, faces: IntArray) -> FloatArray:
-    """Unit normals of vertices, means over their faces weighted by area, shape (V, 3)."""
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    sums = np.zeros_like(vertices)
-    for corner in faces.T:
-        np.add.at(sums, corner, crossed(b - a, c - a))
-    normals: FloatArray = sums / np.maximum(lengths_of(sums), np.finfo(float).tiny)[:, None]
-    return normals

@@ -72,7 +72,6 @@ class PiecePage:
         self._show()
 
     def _add_widgets(self, gui: viser.GuiApi) -> None:
-        gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
         gui.add_html(PAGE)
         gui.add_markdown(_HOW)
         self._said = gui.add_markdown("")

@@ -102,7 +102,6 @@ class ModelViewer:
         self._random = np.random.default_rng(0)
         self._q: dict[str, float] = {}
         self._chosen: str | None = None
-        server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
         self._open(shown, sights)
         self._drawn.look()
         server.on_client_connect(self._connected)

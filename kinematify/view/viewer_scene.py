@@ -17,7 +17,7 @@ from kinematify.robot.robot import (
     rest_configuration,
     rigid_groups,
 )
-from kinematify.robot.transforms import joint_motion, rotation_about, transformed
+from kinematify.robot.transforms import across, joint_motion, rotation_about, transformed
 from kinematify.robot.vectors import as_one, box_around
 from kinematify.validation.formats.view_data import camera_turn
 
@@ -269,7 +269,7 @@ class ViewScene:
         line = np.array([[pivot - reach * axis, pivot + reach * axis]])
         if kind is JointType.PRISMATIC:
             return np.array([[pivot + lower * axis, pivot + upper * axis], *self._ends(pivot, axis, lower, upper)])
-        side = _across(axis)
+        side = across(axis)
         ring = [pivot + 0.5 * reach * (rotation_about(axis, a) @ side) for a in np.linspace(lower, upper, _ARC_STEPS)]
         arc = np.stack([np.array(ring[:-1]), np.array(ring[1:])], axis=1)
         spokes = np.array([[pivot, ring[0]], [pivot, ring[-1]]])
@@ -277,7 +277,7 @@ class ViewScene:
 
     def _ends(self, pivot: FloatArray, axis: FloatArray, lower: float, upper: float) -> list[list[FloatArray]]:
         """Short strokes across a slide's axis at both limits."""
-        stroke = 0.03 * self.size * _across(axis)
+        stroke = 0.03 * self.size * across(axis)
         return [[pivot + end * axis - stroke, pivot + end * axis + stroke] for end in (lower, upper)]
 
     def _axis(self, joint: Joint) -> tuple[FloatArray, FloatArray, JointType]:
@@ -320,11 +320,3 @@ def _color(index: int) -> Rgba:
     if index == 0:
         return 0.78, 0.77, 0.75, 1.0
     return *colorsys.hls_to_rgb((0.08 + 0.61803398875 * index) % 1.0, 0.62, 0.5), 1.0
-
-
-def _across(axis: FloatArray) -> FloatArray:
-    """A unit direction perpendicular to an axis."""
-    other = np.eye(3)[int(np.argmin(np.abs(axis)))]
-    across = np.cross(axis, other)
-    unit: FloatArray = across / np.linalg.norm(across)
-    return unit

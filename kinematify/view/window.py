@@ -111,6 +111,7 @@ class Window(Generic[_Page]):
         with redirect_stdout(StringIO()):  # a banner of its own
             self.server = viser.ViserServer(host=host, port=port, label="kinematify view", verbose=False)
         """Of viser: what else is to stand on the page may be added to it."""
+        self.server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
         self.viewer: _Page = page(self.server)
         name = "localhost" if host in ("127.0.0.1", "0.0.0.0") else host
         self.port: int = self.server.get_port()

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from manifold3d import CrossSection, Manifold, OpType
 
+from kinematify.robot.transforms import across
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
@@ -96,8 +98,7 @@ def torus(radius: float, wire_radius: float, middle: Point, normal: Point, *, se
 def _upright(origin: Point, towards: Point) -> FloatArray:
     """Transform, shape (3, 4), that takes what stands on z = 0 to `origin`, where it looks in a direction."""
     direction = np.asarray(towards, dtype=np.float64) / np.linalg.norm(towards)
-    side = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
-    side /= np.linalg.norm(side)
+    side = across(direction)
     return np.column_stack([side, np.cross(direction, side), direction, np.asarray(origin, dtype=np.float64)])
 
 
