@@ -13,6 +13,7 @@ import numpy as np
 from trimesh.intersections import slice_faces_plane
 
 from kinematify.geometry.convex import convex_hull, thickened
+from kinematify.geometry.scene import judged_shapes
 from kinematify.robot.robot import forward_kinematics, rigid_groups
 from kinematify.robot.transforms import transformed
 from kinematify.robot.vectors import referenced
@@ -60,7 +61,7 @@ def _triangles(model: Robot, link: str, held: str, values: Mapping[str, float]) 
     for name in group.links:
         declared = model.link_by_name[name]
         T = np.linalg.inv(poses[link]) @ poses[name]
-        for shape in declared.collisions or declared.visuals:
+        for shape in judged_shapes(declared):
             found.append(transformed(shape.mesh.vertices, T)[shape.mesh.faces])
     return np.concatenate(found)
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import InputError
+from kinematify.geometry.scene import judged_shapes
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Joint, Link, forward_kinematics, joint_values, rest_configuration, rigid_groups
@@ -338,7 +339,7 @@ class _Hand:
         found = [np.empty((0, 3))]
         for link in links:
             declared, T = self.robot.link_by_name[link], poses[link]
-            for shape in declared.collisions or declared.visuals:
+            for shape in judged_shapes(declared):
                 used = referenced(shape.mesh.vertices, shape.mesh.faces)
                 found.append(transformed(used, T))
         return np.concatenate(found)

@@ -27,9 +27,9 @@ from kinematify.geometry.convex import (
     plain_piece,
     surface_points,
 )
-from kinematify.geometry.scene import read_scene, visible_shapes
+from kinematify.geometry.scene import judged_shapes, read_scene, visible_shapes
 from kinematify.geometry.sweep import Sweeper
-from kinematify.model.collision_pieces import decomposed, fewer_pieces, shapes_of
+from kinematify.model.collision_pieces import decomposed, fewer_pieces
 from kinematify.model.urdf import MESH_FOLDER
 from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import LinkMesh, Shape, forward_kinematics, joint_ends, rest_configuration
@@ -366,7 +366,7 @@ def _named(shapes: Sequence[Shape], link: str, index: int) -> tuple[Shape, ...]:
 
 def _marks(link: Link, T_world_link: FloatArray) -> FloatArray:
     """Points on what the pieces of a link represent, world frame, shape (n, 3)."""
-    points = _on_surface((shape.mesh for shape in shapes_of(link)), _MARKS)
+    points = _on_surface((shape.mesh for shape in judged_shapes(link)), _MARKS)
     return transformed(points, T_world_link)
 
 

@@ -13,6 +13,7 @@ from kinematify.assembly.pieces import connected_pieces
 from kinematify.geometry.convex import ConvexPiece, convex_piece, enclosed_volume
 from kinematify.geometry.cut import Concave, CutSurface
 from kinematify.geometry.cut_cache import cached_cuts
+from kinematify.geometry.scene import judged_shapes
 from kinematify.robot.raw_mesh import RawMesh
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import transformed
@@ -101,7 +102,7 @@ def decomposed(model: Robot, settings: PrepareSettings, *, only: frozenset[str] 
     components = [
         component
         for link in asked
-        for shape in shapes_of(link)
+        for shape in judged_shapes(link)
         if shape.kind not in _KEPT
         for component in _components(link, shape.mesh, size, settings)
     ]
@@ -119,16 +120,11 @@ def _diagonal(model: Robot) -> float:
     ends = [
         end(transformed(shape.mesh.vertices, poses[link.name]), axis=0)
         for link in model.links
-        for shape in shapes_of(link)
+        for shape in judged_shapes(link)
         if len(shape.mesh.vertices)
         for end in (np.min, np.max)
     ]
     return float(np.linalg.norm(np.ptp(np.array(ends), axis=0))) if ends else 0.0
-
-
-def shapes_of(link: Link) -> tuple[Shape, ...]:
-    """Collision shapes of a link, visual ones where it declares none."""
-    return link.collisions or link.visuals
 
 
 def _components(link: Link, mesh: LinkMesh, size: float, settings: PrepareSettings) -> list[_Component]:
@@ -184,7 +180,7 @@ def _cut(concave: Sequence[_Component], links: int, settings: PrepareSettings) -
 
 def _pieces(link: Link, parts: Sequence[tuple[_Component, list[ConvexPiece] | None]]) -> Pieces:
     """Put the pieces of a link together; what could not be cut keeps its hull."""
-    shapes = shapes_of(link)
+    shapes = judged_shapes(link)
     primitives = tuple(shape for shape in shapes if shape.kind in _KEPT)
     convex: list[ConvexPiece] = []
     methods = [Method.PRIMITIVES if primitives else Method.NONE]
