@@ -279,7 +279,7 @@ def open_end(travel: Travel) -> float:
 
 def _hold(articulated_object: ArticulatedObject, joint: str, opened: float) -> FloatArray | None:
     """Point in the frame of the joint's child link; None where the joint moves no geometry."""
-    grasps = search_grasps(articulated_object.scene, joint, _WIDEST).grasps
+    grasps, _ = search_grasps(articulated_object.scene, joint, _WIDEST)
     least = max(_LEAST_WAY, _LEAST_SHARE * _longest_way(articulated_object, joint))
     for grasp in grasps:
         point = np.asarray(grasp.T_link_grasp[:3, 3])

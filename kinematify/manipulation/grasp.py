@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.geometry.scene import Scene
-    from kinematify.manipulation.grasp_search import Candidates, Tally
+    from kinematify.manipulation.grasp_search import Candidates
     from kinematify.robot.arrays import FloatArray
 
     BoolArray = NDArray[np.bool_]
@@ -87,16 +87,6 @@ class Grasp:
     """Rank in [0, 1]."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class GraspReport:
-    """Result of a search for grasps."""
-
-    grasps: tuple[Grasp, ...]
-    """The best first."""
-    reason: str | None
-    """Why there are none."""
-
-
 def search_grasps(
     scene: Scene,
     joint: str,
@@ -105,7 +95,7 @@ def search_grasps(
     point: FloatArray | None = None,
     leaders: FloatArray | None = None,
     seed: int = 0,
-) -> GraspReport:
+) -> tuple[list[Grasp], str]:
     """Find where a gripper can hold what a joint moves.
 
     Args:
@@ -115,6 +105,9 @@ def search_grasps(
         point: Hold it there, frame of the root link [m], shape (3,); anywhere if None.
         leaders: Values of all leading joints [rad or m], shape (leaders,); rest if None.
         seed: Of the places that are looked at.
+
+    Returns:
+        Grasps, the best first, and why there are none.
 
     Raises:
         InputError: The object has no such leading joint, or `point` is not on what it moves.
@@ -132,17 +125,17 @@ def search_grasps(
                 f"({', '.join(scene.bodies[body].name for body in moved) or 'nothing with geometry'}); a point on it "
                 f"is at most {NEAR_POINT} m off. Give it in metres in the frame of the root link."
             )
-    last = GraspReport(grasps=(), reason=f"Nothing that {joint} moves has geometry.")
+    grasps, reason = list[Grasp](), f"Nothing that {joint} moves has geometry."
     for body in [*bodies, *carried]:
         search = GraspSearch(scene, poses, body, slack)
         places = search.places(seed) if point is None else _around(point, seed)
-        candidates, tally = search.candidates(places, opening)
+        candidates, counts = search.candidates(places, opening)
         ranked = _Ranked(scene, joint, values, search, candidates)
         grasps = _distinct(ranked, _Room(scene, poses), scene.bodies[body].name, slack)
-        last = GraspReport(grasps=tuple(grasps), reason=None if grasps else _reason(tally, opening))
+        reason = _reason(*counts, opening)
         if grasps:
             break
-    return last
+    return grasps, reason
 
 
 def moved_bodies(scene: Scene, joint: str) -> tuple[list[int], list[int]]:
@@ -350,14 +343,14 @@ def distance_to(scene: Scene, poses: FloatArray, body: int, point: FloatArray) -
     return scene.unit * max(0.0, float(distance))
 
 
-def _reason(tally: Tally, opening: float) -> str:
-    if not tally.seen:
+def _reason(seen: int, held: int, free: int, opening: float) -> str:
+    if not seen:
         return "No place on the part can be seen from outside."
-    if not tally.held:
+    if not held:
         return (
             f"Nothing on the part that can be reached from outside has opposite sides within {opening * 1e3:.0f} mm, "
             "which the gripper spans."
         )
-    if not tally.free:
+    if not free:
         return "Everything that the gripper could span lacks room for its fingers beside it."
     return "Everything that the fingers could hold lacks room for the hand behind them."

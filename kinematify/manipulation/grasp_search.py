@@ -100,18 +100,6 @@ class Candidates:
         return np.cross(self.closing, self.approach)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Tally:
-    """Counts of the places that were looked at."""
-
-    seen: int
-    """Places with approach and closing directions that are met first from outside."""
-    held: int
-    """Of these, with opposite surfaces within the opening of the gripper."""
-    free: int
-    """Of these, with room for both fingers."""
-
-
 class GraspSearch:
     """Looks at one body of a scene in one configuration."""
 
@@ -155,8 +143,13 @@ class GraspSearch:
         chosen = np.array([sign for sign in signs if 1 <= np.abs(sign).sum() <= 2], dtype=np.float64)
         return np.asarray(chosen / np.linalg.norm(chosen, axis=1)[:, None] @ axes)
 
-    def candidates(self, places: FloatArray, opening: float) -> tuple[Candidates, Tally]:
-        """Look at places (n, 3) along all approach and closing directions."""
+    def candidates(self, places: FloatArray, opening: float) -> tuple[Candidates, tuple[int, int, int]]:
+        """Look at places (n, 3) along all approach and closing directions.
+
+        Returns:
+            What fingers could hold, and how many places, each with its directions, are met first from outside; have of
+            these opposite surfaces within the opening of the gripper; and of these room for both fingers.
+        """
         found, tallies = [], []
         for approach in self.directions():
             seen = self._seen(places, approach)
@@ -166,11 +159,8 @@ class GraspSearch:
                     some, tally = self._held(seen, approach, closing, opening=opening, hold=hold)
                     found.append(some)
                     tallies.append(tally)
-        return _joined(found), Tally(
-            seen=sum(tally.seen for tally in tallies),
-            held=sum(tally.held for tally in tallies),
-            free=sum(tally.free for tally in tallies),
-        )
+        seen_at, held_at, free_at = (sum(counts) for counts in zip(*tallies, strict=True))
+        return _joined(found), (seen_at, held_at, free_at)
 
     def is_plate(self, candidates: Candidates) -> BoolArray:
         """Test whether what is held goes on with the same thickness deeper in, shape (n,)."""
@@ -201,7 +191,7 @@ class GraspSearch:
 
     def _held(
         self, surface: FloatArray, approach: FloatArray, closing: FloatArray, *, opening: float, hold: float
-    ) -> tuple[Candidates, Tally]:
+    ) -> tuple[Candidates, tuple[int, int, int]]:
         """Measure halfway between the surface and the tips, which reach `hold` behind it."""
         reach = 0.5 * opening
         centers = surface + 0.5 * hold * approach
@@ -225,8 +215,7 @@ class GraspSearch:
         )
         free = found[self._lanes_free(found)]
         free = Candidates(**{**vars(free), "clearance": self._clearance(free)})
-        tally = Tally(seen=len(centers), held=len(found), free=len(free))
-        return free, tally
+        return free, (len(centers), len(found), len(free))
 
     def _lanes_free(self, found: Candidates) -> BoolArray:
         """Test whether rays along both edges of both fingers come in as far as the tips, shape (n,)."""

@@ -227,11 +227,11 @@ class _Planning:
             words = f"{free.pair[0]} meets {free.pair[1]} of the object"
             return self._ended(failure, words, stop=Stop(kind=ITSELF, words=words, pair=free.pair), fraction=free.share)
         opening = self._arm.robot.opening
-        found = search_grasps(free.scene, self._joint, opening, point=self._point, seed=self._seed)
-        if not found.grasps:
-            return self._ended(Failure.NO_GRASP, found.reason or "")
+        grasps, reason = search_grasps(free.scene, self._joint, opening, point=self._point, seed=self._seed)
+        if not grasps:
+            return self._ended(Failure.NO_GRASP, reason)
         world = CollisionWorld(self._arm, free.scene, self._joint, self._plan.margin)
-        places = self._places.ranked(found.grasps, self._base)
+        places = self._places.ranked(grasps, self._base)
         return self._search(world, Puller(self._arm, world, self._motion), places)
 
     def _search(self, world: CollisionWorld, puller: Puller, places: list[RobotPlacement]) -> PullPlan:

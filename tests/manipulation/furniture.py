@@ -108,7 +108,7 @@ def planned(
     T_world_base = np.eye(4)
     T_world_base[:2, :2] = [[np.cos(base[2]), -np.sin(base[2])], [np.sin(base[2]), np.cos(base[2])]]
     T_world_base[:2, 3] = base[:2]
-    for grasp in search_grasps(scene, joint, robot.opening).grasps:
+    for grasp in search_grasps(scene, joint, robot.opening)[0]:
         targets = [
             np.linalg.inv(T_world_base) @ link_pose(scene, joint, value) @ grasp.T_link_grasp for value in opened
         ]
@@ -192,4 +192,4 @@ def solved(robot: TaskRobot, target: np.ndarray, start: np.ndarray) -> np.ndarra
 def grasps(urdf: Path, joint: str, opening: float = 0.1, **options) -> list[Grasp]:
     """Grasps of a joint's part."""
     scene = read_scene(read_robot(urdf), SETTINGS.geometry)
-    return list(search_grasps(scene, joint, opening, **options).grasps)
+    return search_grasps(scene, joint, opening, **options)[0]
