@@ -20,8 +20,7 @@ from kinematify.generate.procedural.parameter import PARAMETER_HEADINGS, paramet
 from kinematify.generate.reader import read_sentence
 from kinematify.model.picture_scene import best_azimuth, joint_glyphs, moving_joints, opened_configuration
 from kinematify.model.preview import MARGIN, draw_panels, panel_size, rest_and_moved, scene_of
-from kinematify.render.camera import camera_for
-from kinematify.render.picture import BACKGROUND, render_scene
+from kinematify.render.picture import BACKGROUND, camera_for, render_scene
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:

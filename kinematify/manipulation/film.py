@@ -9,9 +9,8 @@ from PIL import Image, ImageDraw, ImageFont
 
 from kinematify.config import load_config
 from kinematify.manipulation.robot_place import column_mesh
-from kinematify.render.camera import camera_for
 from kinematify.render.film import draw_all, write_gif
-from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh
+from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, camera_for
 from kinematify.robot.robot import forward_kinematics, rigid_groups
 from kinematify.robot.transforms import transformed
 from kinematify.robot.vectors import as_one

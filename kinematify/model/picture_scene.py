@@ -13,8 +13,7 @@ from kinematify.geometry.overlap import OverlapQueries
 from kinematify.geometry.rest_pairs import DepthAllowance
 from kinematify.geometry.scene import read_scene
 from kinematify.model.urdf import link_colors, model_robot
-from kinematify.render.camera import camera_for
-from kinematify.render.picture import PosedMesh
+from kinematify.render.picture import PosedMesh, camera_for
 from kinematify.robot.appearance import joined, plain
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics

@@ -19,8 +19,7 @@ from kinematify.model.picture_scene import (
     posed_meshes,
 )
 from kinematify.model.urdf import distinct_colors, link_colors, link_shades
-from kinematify.render.camera import camera_for
-from kinematify.render.picture import BACKGROUND, PictureScene, render_scene
+from kinematify.render.picture import BACKGROUND, PictureScene, camera_for, render_scene
 from kinematify.robot.appearance import linear_of, srgb_of
 
 if TYPE_CHECKING:

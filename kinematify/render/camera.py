@@ -11,10 +11,6 @@ import numpy as np
 from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from kinematify.config import PreviewConfig
-    from kinematify.render.picture import PictureScene
     from kinematify.robot.arrays import FloatArray
 
 _STEEPEST = 0.98
@@ -98,20 +94,6 @@ def fit_camera(
     shift = (float(-middle[0]), float(-middle[1]))
     return Camera(
         position=far.position, forward=far.forward, focal=focal * zoom, width=width, height=height, shift=shift
-    )
-
-
-def camera_for(
-    scenes: Sequence[PictureScene], azimuth: float, config: PreviewConfig, *, size: tuple[int, int], margin: float
-) -> Camera:
-    """Camera that shows all scenes inside a margin [pixels] of a picture of some width and height [pixels]."""
-    return fit_camera(
-        np.concatenate([scene.outline for scene in scenes]),
-        azimuth=azimuth,
-        elevation=float(np.deg2rad(config.elevation)),
-        field_of_view=float(np.deg2rad(config.field_of_view)),
-        size=size,
-        margin=margin,
     )
 
 

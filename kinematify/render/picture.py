@@ -15,10 +15,13 @@ from PIL import Image
 from scipy.ndimage import binary_dilation, gaussian_filter, map_coordinates
 
 from kinematify.geometry.rays import RayScene
+from kinematify.render.camera import fit_camera
 from kinematify.robot.appearance import linear_of, srgb_of
 from kinematify.robot.vectors import vertex_normals
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from kinematify.config import PreviewConfig
     from kinematify.geometry.rays import RayHits
     from kinematify.render.camera import Camera
@@ -99,6 +102,20 @@ class PictureScene:
         """Count the pixels that show each mesh, shape (len(meshes),)."""
         seen = self.mesh_of_pixel(camera)
         return np.bincount(seen[seen >= 0], minlength=len(self.meshes))
+
+
+def camera_for(
+    scenes: Sequence[PictureScene], azimuth: float, config: PreviewConfig, *, size: tuple[int, int], margin: float
+) -> Camera:
+    """Camera that shows all scenes inside a margin [pixels] of a picture of some width and height [pixels]."""
+    return fit_camera(
+        np.concatenate([scene.outline for scene in scenes]),
+        azimuth=azimuth,
+        elevation=float(np.deg2rad(config.elevation)),
+        field_of_view=float(np.deg2rad(config.field_of_view)),
+        size=size,
+        margin=margin,
+    )
 
 
 def render_scene(scene: PictureScene, camera: Camera, config: PreviewConfig) -> Image.Image:

@@ -134,8 +134,12 @@ class LoadedModel:
         """
         from kinematify.config import load_config  # noqa: PLC0415  # and the renderer: half a second
         from kinematify.model.urdf import usual_colors  # noqa: PLC0415
-        from kinematify.render.camera import camera_for  # noqa: PLC0415
-        from kinematify.render.picture import PictureScene, PosedMesh, render_scene  # noqa: PLC0415
+        from kinematify.render.picture import (  # noqa: PLC0415
+            PictureScene,
+            PosedMesh,
+            camera_for,
+            render_scene,
+        )
 
         poses, colors = self.pose(q), usual_colors(len(self.robot.links))
         meshes = [

@@ -21,8 +21,7 @@ from kinematify.model.picture_scene import (
 )
 from kinematify.model.preview import render_preview
 from kinematify.model.urdf import distinct_colors, link_colors, link_shades
-from kinematify.render.camera import camera_for
-from kinematify.render.picture import PictureScene, PosedMesh, render_scene
+from kinematify.render.picture import PictureScene, PosedMesh, camera_for, render_scene
 from kinematify.robot.appearance import linear_of, srgb_of
 from kinematify.robot.joint_type import JointType
 from tests.mechanisms import Mechanism, box, chain, door, drawer, flat_and_fixed, joint, knob
