@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from kinematify.model.kinematic_model import KinematicModel
 
 HERE = Path(__file__).resolve().parent
+_EXPLODED = 0.55  # of their distance from the centre parts move away: apart and still recognised as one object
 WIDTH = 1600  # twice what the README shows [pixels]
 
 
@@ -39,14 +40,14 @@ def render_story(model: KinematicModel, path: Path, config: PreviewConfig) -> No
         OSError: The file cannot be written.
     """
     rest, moved = rest_and_moved(model, config, ("the joints that were found", "the mechanism, moved"))
-    loose = PreviewPanel("parts in, without names", _exploded(rest.scene, config))
+    loose = PreviewPanel("parts in, without names", _exploded(rest.scene))
     write_sheet(model, (loose, rest, moved), config, path)
 
 
-def _exploded(scene: PictureScene, config: PreviewConfig) -> PictureScene:
+def _exploded(scene: PictureScene) -> PictureScene:
     """Grey copies moved away from the middle of all, the farther off the more."""
     middles = np.array([mesh.vertices[mesh.faces.reshape(-1)].mean(axis=0) for mesh in scene.meshes])
-    offsets = config.exploded * (middles - middles.mean(axis=0))
+    offsets = _EXPLODED * (middles - middles.mean(axis=0))
     return PictureScene(
         meshes=tuple(
             PosedMesh(vertices=mesh.vertices + offset, faces=mesh.faces, color=UNSEGMENTED)

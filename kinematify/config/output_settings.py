@@ -127,7 +127,5 @@ class PreviewConfig(StageConfig):
     """Joints are not slid farther than this in a picture."""
     chain_joints: int = 8  # arms have 6 or 7
     """Long chains of more moving joints than this turn less, so that they do not curl up."""
-    exploded: float = 0.55  # parts are apart and still recognised as one object
-    """Parts of the exploded view move away from the centre by this multiple of their distance from it."""
     legend_entries: int = 12  # three rows of four
     """Joints named below the picture; the rest is counted."""
