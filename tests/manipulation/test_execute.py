@@ -10,8 +10,8 @@ import pytest
 from PIL import Image
 
 from kinematify.manipulation.execute import Execution, Loaded, execute, load, timed
-from kinematify.manipulation.film import write_film
 from kinematify.manipulation.plan_request import Hold
+from kinematify.manipulation.task_film import write_film
 from tests.manipulation import furniture
 
 SETTINGS = furniture.SETTINGS

@@ -15,7 +15,6 @@ import numpy as np
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene, visible_shapes
 from kinematify.manipulation.execute import Execution, Loaded, execute, load
-from kinematify.manipulation.film import write_film
 from kinematify.manipulation.grasp import joint_at
 from kinematify.manipulation.kinematics import Arm
 from kinematify.manipulation.manipulator import robot_of
@@ -23,6 +22,7 @@ from kinematify.manipulation.plan_request import Failure, Hold
 from kinematify.manipulation.planning import PullPlan, depend, motion_of, plan_pull
 from kinematify.manipulation.real_size import sizing, write_scaled
 from kinematify.manipulation.robot_place import object_box, standing_at
+from kinematify.manipulation.task_film import write_film
 from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.check import REGISTRY
