@@ -22,7 +22,7 @@ from kinematify.manipulation.grasp import moved_bodies, search_grasps
 from kinematify.manipulation.plan_request import Failure
 from kinematify.manipulation.pull import ITSELF, Pull, Puller, Stop
 from kinematify.manipulation.robot_place import Places, object_box, object_motion
-from kinematify.manipulation.sampling_planner import plan_reach, search_pull
+from kinematify.manipulation.sampling_planner import plan_reach
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -256,7 +256,7 @@ class _Planning:
         return self._ended(Failure.STOPS, words, stop=pull.stop, pull=pull, way=way, fraction=pull.fraction)
 
     def _pulls(self, puller: Puller, places: list[RobotPlacement], *, column: bool) -> Iterator[Pull]:
-        """Pulls as they are found: followed from the middle, then searched for, then followed as far as it goes."""
+        """Pulls as they are found: followed from the middle, then from rest, the farthest of the others last."""
         partial: list[Pull] = []
         for from_start, share in ((False, 0.6), (True, 1.0)):
             chosen = places if not from_start else places[: max(8, len(places) // 4)]
@@ -273,17 +273,7 @@ class _Planning:
                 else:
                     self._stops.append(found.stop)
                     partial.append(found)
-            if not from_start:
-                yield from self._searched(puller, partial, column=column)
         yield from sorted(partial, key=lambda pull: -pull.fraction)[:4]
-
-    def _searched(self, puller: Puller, partial: list[Pull], *, column: bool) -> Iterator[Pull]:
-        for pull in sorted(partial, key=lambda pull: -pull.fraction)[:2]:
-            if self._spent > 0.8 * self._plan.seconds:
-                return
-            found = search_pull(puller, pull, column=column, seed=self._seed)
-            if found.searched:
-                yield found
 
     def _way_to(self, world: CollisionWorld, pull: Pull, *, column: bool) -> FloatArray | None:
         if self._spent > self._plan.seconds:

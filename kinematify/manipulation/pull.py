@@ -1,8 +1,7 @@
 """The pull: hand and part are one body, and the object's own joint says where the hand must be at every moment.
 
 A pull is followed by inverse kinematics from pose to pose, out of the middle of the range to both ends: what freedom
-the arm has left keeps it away from its limits. Where that runs into something, `sampling_planner` searches for
-another way.
+the arm has left keeps it away from its limits.
 """
 
 from __future__ import annotations
@@ -11,10 +10,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pinocchio as pin
 
 if TYPE_CHECKING:
-    from kinematify.manipulation.collision_world import CollisionWorld, Hit
+    from kinematify.manipulation.collision_world import CollisionWorld
     from kinematify.manipulation.kinematics import Arm
     from kinematify.manipulation.robot_place import ObjectMotion, RobotPlacement
     from kinematify.robot.arrays import FloatArray
@@ -23,8 +21,7 @@ LIMIT, SINGULAR, JUMP, SELF, OBJECT, FLOOR, UNREACHED, ITSELF = (
     "arm limit", "singularity", "jump", "self-collision", "arm against object", "arm against floor", "out of reach",
     "object against itself",
 )  # fmt: skip
-RESTARTS = 3
-"""Samples of the arm from which inverse kinematics starts."""
+_RESTARTS = 3  # samples of the arm from which inverse kinematics starts
 JUMP_AT = 0.6  # 25 poses over a turn of the wrist
 """Larger changes of a joint from one pose to the next are no continuous motion [rad or m]."""
 _NEAR_LIMIT = 0.005  # of its range: a joint that is so near is at its limit
@@ -57,8 +54,6 @@ class Pull:
     """Share of the range."""
     stop: Stop | None
     """What ends it; None if it is complete."""
-    searched: bool = False
-    """It comes from the search on the manifold."""
 
 
 class Puller:
@@ -67,10 +62,6 @@ class Puller:
     def __init__(self, arm: Arm, world: CollisionWorld, motion: ObjectMotion) -> None:
         """Keep what is given."""
         self.arm, self.world, self.motion = arm, world, motion
-
-    def targets(self, place: RobotPlacement) -> FloatArray:
-        """Poses of the tool in the frame of the robot's root, shape (k, 4, 4)."""
-        return np.asarray(np.linalg.inv(place.T_world_base) @ self.motion.link_poses @ place.T_link_tool)
 
     def follow(self, place: RobotPlacement, *, column: bool, from_start: bool = False) -> Pull | Stop:
         """Follow the joint as far as the arm can from a place.
@@ -84,11 +75,11 @@ class Puller:
             The pull that goes farthest, or what keeps it from beginning.
         """
         self.world.place(place.T_world_base, self.motion.T_world_object, column=column)
-        targets = self.targets(place)
+        targets = np.asarray(np.linalg.inv(place.T_world_base) @ self.motion.link_poses @ place.T_link_tool)
         anchor = 0 if from_start else len(targets) // 2
         best: Pull | None = None
         stop: Stop | None = None
-        for q in self.arm.solve_all(targets[anchor], RESTARTS):
+        for q in self.arm.solve_all(targets[anchor], _RESTARTS):
             stop = self._blocked(q, anchor, place)
             if stop is not None:
                 continue
@@ -102,18 +93,6 @@ class Puller:
             if pull.stop is None:
                 break
         return best or stop or Stop(kind=UNREACHED, words="its inverse kinematics finds no posture at the grasp")
-
-    def target_at(self, targets: FloatArray, share: float) -> FloatArray:
-        """Pose of the tool where a share of the range is open, between two of the targets (k, 4, 4), shape (4, 4)."""
-        position = min(max(share, 0.0), 1.0) * (len(targets) - 1)
-        row = min(int(position), len(targets) - 2)
-        first, second = pin.SE3(targets[row]), pin.SE3(targets[row + 1])
-        return np.asarray(pin.SE3.Interpolate(first, second, position - row).homogeneous)
-
-    def free_at(self, q: FloatArray, share: float, place: RobotPlacement) -> bool:
-        """True if nothing collides where a share of the range is open."""
-        row = round(min(max(share, 0.0), 1.0) * (len(self.motion.values) - 1))
-        return self._hit(q, row, place) is None
 
     def _continued(
         self, q: FloatArray, targets: FloatArray, rows: range, place: RobotPlacement
@@ -135,15 +114,12 @@ class Puller:
         return found, None
 
     def _blocked(self, q: FloatArray, row: int, place: RobotPlacement) -> Stop | None:
-        hit = self._hit(q, row, place)
+        self.world.pose_object(self.motion.body_poses[row], place.grasp.spread)
+        hit = self.world.hit(q, holding=True)
         if hit is None:
             return None
         words = f"its {hit.first} meets {hit.second}" + (" of the object" if hit.kind == "object" else "")
         return Stop(kind=_KINDS[hit.kind], words=words, pair=(hit.first, hit.second))
-
-    def _hit(self, q: FloatArray, row: int, place: RobotPlacement) -> Hit | None:
-        self.world.pose_object(self.motion.body_poses[row], place.grasp.spread)
-        return self.world.hit(q, holding=True)
 
     def _why_not(self, q: FloatArray, target: FloatArray) -> Stop:
         """Why inverse kinematics gets no farther than a posture."""
