@@ -67,6 +67,8 @@ def write_reports(
     Raises:
         OutputError: A file cannot be written.
     """
+    if not files and not to_stdout:
+        return  # what writes them takes time to load
     from kinematify.validation.formats.html import as_html
     from kinematify.validation.formats.junit import as_junit
     from kinematify.validation.formats.sarif import as_sarif

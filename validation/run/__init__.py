@@ -22,7 +22,6 @@ from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engi
 from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.document_copy import LEFT_OUT, readable_copy, resolved_copy
-from kinematify.validation.environment import environment
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.isolation import load_imports, run_stages
 from kinematify.validation.model_cache import has_model
@@ -38,7 +37,7 @@ from kinematify.validation.run.needs import (
     task_stage,
 )
 from kinematify.validation.run.recorder import Recorder
-from kinematify.validation.run.report import ValidationReport
+from kinematify.validation.run.report import ValidationReport, environment
 from kinematify.validation.stage import StageRequest
 from kinematify.validation.summary import JointSummary, PairTable
 from kinematify.validation.validated_file import ValidatedFile

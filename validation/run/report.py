@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 import math
+import platform
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from kinematify import __version__
 from kinematify.errors import ExitStatus
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.run.conclusion import group_by_cause
 from kinematify.validation.run.loaded_words import as_loaded_words
+from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from kinematify.config.validation import ValidationSettings
     from kinematify.validation.finding import CheckResult, Finding
     from kinematify.validation.run.conclusion import FindingGroup
     from kinematify.validation.summary import JointSummary, PairTable
 
 SCHEMA = 2
+_PACKAGES = (
+    "numpy", "scipy", "trimesh", "libigl", "python-fcl", "mujoco", "pybullet", "pin",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -158,3 +165,17 @@ def _plain(value: Any) -> Any:
     if hasattr(value, "tolist"):
         return _plain(value.tolist())
     return value
+
+
+def environment(settings: ValidationSettings, *, seconds: float, interrupted: bool) -> dict[str, Any]:
+    """Versions, machine, seed, settings and time of a run."""
+    return {
+        "kinematify": __version__,
+        "python": platform.python_version(),
+        "platform": platform.platform(),
+        "versions": package_versions(_PACKAGES),
+        "seed": settings.seed,
+        "seconds": round(seconds, 3),
+        "interrupted": interrupted,
+        "settings": settings.model_dump(),
+    }
