@@ -25,7 +25,7 @@ import inspect
 import re
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any
 
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.finding import Finding, Severity, Status, not_finished
@@ -244,6 +244,7 @@ def check(
 
     def register(function: CheckFunction) -> CheckFunction:
         assert id not in REGISTRY, f"{id} is at two functions"
+        verifies, matters, remedy = _documentation(id, function)
         REGISTRY[id] = Check(
             id=id,
             title=title,
@@ -257,21 +258,17 @@ def check(
             follows=follows or {},
             needs=needs,
             function=function,
-            **_documentation(id, function),
+            verifies=verifies,
+            matters=matters,
+            remedy=remedy,
         )
         return function
 
     return register
 
 
-class _Documentation(TypedDict):
-    verifies: str
-    matters: str
-    remedy: str
-
-
-def _documentation(id: str, function: CheckFunction) -> _Documentation:
-    """Split a docstring into what `Check` holds."""
+def _documentation(id: str, function: CheckFunction) -> tuple[str, str, str]:
+    """Split a docstring into what a check verifies, why that matters, and the remedy."""
     paragraphs = [" ".join(part.split()) for part in inspect.cleandoc(function.__doc__ or "").split("\n\n")]
     verifies, named = paragraphs[0], dict(part.partition(": ")[::2] for part in paragraphs[1:])
     assert verifies, f"{id}: its docstring must say what it verifies"
@@ -279,4 +276,4 @@ def _documentation(id: str, function: CheckFunction) -> _Documentation:
         f"{id}: after what it verifies, its docstring must have the paragraphs `Why it matters: ...` and "
         f"`Remedy: ...`, not {', '.join(named) or 'nothing'}"
     )
-    return {"verifies": verifies, "matters": named["Why it matters"], "remedy": named["Remedy"]}
+    return verifies, named["Why it matters"], named["Remedy"]

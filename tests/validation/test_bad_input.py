@@ -119,10 +119,11 @@ def test_names_and_meshes_in_any_script_are_kept(tmp_path: Path) -> None:
     assert "PyBullet 1 of 1 joints move" in report.as_loaded
 
 
-def test_findings_of_geometry_have_the_line_of_their_joint_or_link(tmp_path: Path) -> None:
+@pytest.mark.parametrize("end", ["</joint>", MIMIC])
+def test_findings_of_geometry_have_the_line_of_their_joint_or_link(end: str, tmp_path: Path) -> None:
     path = tmp_path / "model.urdf"
-    path.write_text(robot().replace('xyz="0 0 0.1"', 'xyz="0 0 0.4"'))
-    report = validate(path, engines=(), selected=("KV303", "KV301"), workers=1)
+    path.write_text(robot().replace('xyz="0 0 0.1"', 'xyz="0 0 0.4"').replace("</joint>", end))
+    report = validate(path, engines=(), selected=("KV202", "KV303", "KV301"), workers=1)
     (finding,) = [item for item in report.findings if item.check == "KV303"]
     lines = path.read_text().splitlines()
     assert finding.line is not None
