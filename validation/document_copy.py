@@ -102,8 +102,8 @@ def _write_resolved(robot: _Element, request: StageRequest, path: Path) -> None:
             mesh.set("filename", str(find_mesh(mesh.get("filename") or "", folder, request.package_dirs, "mesh")))
         except DescriptionError:
             continue  # the text has been checked: what is missing was reported
-    above = int(str(robot.sourceline)) - 1  # a declaration or comments, so that all lines keep their numbers
-    path.write_bytes(b"\n" * above + etree.tostring(robot, encoding="utf-8"))
+    # In place of a declaration and comments, so that all lines keep their numbers.
+    path.write_bytes(b"\n" * (int(str(robot.sourceline)) - 1) + etree.tostring(robot, encoding="utf-8"))
 
 
 def _turns(robot: _Element, name: str | None) -> bool:

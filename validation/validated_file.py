@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from kinematify.robot.description import Description
     from kinematify.validation.finding import Finding
 
-_RANGE = "KV220"
 _OF_TEXT = ("KV104", "KV143", "KV144")
 """Checks of the URDF's text, which say nothing about a file of another format."""
 
@@ -74,7 +73,7 @@ class ValidatedFile:
         line = next((line for name in named if (line := self.lines.get(name))), None)
         if self.form is None:
             return replace(finding, line=finding.line or line)
-        if finding.check in _OF_TEXT or (finding.check == _RANGE and finding.joint in self.endless):
+        if finding.check in _OF_TEXT or (finding.check == "KV220" and finding.joint in self.endless):
             return None
         message = finding.message
         if finding.engine is not None and not (finding.engine == "mujoco" and self.native):

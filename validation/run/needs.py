@@ -34,8 +34,6 @@ CheckKey = tuple[str, str | None]
 """Id of a check and the engine it runs in."""
 _SHOWN = 50
 """Findings per check of the text; what a thousand lines have in common is seen in the first fifty."""
-_SCORERS = "evidence"
-"""Configuration of the scorers; coarser than that of the inference, for the joint is known already."""
 
 
 def file(request: StageRequest, recorder: Recorder) -> bool:
@@ -110,7 +108,8 @@ def joints(request: StageRequest, recorder: Recorder) -> None:
     from kinematify.validation.evidence.measure import measure_joints
 
     robot, seed, settings = model_of(request), request.settings.seed, request.settings.evidence
-    bodies = read_bodies(robot, load_config(_SCORERS), seed=seed)
+    config = load_config("evidence")  # coarser than that of the inference, for the joint is known already
+    bodies = read_bodies(robot, config, seed=seed)
     if bodies is None or not bodies.truth.joints:
         nothing = Subjects(items=tuple, nothing="no joint moves a body with geometry against another one")
         recorder.run({"JointCase": nothing, "SharedPin": nothing})
