@@ -82,7 +82,7 @@ def assert_complete(python: Path, cwd: Path) -> None:
 def assert_bench_explains(python: Path, cwd: Path) -> None:
     """No wheel brings `benchmarks/`: whatever needs it ends with 2 and one message, and measures nothing."""
     environment = {**os.environ, "PYTHONPATH": sysconfig.get_path("purelib")}
-    for line in ("bench --list", "bench detection", "fit -o fitted", "bench . --degrade all"):
+    for line in ("bench --list", "bench detection", "bench . --degrade all"):
         done = subprocess.run(
             [python, "-m", "kinematify", *line.split()], cwd=cwd, env=environment, capture_output=True, text=True,
             check=False,
