@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     )
     from kinematify.validation.stage import StageRequest
 
-RESOLVED = "resolved.urdf"
-"""Name of the file in plain code where an engine does not find the meshes of the original."""
 _LEAST_SIZE = 0.01
 """Smaller models are looked at as if they had it [m]."""
 _SAME = 1e-6
@@ -100,22 +98,35 @@ class AsLoadedContext:
         """The tree."""
         return LeaderMechanism(robot=self.robot)
 
+    @property
+    def native(self) -> Path | None:
+        """The file, where the engine opens its format and not only a URDF of it."""
+        return self.request.native if self.engine == "mujoco" else None
+
+    @property
+    def copied(self) -> str:
+        """What a copy has that the engine opens in place of a file that it refuses."""
+        return "absolute paths of the meshes" if self.native is None else "none of the pictures and skins it refuses"
+
     @cached_property
     def bare(self) -> EngineFile | Unloadable:
         """The file in the engine as it is, or what the engine says against it."""
-        native = self.request.native if self.engine == "mujoco" else None
-        return self._opened(native or self.request.urdf)
+        return self._opened(self.native or self.request.urdf)
 
     @cached_property
     def loading(self) -> EngineFile | Unloadable:
-        """The file in the engine, from a copy with absolute paths of meshes where it is not opened without."""
+        """The file in the engine, from a copy as `copied` says where it is not opened without."""
         resolved = self.request.resolved
         if not isinstance(self.bare, Unloadable) or self.bare.floats or resolved is None:
             return self.bare
+        if self.native is not None:
+            from kinematify.robot.mjcf_reader import write_repaired  # noqa: PLC0415 - for such files only
+
+            resolved = write_repaired(self.native, self.request.work / "repaired.xml")
         copy = self._opened(resolved)
         if isinstance(copy, Unloadable):
             return self.bare
-        copy.rename(RESOLVED)
+        copy.rename(resolved.name)
         return copy
 
     def _opened(self, urdf: Path) -> EngineFile | Unloadable:

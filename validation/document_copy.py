@@ -8,7 +8,9 @@ from lxml import etree
 
 from kinematify.errors import DescriptionError
 from kinematify.robot.mesh_paths import find_mesh
+from kinematify.robot.urdf_numbers import UrdfDocument
 from kinematify.robot.urdf_text import parse_description
+from kinematify.validation.checks.file_numbers import malformed_fields
 from kinematify.validation.finding import Severity
 from kinematify.validation.validated_file import DocumentCopy
 
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
+    from kinematify.validation.checks.file_numbers import NumberField
     from kinematify.validation.finding import Finding
     from kinematify.validation.stage import StageRequest
 
@@ -28,7 +31,7 @@ _SHAPES = ("KV138", "KV139", "KV151", "KV152")
 _JOINTS = ("KV130", "KV131", "KV134", "KV136", "KV137")
 """The same with a fixed joint in place of the one that they name."""
 _NUMBERS = "KV132"
-"""The same with spaces for the commas between numbers, which only some readers take."""
+"""The same with spaces for commas, which only some readers take, or without the number, and what needs it."""
 _MIMICS = ("KV127", "KV128")
 """The same with a joint that follows no other one, as most engines read it."""
 _NO_LIMIT = "KV136"
@@ -46,29 +49,33 @@ def readable_copy(request: StageRequest, errors: Iterable[Finding], name: str) -
         robot = parse_description(request.urdf)
     except DescriptionError:  # the text is not well-formed, which a finding says
         return None
-    shapes, joints = set[str](), set[str]()
+    lacking, joints = set[str](), set[str]()
     for finding in errors:
         if finding.check == _NO_LIMIT and _turns(robot, finding.joint):
             continue  # it is read as continuous
         if finding.check in _MIMICS and finding.joint is not None:
-            for joint in _named(robot, finding.joint):
-                for mimic in joint.findall("mimic"):
-                    _blank(mimic)
+            for mimic in [mimic for joint in _named(robot, finding.joint) for mimic in joint.findall("mimic")]:
+                _blank(mimic)
         elif finding.check == _NUMBERS:
-            if not _drop_commas(robot, finding.line):
-                return None
+            _drop_commas(robot, finding.line)
         elif finding.check in _JOINTS and finding.joint is not None:
             _fix_joint(robot, finding.joint)
             joints.add(finding.joint)
         elif finding.check in _SHAPES and finding.link is not None:
             if not _drop_shapes(robot, finding):
                 return None
-            shapes.add(finding.link)
+            lacking.add(finding.link)
         elif finding.severity is Severity.ERROR:
             return None
+    fields = malformed_fields(UrdfDocument(robot=robot))
+    for field in [item for item in fields if item.element.tag != "color"]:  # nobody stops at a colour
+        if field.joint is not None and field.element.tag == "origin":
+            return None  # nobody knows where its link stands
+        lacking.add(str(field.joint or field.link))
+        joints |= _drop_number(robot, field)
     path = request.work / name
     _write_resolved(robot, request, path)
-    return DocumentCopy(path=path, shapes=frozenset(shapes), joints=frozenset(joints))
+    return DocumentCopy(path=path, lacking=frozenset(lacking | joints), joints=frozenset(joints))
 
 
 def resolved_copy(request: StageRequest, name: str, left_out: Iterable[Finding]) -> Path:
@@ -114,15 +121,27 @@ def _named(robot: _Element, name: str | None) -> list[_Element]:
     return [joint for joint in robot.findall("joint") if joint.get("name") == name]
 
 
-def _drop_commas(robot: _Element, line: int | None) -> bool:
-    """Write spaces for commas in the elements of a line; False if there are none."""
-    found = [
-        item for item in robot.iter() if str(item.sourceline) == str(line) and "," in "".join(map(str, item.values()))
-    ]
-    for element in found:
-        for key, text in element.items():
-            element.set(key, str(text).replace(",", " "))
-    return bool(found)
+def _drop_commas(robot: _Element, line: int | None) -> None:
+    """Write spaces for commas in the elements of a line."""
+    for element in robot.iter():
+        if str(element.sourceline) == str(line):
+            for key, text in element.items():
+                element.set(key, str(text).replace(",", " "))
+
+
+def _drop_number(robot: _Element, field: NumberField) -> set[str]:
+    """Drop a number, with the rule, mass or shape that it is of; returns the joint that is fixed for want of it."""
+    if field.joint is not None and field.attribute in ("xyz", "lower", "upper"):
+        _fix_joint(robot, field.joint)
+        return {field.joint}
+    del field.element.attrib[field.attribute]
+    for item in (field.element, *field.element.iterancestors()):
+        if item.tag in _WHOLE:
+            _blank(item)
+    return set()
+
+
+_WHOLE = ("mimic", "inertial", "visual", "collision")
 
 
 def _fix_joint(robot: _Element, name: str) -> None:

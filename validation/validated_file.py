@@ -25,16 +25,14 @@ class DocumentCopy:
     """A copy, and what it does without."""
 
     path: Path
-    shapes: frozenset[str] = frozenset()
-    """Links that lack a shape."""
+    lacking: frozenset[str] = frozenset()
+    """Links that lack a shape or their mass, and joints that lack a number or are fixed."""
     joints: frozenset[str] = frozenset()
     """Joints that are fixed in it."""
 
     def doubts(self, finding: Finding) -> bool:
         """True if a finding on the copy may come of what it lacks."""
-        return (
-            finding.link in self.shapes or finding.joint in self.joints or bool({*(finding.pair or ())} & self.shapes)
-        )
+        return bool({finding.link, finding.joint, *(finding.pair or ())} & self.lacking)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -240,7 +240,7 @@ def _unpacked(archive: Path, folder: Path, reading: _Reading) -> _Given:
 
 def _description(path: Path, reading: _Reading) -> _Given:
     """Rigid groups of links at rest; everything else that the description says is dropped."""
-    robot = read_robot(path, geometry="shown", appearance=True)
+    robot = read_robot(path, geometry="parts", appearance=True)
     poses = forward_kinematics(robot, rest_configuration(robot))
     groups = [group for group in rigid_groups(robot) if group.has_geometry]
     meshes = tuple(

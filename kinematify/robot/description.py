@@ -22,7 +22,6 @@ from lxml import etree
 
 from kinematify.errors import DescriptionError, EnvironmentFault, KinematifyError
 from kinematify.robot.mesh_folder import MeshFiles, with_files
-from kinematify.robot.mesh_paths import find_mesh
 from kinematify.robot.urdf_text import MAX_URDF_BYTES, calls_xacro, parse_text
 from kinematify.robot.write import write_robot
 from kinematify.versions import require
@@ -172,7 +171,7 @@ def open_description(
     urdf = folder / f"{path.name.split('.')[0]}.urdf"
     read = read_foreign(path, form, package_dirs, arguments or {})
     if isinstance(read, str):
-        urdf.write_text(_with_whole_paths(read, path.resolve().parent, package_dirs), encoding="utf-8")
+        urdf.write_text(read, encoding="utf-8")
         return Description(path=path, form=form, urdf=urdf, lines=_xacro_lines(path, urdf))
     robot: Robot = read
     notes = list(robot.notes)
@@ -220,20 +219,6 @@ def _complete(joint: Joint) -> Joint:
     velocity = _VELOCITY if joint.velocity is None else joint.velocity
     same = (lower, upper, effort, velocity) == (joint.lower, joint.upper, joint.effort, joint.velocity)
     return joint if same else replace(joint, lower=lower, upper=upper, effort=effort, velocity=velocity)
-
-
-def _with_whole_paths(text: str, folder: Path, package_dirs: Sequence[Path]) -> str:
-    """A URDF whose paths of files that are there hold from anywhere."""
-    try:
-        root = parse_text(text.encode())
-    except etree.XMLSyntaxError:
-        return text  # the reader of URDF says where
-    for element in (*root.iter("mesh"), *root.iter("texture")):
-        try:
-            element.set("filename", str(find_mesh(element.get("filename") or "", folder, package_dirs, "the xacro")))
-        except DescriptionError:
-            continue  # a finding will say so
-    return etree.tostring(root, encoding="unicode")
 
 
 def _xacro_lines(path: Path, urdf: Path) -> dict[tuple[str, str], int]:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
+from lxml import etree
 
 from kinematify.errors import DescriptionError
 from kinematify.robot.body_tree import WORLD, tree_of
@@ -18,7 +20,6 @@ from kinematify.robot.urdf_geometry import ellipsoid, mesh_shape, primitive
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.body_tree import Edge, Losses
@@ -44,7 +45,7 @@ def read_mjcf(path: Path, *_: Any) -> Robot:
     """
     try:
         spec = mujoco.MjSpec.from_file(str(path))
-        model = spec.compile()
+        model, omitted = _compiled(spec)
     except ValueError as error:
         raise DescriptionError(f"MuJoCo does not read {path}: {' '.join(str(error).split())}. Correct it.") from error
     data = mujoco.MjData(model)
@@ -57,7 +58,7 @@ def read_mjcf(path: Path, *_: Any) -> Robot:
             losses[what] = [str(getattr(item, "name", "")) for item in found]
     bodies: list[Link] = []
     edges: list[Edge] = []
-    notes = _joint_notes(model, losses)
+    notes = [*omitted.values(), *_joint_notes(model, losses)]
     mimics, shapes = _followers(model, losses), _shapes(model, lines["geoms"], losses)
     loops = _loops(model, names, losses)
     for k, name in enumerate(names):
@@ -73,6 +74,53 @@ def read_mjcf(path: Path, *_: Any) -> Robot:
     poses = {name: _pose(data.xpos[k], data.xquat[k]) for k, name in enumerate(names)}
     title = spec.modelname or path.stem
     return tree_of(title, path, bodies, edges, poses=poses, loops=loops, notes=notes, losses=losses)
+
+
+def _compiled(spec: Any) -> tuple[Any, dict[str, str]]:
+    """Compile a specification without the pictures and skins at which MuJoCo stops; a sentence for each by its name."""
+    omitted: dict[str, str] = {}
+    while True:
+        try:
+            return spec.compile(), omitted
+        except ValueError as error:
+            files = {item: (item.file, *getattr(item, "cubefiles", ())) for item in (*spec.textures, *spec.skins)}
+            said = str(error)
+            found = next(
+                (item for item, of in files.items() if any(f"{Path(file).name}'" in said for file in of)), None
+            )
+            if found is None:
+                raise
+            what = f"{type(found).__name__.removeprefix('Mjs').lower()} {found.name}"
+            omitted[found.name] = (
+                f"The {what} is omitted (line {_line(found)}), since MuJoCo refuses it: {said.splitlines()[0]}."
+            )
+            for material in spec.materials:
+                material.textures = ["" if name == found.name else name for name in material.textures]
+            spec.delete(found)
+
+
+def write_repaired(path: Path, out: Path) -> Path:
+    """Write an MJCF without the pictures and skins that MuJoCo refuses, by its text: MuJoCo itself writes six digits.
+
+    Raises:
+        ValueError: MuJoCo refuses the file for something else.
+    """
+    _, omitted = _compiled(mujoco.MjSpec.from_file(str(path)))
+    root = etree.parse(path).getroot()
+    for item in [*root.iter("texture", "skin", "layer")]:
+        name = item.get("texture") or item.get("name") or Path(item.get("file", "")).stem
+        if name in omitted:
+            item.getparent().remove(item)
+    for material in root.iter("material"):
+        if material.get("texture") in omitted:
+            del material.attrib["texture"]
+    for include in root.iter("include"):
+        include.set("file", str(path.parent / include.get("file", "")))
+    places = {key: value for item in root.iter("compiler") for key, value in item.attrib.items() if key.endswith("dir")}
+    folders = {key: str(path.parent / places.get(key, places.get("assetdir", ""))) for key in ("meshdir", "texturedir")}
+    etree.SubElement(root, "compiler", folders)
+    out.write_bytes(etree.tostring(root))
+    return out
 
 
 def _called(name: str, kind: str, number: int) -> str:

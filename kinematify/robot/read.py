@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.urdf_geometry import GeometrySource
 
-    Geometry = Literal["all", "shown", "none"]
+    Geometry = Literal["all", "shown", "parts", "none"]
     from kinematify.robot.robot import Inertial, LinkMesh
 
 
@@ -63,7 +63,8 @@ def read_robot(
         path: The file.
         package_dirs: Where packages lie.
         geometry: ``shown`` leaves out the collision shapes of links that have visual ones, ``none`` opens no mesh file
-            and gives links without any shapes.
+            and gives links without any shapes. ``parts`` is ``shown`` for those who ask which links are one body and
+            where they stand: what else a joint or an inertial states may be malformed, which is a note.
         appearance: Read materials, textures and colours of a URDF's meshes too.
         arguments: Of a xacro.
 
@@ -101,10 +102,15 @@ def parse_robot(element: _Element, path: Path, source: GeometrySource, geometry:
     Raises:
         DescriptionError: As for `read_robot`.
     """
-    joints = tuple(_joint(item) for item in element.findall("joint"))
+    spared = source.omitted if geometry == "parts" else None
+    joints = tuple(_joint(item, spared) for item in element.findall("joint"))
     names = [_name(item) for item in element.findall("link")]
     _check_tree(path, names, joints)
-    _check_mimics(joints)
+    try:
+        _check_mimics(joints)
+    except DescriptionError as error:
+        _spared(error, spared)
+        joints = tuple(replace(joint, mimic=None) for joint in joints)
     links = _links(element, source, geometry)
     robot = Robot(
         name=element.get("name") or path.stem,
@@ -128,10 +134,10 @@ def _links(element: _Element, source: GeometrySource, geometry: Geometry) -> tup
 
 def _link(element: _Element, source: GeometrySource, geometry: Geometry) -> Link:
     visuals = () if geometry == "none" else source.shapes(element, "visual")
-    hidden = geometry == "none" or (geometry == "shown" and visuals)
+    hidden = geometry == "none" or (geometry != "all" and visuals)
     return Link(
         name=_name(element),
-        inertial=_inertial(element),
+        inertial=_inertial(element, source.omitted if geometry == "parts" else None),
         visuals=visuals,
         collisions=() if hidden else source.shapes(element, "collision"),
         line=line_of(element),
@@ -145,40 +151,63 @@ def _name(element: _Element) -> str:
     return name
 
 
-def _inertial(link: _Element) -> Inertial | None:
+def _spared(error: DescriptionError, spared: dict[str, None] | None) -> None:
+    """Make an error a note of those who do not need what is malformed; raise it for all others."""
+    if spared is None:
+        raise error
+    spared[f"Not read, and not needed here: {error}"] = None
+
+
+def _inertial(link: _Element, spared: dict[str, None] | None) -> Inertial | None:
     element = link.find("inertial")
     if element is None:
         return None
-    where = f"link {link.get('name')}"
+    where = f"link {link.get('name')} (line {line_of(element)})"
     mass, inertia = element.find("mass"), element.find("inertia")
-    moments = (0.0 if inertia is None else number(inertia, key, 0.0, where) for key in MOMENTS)
-    stated = 0.0 if mass is None else number(mass, "value", 0.0, where)
-    return inertial_of(stated, origin_transform(element, where), moments, line_of(element))
+    try:
+        moments = [0.0 if inertia is None else number(inertia, key, 0.0, where) for key in MOMENTS]
+        stated = 0.0 if mass is None else number(mass, "value", 0.0, where)
+        return inertial_of(stated, origin_transform(element, where), moments, line_of(element))
+    except DescriptionError as error:
+        _spared(error, spared)
+        return None
 
 
-def _joint(element: _Element) -> Joint:
+def _joint(element: _Element, spared: dict[str, None] | None) -> Joint:
     name = _name(element)
-    where = f"joint {name}"
-    declared = element.get("type") or ""
-    kind = _kind(element, declared, where)
-    lower, upper = _limits(element, kind, where)
-    return Joint(
+    where = f"joint {name} (line {line_of(element)})"
+    placed = Joint(
         name=name,
-        kind=kind,
+        kind=JointType.CONTINUOUS,
         parent=_end(element, "parent", where),
         child=_end(element, "child", where),
         T_parent_child=origin_transform(element, where),
+        declared_kind=element.get("type") or "",
+        line=line_of(element),
+    )
+    try:
+        return _with_motion(placed, element, where)
+    except DescriptionError as error:
+        _spared(error, spared)
+        kind = JointType.FIXED if placed.declared_kind == JointType.FIXED else JointType.CONTINUOUS
+        return replace(placed, kind=kind, declared_kind=kind)
+
+
+def _with_motion(joint: Joint, element: _Element, where: str) -> Joint:
+    kind = _kind(element, joint.declared_kind, where)
+    lower, upper = _limits(element, kind, where)
+    return replace(
+        joint,
+        kind=kind,
         axis=_axis(element, kind, where),
         lower=lower,
         upper=upper,
         mimic=None if kind is JointType.FIXED else _mimic(element, where),
-        declared_kind=declared,
         has_limit=element.find("limit") is not None,
         effort=optional_number(element, "limit", "effort", where),
         velocity=optional_number(element, "limit", "velocity", where),
         damping=optional_number(element, "dynamics", "damping", where),
         friction=optional_number(element, "dynamics", "friction", where),
-        line=line_of(element),
     )
 
 
@@ -218,15 +247,16 @@ def _kind(element: _Element, declared: str, where: str) -> JointType:
     if declared not in tuple(JointType):
         known = ", ".join([*JointType, *FREE_KINDS])
         raise DescriptionError(f"The {where} has the type {declared!r}; URDF knows {known}. Correct it.")
-    return JointType.CONTINUOUS if declared == JointType.REVOLUTE and _is_endless(element) else JointType(declared)
+    endless = declared == JointType.REVOLUTE and _is_endless(element, where)
+    return JointType.CONTINUOUS if endless else JointType(declared)
 
 
-def _is_endless(joint: _Element) -> bool:
+def _is_endless(joint: _Element, where: str) -> bool:
     """True if a joint states no limits, or some so far to both sides that they are none, as the 1e16 of Gazebo."""
     limit = joint.find("limit")
     if limit is None:
         return True
-    lower, upper = (number(limit, end, 0.0, f"joint {joint.get('name')}") for end in ("lower", "upper"))
+    lower, upper = (number(limit, end, 0.0, where) for end in ("lower", "upper"))
     return lower < -_ENDLESS and upper > _ENDLESS
 
 

@@ -340,6 +340,7 @@ def _moving(read: _Stage, joint: Joint, schema: Any, kind: JointType) -> Joint:
     """A hinge or slide with its limits, its drive, and what Newton, MuJoCo and PhysX add."""
     prim, turns = schema.GetPrim(), kind.turns
     unit = np.pi / 180.0 if turns else read.unit
+    force = read.kilograms * read.unit ** (2 if turns else 1)
     lower, upper = (
         -np.inf if low is None else float(low) * unit
         for low in (schema.GetLowerLimitAttr().Get(), schema.GetUpperLimitAttr().Get())
@@ -356,9 +357,9 @@ def _moving(read: _Stage, joint: Joint, schema: Any, kind: JointType) -> Joint:
         lower=lower if limited else -np.inf,
         upper=upper if limited else np.inf,
         has_limit=limited,
-        effort=float(most) if most is not None and 0.0 < most < np.inf else None,
+        effort=float(most) * force if most is not None and 0.0 < most < np.inf else None,
         velocity=speed * unit if speed is not None and 0.0 < speed < np.inf else None,
-        damping=(float(damping) / unit if passive else None) or None,
+        damping=(float(damping) * force / unit if passive else None) or None,
         friction=_number(prim, "mjc:frictionloss", "newton:friction") or None,
         mimic=_mimic(read, prim, turns=turns),
     )

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import ast
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
+from lxml import etree
+
 from kinematify.errors import DescriptionError
-from kinematify.robot.mesh_paths import declared_name, mesh_candidates
+from kinematify.robot.mesh_paths import declared_name, find_mesh, mesh_candidates
+from kinematify.robot.urdf_text import parse_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -58,12 +62,27 @@ def expand_xacro(path: Path, package_dirs: Sequence[Path], arguments: Mapping[st
 
     xacro.safe_eval, substitution_args._eval, substitution_args._find = checked_eval, evaluated, found
     try:
-        return str(xacro.process_file(str(path), mappings=dict(arguments)).toprettyxml(indent="  "))
+        text = str(xacro.process_file(str(path), mappings=dict(arguments)).toprettyxml(indent="  "))
     except Exception as error:  # of xacro, its parser, and whatever an expression raises
         said = " ".join(str(error).split()) or type(error).__name__
         raise DescriptionError(
             f"xacro does not expand {path}: {said[:600]}. Arguments are given as NAME:=VALUE."
         ) from error
+    return _with_whole_paths(text, path.resolve().parent, package_dirs)
+
+
+def _with_whole_paths(text: str, folder: Path, package_dirs: Sequence[Path]) -> str:
+    """A URDF whose paths of files that are there hold from anywhere; many are meant from the folder above the xacro."""
+    try:
+        root = parse_text(text.encode())
+    except etree.XMLSyntaxError:
+        return text  # the reader of URDF says where
+    for element in (*root.iter("mesh"), *root.iter("texture")):
+        for place in (folder, folder.parent):
+            with suppress(DescriptionError):  # a finding will say so
+                element.set("filename", str(find_mesh(element.get("filename") or "", place, package_dirs, "the xacro")))
+                break
+    return etree.tostring(root, encoding="unicode")
 
 
 def _check_expression(text: str) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 import pybullet
 import pytest
 import trimesh
+from pxr import Usd, UsdUtils
 from pybullet_utils.bullet_client import BulletClient
 
 import kinematify
@@ -22,6 +23,7 @@ from kinematify.robot.mesh_paths import near_mesh
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Robot, forward_kinematics, joint_values
 from kinematify.robot.transforms import rotation_from_rpy
+from kinematify.validation.finding import Status
 from kinematify.validation.run import validate
 
 MJCF = """<mujoco model="crane">
@@ -204,7 +206,8 @@ XACRO = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
 <xacro:part name="$(arg side)_arm" length="${long}"/>
 </robot>"""
 PART = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="part" params="name length">
-<link name="${name}"><visual><geometry><box size="0.1 0.1 ${length}"/></geometry></visual></link>
+<link name="${name}"><visual><geometry><box size="0.1 0.1 ${length}"/></geometry></visual>
+<collision><geometry><mesh filename="./meshes/box.stl"/></geometry></collision></link>
 <joint name="${name}_joint" type="fixed"><parent link="base"/><child link="${name}"/></joint>
 </xacro:macro></robot>"""
 
@@ -214,8 +217,11 @@ def test_a_xacro_is_expanded_without_ros(tmp_path: Path) -> None:
     written(package, "package.xml", "<package><name>my_arm</name></package>")
     written(package, "urdf/part.xacro", PART)
     path = written(package, "urdf/arm.urdf.xacro", XACRO)
+    (package / "meshes").mkdir()  # where the URDF is stored as a rule, beside the folder of the xacro
+    trimesh.creation.box((0.1, 0.1, 0.1)).export(package / "meshes" / "box.stl")
     robot = read_robot(path, arguments={"side": "right"})
     assert [link.name for link in robot.links] == ["base", "right_arm"]
+    assert robot.links[1].collisions[0].file == package / "meshes" / "box.stl"
     assert robot.links[1].visuals[0].size == (0.1, 0.1, 0.4)
     opened = open_description(path, tmp_path, arguments={"side": "right"})
     assert opened.lines["link", "base"] == 4
@@ -270,6 +276,84 @@ def test_findings_of_an_mjcf_name_its_lines_and_what_is_not_read(tmp_path: Path)
     assert (zero.joint, zero.line) == ("lift", 9)
     assert any("sensors" in item.message for item in report.findings if item.check == "KV108")
     assert report.model.endswith("crane.xml")
+
+
+def test_an_mjcf_whose_picture_or_skin_is_missing_is_judged_without_it(tmp_path: Path) -> None:
+    lost = """<asset><texture name="wood" type="2d" file="wood.png"/><skin name="coat" file="coat.skn"/>
+    <material name="oak" texture="wood" rgba="1 0 0 1"/></asset><worldbody>"""
+    path = written(tmp_path, "crane.xml", MJCF.replace("<worldbody>", lost).replace('type="ball"', 'axis="0 1 0"'))
+    found = [note for note in read_robot(path).notes if "omitted" in note]
+    assert [name in note for name, note in zip(("texture wood", "skin coat"), found, strict=True)] == [True, True]
+    report = validate(path, engines=("mujoco",), workers=1)
+    assert not [item.check for item in report.checks if item.status is Status.BLOCKED]
+    assert sum("wood.png" in item.message for item in report.findings if item.check == "KV108") == 1
+    (opened,) = [item for item in report.findings if item.check == "KV801"]
+    assert "none of the pictures" in opened.message
+    assert "MuJoCo 3 of 4 joints move" in report.as_loaded  # the fourth follows
+
+
+CABINET = """#usda 1.0
+(upAxis = "{up}"
+metersPerUnit = {unit}
+defaultPrim = "top")
+def Xform "top" {{
+def Cube "base" (prepend apiSchemas = ["PhysicsRigidBodyAPI", "PhysicsMassAPI", "PhysicsCollisionAPI"]) {{
+double size = {size}
+float physics:mass = 5
+float3 physics:diagonalInertia = ({inertia}, {inertia}, {inertia})
+}}
+def Xform "door" (prepend apiSchemas = ["PhysicsRigidBodyAPI"]) {{
+double3 xformOp:translate = {place}
+uniform token[] xformOpOrder = ["xformOp:translate"]
+def "shape" (references = </top/leaf>
+instanceable = true) {{}}
+}}
+def Xform "leaf" {{
+def Cube "box" {{
+double size = {size}
+}}
+}}
+def PhysicsRevoluteJoint "hinge" (prepend apiSchemas = ["PhysicsDriveAPI:angular"]) {{
+rel physics:body0 = </top/base>
+rel physics:body1 = </top/door>
+point3f physics:localPos0 = {place}
+uniform token physics:axis = "{up}"
+float physics:lowerLimit = -90
+float physics:upperLimit = 0
+float drive:angular:physics:maxForce = {force}
+float drive:angular:physics:damping = {force}
+}}
+}}"""
+
+
+@pytest.mark.parametrize("form", ["usda", "usdc", "usdz", "reference", "cm", "y up"])
+def test_a_usd_of_any_layout_is_the_same_model(tmp_path: Path, form: str) -> None:
+    up, unit = ("Y" if form == "y up" else "Z"), (0.01 if form == "cm" else 1.0)
+    place = (0.0, 1.0, 0.0) if up == "Y" else (0.0, 0.0, 1.0 / unit)
+    text = CABINET.format(up=up, unit=unit, size=0.2 / unit, place=place, inertia=0.1 / unit**2, force=3.0 / unit**2)
+    path = written(tmp_path, "cabinet.usda", text)
+    if form in ("usdc", "reference"):
+        stage = Usd.Stage.Open(str(path))
+        stage.GetRootLayer().Export(str(tmp_path / "cabinet.usdc"))
+        path = tmp_path / "cabinet.usdc"
+    if form == "usdz":
+        path = tmp_path / "cabinet.usdz"
+        assert UsdUtils.CreateNewUsdzPackage(str(tmp_path / "cabinet.usda"), str(path))
+    if form == "reference":
+        head = '#usda 1.0\n(upAxis = "Z"\nmetersPerUnit = 1)\n'
+        path = written(tmp_path, "whole.usda", f'{head}def "here" (references = @./cabinet.usdc@) {{}}')
+    robot = read_robot(path)
+    hinge, base = robot.joint_by_name["hinge"], robot.link_by_name["base"]
+    assert base.inertial is not None
+    assert base.inertial.mass == 5.0
+    np.testing.assert_allclose(base.inertial.tensor, 0.1 * np.eye(3), rtol=1e-6)
+    assert [hinge.lower, hinge.upper, hinge.effort] == pytest.approx([-np.pi / 2, 0.0, 3.0])
+    assert hinge.damping == pytest.approx(3.0 * 180.0 / np.pi)
+    root = forward_kinematics(robot, {})["base"]
+    door = np.linalg.solve(root, forward_kinematics(robot, {"hinge": -1.0})["door"])
+    np.testing.assert_allclose(np.linalg.norm(door[:3, 3]), 1.0, rtol=1e-6)
+    (seen,) = robot.link_by_name["door"].visuals
+    assert seen.size == pytest.approx((0.2, 0.2, 0.2))
 
 
 def test_a_file_under_a_near_name_is_named_and_written(tmp_path: Path) -> None:

@@ -254,6 +254,32 @@ def test_mistakes_are_named(tmp_path: Path, elements: tuple[str, ...], message: 
 
 
 @pytest.mark.parametrize(
+    ("elements", "message"),
+    [
+        (two("hinge"), "type 'hinge'"),
+        (two("prismatic"), "no <limit>"),
+        (two("revolute", '<limit lower="0" upper="half"/>'), "upper='half'"),
+        (two("continuous", '<axis xyz="1 0 0 0"/>'), "three finite numbers"),
+        (two("continuous", '<dynamics damping="nan"/>'), "damping='nan'"),
+        (two("continuous", '<mimic joint="ghost"/>'), "mimics 'ghost'"),
+        ((link("b", f'{BOX}<inertial><mass value="2 kg"/></inertial>'), *two("continuous")[::2]), "value='2 kg'"),
+    ],
+)
+def test_who_asks_for_parts_is_not_stopped_by_what_moves_or_weighs(
+    tmp_path: Path, elements: tuple[str, ...], message: str
+) -> None:
+    path = urdf(tmp_path, *elements)
+    with pytest.raises(DescriptionError, match=message):
+        read_robot(path, geometry="shown")
+    robot = read_robot(path, geometry="parts")
+    assert len(rigid_groups(robot)) == 2
+    (note,) = robot.notes
+    assert re.search(message, note)
+    fixed = urdf(tmp_path, *two("fixed", '<limit effort="much"/>'))
+    assert len(rigid_groups(read_robot(fixed, geometry="parts"))) == 1
+
+
+@pytest.mark.parametrize(
     ("text", "message"),
     [
         ("<robot><link", r"not well-formed.*line 1"),

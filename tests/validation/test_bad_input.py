@@ -98,6 +98,9 @@ MIMIC = '<mimic joint="gone"/></joint>'
         ((BOX, mesh("nan.obj")), "KV151"),
         (("</joint>", MIMIC), "KV127"),
         (('"0 0 0.1"', '"0, 0, 0.1"'), "KV132"),
+        (("</joint>", '<mimic joint="j" multiplier="x"/></joint>'), "KV132"),
+        (("</joint>", '<dynamics damping="much"/></joint>'), "KV132"),
+        (("</link>", '<inertial><mass value="2 kg"/></inertial></link>'), "KV132"),
     ],
 )
 def test_a_broken_mesh_mimic_or_number_blocks_nothing_else(tmp_path: Path, fault: tuple[str, str], check: str) -> None:

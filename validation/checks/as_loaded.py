@@ -87,8 +87,10 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     if isinstance(context.bare, Unloadable) and not isinstance(context.loading, Unloadable):
         result.find(
             f"{context.title} does not open the file as it is: {context.bare}. It opens a copy with "
-            "absolute paths of the meshes, of which its other findings are.",
-            _remedy_of_loading(context, str(context.bare)),
+            f"{context.copied}, of which its other findings are.",
+            _remedy_of_loading(context, str(context.bare))
+            if context.native is None
+            else "Put the file that the message names there, or remove what names it.",
             severity=Severity.WARNING,
             cause=Cause.ENGINE,
             reproduction=context.bare.reproduction,

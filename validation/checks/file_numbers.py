@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
+    from kinematify.robot.urdf_numbers import UrdfDocument
     from kinematify.validation.check import OpenCheck
     from kinematify.validation.document import Urdf
 
@@ -49,7 +50,7 @@ _COUNTS = {1: "one finite number", 3: "three finite numbers", 4: "four finite nu
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Field:
+class NumberField:
     """An attribute that holds numbers."""
 
     element: _Element
@@ -60,10 +61,12 @@ class _Field:
 
     @property
     def text(self) -> str:
+        """As it is in the file."""
         return self.element.get(self.attribute) or ""
 
     @property
     def called(self) -> str:
+        """With its value, its element and who has it, for messages."""
         owner = f"the joint {self.joint}" if self.joint is not None else f"the link {self.link}"
         return f"{self.attribute}={shown(self.text)} of <{self.element.tag}> of {owner}"
 
@@ -82,12 +85,9 @@ def unreadable_numbers(result: OpenCheck, urdf: Urdf) -> None:
 
     Remedy: Write plain numbers separated by spaces; find out why the exporter failed there.
     """
-    for field in _fields(urdf):
-        values = finite_numbers(field.text)
-        if values is not None and len(values) in field.counts:
-            continue
+    for field in malformed_fields(urdf):
         result.find(
-            f"{field.called} is {_what(field.text, values)}; expected {_COUNTS[field.counts[0]]}.",
+            f"{field.called} is {_what(field.text, finite_numbers(field.text))}; expected {_COUNTS[field.counts[0]]}.",
             _remedy(field.text),
             severity=Severity.WARNING if field.element.tag == "color" else None,
             cause=cause_of(field.element),
@@ -95,6 +95,14 @@ def unreadable_numbers(result: OpenCheck, urdf: Urdf) -> None:
             link=field.link,
             line=line_of(field.element),
         )
+
+
+def malformed_fields(urdf: UrdfDocument) -> Iterator[NumberField]:
+    """Every attribute that does not hold the numbers that it should."""
+    for field in _fields(urdf):
+        values = finite_numbers(field.text)
+        if values is None or len(values) not in field.counts:
+            yield field
 
 
 def finite_numbers(text: str) -> list[float] | None:
@@ -161,7 +169,7 @@ def implausible_numbers(result: OpenCheck, urdf: Urdf) -> None:
             )
 
 
-def _huge(result: OpenCheck, field: _Field, value: float, limit: float) -> None:
+def _huge(result: OpenCheck, field: NumberField, value: float, limit: float) -> None:
     bound = field.attribute in ("lower", "upper")
     endless = bound and _is_endless(field.element, limit)
     if endless and field.attribute == "lower":
@@ -195,7 +203,7 @@ def _is_endless(element: _Element, limit: float) -> bool:
     return joint is not None and joint.get("type") != "prismatic" and lower[0] < -limit and upper[0] > limit
 
 
-def _fields(urdf: Urdf) -> Iterator[_Field]:
+def _fields(urdf: UrdfDocument) -> Iterator[NumberField]:
     """Every attribute with numbers that is there; absent ones have defaults or checks of their own."""
     for joint in urdf.joints:
         yield from _below(joint.element, _JOINT, joint=joint.name)
@@ -211,8 +219,10 @@ def _fields(urdf: Urdf) -> Iterator[_Field]:
             yield from _below(material, _COLOR, link=name)
 
 
-def _below(parent: _Element, table: _Counts, *, joint: str | None = None, link: str | None = None) -> Iterator[_Field]:
+def _below(
+    parent: _Element, table: _Counts, *, joint: str | None = None, link: str | None = None
+) -> Iterator[NumberField]:
     for child in parent:
         for attribute, counts in table.get(str(child.tag), {}).items():
             if child.get(attribute) is not None:
-                yield _Field(element=child, attribute=attribute, counts=counts, joint=joint, link=link)
+                yield NumberField(element=child, attribute=attribute, counts=counts, joint=joint, link=link)
