@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import glob
 import os
 from collections import Counter
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING
 from kinematify.errors import InputError
 from kinematify.robot.description import SUFFIXES
 from kinematify.robot.known_robots import robot_named
+from kinematify.robot.urdf_text import missing_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -50,7 +50,7 @@ def _models_of(word: str) -> list[Path]:
     named = robot_named(word)
     if named is not None:
         return [named]
-    raise InputError(_missing(path))
+    raise InputError(missing_file(path))
 
 
 def _below(folder: Path) -> list[Path]:
@@ -89,12 +89,3 @@ def _described(files: Iterable[Path]) -> str:
         return "It is empty. Give the folder that holds the models."
     shown = ", ".join(f"{count} with {kind}" for kind, count in kinds.most_common(_SHOWN_KINDS))
     return f"It holds {sum(kinds.values())} other files ({shown}). Give descriptions or their folder."
-
-
-def _missing(path: Path) -> str:
-    if not os.path.lexists(path):
-        beside = [item.name for item in path.parent.iterdir()] if path.parent.is_dir() else []
-        near = difflib.get_close_matches(path.name, beside, n=1)
-        hint = f"Did you mean {path.parent / near[0]}?" if near else "Check the path."
-        return f"There is no file or folder {path}. {hint}"
-    return f"{path} is a symbolic link that leads nowhere or in a circle. Give the file itself."

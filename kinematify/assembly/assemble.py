@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import fast_simplification
@@ -26,6 +25,9 @@ if TYPE_CHECKING:
     from kinematify.robot.appearance import Appearance
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.raw_mesh import RawMesh
+
+    _Aside = list[tuple[Part, str]]
+    """Parts that do not take part, with the reason."""
 
 
 _LONGEST = 64
@@ -96,29 +98,19 @@ def assemble(
     for mesh in meshes:
         check_finite(mesh, source)
     parts = [_welded_part(mesh, name, config) for mesh, name in zip(meshes, names, strict=True)]
-    triage = _without_duplicates(_without_degenerate(parts, source, config), config)
-    if len(triage.kept) < 2:
-        raise AssemblyError(_too_few(source, triage))
-    thin, originals = _thinned(triage.kept, config)
+    kept, aside = _without_degenerate(parts, source, config)
+    doubles = _take_duplicates(kept, aside, config)
+    if len(kept) < 2:
+        raise AssemblyError(_too_few(source, kept, aside))
+    thin, originals = _thinned(kept, config)
     return Assembly(
         parts=tuple(thin),
         source=source,
-        set_aside=tuple(
-            ExcludedPart(part=part, reason=reason, nearest=_nearest(part, triage.kept)) for part, reason in triage.aside
-        ),
+        set_aside=tuple(ExcludedPart(part=part, reason=reason, nearest=_nearest(part, kept)) for part, reason in aside),
         original_names=dict(zip(names, (mesh.name for mesh in meshes), strict=True)),
-        warnings=(*warnings, *report_materials(meshes, names), *triage.warnings, *_thinning_warnings(thin, originals)),
+        warnings=(*warnings, *report_materials(meshes, names), *doubles, *_thinning_warnings(thin, originals)),
         originals=originals,
     )
-
-
-@dataclass(frozen=True)
-class PartFilter:
-    """Parts that take part, and those that do not with the reason."""
-
-    kept: list[Part]
-    aside: list[tuple[Part, str]]
-    warnings: tuple[str, ...] = ()
 
 
 def _check_counts(meshes: Sequence[RawMesh], source: str, config: AssemblyConfig) -> None:
@@ -188,13 +180,13 @@ def report_materials(meshes: Sequence[RawMesh], names: Sequence[str]) -> list[st
     return warnings
 
 
-def _without_degenerate(parts: Sequence[Part], source: str, config: AssemblyConfig) -> PartFilter:
+def _without_degenerate(parts: Sequence[Part], source: str, config: AssemblyConfig) -> tuple[list[Part], _Aside]:
     solid = [part for part in parts if len(part.faces) and part.area > 0.0]
     if not solid:
         raise AssemblyError(f"No part of {source} has a triangle with area. Give meshes with surfaces.")
     diagonal = Assembly(parts=tuple(solid), source=source).diagonal
     reasons = [(part, _degenerate_reason(part, diagonal, config)) for part in parts]
-    return PartFilter([part for part, reason in reasons if not reason], [item for item in reasons if item[1]])
+    return [part for part, reason in reasons if not reason], [item for item in reasons if item[1]]
 
 
 def _degenerate_reason(part: Part, diagonal: float, config: AssemblyConfig) -> str:
@@ -212,26 +204,24 @@ def _degenerate_reason(part: Part, diagonal: float, config: AssemblyConfig) -> s
     return ""
 
 
-def _without_duplicates(triage: PartFilter, config: AssemblyConfig) -> PartFilter:
-    """Set aside every part that is in the place of an earlier one of the same shape."""
-    if not triage.kept:
-        return triage
-    tolerance = config.duplicate * Assembly(parts=tuple(triage.kept), source="").diagonal
-    kept: list[Part] = []
-    aside = list(triage.aside)
+def _take_duplicates(kept: list[Part], aside: _Aside, config: AssemblyConfig) -> list[str]:
+    """Set aside every part that is in the place of an earlier one of the same shape; a warning for each."""
+    tolerance = config.duplicate * Assembly(parts=tuple(kept), source="").diagonal if kept else 0.0
     warnings = []
-    corners: FloatArray = np.array([part.bounds.reshape(-1) for part in triage.kept])
+    corners: FloatArray = np.array([part.bounds.reshape(-1) for part in kept])
     rows: list[int] = []
-    for k, part in enumerate(triage.kept):
+    for k, part in enumerate(parts := [*kept]):
         near = np.abs(corners[rows] - corners[k]).max(axis=1, initial=0.0) <= tolerance
-        twin = next((kept[i] for i in np.flatnonzero(near) if _same_vertices(kept[i], part, tolerance)), None)
+        twin = next(
+            (parts[rows[i]] for i in np.flatnonzero(near) if _same_vertices(parts[rows[i]], part, tolerance)), None
+        )
         if twin is None:
-            kept.append(part)
             rows.append(k)
         else:
             aside.append((part, f"It is the same mesh at the same place as {twin.name}."))
             warnings.append(f"The part {part.name} is {twin.name} once more; only {twin.name} is used.")
-    return PartFilter(kept, aside, tuple(warnings))
+    kept[:] = [parts[k] for k in rows]
+    return warnings
 
 
 def _same_vertices(one: Part, other: Part, tolerance: float) -> bool:
@@ -241,10 +231,10 @@ def _same_vertices(one: Part, other: Part, tolerance: float) -> bool:
     return all(cKDTree(a).query(b)[0].max() <= tolerance for a, b in pairs)
 
 
-def _too_few(source: str, triage: PartFilter) -> str:
-    aside = "".join(f" {part.name}: {reason}" for part, reason in triage.aside[:8])
+def _too_few(source: str, kept: Sequence[Part], aside: _Aside) -> str:
+    reasons = "".join(f" {part.name}: {reason}" for part, reason in aside[:8])
     return (
-        f"The input {source} has {len(triage.kept)} usable part, but a mechanism needs at least two.{aside} Give one "
+        f"The input {source} has {len(kept)} usable part, but a mechanism needs at least two.{reasons} Give one "
         "mesh per rigid part; one mesh that holds several needs --labels, or pieces that do not share vertices."
     )
 

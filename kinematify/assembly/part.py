@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from kinematify.robot.arrays import read_only
+from kinematify.robot.arrays import ReadOnlyArrays, read_only
 from kinematify.robot.vectors import box_around, highest, lengths_of, lowest, referenced, triangle_normals
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Part:
+class Part(ReadOnlyArrays):
     """One rigid part: a triangle mesh in world coordinates (paper III-A, ``M_i``)."""
 
     name: str
@@ -45,8 +45,7 @@ class Part:
     """Cylinders and planes, world frame [m], where a CAD file states them."""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "vertices", read_only(self.vertices, np.float64))
-        object.__setattr__(self, "faces", read_only(self.faces, np.int64))
+        super().__post_init__()
         if self.appearance is not None and len(self.appearance.material_of_face) != len(self.faces):
             object.__setattr__(self, "appearance", None)  # it is of other faces than those that replaced them
 

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from kinematify.robot.arrays import read_only
+from kinematify.robot.arrays import ReadOnlyArrays, json_values
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Mimic
 
@@ -24,7 +21,7 @@ SCHEMA = 1
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class TrueJoint:
+class TrueJoint(ReadOnlyArrays):
     """One movable joint between two parts, in the world frame; its zero is the erased pose."""
 
     name: str
@@ -52,10 +49,6 @@ class TrueJoint:
     """Joints between the two parts; more than 1 where links without geometry stand between them."""
     mimic: Mimic | None = None
     """Leader, by its name in the description; between values of the description."""
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "axis", read_only(self.axis, np.float64))
-        object.__setattr__(self, "pivot", read_only(self.pivot, np.float64))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -97,18 +90,4 @@ class GroundTruth:
 
     def to_json(self) -> str:
         """Return the truth as JSON text; unlimited is null."""
-        values = {"schema": SCHEMA, **{key: _plain(value) for key, value in vars(self).items()}}
-        return json.dumps(values, indent=1, allow_nan=False)
-
-
-def _plain(value: Any) -> Any:
-    """Lists, dictionaries, texts and numbers only; infinity as None."""
-    if isinstance(value, TrueJoint | Mimic):
-        return {key: _plain(item) for key, item in vars(value).items()}
-    if isinstance(value, dict | MappingProxyType):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    if isinstance(value, tuple | list):
-        return [_plain(item) for item in value]
-    return None if isinstance(value, float) and math.isinf(value) else value
+        return json.dumps({"schema": SCHEMA, **json_values(self)}, indent=1, allow_nan=False)

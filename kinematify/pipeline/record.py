@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 import platform
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +14,7 @@ from kinematify.model.output import MODEL_FILE, PREVIEW_FILE, RECORD_FILE, write
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import MESH_FOLDER, write_model
 from kinematify.pipeline.inference import DOUBTFUL
+from kinematify.robot.arrays import json_values
 from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
@@ -126,7 +126,8 @@ def inference_record(inference: Inference) -> dict[str, Any]:
         "peak_mb": inference.peak_mb,
         "configuration": inference.config.model_dump(mode="json"),
     }
-    return {key: _finite(value) for key, value in record.items()}
+    found: dict[str, Any] = json_values(record)
+    return found
 
 
 def _contact(inference: Inference, edge: ContactEdge) -> dict[str, Any]:
@@ -203,13 +204,3 @@ def _candidate(candidate: JointCandidate) -> dict[str, Any]:
         "source": candidate.source,
         "evidence": {key: float(value) for key, value in candidate.evidence.items()},
     }
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_finite(item) for item in value]
-    return value

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.robot.arrays import read_only
+from kinematify.robot.arrays import ReadOnlyArrays, read_only
 from kinematify.robot.vectors import lengths_of, triangle_normals
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ class Material:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Appearance:
+class Appearance(ReadOnlyArrays):
     """The materials of a mesh; it goes with the faces, so that vertices may be merged and moved without it."""
 
     materials: tuple[Material, ...]
@@ -91,11 +91,6 @@ class Appearance:
     Read-only."""
     notes: tuple[str, ...] = field(default=())
     """What the file says and could not be read, one clause each, such as a texture that is not there."""
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "material_of_face", read_only(self.material_of_face, np.int64))
-        if self.uv is not None:
-            object.__setattr__(self, "uv", read_only(self.uv, np.float64))
 
     def of_faces(self, index: IntArray) -> Appearance:
         """Return the appearance of some faces, in the order of their indices, shape (n,)."""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
+from dataclasses import is_dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +22,26 @@ def read_only(array: NDArray[Any], dtype: type) -> NDArray[Any]:
     copy: NDArray[Any] = np.array(array, dtype=dtype, order="C", copy=True)
     copy.setflags(write=False)
     return copy
+
+
+class ReadOnlyArrays:
+    """A frozen dataclass whose own fields of arrays, or perhaps arrays, become read-only copies of their type."""
+
+    def __post_init__(self) -> None:
+        for name, kind in type(self).__annotations__.items():
+            dtype = {"FloatArray": np.float64, "IntArray": np.int64}.get(kind.removesuffix(" | None"))
+            if dtype is not None and getattr(self, name) is not None:
+                object.__setattr__(self, name, read_only(getattr(self, name), dtype))
+
+
+def json_values(value: Any) -> Any:
+    """Return dataclasses, mappings, sequences and arrays as JSON has them; a number that is not finite is null."""
+    value = vars(value) if is_dataclass(value) else value.tolist() if hasattr(value, "tolist") else value
+    if isinstance(value, Mapping):
+        return {str(key): json_values(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [json_values(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def used_vertices(faces: IntArray, n_vertices: int) -> BoolArray:

@@ -14,7 +14,7 @@ from lxml import etree
 from kinematify.errors import DescriptionError
 from kinematify.robot.body_tree import WORLD, tree_of
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.robot import Inertial, Joint, Link, LoopJoint, Mimic
+from kinematify.robot.robot import Joint, Link, LoopJoint, Mimic, inertial_of
 from kinematify.robot.transforms import joint_motion, pose_at, rotation_from_quaternion
 from kinematify.robot.urdf_geometry import ellipsoid, mesh_shape, primitive
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.body_tree import Edge, Losses
-    from kinematify.robot.robot import Robot, Shape
+    from kinematify.robot.robot import Inertial, Robot, Shape
 
 _SEEN_GROUPS = 3
 """MuJoCo's viewer shows groups below it."""
@@ -116,7 +116,7 @@ def write_repaired(path: Path, out: Path) -> Path:
             del material.attrib["texture"]
     for include in root.iter("include"):
         include.set("file", str(path.parent / include.get("file", "")))
-    places = {key: value for item in root.iter("compiler") for key, value in item.attrib.items() if key.endswith("dir")}
+    places = {str(key): str(value) for item in root.iter("compiler") for key, value in item.items()}
     folders = {key: str(path.parent / places.get(key, places.get("assetdir", ""))) for key in ("meshdir", "texturedir")}
     etree.SubElement(root, "compiler", folders)
     out.write_bytes(etree.tostring(root))
@@ -225,13 +225,8 @@ def _effort(model: Any, joint: int) -> float | None:
 def _inertial(model: Any, body: int, line: int) -> Inertial | None:
     if body == 0 or not model.body_mass[body] > 0.0:
         return None
-    rotation = rotation_from_quaternion(model.body_iquat[body])
-    return Inertial(
-        mass=float(model.body_mass[body]),
-        center_of_mass=model.body_ipos[body].copy(),
-        tensor=rotation @ np.diag(model.body_inertia[body]) @ rotation.T,
-        line=line,
-    )
+    (xx, yy, zz), T = model.body_inertia[body].tolist(), _pose(model.body_ipos[body], model.body_iquat[body])
+    return inertial_of(float(model.body_mass[body]), T, (xx, 0.0, 0.0, yy, 0.0, zz), line)
 
 
 def _shapes(model: Any, lines: dict[int, int], losses: Losses) -> list[tuple[tuple[Shape, ...], tuple[Shape, ...]]]:

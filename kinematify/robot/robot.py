@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import DescriptionError
-from kinematify.robot.arrays import read_only
+from kinematify.robot.arrays import ReadOnlyArrays
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.transforms import joint_motion
+from kinematify.robot.transforms import joint_motion, rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -33,7 +33,7 @@ _WIDEST_SLIDE = 100.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class LinkMesh:
+class LinkMesh(ReadOnlyArrays):
     """One geometry element of a link as triangles."""
 
     vertices: FloatArray
@@ -44,10 +44,6 @@ class LinkMesh:
     """Of the faces, from the mesh file or from the colour that the link states; None where neither says anything, and
     where it was not asked for."""
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "vertices", read_only(self.vertices, np.float64))
-        object.__setattr__(self, "faces", read_only(self.faces, np.int64))
-
     @property
     def is_dressed(self) -> bool:
         """True if it has several materials or a texture."""
@@ -56,7 +52,7 @@ class LinkMesh:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Shape:
+class Shape(ReadOnlyArrays):
     """One `visual` or `collision` element."""
 
     kind: str = "mesh"
@@ -78,10 +74,6 @@ class Shape:
     line: int = 0
     """Where the file declares it; 0 for what no file declares, here and below."""
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "scale", read_only(self.scale, np.float64))
-        object.__setattr__(self, "T_link_shape", read_only(self.T_link_shape, np.float64))
-
     @property
     def plain_color(self) -> Rgba | None:
         """The colour that the document states, else that of the mesh file where it has one; None where neither does."""
@@ -102,7 +94,7 @@ class UpAxis:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Inertial:
+class Inertial(ReadOnlyArrays):
     """Mass properties of a link, expressed in the link frame."""
 
     mass: float
@@ -115,10 +107,6 @@ class Inertial:
     """``file``; or ``volume`` for a closed mesh, ``hull`` for the convex hull of an open or flat one, ``ball`` for a
     small ball in the place of a mere frame."""
     line: int = 0
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "center_of_mass", read_only(self.center_of_mass, np.float64))
-        object.__setattr__(self, "tensor", read_only(self.tensor, np.float64))
 
 
 def inertial_of(mass: float, T_link_inertial: FloatArray, moments: Iterable[float], line: int) -> Inertial:
@@ -161,7 +149,7 @@ class Mimic:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Closure:
+class Closure(ReadOnlyArrays):
     """A joint of a closed chain follows the joint that drives the chain along a curve."""
 
     joint: str
@@ -173,10 +161,6 @@ class Closure:
     repeats: bool = False
     """The curve is one turn of a driver that turns without end."""
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "at", read_only(self.at, np.float64))
-        object.__setattr__(self, "values", read_only(self.values, np.float64))
-
     def follow(self, driver: FloatArray) -> FloatArray:
         """Return the follower's values at values of the driver [rad or m], (n,); beyond the curve those at its end."""
         if not self.repeats:
@@ -187,7 +171,7 @@ class Closure:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Joint:
+class Joint(ReadOnlyArrays):
     """A joint; its frame is the child link's frame."""
 
     name: str
@@ -219,10 +203,6 @@ class Joint:
     """[N m or N]; None where absent."""
     line: int = 0
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "T_parent_child", read_only(self.T_parent_child, np.float64))
-        object.__setattr__(self, "axis", read_only(self.axis, np.float64))
-
     @property
     def leads(self) -> bool:
         """True if it moves by itself: neither fixed, nor mimic, nor driven by another joint of a closed chain."""
@@ -251,10 +231,7 @@ class Joint:
         """Return `motion` at many values [rad or m], shape (n, 4, 4)."""
         motions = np.broadcast_to(np.eye(4), (len(values), 4, 4)).copy()
         if self.kind.turns:
-            x, y, z = self.axis
-            cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-            sine, versine = np.sin(values)[:, None, None], (1.0 - np.cos(values))[:, None, None]
-            motions[:, :3, :3] += sine * cross + versine * (cross @ cross)
+            motions[:, :3, :3] = rotation_about(self.axis, values)
         elif self.kind is JointType.PRISMATIC:
             motions[:, :3, 3] = values[:, None] * self.axis
         return motions

@@ -176,7 +176,7 @@ def _bytes(path: Path) -> bytes:
     try:
         status = path.stat()
     except FileNotFoundError as error:
-        raise DescriptionError(_missing(path)) from error
+        raise DescriptionError(missing_file(path)) from error
     except OSError as error:  # among them: a link in a circle, a folder that may not be entered
         raise DescriptionError(f"The description {path} cannot be read: {error.strerror}. Check the path.") from error
     if stat.S_ISDIR(status.st_mode):
@@ -195,16 +195,17 @@ def _bytes(path: Path) -> bytes:
         ) from error
 
 
-def _missing(path: Path) -> str:
+def missing_file(path: Path) -> str:
+    """Say that there is no such file or folder, with the nearest name beside it."""
     if os.path.lexists(path):
-        return f"{path} is a symbolic link to a file that is not there. Give the file itself."
+        return f"{path} is a symbolic link that leads nowhere or in a circle. Give the file itself."
     try:
         beside = os.listdir(path.parent)  # noqa: PTH208  # names only, and of the first folder only
     except OSError:
         beside = []
     near = difflib.get_close_matches(path.name, beside, n=1)
     hint = f"Did you mean {path.parent / near[0]}?" if near else "Check the path."
-    return f"There is no file {path}. {hint}"
+    return f"There is no file or folder {path}. {hint}"
 
 
 def _folder(path: Path) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 import platform
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from kinematify import __version__
 from kinematify.errors import ExitStatus
+from kinematify.robot.arrays import json_values
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.run.conclusion import group_by_cause
@@ -99,7 +99,7 @@ class ValidationReport:
             "checks": [_check_json(check) for check in self.checks],
             "findings": self._findings_json(),
             "joints": [_joint_json(joint) for joint in self.joints],
-            "environment": _plain(self.environment),
+            "environment": json_values(self.environment),
         }
 
     def _findings_json(self) -> list[dict[str, Any]]:
@@ -119,7 +119,7 @@ def _check_json(check: CheckResult) -> dict[str, Any]:
         "status": check.status.value,
         "reason": check.reason,
         "seconds": round(check.seconds, 4),
-        "measured": _plain(check.measured),
+        "measured": json_values(check.measured),
     }
 
 
@@ -132,9 +132,9 @@ def _finding_json(finding: Finding) -> dict[str, Any]:
         "link": finding.link,
         "pair": None if finding.pair is None else list(finding.pair),
         "engine": finding.engine,
-        "q": _plain(finding.q),
-        "value": _plain(finding.value),
-        "limit": _plain(finding.limit),
+        "q": json_values(finding.q),
+        "value": json_values(finding.value),
+        "limit": json_values(finding.limit),
         "unit": finding.unit,
         "message": finding.message,
         "remedy": finding.remedy,
@@ -148,23 +148,10 @@ def _joint_json(joint: JointSummary) -> dict[str, Any]:
     return {
         "joint": joint.joint,
         "type": joint.kind,
-        "declared_limits": _plain(joint.declared_limits),
-        "free_travel": _plain(joint.free_travel),
-        "best_alternative": _plain(joint.best_alternative),
+        "declared_limits": json_values(joint.declared_limits),
+        "free_travel": json_values(joint.free_travel),
+        "best_alternative": json_values(joint.best_alternative),
     }
-
-
-def _plain(value: Any) -> Any:
-    """JSON values only; numbers that are not finite become null."""
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if hasattr(value, "items"):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
-    if hasattr(value, "tolist"):
-        return _plain(value.tolist())
-    return value
 
 
 def environment(settings: ValidationSettings, *, seconds: float, interrupted: bool) -> dict[str, Any]:
