@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from numpy.random import Generator
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.raw_mesh import RawMesh
     from kinematify.robot.robot import Joint, RigidGroup
 
     _Way = tuple[str, list[tuple[Joint, bool]]]
@@ -90,7 +89,8 @@ def erase(
         raise DescriptionError(f"No link of {robot.name} has geometry, so there is no part to erase it to.")
     order = order_random.permutation(len(groups)) if shuffle else np.arange(len(groups))
     shown = [groups[k] for k in order]
-    parts = [_part(baked(robot, group, T_world_link), f"part_{k:03d}") for k, group in enumerate(shown)]
+    meshes = [baked(robot, group, T_world_link) for group in shown]
+    parts = [Part(name=f"part_{k:03d}", vertices=mesh.vertices, faces=mesh.faces) for k, mesh in enumerate(meshes)]
     if shuffle:
         parts = [_scrambled(part, order_random) for part in parts]
     index = {group.top: k for k, group in enumerate(shown)}
@@ -165,10 +165,6 @@ def _turned(T_world_link: Mapping[str, FloatArray], yaw: float) -> dict[str, Flo
     if yaw != 0.0:
         turn[:3, :3] = rotation_about(np.array([0.0, 0.0, 1.0]), yaw)
     return {link: turn @ transform for link, transform in T_world_link.items()}
-
-
-def _part(mesh: RawMesh, name: str) -> Part:
-    return Part(name=name, vertices=mesh.vertices, faces=mesh.faces)
 
 
 def _scrambled(part: Part, random: Generator) -> Part:
@@ -258,13 +254,11 @@ def truth_path(folder: Path) -> Path:
 
 def _write_aside_and_rename(erased: ErasedModel, target: Path, truth_file: Path) -> None:
     target.parent.mkdir(parents=True, exist_ok=True)
-    aside = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent))
-    try:
-        (aside / "parts").mkdir()
+    with tempfile.TemporaryDirectory(prefix=f".{target.name}-", dir=target.parent) as folder:
+        truth, parts = Path(folder, "truth"), Path(folder, "parts")
+        parts.mkdir()
         for part in erased.parts:
-            write_obj(aside / "parts" / f"{part.name}.obj", part.vertices, part.faces)
-        (aside / "truth").write_text(erased.truth.to_json(), encoding="utf-8")
-        (aside / "truth").rename(truth_file)
-        (aside / "parts").rename(target)
-    finally:
-        shutil.rmtree(aside, ignore_errors=True)
+            write_obj(parts / f"{part.name}.obj", part.vertices, part.faces)
+        truth.write_text(erased.truth.to_json(), encoding="utf-8")
+        truth.rename(truth_file)
+        parts.rename(target)

@@ -6,7 +6,6 @@ import hashlib
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -118,10 +117,6 @@ class Assembly:
     """Words of the command line, such as ``--up z``, with which the source was read."""
     segmented: bool = True
     """False where the parts are pieces of a mesh, of which several may be one rigid part."""
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "original_names", MappingProxyType(dict(self.original_names)))
-        object.__setattr__(self, "originals", MappingProxyType(dict(self.originals)))
 
     @property
     def names(self) -> tuple[str, ...]:

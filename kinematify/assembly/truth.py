@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from kinematify.robot.arrays import ReadOnlyArrays, json_values
@@ -71,9 +70,6 @@ class GroundTruth:
     """``rest`` or ``random``."""
     seed: int
     yaw_deg: float
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "configuration", MappingProxyType(dict(self.configuration)))
 
     @property
     def parents(self) -> tuple[int, ...]:

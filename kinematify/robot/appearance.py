@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.robot.arrays import ReadOnlyArrays, read_only
+from kinematify.robot.arrays import ReadOnlyArrays
 from kinematify.robot.vectors import lengths_of, triangle_normals
 
 if TYPE_CHECKING:
@@ -40,16 +40,13 @@ MAX_MATERIALS = 64
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Texture:
+class Texture(ReadOnlyArrays):
     """A picture on a surface."""
 
     name: str
     """Of its file or in its file, for messages."""
     pixels: NDArray[np.uint8]
     """sRGB and opacity, shape (h, w, 4), the upper row first. Read-only."""
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "pixels", read_only(self.pixels, np.uint8))
 
     def color_at(self, uv: FloatArray) -> FloatArray:
         """Return sRGB and opacity in [0, 1] of the nearest pixels, shape (n, 4); the picture repeats.

@@ -24,12 +24,15 @@ def read_only(array: NDArray[Any], dtype: type) -> NDArray[Any]:
     return copy
 
 
+_TYPES = {"FloatArray": np.float64, "IntArray": np.int64, "NDArray[np.uint8]": np.uint8}
+
+
 class ReadOnlyArrays:
     """A frozen dataclass whose own fields of arrays, or perhaps arrays, become read-only copies of their type."""
 
     def __post_init__(self) -> None:
         for name, kind in type(self).__annotations__.items():
-            dtype = {"FloatArray": np.float64, "IntArray": np.int64}.get(kind.removesuffix(" | None"))
+            dtype = _TYPES.get(kind.removesuffix(" | None"))
             if dtype is not None and getattr(self, name) is not None:
                 object.__setattr__(self, name, read_only(getattr(self, name), dtype))
 

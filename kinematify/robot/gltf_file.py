@@ -222,20 +222,18 @@ class _Materials:
 
     def __init__(self, document: dict[str, Any], source: _GltfBuffers) -> None:
         self._document, self._source = document, source
-        self._read: dict[int, Material] = {}
+        self._read: dict[int, tuple[Material, tuple[str, ...]]] = {}
         self._textures: dict[int, Texture | str] = {}
-        self._notes: dict[int, str] = {}
 
     def of_primitive(self, primitive: dict[str, Any], corners: IntArray) -> Appearance | None:
         """The appearance of a primitive with these faces, shape (F, 3); None where it states nothing."""
         index, colors = primitive.get("material"), primitive["attributes"].get("COLOR_0")
         if index is None and colors is None:
             return None
-        material = _DEFAULT if index is None else self._material(index)
+        material, notes = (_DEFAULT, ()) if index is None else self._material(index)
         if colors is not None and material.texture is None:
             return self._painted(colors, corners, material)
         uv = None if index is None or material.texture is None else self._places(primitive, index, corners)
-        notes = (self._notes[index],) if index in self._notes else ()
         kept = material if uv is not None else replace(material, texture=None)
         return of_one(kept, len(corners), uv, notes)
 
@@ -264,7 +262,8 @@ class _Materials:
         uv = scaled @ np.array([[cosine, -sine], [sine, cosine]]) + np.array(moved.get("offset", (0.0, 0.0)))
         return np.asarray((np.array([0.0, 1.0]) + np.array([1.0, -1.0]) * uv)[corners], dtype=np.float64)
 
-    def _material(self, index: int) -> Material:
+    def _material(self, index: int) -> tuple[Material, tuple[str, ...]]:
+        """A material, and what of it cannot be read."""
         if index not in self._read:
             stated = self._document["materials"][index]
             factor, picture = _base_color(stated)
@@ -272,16 +271,19 @@ class _Materials:
             metallic = _DEFAULT.metallic if _OLDER not in stated.get("extensions", {}) else 0.0
             red, green, blue = srgb_of(np.array(factor[:3])).tolist()
             opacity = float(factor[3]) if stated.get("alphaMode", "OPAQUE") != "OPAQUE" else 1.0
-            self._read[index] = Material(
+            texture = self._texture(picture["index"]) if picture else None
+            material = Material(
                 name=str(stated.get("name", "")),
                 color=(red, green, blue, opacity),
                 metallic=float(surface.get("metallicFactor", metallic)),
                 roughness=float(surface.get("roughnessFactor", _DEFAULT.roughness)),
-                texture=self._texture(index, picture["index"]) if picture else None,
+                texture=None if isinstance(texture, str) else texture,
             )
+            self._read[index] = material, (texture,) if isinstance(texture, str) else ()
         return self._read[index]
 
-    def _texture(self, material: int, index: int) -> Texture | None:
+    def _texture(self, index: int) -> Texture | str:
+        """A texture, or why it cannot be read."""
         from kinematify.robot.material_files import open_texture  # noqa: PLC0415  # opens pictures, most files hold none
 
         if index not in self._textures:
@@ -296,11 +298,7 @@ class _Materials:
                 self._textures[index] = open_texture(name, content)
             except (ValueError, KeyError) as error:
                 self._textures[index] = f"the texture {name} cannot be read: {error}"
-        found = self._textures[index]
-        if isinstance(found, str):
-            self._notes[material] = found
-            return None
-        return found
+        return self._textures[index]
 
 
 def _base_color(material: dict[str, Any]) -> tuple[list[float], dict[str, Any]]:

@@ -163,7 +163,6 @@ class _Chain:
         rest = rest_configuration(robot)
         self._index = {name: k for k, name in enumerate(self.joints)}
         self._start = np.array([rest[name] for name in self.joints])
-        self._unit = np.ones(len(self.joints))
         self._size = self._reach()
         self._turns = np.array([robot.joint_by_name[name].kind.turns for name in self.joints], dtype=bool)
         self._unit = np.where(self._turns, 1.0, self._size)
@@ -229,15 +228,23 @@ class _Chain:
 
     def _reach(self) -> float:
         """Largest distance between points that the equations know [m]."""
-        points = []
-        for side in self._ends:
-            T = np.eye(4)
-            for joint, leader, multiplier, offset in side.joints:
-                T = T @ joint.T_parent_child
-                points.append(T[:3, 3])
-                T = T @ joint.motion(self._value(leader, multiplier, offset, self._start))
-            points.append((T @ np.append(side.point, 1.0))[:3])
+        points = [point for side in self._ends for _, point, _ in self._walk(side, self._start)]
         return max(float(np.linalg.norm(np.ptp(points, axis=0))), 1e-9)
+
+    def _walk(
+        self, side: _Side, x: FloatArray
+    ) -> Iterator[tuple[tuple[int, float, bool] | None, FloatArray, FloatArray]]:
+        """Where every joint of a side stands [m], (3,), with its column, multiplier, whether it turns, and its axis.
+
+        The last one is the end of the side; what does not move has no column.
+        """
+        T = np.eye(4)
+        for joint, leader, multiplier, offset in side.joints:
+            T = T @ joint.T_parent_child
+            moves = (self._index[leader], multiplier, joint.kind.turns) if _moves(joint) else None
+            yield moves, T[:3, 3], T[:3, :3] @ joint.axis
+            T = T @ joint.motion(self._value(leader, multiplier, offset, x))
+        yield None, (T @ np.append(side.point, 1.0))[:3], np.zeros(3)
 
     def _value(self, leader: str, multiplier: float, offset: float, x: FloatArray) -> float:
         return multiplier * float(x[self._index[leader]]) + offset if leader in self._index else 0.0
@@ -251,16 +258,12 @@ class _Chain:
 
     def _end(self, side: _Side, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Where a side of a loop ends [m], (3,), and how it moves with each joint, (3, joints)."""
-        T, passed = np.eye(4), []
-        for joint, leader, multiplier, offset in side.joints:
-            T = T @ joint.T_parent_child
-            if _moves(joint):
-                passed.append((self._index[leader], multiplier, joint.kind.turns, T[:3, :3] @ joint.axis, T[:3, 3]))
-                T = T @ joint.motion(self._value(leader, multiplier, offset, x))
-        end = (T @ np.append(side.point, 1.0))[:3]
+        *passed, (_, end, _) = self._walk(side, x)
         slope = np.zeros((3, len(self.joints)))
-        for column, multiplier, turns, axis, pivot in passed:
-            slope[:, column] += multiplier * (np.cross(axis, end - pivot) if turns else axis)
+        for moves, pivot, axis in passed:
+            if moves is not None:
+                column, multiplier, turns = moves
+                slope[:, column] += multiplier * (np.cross(axis, end - pivot) if turns else axis)
         return end, slope
 
     def _free(self, x: FloatArray) -> FloatArray:

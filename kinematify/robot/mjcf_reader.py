@@ -83,17 +83,15 @@ def _compiled(spec: Any) -> tuple[Any, dict[str, str]]:
         try:
             return spec.compile(), omitted
         except ValueError as error:
-            files = {item: (item.file, *getattr(item, "cubefiles", ())) for item in (*spec.textures, *spec.skins)}
             said = str(error)
-            found = next(
-                (item for item, of in files.items() if any(f"{Path(file).name}'" in said for file in of)), None
-            )
-            if found is None:
+            for found in (*spec.textures, *spec.skins):
+                if any(f"{Path(file).name}'" in said for file in (found.file, *getattr(found, "cubefiles", ()))):
+                    break
+            else:
                 raise
             what = f"{type(found).__name__.removeprefix('Mjs').lower()} {found.name}"
-            omitted[found.name] = (
-                f"The {what} is omitted (line {_line(found)}), since MuJoCo refuses it: {said.splitlines()[0]}."
-            )
+            line, reason = _line(found), said.splitlines()[0]
+            omitted[found.name] = f"The {what} is omitted (line {line}), since MuJoCo refuses it: {reason}."
             for material in spec.materials:
                 material.textures = ["" if name == found.name else name for name in material.textures]
             spec.delete(found)

@@ -79,15 +79,13 @@ def read_robot(
     if isinstance(read, str):
         return parse_robot(parse_text(read.encode()), path, source, geometry)
     robot: Robot = read
-    if geometry == "all":
-        return robot
     return replace(robot, links=tuple(_without_hidden(link, geometry) for link in robot.links))
 
 
 def _without_hidden(link: Link, geometry: Geometry) -> Link:
     if geometry == "none":
         return replace(link, visuals=(), collisions=())
-    return replace(link, collisions=()) if link.visuals else link
+    return replace(link, collisions=()) if link.visuals and geometry != "all" else link
 
 
 def parse_robot(element: _Element, path: Path, source: GeometrySource, geometry: Geometry = "all") -> Robot:
@@ -194,8 +192,7 @@ def _joint(element: _Element, spared: dict[str, None] | None) -> Joint:
 
 
 def _with_motion(joint: Joint, element: _Element, where: str) -> Joint:
-    kind = _kind(element, joint.declared_kind, where)
-    lower, upper = _limits(element, kind, where)
+    kind, lower, upper = _kind_and_limits(element, joint.declared_kind, where)
     return replace(
         joint,
         kind=kind,
@@ -241,23 +238,25 @@ def _loop(element: _Element, known: Sequence[str]) -> LoopJoint:
     return LoopJoint(name=element.get("name") or f"{second}_loop", links=(first, second), points=(one, other))
 
 
-def _kind(element: _Element, declared: str, where: str) -> JointType:
-    if declared in FREE_KINDS:
-        return JointType.FIXED
-    if declared not in tuple(JointType):
+def _kind_and_limits(element: _Element, declared: str, where: str) -> tuple[JointType, float, float]:
+    """A hinge without limits, or with some so far to both sides that they are none, as Gazebo's 1e16, is continuous."""
+    if declared not in (*JointType, *FREE_KINDS):
         known = ", ".join([*JointType, *FREE_KINDS])
         raise DescriptionError(f"The {where} has the type {declared!r}; URDF knows {known}. Correct it.")
-    endless = declared == JointType.REVOLUTE and _is_endless(element, where)
-    return JointType.CONTINUOUS if endless else JointType(declared)
-
-
-def _is_endless(joint: _Element, where: str) -> bool:
-    """True if a joint states no limits, or some so far to both sides that they are none, as the 1e16 of Gazebo."""
-    limit = joint.find("limit")
-    if limit is None:
-        return True
+    kind = JointType.FIXED if declared in FREE_KINDS else JointType(declared)
+    if kind is JointType.FIXED:
+        return kind, 0.0, 0.0
+    limit = element.find("limit")
+    if limit is None and kind is JointType.PRISMATIC:
+        raise DescriptionError(f"The prismatic {where} has no <limit>. Give it lower and upper in metres.")
+    if limit is None or kind is JointType.CONTINUOUS:
+        return JointType.CONTINUOUS, -np.inf, np.inf
     lower, upper = (number(limit, end, 0.0, where) for end in ("lower", "upper"))
-    return lower < -_ENDLESS and upper > _ENDLESS
+    if kind.turns and lower < -_ENDLESS and upper > _ENDLESS:
+        return JointType.CONTINUOUS, -np.inf, np.inf
+    if lower > upper:
+        raise DescriptionError(f"The {where} has the lower limit {lower} above the upper limit {upper}. Swap them.")
+    return kind, lower, upper
 
 
 def _note(joint: Joint) -> str:
@@ -266,20 +265,6 @@ def _note(joint: Joint) -> str:
     if joint.declared_kind != joint.kind:
         return f"The revolute joint {joint.name} has no limits, or endless ones, and is read as continuous."
     return ""
-
-
-def _limits(element: _Element, kind: JointType, where: str) -> tuple[float, float]:
-    if kind is JointType.CONTINUOUS:
-        return -np.inf, np.inf
-    if kind is JointType.FIXED:
-        return 0.0, 0.0
-    limit = element.find("limit")
-    if limit is None:
-        raise DescriptionError(f"The prismatic {where} has no <limit>. Give it lower and upper in metres.")
-    lower, upper = number(limit, "lower", 0.0, where), number(limit, "upper", 0.0, where)
-    if lower > upper:
-        raise DescriptionError(f"The {where} has the lower limit {lower} above the upper limit {upper}. Swap them.")
-    return lower, upper
 
 
 def _end(element: _Element, tag: str, where: str) -> str:

@@ -16,7 +16,7 @@ from kinematify.robot.mesh_paths import find_mesh
 from kinematify.robot.raw_mesh import RawMesh, merged
 from kinematify.robot.robot import LinkMesh, Shape
 from kinematify.robot.transforms import transformed
-from kinematify.robot.urdf_numbers import line_of, number, origin_transform, vector
+from kinematify.robot.urdf_numbers import line_of, origin_transform, vector
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -210,10 +210,8 @@ def _primitive_size(shape: _Element, where: str) -> tuple[float, ...]:
         )
     if absent := [name for name in SIZES[str(shape.tag)] if name not in shape.attrib]:
         raise NoShape(f"The <{shape.tag}> of {where} states no {absent[0]}. Write it, or remove the element.")
-    if shape.tag == "box":
-        size = tuple(vector(shape, "size", None, where).tolist())
-    else:
-        size = tuple(number(shape, attribute, None, where) for attribute in SIZES[str(shape.tag)])
+    count = 3 if shape.tag == "box" else 1
+    size = tuple(float(length) for name in SIZES[str(shape.tag)] for length in vector(shape, name, None, where, count))
     if not all(length >= 0.0 for length in size):
         raise DescriptionError(f"The {shape.tag} of {where} has the size {size}. No length may be below zero.")
     return size

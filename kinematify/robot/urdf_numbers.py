@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
 MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 """Names of the moments of inertia, in URDF and SDF."""
-_COUNTS = {3: "three", 4: "four"}
+COUNTS = {1: "one finite number", 3: "three finite numbers", 4: "four finite numbers"}
+"""What an attribute holds, by how many."""
 _SELF_COLLISION = ("selfCollide", "self_collide")
 """Elements by which Gazebo's extensions say whether a link collides with its own model."""
 
@@ -46,36 +47,22 @@ def vector(
     text = element.get(attribute)
     if text is None and default is not None:
         return np.asarray(default, dtype=np.float64)
-    values = _finite(text)
+    try:
+        values = [float(word) for word in (text or "").split()]
+    except ValueError:
+        values = []
     if len(values) == 1 and attribute == "scale":  # some exporters write one factor for all axes
         values = values * 3
-    if len(values) != count:
+    if len(values) != count or not all(map(math.isfinite, values)):
         raise DescriptionError(
-            f"The attribute {attribute}={text!r} of <{element.tag}> in {where} must be {_COUNTS[count]} finite "
-            "numbers. Correct it."
+            f"The attribute {attribute}={text!r} of <{element.tag}> in {where} must be {COUNTS[count]}. Correct it."
         )
     return np.array(values)
 
 
 def number(element: _Element, attribute: str, default: float | None, where: str) -> float:
     """Return one finite number of an attribute; arguments and errors as for `vector`."""
-    text = element.get(attribute)
-    if text is None and default is not None:
-        return default
-    values = _finite(text)
-    if len(values) != 1:
-        raise DescriptionError(
-            f"The attribute {attribute}={text!r} of <{element.tag}> in {where} must be one finite number. Correct it."
-        )
-    return values[0]
-
-
-def _finite(text: str | None) -> list[float]:
-    try:
-        values = [float(word) for word in (text or "").split()]
-    except ValueError:
-        return []
-    return values if all(map(math.isfinite, values)) else []
+    return float(vector(element, attribute, None if default is None else [default], where, 1)[0])
 
 
 def optional_number(parent: _Element, tag: str, attribute: str, where: str) -> float | None:

@@ -17,14 +17,14 @@ from kinematify.robot.body_tree import WORLD, tree_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_file import to_z_up
 from kinematify.robot.polygons import triangle_places
-from kinematify.robot.robot import Inertial, Joint, Link, Mimic
+from kinematify.robot.robot import Joint, Link, Mimic, inertial_of
 from kinematify.robot.transforms import rotation_from_quaternion, transformed
 from kinematify.robot.urdf_geometry import mesh_shape, primitive
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.body_tree import Edge, Losses
-    from kinematify.robot.robot import Robot, Shape
+    from kinematify.robot.robot import Inertial, Robot, Shape
 
 _MOST_FILES = 500
 _AXES = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
@@ -212,18 +212,18 @@ def _inertial(read: _Stage, prim: Any, line: int) -> Inertial | None:
     center = np.array(api.GetCenterOfMassAttr().Get() or (0.0, 0.0, 0.0), dtype=np.float64)
     if not np.isfinite(center).all():  # the schema's own value for: not stated
         center = np.zeros(3)
-    turn = api.GetPrincipalAxesAttr().Get()
-    axes = np.eye(3) if turn is None or not turn.GetLength() else rotation_from_quaternion(_quaternion(turn))
-    return Inertial(
-        mass=mass * read.kilograms,
-        center_of_mass=(np.linalg.inv(rigid) @ scaled @ np.append(center, 1.0))[:3],
-        tensor=axes @ np.diag(diagonal) @ axes.T * read.kilograms * read.unit**2,
-        line=line,
-    )
+    T = _turned(api.GetPrincipalAxesAttr().Get())
+    T[:3, 3] = (np.linalg.inv(rigid) @ scaled @ np.append(center, 1.0))[:3]
+    xx, yy, zz = (diagonal * read.kilograms * read.unit**2).tolist()
+    return inertial_of(mass * read.kilograms, T, (xx, 0.0, 0.0, yy, 0.0, zz), line)
 
 
-def _quaternion(turn: Any) -> FloatArray:
-    return np.array([turn.GetReal(), *turn.GetImaginary()], dtype=np.float64)
+def _turned(turn: Any) -> FloatArray:
+    """The transform of a quaternion; identity where none is stated."""
+    T = np.eye(4)
+    if turn is not None and turn.GetLength() > 0.0:
+        T[:3, :3] = rotation_from_quaternion(np.array([turn.GetReal(), *turn.GetImaginary()], dtype=np.float64))
+    return T
 
 
 def _shape(read: _Stage, prim: Any, T: FloatArray, line: int) -> Shape | None:
@@ -308,11 +308,7 @@ def _edge(read: _Stage, prim: Any) -> Edge | None:
         target = read.stage.GetPrimAtPath(targets[0]) if targets else None
         body = read.body_of(targets[0]) if targets else None
         scaled = read.scaled_pose(target) if target else read.T_world_stage
-        T = np.eye(4)
-        rotation = turn.Get()
-        if rotation is not None and rotation.GetLength() > 0.0:
-            T[:3, :3] = rotation_from_quaternion(_quaternion(rotation))
-        T_world_joint = _rigid(scaled) @ T
+        T_world_joint = _rigid(scaled) @ _turned(turn.Get())
         T_world_joint[:3, 3] = (scaled @ np.append(np.array(at.Get() or (0.0, 0.0, 0.0), dtype=np.float64), 1.0))[:3]
         T_world_body = read.pose(body) if body else np.eye(4)
         ends.append((read.bodies[body.GetPath()] if body else WORLD, np.linalg.inv(T_world_body) @ T_world_joint))

@@ -276,7 +276,7 @@ def test_paths_that_lead_to_no_file_are_refused_with_a_hint(tmp_path: Path) -> N
         ("modle.urdf", "Did you mean .*model.urdf"),
         (".", "is a folder.*model.urdf"),
         ("loop", "symbolic links"),
-        ("gone", "not there"),
+        ("gone", "leads nowhere"),
         ("pipe", "neither a file nor a folder"),
     ):
         with pytest.raises(DescriptionError, match=words):

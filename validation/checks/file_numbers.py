@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kinematify.robot.urdf_numbers import line_of
+from kinematify.robot.urdf_numbers import COUNTS, line_of
 from kinematify.validation.check import check
 from kinematify.validation.document import cause_of, shown
 from kinematify.validation.finding import Cause, Severity
@@ -46,7 +46,6 @@ _SHAPES: _Counts = {
     "mesh": {"scale": (3, 1)},  # some exporters write one factor for all axes
 }
 _COLOR: _Counts = {"color": {"rgba": (4,)}}
-_COUNTS = {1: "one finite number", 3: "three finite numbers", 4: "four finite numbers"}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -87,7 +86,7 @@ def unreadable_numbers(result: OpenCheck, urdf: Urdf) -> None:
     """
     for field in malformed_fields(urdf):
         result.find(
-            f"{field.called} is {_what(field.text, finite_numbers(field.text))}; expected {_COUNTS[field.counts[0]]}.",
+            f"{field.called} is {_what(field.text, finite_numbers(field.text))}; expected {COUNTS[field.counts[0]]}.",
             _remedy(field.text),
             severity=Severity.WARNING if field.element.tag == "color" else None,
             cause=cause_of(field.element),
