@@ -10,7 +10,7 @@ from kinematify.errors import DescriptionError
 from kinematify.robot.mesh_paths import find_mesh
 from kinematify.robot.urdf_numbers import UrdfDocument
 from kinematify.robot.urdf_text import parse_description
-from kinematify.validation.checks.file_numbers import malformed_fields
+from kinematify.validation.document import malformed_fields
 from kinematify.validation.finding import Severity
 from kinematify.validation.validated_file import DocumentCopy
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from kinematify.validation.checks.file_numbers import NumberField
+    from kinematify.validation.document import NumberField
     from kinematify.validation.finding import Finding
     from kinematify.validation.stage import StageRequest
 

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from kinematify.robot.joint_type import FREE_KINDS
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
-from kinematify.validation.checks.file_numbers import finite_numbers
-from kinematify.validation.document import shown
+from kinematify.validation.document import finite_numbers, shown
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:

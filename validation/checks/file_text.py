@@ -11,8 +11,7 @@ from lxml import etree
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.robot.urdf_text import has_doctype
 from kinematify.validation.check import check
-from kinematify.validation.checks.file_numbers import finite_numbers
-from kinematify.validation.document import shown
+from kinematify.validation.document import finite_numbers, shown
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
