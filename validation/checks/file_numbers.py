@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.robot.urdf_numbers import COUNTS, line_of
 from kinematify.validation.check import check
-from kinematify.validation.document import cause_of, finite_numbers, number_fields
+from kinematify.validation.document import cause_of, finite_numbers, malformed_fields, number_fields
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
