@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.robot.urdf_numbers import UrdfDocument
 from kinematify.validation.finding import Cause
+from kinematify.validation.srdf_file import srdf_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.config.validation import FileSettings
+    from kinematify.validation.srdf_file import Srdf
     from kinematify.validation.stage import StageRequest
 
 
@@ -58,10 +60,13 @@ class Urdf(UrdfDocument):
     settings: FileSettings
     losses: tuple[str, ...]
     """What the file holds and the URDF does not, one sentence each."""
+    srdf: Srdf | None
+    """The SRDF that lies beside it."""
 
     @classmethod
     def of(cls, robot: _Element, request: StageRequest, text: bytes) -> Urdf:
         """Put together what the probes need."""
+        links = robot.findall("link")
         return cls(
             robot=robot,
             text=text,
@@ -69,6 +74,7 @@ class Urdf(UrdfDocument):
             package_dirs=tuple(folder.resolve() for folder in request.package_dirs),
             settings=request.settings.file,
             losses=request.losses,
+            srdf=srdf_of(request.urdf.resolve(), robot.get("name", ""), [str(link.get("name")) for link in links]),
         )
 
 

@@ -1,4 +1,4 @@
-"""Facts that a stage tells besides its checks: what is known of joints and of pairs of bodies."""
+"""Facts that a stage tells besides its checks: what is known of joints."""
 
 from __future__ import annotations
 
@@ -32,33 +32,3 @@ def summary_of(joint: Joint, **known: Any) -> JointSummary:
     limited = joint.kind in (JointType.REVOLUTE, JointType.PRISMATIC)
     limits = (joint.lower, joint.upper) if limited else None
     return JointSummary(joint=joint.name, kind=joint.kind.value, declared_limits=limits, **known)
-
-
-@dataclass(frozen=True, kw_only=True)
-class PairSummary:
-    """Facts of two bodies that touch, or that something is to be said of."""
-
-    pair: tuple[str, str]
-    """In the order of the document."""
-    reason: str | None
-    """Why their contact is tolerated; None if it is not."""
-    at_rest: float
-    """Depth at rest [m]."""
-    tolerated: float
-    """Depth up to which nothing is reported [m]."""
-    meets: tuple[tuple[str, float, float], ...] = ()
-    """Joint, value where it begins [rad or m], and the depth that comes of it [m]."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class PairTable:
-    """Which bodies meet which, by exact geometry."""
-
-    bodies: tuple[str, ...]
-    """All that have geometry, in the order of the tree."""
-    pairs: tuple[PairSummary, ...]
-    """Those that touch at rest or meet on the way; all others stay clear in what was looked at."""
-
-
-Summary = JointSummary | PairTable
-"""What a stage may tell besides its checks."""

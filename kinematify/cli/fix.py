@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 @click.option(
     "--kinematics",
     is_flag=True,
-    help="Change joints too: swapped limits, limits beyond a contact, a zero axis, an axis or place that the parts "
-    "show. Each change is shown as a diff.",
+    help="Change joints too: swapped limits, limits beyond a contact, a zero axis, an axis that leads into the "
+    "parent. Each change is shown as a diff.",
 )
 @force_file_option
 @package_dirs_option
@@ -63,7 +63,7 @@ def command(
     link or joint without a finding; comments and order stay. The command lists what it did not fix, with the reason,
     and writes no file where there is nothing to change. Its last line counts both.
 
-    Where an engine refuses meshes in glTF, the new file names copies as OBJ.
+    Where an engine refuses meshes in glTF or COLLADA, the new file names copies as OBJ.
 
     The result is validated and loaded raw again. Ends with 0; with 1 if an error stays, if an engine that opens MODEL
     does not open the result, or if fewer joints move in an engine than before, which are named; with 2 if MODEL cannot

@@ -89,8 +89,6 @@ class PhysicsSettings(StageConfig):
     """Denser hulls are an error [kg/m^3]."""
     light: float = 20.0  # foam; thin shells are open meshes most of the time and are not judged
     """Less dense solids are a warning [kg/m^3]."""
-    mass_ratio: float = 1000.0  # Gauss-Seidel solvers lose the heavy body's contact from about here
-    """Mass of a body over that of the body that carries it."""
     moment_rounding: float = 1.01  # flat parts have equality, and files are written with few digits
     """Largest principal moment over the sum of the others that rounding explains."""
     moment_ratio: float = 1.5  # real robots are published with up to 1.26
@@ -131,8 +129,6 @@ class PhysicsSettings(StageConfig):
     """Followers may go so far beyond their limits, fraction of their range, at least of 1 rad or m."""
     damping: float = 10000.0  # above this no motor moves a joint by 1 rad/s
     """Larger damping or friction is a warning [N m s/rad, N s/m, N m or N]."""
-    margin: float = 1.5  # what designers of arms leave
-    """Effort over the largest weight at a joint below which it is mentioned; below 1 it is a warning."""
     load_doublings: int = 5
     """Two to this power configurations are sampled for the weight."""
     bare_share: float = 0.2  # plates and logos lie flush with what carries them
@@ -153,10 +149,6 @@ class PhysicsSettings(StageConfig):
     """How far collision geometry may reach beyond the visual one, fraction of the visual diagonal."""
     inflation: float = 1.5  # hollows of half the volume
     """Volume of a hull over that of its mesh."""
-    collision_shapes: int = 64
-    """More shapes per link are a note."""
-    collision_faces: int = 50000
-    """More triangles per link are a note."""
 
 
 class PrepareSettings(StageConfig):
@@ -263,14 +255,6 @@ class EvidenceSettings(StageConfig):
     """A parent is doubtful below this share of the quality of the best other contact."""
     unknown_deg: float = 5.0  # ten times the largest angle of a true axis
     """Angle to every direction that the two bodies show, beyond which an axis is unexplained [deg]."""
-    askew_deg: float = 2.0  # 4 of 700 published axes are more than 1 deg off, by 1.3 to 2.6
-    """The same, beyond which axes are askew where several are by the same angle [deg]."""
-    askew_spread: float = 0.5
-    """Difference to the middle of these angles up to which they are the same [deg]."""
-    askew_joints: int = 3
-    """Axes of one model from which on they are several."""
-    askew_share: float = 0.25  # 6 of 73 axes of a published humanoid are off by the same angle, by chance
-    """Share of the axes of the model from which on it is no chance."""
     # two of 139 true hinges are farther, of those moved by 20 % of the part two of three
     unknown_distance: float = 0.065
     """Distance to every line that the two bodies show, beyond which an axis is unexplained, fraction of the child's

@@ -17,15 +17,14 @@ from kinematify.config.validation import load_settings
 from kinematify.errors import DescriptionError, ExitStatus
 from kinematify.model.collision import collides_as_it_is
 from kinematify.model.output import check_file, urdf_of
-from kinematify.refinement.engine_opening import refusals
 from kinematify.refinement.joint_edits import JointEdits
 from kinematify.refinement.urdf_editor import UrdfEditor, xml_of
+from kinematify.robot.mesh_paths import GLTF_SUFFIXES
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Robot
-from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
-from kinematify.validation.checks import checks_of
+from kinematify.simulation.engines import ENGINES
 from kinematify.validation.checks.as_loaded import STILL
-from kinematify.validation.finding import Cause, Severity
+from kinematify.validation.finding import Cause, Severity, Status
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
@@ -40,8 +39,8 @@ if TYPE_CHECKING:
     from kinematify.validation.finding import Finding
     from kinematify.validation.run.report import ValidationReport
 
-_ROUNDS = 3
-"""Looks at the result at most: what a broken file hides is seen in the second, pieces that still meet in the third."""
+_ROUNDS = 2
+"""Looks at the result at most: what a broken file hides, and pieces that still meet, are seen in the first."""
 _CARVED = ("KV301", "KV302", "KV310", "KV311", "KV312", "KV802", "KV804")
 """Findings about collision geometry, if they blame physics and name two links."""
 _MOST_CUT = 0.05
@@ -50,8 +49,8 @@ _BESIDE = "KV241"
 """Collision geometry is beside what is seen."""
 _MASSLESS = "KV201"
 """A body that moves has no mass: engines differ in what they take, and a guess may be worse than theirs."""
-_WEIGHED = ("KV202", "KV204", "KV205")
-"""Findings about a mass or an inertia that no engine can use."""
+_WEIGHED = ("KV202", "KV204", "KV205", "KV207")
+"""Findings about a mass or an inertia that no engine can use, or that one digit too many explains."""
 _CENTER = "KV208"
 _REPEATED = "KV105"
 _QUATERNION = "KV107"
@@ -59,6 +58,8 @@ _SHAPELESS = ("KV140", "KV141", "KV142", "KV150")
 """Elements without geometry that can be read."""
 _FORMAT = re.compile(r"\.(?:glb|gltf)\b", re.IGNORECASE)
 """In what an engine says of a file that it does not open."""
+_COLLADA = (".dae",)
+"""MuJoCo reads none; of visual geometry it reads nothing."""
 _ONCE = {
     "joint": ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "safety_controller", "calibration"),
     "link": ("inertial",),
@@ -67,7 +68,7 @@ _ONCE = {
     "collision": ("origin",),
 }
 """What an element has once."""
-_KINEMATICS = ("KV134", "KV137", "KV310", "KV312", "KV320", "KV340", "KV349")
+_KINEMATICS = ("KV134", "KV137", "KV310", "KV312")
 """Findings that `JointEdits` looks at."""
 
 
@@ -239,18 +240,17 @@ def fix(
                 progress(f"{path.name}: {stage}", (part + fraction) / (_ROUNDS + 1))
 
         report = validate(path, package_dirs=package_dirs, settings=settings, workers=workers, progress=tell)
-        return ModelSnapshot(report=report, refusals=refusals(path, DEFAULT_ENGINES, package_dirs))
-
-    def look_at_joints(path: Path) -> ValidationReport:
-        some = {check.id for check in checks_of("KV31", "KV32", "KV34")}
-        return validate(path, package_dirs=package_dirs, settings=settings, selected=some, engines=(), workers=workers)
+        return ModelSnapshot(report=report, refusals=_refusals(report))
 
     before = look(model, 0)
-    joints = JointEdits(editor=editor, look=look_at_joints) if kinematics else None
+    joints = JointEdits(editor=editor) if kinematics else None
     repairs = _Repairs(
         editor=editor, config=config or load_config(), settings=settings, everything=everything, joints=joints
     )
-    unread = editor.export_gltf() if any(map(_FORMAT.search, before.refusals.values())) else []
+    gltf = GLTF_SUFFIXES if any(map(_FORMAT.search, before.refusals.values())) else ()
+    unread = editor.export_obj(
+        {"visual": gltf, "collision": (*gltf, *(_COLLADA if "mujoco" in before.refusals else ()))}
+    )
     after, place = before, model
     for part in range(1, _ROUNDS + 1):
         nothing = not repairs.apply(after.report, place, package_dirs)
@@ -266,6 +266,19 @@ def fix(
         before=before,
         after=after,
     )
+
+
+def _refusals(report: ValidationReport) -> dict[str, str]:
+    """What engines say that do not open the file as it is, or why they were not asked, by engine."""
+    found: dict[str, str] = {}
+    for check in report.checks:
+        if check.check == "KV801" and check.engine is not None:
+            said = [item.message for item in check.findings if item.joint is None]
+            if check.status not in (Status.PASS, Status.FAIL):
+                said = [check.reason or ""]
+            if said:
+                found[check.engine] = said[0]
+    return found
 
 
 class _Repairs:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 from lxml import etree
 
 from kinematify.errors import AssemblyError, DescriptionError, OutputError
@@ -17,18 +18,20 @@ from kinematify.model.collision import fit_collision
 from kinematify.model.dynamics import with_dynamics
 from kinematify.model.masses import prepared_inertials
 from kinematify.robot.mesh_file import read_meshes
-from kinematify.robot.mesh_paths import GLTF_SUFFIXES, find_mesh, near_mesh
+from kinematify.robot.mesh_paths import find_mesh, near_mesh
 from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
 from kinematify.robot.raw_mesh import merged
 from kinematify.robot.robot import Inertial, Robot
 from kinematify.robot.transforms import rpy_of
 from kinematify.robot.urdf_geometry import geometry_source
 from kinematify.robot.urdf_numbers import origin_transform
-from kinematify.robot.urdf_text import parse_description, read_text, with_plain_declaration
+from kinematify.robot.urdf_text import parse_description, read_text, with_prefixes
 from kinematify.robot.write import numbers, robot_element
+from kinematify.validation.asset.rigid_bodies import Rooms
+from kinematify.validation.asset.slips import fits_box, slip_of
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from lxml.etree import _Element
 
@@ -40,8 +43,6 @@ if TYPE_CHECKING:
 
 _FILES = ("mesh", "texture")
 """Elements whose ``filename`` names a file."""
-_PLACED = ("visual", "collision", "inertial")
-"""Children of a link that have an ``<origin>``."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,7 +74,7 @@ class UrdfEditor:
             raise OutputError(f"{out} is the model itself, which stays as it is. Give another file with -o.")
         parse_description(model)
         parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
-        self.root = etree.fromstring(with_plain_declaration(read_text(model).text), parser)
+        self.root = etree.fromstring(with_prefixes(read_text(model).text), parser)
         self._changes: list[str] = []
         self._path_changes: list[str] = []
         self.diffs: list[Diff] = []
@@ -100,14 +101,6 @@ class UrdfEditor:
     def joint(self, name: str) -> _Element:
         """Element of a joint."""
         return next(element for element in self.root.iterchildren("joint") if element.get("name") == name)
-
-    def saved(self) -> _Element:
-        """A copy of the document as it is now."""
-        return copy.deepcopy(self.root.getroottree()).getroot()
-
-    def restore(self, saved: _Element) -> None:
-        """Go back to what `saved` returned."""
-        self.root = saved
 
     @contextmanager
     def diffed(self, title: str, *elements: _Element) -> Iterator[None]:
@@ -172,16 +165,20 @@ class UrdfEditor:
             )
         return fitted
 
-    def export_gltf(self) -> list[str]:
-        """Name copies as OBJ, with colours, of meshes in glTF, which MuJoCo and PyBullet do not read.
+    def export_obj(self, unread: Mapping[str, Collection[str]]) -> list[str]:
+        """Name copies as OBJ, with colours, of meshes in formats that engines do not read.
+
+        Args:
+            unread: Suffixes of these formats, by ``visual`` and ``collision``.
 
         Returns:
             Meshes that cannot be read, one sentence each.
         """
         named: dict[str, list[_Element]] = {}
-        for mesh in self.root.iter("mesh"):
-            if Path(mesh.get("filename", "")).suffix.lower() in GLTF_SUFFIXES:
-                named.setdefault(mesh.get("filename", ""), []).append(mesh)
+        for tag, suffixes in unread.items():
+            for mesh in self.root.iterfind(f"link/{tag}/geometry/mesh"):
+                if Path(mesh.get("filename", "")).suffix.lower() in suffixes:
+                    named.setdefault(mesh.get("filename", ""), []).append(mesh)
         failed, before = [], len(self._copies)
         for name, elements in named.items():
             found = self._found(name, (self._model.parent.resolve(), *self._mesh_folders()))
@@ -197,8 +194,9 @@ class UrdfEditor:
             for element in elements:
                 element.set("filename", copy_name)
         if len(self._copies) > before:
-            added = _counted(len(self._copies) - before, "mesh in glTF", "meshes in glTF")
-            self._changes.append(f"{added} as OBJ in {self._copies_folder}, since MuJoCo and PyBullet read no glTF")
+            formats = " and ".join(sorted({Path(name).suffix.lower() for name in named}))
+            added = _counted(len(self._copies) - before, "mesh", "meshes")
+            self._changes.append(f"{added} as OBJ in {self._copies_folder}, since an engine reads no {formats}")
         return failed
 
     def write_rpy(self) -> None:
@@ -234,20 +232,33 @@ class UrdfEditor:
                     self.say(f"{link.get('name')}: no {xml_of(element)}, which has no geometry that can be read")
 
     def set_inertia(self, robot: Robot, links: Collection[str], settings: PrepareSettings) -> list[str]:
-        """Write mass and inertia of the geometry for links whose own ones no engine can use.
+        """Write mass and inertia of the geometry for links whose own ones no engine can use, or repair one entry.
 
         Returns:
             Names of the links that got them.
         """
-        made = prepared_inertials(robot, settings)
-        done = [name for name in links if made[name].mass_added or made[name].inertia_added]
-        for name in done:
-            given = made[name]
+        bare = replace(robot, links=tuple(replace(link, inertial=_unturned(link.inertial)) for link in robot.links))
+        made, by_shape = prepared_inertials(robot, settings), prepared_inertials(bare, settings)
+        done = []
+        for name in links:
+            link, given = robot.link_by_name[name], made[name]
+            room = Rooms().of([*link.visuals, *link.collisions])
+            slip = None if link.inertial is None else slip_of(link.inertial, room)
+            if slip is not None:
+                given = replace(given, tensor=slip.tensor)
+                what = f"{slip.entry} {slip.right:.6g} instead of {slip.given:.6g}"
+            elif given.mass_added:
+                what = f"mass and inertia of its geometry, {given.mass:.3g} kg"
+            elif given.inertia_added:
+                given = given if room is None or fits_box(given, room) else by_shape[name]
+                what = "a sound inertia"
+            else:
+                continue
             plain = Inertial(mass=given.mass, center_of_mass=given.center_of_mass, tensor=given.tensor)
-            link = replace(robot.link_by_name[name], inertial=plain, collisions=())
+            link = replace(link, inertial=plain, collisions=())
             _replaced(self.link(name), "inertial", _written(link).findall("inertial"), at_front=True)
-            what = f"mass and inertia of its geometry, {given.mass:.3g} kg" if given.mass_added else "a sound inertia"
             self._changes.append(f"{name}: {what}")
+            done.append(name)
         return done
 
     def center(self, robot: Robot, name: str, settings: PrepareSettings) -> None:
@@ -271,27 +282,6 @@ class UrdfEditor:
                 _replaced(self.joint(after.name), "dynamics", [etree.Element("dynamics", values)])
                 self._changes.append(f"{after.name}: damping {after.damping:g}, friction {after.friction:g}")
 
-    def reparented(self, joint: str) -> list[_Element]:
-        """Elements that hold poses in the frame of a joint's child: the link, and the joints below it."""
-        child = self.joint(joint).find("child")
-        name = "" if child is None else child.get("link", "")
-        below = [item for item in self.root.iterchildren("joint") if _link_at(item, "parent") == name]
-        return [self.link(name), *below]
-
-    def shift(self, joint: str, in_parent: Sequence[float], in_child: Sequence[float]) -> None:
-        """Move the frame of a joint, and leave all that its child has where it is.
-
-        Args:
-            joint: Its name.
-            in_parent: The way [m] in the frame of the parent, shape (3,).
-            in_child: The same in the frame of the child.
-        """
-        back = [-value for value in in_child]
-        link, *below = self.reparented(joint)
-        _move(_origin(self.joint(joint)), in_parent)
-        for element in (*(part for part in link if part.tag in _PLACED), *below):
-            _move(_origin(element), back)
-
     def write(self) -> Path:
         """Write the document, with paths that hold from its folder, and its meshes.
 
@@ -300,7 +290,7 @@ class UrdfEditor:
         """
         folder = self.out.parent / self._folder
         pieces = {name: mesh for of_link in self._pieces.values() for name, mesh in of_link.items()}
-        document = self.saved()
+        document = copy.deepcopy(self.root.getroottree()).getroot()
         self._settle_paths(document)
         try:
             self.out.parent.mkdir(parents=True, exist_ok=True)
@@ -376,6 +366,11 @@ class UrdfEditor:
         return [folder / (item.get("meshdir") or item.get("assetdir") or "") for item in compilers]
 
 
+def _unturned(inertial: Inertial | None) -> Inertial | None:
+    """Without a tensor."""
+    return None if inertial is None else replace(inertial, tensor=np.zeros((3, 3)))
+
+
 def _same(link: Link, before: Link) -> bool:
     """True if a link kept its primitives."""
     return [id(shape) for shape in link.collisions] == [id(shape) for shape in before.collisions]
@@ -404,16 +399,6 @@ def _origin(element: _Element) -> _Element:
         found.tail = element.text
         element.insert(0, found)
     return found
-
-
-def _link_at(joint: _Element, end: str) -> str | None:
-    found = joint.find(end)
-    return None if found is None else found.get("link")
-
-
-def _move(origin: _Element, by: Sequence[float]) -> None:
-    given = [float(value) for value in (origin.get("xyz") or "0 0 0").split()]
-    origin.set("xyz", " ".join(f"{value + shift:.9g}" for value, shift in zip(given, by, strict=True)))
 
 
 def _replaced(parent: _Element, tag: str, elements: Sequence[_Element], *, at_front: bool = False) -> None:

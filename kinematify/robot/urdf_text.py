@@ -46,7 +46,7 @@ _ROOTS = {
     "html": ("a web page", "Download the raw file instead of the page that shows it."),
 }
 _DECLARED = re.compile(rb"\bxmlns:([A-Za-z_][\w.-]*)\s*=")
-_PREFIX = re.compile(rb"</?([A-Za-z_][\w.-]*):[A-Za-z_]")
+_PREFIX = re.compile(rb"(?:</?|\s)([A-Za-z_][\w.-]*):[A-Za-z_]")
 _DEFINITIONS = ("property", "macro", "arg")
 """Elements of xacro that do nothing unless something calls them: expanded files often keep some."""
 _EXPRESSION = re.compile(r"\$\{|\$\((?:arg|optenv|env|eval)\b")
@@ -115,7 +115,7 @@ def parse_text(text: bytes) -> _Element:
     Raises:
         lxml.etree.XMLSyntaxError: It is not well-formed, or deeper or larger than the limits of the parser.
     """
-    root = etree.fromstring(_with_prefixes(with_plain_declaration(text)), _parser())
+    root = etree.fromstring(with_prefixes(text), _parser())
     space = etree.QName(root).namespace
     if space and etree.QName(root).localname == "robot":  # Drake's files state one, which every reader ignores
         for element in root.iter(f"{{{space}}}*"):
@@ -127,7 +127,7 @@ def syntax_errors(text: bytes) -> list[tuple[int, str]]:
     """Return line and message of everything that keeps `parse_text` from reading a text."""
     parser = _parser()
     try:
-        etree.fromstring(_with_prefixes(with_plain_declaration(text)), parser)
+        etree.fromstring(with_prefixes(text), parser)
     except etree.XMLSyntaxError as error:
         # The log of the exception holds the errors of earlier documents too; that of the parser does not.
         log = cast("Iterable[Any]", parser.error_log)
@@ -141,12 +141,19 @@ def _parser() -> etree.XMLParser:
     )
 
 
-def _with_prefixes(text: bytes) -> bytes:
-    """Return the text with every prefix declared: vendors write drake:NAME without, and readers of robots never ask."""
-    declared = set(_DECLARED.findall(text))
-    absent = sorted({*_PREFIX.findall(text)} - declared - {b"xml", b"xmlns"})
-    names = b"".join(b' xmlns:%s="urn:%s"' % (prefix, prefix) for prefix in absent)
+def with_prefixes(text: bytes) -> bytes:
+    """Return what every parser of XML takes: a declaration that is one, and every prefix declared.
+
+    Vendors write drake:NAME without, and readers of robots never ask.
+    """
+    text = with_plain_declaration(text)
+    names = b"".join(b' xmlns:%s="urn:%s"' % (prefix, prefix) for prefix in undeclared_prefixes(text))
     return re.sub(rb"<robot\b", lambda found: found.group() + names, text, count=1) if names else text
+
+
+def undeclared_prefixes(text: bytes) -> list[bytes]:
+    """Return the prefixes of elements and attributes that a text does not declare."""
+    return sorted({*_PREFIX.findall(text)} - {*_DECLARED.findall(text)} - {b"xml", b"xmlns"})
 
 
 def has_doctype(root: _Element) -> bool:

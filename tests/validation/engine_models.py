@@ -13,7 +13,7 @@ from kinematify.validation.stage import StageRequest
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kinematify.validation.summary import Summary
+    from kinematify.validation.summary import JointSummary
 
 Vector = tuple[float, float, float]
 
@@ -141,7 +141,7 @@ class FindingGroup:
 
 def tell(run: Callable[[StageRequest, Recorder], object], request: StageRequest) -> FindingGroup:
     """Run a stage in this process."""
-    reported: list[CheckResult | Summary] = []
+    reported: list[CheckResult | JointSummary] = []
     run(request, Recorder(reported.append, request))
     results = [item for item in reported if isinstance(item, CheckResult)]
     assert len({item.check for item in results}) == len(results)

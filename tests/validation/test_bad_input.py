@@ -136,6 +136,7 @@ def test_findings_of_geometry_have_the_line_of_their_joint_or_link(end: str, tmp
 FINE = {
     "a package in a folder of another name": [(BOX, mesh("package://my_robot/part.stl"))],
     "a prefix without a namespace": [("</robot>", "<drake:joint/></robot>")],
+    "an attribute with such a prefix": [('effort="10"', 'effort="10" drake:acceleration="9"')],
     "macros that nobody calls": [
         ('<robot name="r">', '<robot name="r" xmlns:xacro="x"><xacro:macro name="m"><link name="${n}"/></xacro:macro>')
     ],

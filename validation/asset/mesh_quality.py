@@ -33,8 +33,6 @@ class SurfaceQuality:
     """Extent along the direction in which it is thinnest, same unit."""
     open_edges: int
     """Edges with one triangle."""
-    branched_edges: int
-    """Edges with more than two triangles."""
     opposed_edges: int
     """Edges at which two triangles face opposite sides."""
     twins: int
@@ -51,7 +49,7 @@ class SurfaceQuality:
 def surface_quality(mesh: RawMesh) -> SurfaceQuality:
     """Measure a mesh whose coordinates are finite."""
     vertices, faces = welded(mesh.vertices, mesh.faces, 0.0)
-    open_edges, branched, opposed = _edges(faces, len(vertices))
+    open_edges, opposed = _edges(faces, len(vertices))
     single = _without_twins(faces)
     return SurfaceQuality(
         faces=len(mesh.faces),
@@ -59,17 +57,16 @@ def surface_quality(mesh: RawMesh) -> SurfaceQuality:
         diagonal=float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))),
         thickness=_thickness(vertices),
         open_edges=open_edges,
-        branched_edges=branched,
         opposed_edges=opposed,
         twins=len(faces) - len(single),
         volume=_volume(vertices, single),
     )
 
 
-def _edges(faces: IntArray, count: int) -> tuple[int, int, int]:
-    """Edges with one triangle, with more than two, and with two that run along it in the same direction."""
+def _edges(faces: IntArray, count: int) -> tuple[int, int]:
+    """Edges with one triangle, and with two that run along it in the same direction."""
     if not len(faces):
-        return 0, 0, 0
+        return 0, 0
     starts, ends = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     keys = np.minimum(starts, ends) * count + np.maximum(starts, ends)
     order = np.argsort(keys)
@@ -77,7 +74,7 @@ def _edges(faces: IntArray, count: int) -> tuple[int, int, int]:
     uses = np.diff(first, append=len(keys))
     balance = np.add.reduceat(np.where(starts < ends, 1, -1)[order], first)
     opposed = (uses == 2) & (balance != 0)
-    return int((uses == 1).sum()), int((uses > 2).sum()), int(opposed.sum())
+    return int((uses == 1).sum()), int(opposed.sum())
 
 
 def _without_twins(faces: IntArray) -> IntArray:

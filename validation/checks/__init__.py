@@ -26,8 +26,10 @@ from kinematify.validation.checks import (  # noqa: F401 - each registers its ch
     meshes,
     motion,
     rest,
+    semantics,
     several_joints,
     task,
+    twins,
     unit_sizes,
 )
 

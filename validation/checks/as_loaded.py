@@ -504,7 +504,7 @@ def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
     severity=Severity.ERROR,
     cause=Cause.ENGINE,
     runs_in=_any,
-    follows={"KV801": CauseScope.JOINT},
+    follows={"KV107": CauseScope.JOINT, "KV801": CauseScope.JOINT},
     needs=(not_loaded,),
 )
 def puts_links_where_the_file_does(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -518,7 +518,7 @@ def puts_links_where_the_file_does(result: OpenCheck, context: AsLoadedContext) 
     """
     from kinematify.robot.robot import forward_kinematics  # noqa: PLC0415 - for this only
 
-    above, worst = context.robot.joint_above, dict[str, tuple[float, float, dict[str, float]]]()
+    above, worst = context.robot.joint_above, dict[str, tuple[float, float, float, dict[str, float]]]()
     for values in context.ends:
         ours = forward_kinematics(context.robot, values)
         for link, pose in context.loaded.poses(values).items():
@@ -527,11 +527,12 @@ def puts_links_where_the_file_does(result: OpenCheck, context: AsLoadedContext) 
             share = max(away / (_SAME_PLACE * context.size), turned / _SAME_PLACE)
             result.measured["farthest"] = max(away, result.measured.get("farthest", 0.0))
             if share > worst.get(link, (0.0, 1.0))[1]:
-                worst[link] = away, share, values
-    for link, (away, _, values) in worst.items():
+                worst[link] = away, share, turned, values
+    for link, (away, _, turned, values) in worst.items():
         if link in above and above[link].parent not in worst:
             result.find(
-                f"{context.title} puts the link {link} {away * 1e3:.3g} mm from where the file's kinematics put it.",
+                f"{context.title} puts the link {link} {away * 1e3:.3g} mm from where the file's kinematics put it, "
+                f"turned by {np.degrees(2.0 * np.arcsin(min(turned / 2.0, 1.0))):.3g} deg.",
                 f"Write the joint {above[link].name} with a unit axis, plain numbers and a type that engines know.",
                 joint=above[link].name,
                 link=link,

@@ -1,7 +1,8 @@
-"""KV240 to KV243: collision geometry, and whether it is where the visual geometry is."""
+"""KV240 to KV244: collision geometry, and whether it is where the visual geometry is."""
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +12,8 @@ from kinematify.validation.checks.shared import something_collides
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from kinematify.config.validation import PhysicsSettings
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Link
@@ -182,33 +185,46 @@ def inflated_hulls(result: OpenCheck, physics: Physics) -> None:
             )
 
 
+_HOLDERS = re.compile(rb"^(?:([og])\b|f\b)", re.MULTILINE)
+"""Lines of an OBJ file that begin an object or a group, and faces."""
+
+
 @check(
-    "KV243",
-    title="Collision geometry is light",
-    fails="Collision geometry is heavy",
-    severity=Severity.NOTE,
-    cause=Cause.PHYSICS,
+    "KV244",
+    title="MuJoCo reads collision meshes whole",
+    fails="MuJoCo reads only the first group of a collision mesh",
+    severity=Severity.WARNING,
+    cause=Cause.ASSET,
     needs=(something_collides,),
 )
-def heavy_collisions(result: OpenCheck, physics: Physics) -> None:
-    """No link has more than `collision_shapes` shapes or `collision_faces` triangles to collide with.
+def lost_groups(result: OpenCheck, physics: Physics) -> None:
+    """No OBJ file of the collision geometry has faces in several objects (`o`) or groups (`g`).
 
-    Why it matters: Contacts take most of the time of a simulation.
+    Why it matters: MuJoCo takes the first of them for the mesh, so that what meets the others passes through.
 
-    Remedy: Use fewer and simpler shapes.
+    Remedy: Write each group as a file and a <collision> of its own; PyBullet takes each for a convex piece already.
     """
-    settings = physics.settings
-    for link in physics.model.links:
-        shapes = len(link.collisions)
-        faces = sum(len(shape.mesh.faces) for shape in link.collisions if shape.kind == "mesh")
-        many = shapes > settings.collision_shapes
-        if many or faces > settings.collision_faces:
-            result.find(
-                f"The link {link.name} has {shapes} collision shapes with {faces} triangles; engines become "
-                "slow with so many.",
-                "Use fewer and simpler shapes: boxes and cylinders, or convex pieces of some 50 corners.",
-                link=link.name,
-                value=shapes if many else faces,
-                limit=settings.collision_shapes if many else settings.collision_faces,
-                line=link.line,
-            )
+    shapes = [(link, shape) for link in physics.model.links for shape in link.collisions if shape.file is not None]
+    found = [(link, shape, shares) for link, shape in shapes if len(shares := _groups(shape.file)) > 1]
+    if found:
+        link, shape, faces = min(found, key=lambda item: item[2][0] / sum(item[2]))
+        result.find(
+            f"The collision mesh {shape.file} of the link {link.name} has {len(faces)} groups, and "
+            f"MuJoCo reads the first one: {faces[0]} of {sum(faces)} faces (such meshes: {len(found)}).",
+            "Write each group as a file and a <collision> of its own, as PyBullet takes them.",
+            link=link.name,
+            line=shape.line,
+        )
+
+
+def _groups(path: Path | None) -> list[int]:
+    """Return how many faces each group of an OBJ file has; nothing of other files."""
+    if path is None or path.suffix.lower() != ".obj":
+        return []
+    faces = [0]
+    for found in _HOLDERS.finditer(path.read_bytes()):
+        if found[1]:
+            faces.append(0)
+        else:
+            faces[-1] += 1
+    return [count for count in faces if count]

@@ -25,6 +25,8 @@ _ROUND_DEGREES = 5.0
 """People choose limits that are multiples of this [deg]."""
 _ROUND_TOLERANCE = 0.3
 """What two decimals of a radian leave of a round angle [deg]: 200 deg are written as 3.49 rad."""
+_BOUNDLESS = 1e5
+"""No slip of units makes a range of so many rad or m: it means no limit."""
 _EVEN, _FEW_TURNS = 0.1, 16.0 * math.pi
 """A range goes as far to both sides within this share of it; up to this width it may stand for no limit [rad]."""
 
@@ -42,7 +44,8 @@ def implausible_ranges(result: OpenCheck, physics: Physics) -> None:
     at plus and minus 10 rad or a multiple of pi, where no limit was meant; a warning for some turns to both sides that
     are no round numbers), unless both limits are round numbers of degrees up to `widest_wrist`; it is a note where the
     range would be less than ten degrees if it were degrees. No slide moves by more than `slide_sizes` times the size
-    of the model, by `widest_slide` where no geometry shows its size; beyond `slide_wrong` times it is an error.
+    of the model, by `widest_slide` where no geometry shows its size; beyond `slide_wrong` times it is an error. A range
+    of more than 100,000 rad or m means no limit and is a note.
 
     Why it matters: Degrees for radians and millimetres for metres load in every engine, and the joint then moves
     freely.
@@ -78,7 +81,9 @@ def _turn(result: OpenCheck, physics: Physics, joint: Joint) -> None:
         if endless
         else f"Write lower and upper in radians: {degrees} if they are degrees.",
         severity=Severity.NOTE
-        if joint.endless or width < _FEW_DEGREES  # read as degrees it would hardly move: wrists are published so wide
+        if joint.endless
+        or width > _BOUNDLESS
+        or width < _FEW_DEGREES  # read as degrees it would hardly move: wrists are published so wide
         else Severity.WARNING
         if endless or width <= settings.widest_turn
         else Severity.ERROR,
@@ -107,7 +112,11 @@ def _slide(result: OpenCheck, physics: Physics, joint: Joint) -> None:
         f"The slide {joint.name} moves by {width:g} m"
         + (f", {width / size:.3g} times the size of the model ({size:.3g} m)." if size > 0.0 else "."),
         f"Write lower and upper in metres: {joint.lower / 1000:g} and {joint.upper / 1000:g} if they are millimetres.",
-        severity=Severity.ERROR if size > 0.0 and width > settings.slide_wrong * size else Severity.WARNING,
+        severity=Severity.NOTE
+        if width > _BOUNDLESS
+        else Severity.ERROR
+        if size > 0.0 and width > settings.slide_wrong * size
+        else Severity.WARNING,
         joint=joint.name,
         link=joint.child,
         value=width,

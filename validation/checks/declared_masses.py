@@ -1,4 +1,4 @@
-"""KV201 to KV203, KV206 and KV209: is there a mass, and can it be the true one."""
+"""KV201 to KV203 and KV206: is there a mass, and can it be the true one."""
 
 from __future__ import annotations
 
@@ -160,8 +160,8 @@ def implausible_masses(result: OpenCheck, physics: Physics) -> None:
 )
 def implausible_densities(result: OpenCheck, physics: Physics) -> None:
     """The mass of a body over the volume of its hull is not above `dense` (an error above `impossibly_dense`), and
-    over the volume inside its surfaces not below `light`. Of a body below `marker` of the model's size it is a note:
-    such shapes mark frames and sensors.
+    over the volume inside its (visible) surfaces not below `light`. Of a body below `marker` of the model's size it is
+    a note: such shapes mark frames and sensors.
 
     Why it matters: The mass or the unit of the meshes is wrong, and with it every force.
 
@@ -173,7 +173,8 @@ def implausible_densities(result: OpenCheck, physics: Physics) -> None:
         room = body.room
         if room is None or body.mass <= 0.0 or room.diagonal <= 0.0:
             continue
-        heavy, light = body.mass / room.hull.volume, body.mass / _largest_volume(room)
+        seen = body.placed({link.name: physics.visual[link.name] for link in body.links if link.name in physics.visual})
+        heavy, light = body.mass / room.hull.volume, body.mass / _largest_volume(seen or room)
         marker = room.diagonal <= settings.marker * physics.diagonal
         if heavy > settings.dense:
             certain = heavy > settings.impossibly_dense
@@ -202,39 +203,3 @@ def _density(result: OpenCheck, body: Body, density: float, limit: float, severi
         unit="kg/m3",
         line=body.heaviest.line,
     )
-
-
-@check(
-    "KV209",
-    title="Neighbours have comparable masses",
-    fails="A light link carries a heavy one",
-    severity=Severity.WARNING,
-    cause=Cause.PHYSICS,
-    follows={"KV203": CauseScope.BODY, "KV206": CauseScope.BODY},
-    needs=(
-        something_moves,
-        something_weighs,
-    ),
-)
-def steep_mass_ratios(result: OpenCheck, physics: Physics) -> None:
-    """No body that moves carries one that is more than `mass_ratio` times as heavy.
-
-    Why it matters: Solvers need tiny time steps for a heavy body on a light one, or shake.
-
-    Remedy: Check both masses.
-    """
-    # a light body on a heavy one is harmless in joint coordinates
-    for body in physics.bodies:
-        if body.joint is None:
-            continue
-        parent = physics.body_of[physics.model.joint_by_name[body.joint].parent]
-        if parent.moves and body.mass > physics.settings.mass_ratio * parent.mass > 0.0:
-            result.find(
-                f"The joint {body.joint} carries {body.mass:.3g} kg ({body.called}) on {parent.mass:.3g} kg "
-                f"({parent.called}), a ratio of {body.mass / parent.mass:.0f}.",
-                "Check both masses; give the light link a mass nearer to that of its neighbour.",
-                joint=body.joint,
-                link=parent.called,
-                value=body.mass / parent.mass,
-                limit=physics.settings.mass_ratio,
-            )

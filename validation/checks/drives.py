@@ -128,28 +128,25 @@ def _dynamics(result: OpenCheck, joint: Joint, name: str, value: float, limit: f
 )
 def weak_drives(result: OpenCheck, physics: Physics) -> None:
     """The torque or force of gravity at a joint, the worst of rest and some sampled configurations with the root fixed
-    and gravity along -z, is below its effort; within a factor of `margin` it is a note.
+    and gravity along -z, is below its effort.
 
     Why it matters: A joint that cannot hold its load sags in every controlled simulation.
 
     Remedy: Check the masses beyond the joint and its effort.
     """
-    settings = physics.settings
     for joint in physics.model.leaders:
         load, q = physics.worst_loads.get(joint.name, (0.0, {}))
-        if not joint.effort or joint.effort <= 0.0 or load <= 0.0 or load * settings.margin <= joint.effort:
+        if not joint.effort or joint.effort <= 0.0 or load <= joint.effort:
             continue
         unit = "N m" if joint.kind.turns else "N"
-        margin = joint.effort / load
         result.find(
             f"The joint {joint.name} must hold up to {load:.3g} {unit} against gravity with an effort of "
             f"{joint.effort:g} {unit}, at {_shown(q)}.",
             "Check the masses beyond this joint and its effort; take gravity along -z of the root link.",
-            severity=Severity.WARNING if margin < 1.0 else Severity.NOTE,
             joint=joint.name,
             link=joint.child,
-            value=margin,
-            limit=settings.margin,
+            value=joint.effort / load,
+            limit=1.0,
             line=joint.line,
         )
 

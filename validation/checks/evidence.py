@@ -1,4 +1,4 @@
-"""KV340 to KV349: does the geometry of two links explain the joint between them?
+"""KV344 to KV349: does the geometry of two links explain the joint between them?
 
 KV344 is an opinion and always a note, for people build doors that no rule has seen. It is asked only of joints that a
 sweep doubts or whose contact opens, for it takes most of the time. One cause, one finding: a joint with the wrong
@@ -19,44 +19,8 @@ if TYPE_CHECKING:
     from kinematify.validation.check import OpenCheck
     from kinematify.validation.evidence.case import JointCase
 
-_NAMED = 8
-"""Joints that one finding names."""
 _SWEPT = ("KV310", "KV311", "KV312", "KV320")
 """What exact sweeps measure of one joint: with a part that lifts off, two facts about one axis, and an error."""
-
-
-@check(
-    "KV340",
-    title="The axes run along the parts",
-    fails="Several axes are off the parts by the same few degrees",
-    severity=Severity.WARNING,
-    cause=Cause.KINEMATICS,
-)
-def askew_together(result: OpenCheck, case: JointCase) -> None:
-    """Fewer than evidence.askew_joints axes, or evidence.askew_share of all, run between evidence.askew_deg and
-    evidence.unknown_deg off every direction that their bodies show, all by the same angle (evidence.askew_spread). It
-    is one finding, for it has one cause.
-
-    Why it matters: Drawers whose guides are turned by some degrees against their boxes rub, and a policy that was
-    trained with them pulls askew.
-
-    Remedy: Look for one rotation that was written by hand or rounded, in the axes or in the <origin> of the meshes.
-    """
-    askew = case.askew
-    if len(askew) < case.settings.askew_joints or askew[0] is not case.measures:
-        return
-    names = [item.joint.source for item in askew]
-    angle = float(np.median([item.angle for item in askew]))
-    _doubt(
-        result,
-        case,
-        f"The axes of {len(askew)} joints run about {angle:.2g} deg off every direction that their bodies show: "
-        f"{', '.join(names[:_NAMED])}{', ...' if len(names) > _NAMED else ''}.",
-        "Turn the axes, or the meshes, by that angle; one rotation that was rounded or written by hand explains all.",
-        value=angle,
-        limit=case.settings.askew_deg,
-        unit="deg",
-    )
 
 
 @check(
@@ -65,7 +29,7 @@ def askew_together(result: OpenCheck, case: JointCase) -> None:
     fails="The shapes suggest another joint",
     severity=Severity.NOTE,
     cause=Cause.KINEMATICS,
-    follows={"KV303": CauseScope.JOINT, "KV350": CauseScope.BODY},
+    follows={"KV303": CauseScope.JOINT},
 )
 def shapes_suggest_another(result: OpenCheck, case: JointCase) -> None:
     """What the inference holds of a joint that a sweep doubts or whose contact opens; the first of these that is not so

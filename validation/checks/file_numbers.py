@@ -116,7 +116,7 @@ def _huge(result: OpenCheck, field: NumberField, value: float, limit: float) -> 
             if drive
             else "Write the true value; all lengths are in metres."
         ),
-        severity=Severity.WARNING if drive or endless else None,
+        severity=Severity.NOTE if endless else Severity.WARNING if drive else None,
         cause=cause_of(field.element),
         joint=field.joint,
         link=field.link,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from lxml import etree
 
 from kinematify.robot.urdf_numbers import line_of
-from kinematify.robot.urdf_text import has_doctype
+from kinematify.robot.urdf_text import has_doctype, undeclared_prefixes
 from kinematify.validation.check import check
 from kinematify.validation.document import finite_numbers, shown
 from kinematify.validation.finding import Cause, Severity
@@ -232,7 +232,7 @@ def _displaced(result: OpenCheck, child: _Element, parent: _Element) -> None:
 @check("KV106", title="Elements are known", fails="Elements are unknown", severity=Severity.NOTE, cause=Cause.ASSET)
 def unknown_elements(result: OpenCheck, urdf: Urdf) -> None:
     """Elements that neither URDF nor the usual extensions define are counted by kind, and definitions of xacro that
-    nothing calls.
+    nothing calls; prefixes of vendors (`drake:`) are declared.
 
     Why it matters: A tag with a typing mistake is ignored in silence, with all that it says.
 
@@ -251,6 +251,12 @@ def unknown_elements(result: OpenCheck, urdf: Urdf) -> None:
             "Delete them; readers of robots ignore them.",
             value=len(left),
             line=line_of(left[0]),
+        )
+    if undeclared := b", ".join(undeclared_prefixes(urdf.text)).decode():
+        result.find(
+            f"Prefixes are used that the file does not declare: {undeclared}. Readers of robots pass over them, strict "
+            "readers of XML refuse the file.",
+            'Declare each of them at <robot>, as in xmlns:NAME="urn:NAME".',
         )
     for (parent_tag, tag), elements in found.items():
         close = next((known for known in _CHILDREN[parent_tag] if known.lower() == tag.lower()), None)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.validation.asset.slips import slip_of
 from kinematify.validation.check import check
 from kinematify.validation.checks.shared import something_weighs
 from kinematify.validation.finding import Cause, Severity
@@ -89,8 +90,14 @@ def _moments(inertial: Inertial) -> str:
 
 
 def _better_tensor(body: Body, link: Link) -> str:
-    """That of a box with the extents of the geometry, which is never far from the truth."""
+    """The entry that a power of ten repairs, else a box with the extents of the geometry, never far from the truth."""
     room = body.rooms.get(link.name)
+    slip = None if link.inertial is None else slip_of(link.inertial, room)
+    if slip is not None:
+        return (
+            f'Write {slip.entry}="{slip.right:.6g}" in place of {slip.given:.6g}: of all entries and powers '
+            "of ten this one alone makes it fit the geometry; kinematify fix writes it."
+        )
     mass = link.inertial.mass if link.inertial is not None else 0.0
     if room is None or mass <= 0.0:
         return "Compute it from the geometry, or write that of a small ball: 0.4 times mass times radius squared."

@@ -1,4 +1,4 @@
-"""KV230 and KV350: linkages that close."""
+"""KV230: linkages that close."""
 
 from __future__ import annotations
 
@@ -12,10 +12,8 @@ from kinematify.validation.check import check
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
-    from kinematify.robot.linkage import Linkage
     from kinematify.validation.asset.rigid_bodies import Physics
     from kinematify.validation.check import OpenCheck
-    from kinematify.validation.evidence.loop_pins import SharedPin
 
 
 _SAMPLES = 25
@@ -38,7 +36,7 @@ def something_closes(physics: Physics) -> str | None:
 def loops_close(result: OpenCheck, physics: Physics) -> None:
     """Both ends of a loop joint (`drake:ball_constraint`, `loop_joint`) coincide within physics.loop_gap of the model's
     size, at rest and while each joint that leads goes through its range with the others at rest, and the joints that
-    the loop holds can move. It is a note where a joint stops the linkage before its driver is at its end.
+    the loop holds can move.
 
     Why it matters: An engine pulls an open loop together by force, and a linkage works against its own stops.
 
@@ -75,62 +73,3 @@ def loops_close(result: OpenCheck, physics: Physics) -> None:
                 limit=allowed,
                 unit="m",
             )
-    for linkage in found:
-        if linkage.driver is not None:
-            _stops(result, physics, linkage)
-
-
-def _stops(result: OpenCheck, physics: Physics, linkage: Linkage) -> None:
-    """Note a passive joint that ends the motion well before the driver's own limit."""
-    driver = physics.model.joint_by_name[linkage.driver or ""]
-    reached = linkage.curve[:, linkage.joints.index(driver.name)]
-    for end, got, stop in zip((driver.lower, driver.upper), reached[[0, -1]].tolist(), linkage.stops, strict=True):
-        short = abs(end - got)
-        if stop in linkage.joints and stop != driver.name and short > _SHORT * (driver.upper - driver.lower):
-            result.find(
-                f"The linkage of {', '.join(linkage.loops)} is stopped by {stop} where {driver.name} is at {got:.3g}, "
-                f"before its limit {end:.3g}.",
-                "Let all joints of the linkage reach their limits at once.",
-                severity=Severity.NOTE,
-                joint=stop,
-                value=got,
-                limit=end,
-                unit="rad" if driver.kind.turns else "m",
-            )
-
-
-_SHORT = 0.02
-"""Share of the driver's range."""
-
-
-@check(
-    "KV350",
-    title="Links that share a pin are joined there",
-    fails="A linkage is open where two links share a pin",
-    severity=Severity.NOTE,
-    cause=Cause.KINEMATICS,
-)
-def open_linkage(result: OpenCheck, pin: SharedPin) -> None:
-    """Two links that no joint joins, and that are both round about one line where they touch (topology.pin_score), do
-    not come apart there by more than topology.pin_opens of the model's size when a joint moves alone.
-
-    Why it matters: A URDF is a tree: of the loop of a gripper or a four-bar linkage one pin is missing, and in an
-    engine the linkage hangs open there.
-
-    Remedy: Close it where the engine can: an <equality><connect> in
-    MuJoCo, createConstraint in PyBullet; or let the passive joints of the loop follow the driven one with <mimic>.
-    """
-    first, second = pin.links
-    axis, place = (", ".join(f"{value:.3f}" for value in vector) for vector in (pin.line.axis, pin.line.pivot))
-    result.find(
-        f"{first} and {second} share a pin, and no joint joins them there: moving {pin.joint} alone pulls it apart by "
-        f"{pin.opens:.3g} m. It looks like a linkage that closes there.",
-        f"Close the loop in the engine at ({place}) about ({axis}), world frame at rest, or let the passive joints "
-        "follow the driven one with <mimic>.",
-        joint=pin.joint,
-        pair=pin.links,
-        q={pin.joint: pin.value},
-        value=pin.opens,
-        limit=pin.allowed,
-        unit="m",
-    )

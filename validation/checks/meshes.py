@@ -166,48 +166,22 @@ def degenerate_faces(result: OpenCheck, look: MeshContext) -> None:
             )
 
 
-@check("KV155", title="Meshes are closed", fails="A mesh has open edges", severity=Severity.NOTE, cause=Cause.ASSET)
-def open_meshes(result: OpenCheck, look: MeshContext) -> None:
-    """Mesh files that do not enclose a volume are counted.
-
-    Why it matters: Volumes, masses and signed distances of open meshes are estimates.
-
-    Remedy: Close the holes if masses are to be computed from the meshes.
-    """
-    open_files = [(file, quality) for file, quality in look.measured if not quality.closed]
-    result.measured["open_meshes"] = len(open_files)
-    if open_files:
-        file, quality = max(open_files, key=lambda item: item[1].open_edges)
-        result.find(
-            f"{len(open_files)} of {len(look.measured)} mesh files do not enclose a volume; the mesh {file.called} has "
-            f"{quality.open_edges} open edges. Volumes and masses computed from them are estimates.",
-            "Close the holes if masses are to be computed from the meshes.",
-            link=file.first.link,
-            line=file.first.line,
-            value=quality.open_edges,
-            limit=0,
-        )
-
-
 @check(
     "KV156",
     title="Triangles face outward",
-    fails="Triangles face inward or share edges",
+    fails="Triangles face inward",
     severity=Severity.WARNING,
     cause=Cause.ASSET,
 )
 def inward_faces(result: OpenCheck, look: MeshContext) -> None:
     """No closed collision mesh is inside out; triangles with a twin that faces the other side make sheets that are seen
-    from both, and have no inside. Edges at which triangles face opposite sides, or with more than two triangles, are
-    counted in a note.
+    from both, and have no inside.
 
     Why it matters: A mesh that is inside out has a negative volume, which MuJoCo refuses; some viewers show it
     hollow.
 
-    Remedy: Flip the normals and split surfaces that share edges.
+    Remedy: Flip the normals.
     """
-    torn = [(file, q) for file, q in look.measured if q.opposed_edges + q.branched_edges]
-    result.measured["torn_meshes"] = len(torn)
     for file, quality in look.measured:
         solid = quality.closed and quality.thickness > look.settings.flat * quality.diagonal
         solid &= quality.twins < quality.faces - quality.degenerate
@@ -219,19 +193,6 @@ def inward_faces(result: OpenCheck, look: MeshContext) -> None:
                 link=file.first.link,
                 line=file.first.line,
             )
-    if torn:
-        file, quality = max(torn, key=lambda item: item[1].opposed_edges + item[1].branched_edges)
-        result.find(
-            f"{len(torn)} of {len(look.measured)} mesh files are no clean surfaces; the mesh {file.called} has "
-            f"{quality.opposed_edges} edges at which triangles face opposite sides and {quality.branched_edges} with "
-            "more than two triangles.",
-            "Make the faces point outward and split surfaces that share edges, if masses are to be computed from them.",
-            severity=Severity.NOTE,
-            link=file.first.link,
-            line=file.first.line,
-            value=quality.opposed_edges + quality.branched_edges,
-            limit=0,
-        )
 
 
 @check(

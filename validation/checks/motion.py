@@ -114,6 +114,8 @@ def into_others(result: OpenCheck, motion: JointMotion) -> None:
     """
     sweep = motion.sweep
     meetings = [m for side in sweep.sides for m in side.meetings if m.pair not in sweep.own and m.inside]
+    look, leader = motion.look, sweep.leader
+    meetings = [meeting for meeting in meetings if not look.is_disabled(meeting.pair, {leader: meeting.at})]
     found = [meeting for meeting in meetings if motion.counts(meeting)]
     if not found:
         return

@@ -84,14 +84,15 @@ def _overlap(
         joint is None and look.shown(rest.pair) and min(rest.depth, seen) > look.scene.settings.wrong * look.scene.size
     )
     said = UNSEEN if look.clear(rest.pair, {}) else BARELY
+    left_out = look.is_disabled(rest.pair, {})
     result.find(
-        f"{message} {said}" if unseen else message,
+        (f"{message} {said}" if unseen else message) + " The SRDF leaves this pair out." * left_out,
         SLIMMER
         if unseen
         else "Correct the mesh or its <origin>, or cut the parts so that they only touch; the overlap is tolerated "
         f"in all later checks.{_start(look, rest.pair)}",
         cause=Cause.PHYSICS if unseen else None,
-        severity=Severity.ERROR if wrong else Severity.WARNING,
+        severity=Severity.NOTE if left_out else Severity.ERROR if wrong else Severity.WARNING,
         joint=joint,
         pair=look.links_at(rest.pair, {}),
         q=configuration(look.scene, {}),

@@ -1,4 +1,4 @@
-"""KV331 and KV333: several joints at once, and joints of twins."""
+"""KV333: joints of twins."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.check import CauseScope, check
+from kinematify.validation.check import check
 from kinematify.validation.checks.shared import joints_move
 from kinematify.validation.finding import Cause, Severity, not_finished
-from kinematify.validation.geometry.formatting import configuration
 from kinematify.validation.geometry.mirror_pairs import twins_at_odds
 
 if TYPE_CHECKING:
@@ -21,48 +20,6 @@ if TYPE_CHECKING:
 def _two_joints(look: GeometryContext) -> str | None:
     late = None if look.left is None else not_finished(f"time ran out before {look.left}")
     return late or ("only one joint moves" if len(look.scene.travels) < 2 else None)
-
-
-@check(
-    "KV331",
-    title="Configurations of all joints are free",
-    fails="Configurations of all joints collide",
-    severity=Severity.WARNING,
-    cause=Cause.KINEMATICS,
-    follows={"KV301": CauseScope.PAIR, "KV311": CauseScope.PAIR},
-    needs=(joints_move, lambda look: not_finished("time ran out before it") if look.random is None else None),
-)
-def free_configurations(result: OpenCheck, look: GeometryContext) -> None:
-    """Quasi-random configurations of all joints (geometry.random_rows of a Latin hypercube); the share that is free is
-    measured. A warning only if none is.
-
-    Why it matters: Sampling planners and random resets need free configurations.
-
-    Remedy: Check limits and parents if hardly any is free.
-    """
-    assert look.random is not None
-    meeting = look.random.meeting
-    hit = meeting.any(axis=1)
-    result.measured["free_share"] = float((~hit).mean())
-    if not hit.any():
-        return
-    share = meeting.mean(axis=0)
-    column = int(share.argmax())
-    row = int(meeting[:, column].argmax())
-    standing = dict(enumerate(look.random.rows[row].tolist()))
-    first, second = look.links_at(look.scene.pairs[column], standing)
-    none = bool(hit.all())
-    result.find(
-        f"{(~hit).sum()} of {hit.size} quasi-random configurations are free of self-collision; most often, in "
-        f"{share[column]:.0%}, {first} and {second} meet.",
-        "A model that can hardly move without self-collision has wrong limits or a wrong parent."
-        if none
-        else "Nothing to do; planners must check self-collision.",
-        severity=Severity.WARNING if none else Severity.NOTE,
-        pair=(first, second),
-        q=configuration(look.scene, standing),
-        value=float((~hit).mean()),
-    )
 
 
 @check(

@@ -155,14 +155,6 @@ class JointCase:
         return self.lines_judged and self.measures.angle > self.settings.unknown_deg
 
     @property
-    def askew(self) -> list[JointMeasures]:
-        """Joints whose axes run along what the bodies show but for the same few degrees."""
-        found = [item for item in self.every if self.settings.askew_deg < item.angle <= self.settings.unknown_deg]
-        middle = np.median([item.angle for item in found]) if found else 0.0
-        same = [item for item in found if abs(item.angle - middle) <= self.settings.askew_spread]
-        return same if len(same) >= self.settings.askew_share * len(self.every) else []
-
-    @property
     def misplaced(self) -> bool:
         """The axis runs far beside every line along its direction that the two bodies show."""
         if self.measures.slides or not self.lines_judged or self.unexplained:

@@ -15,10 +15,7 @@ from kinematify.validation.formats.report_content import (
     block_of,
     check_table,
     family_table,
-    is_pair_note,
     joint_table,
-    number,
-    pair_note_table,
     summary_words,
     title,
 )
@@ -30,7 +27,6 @@ if TYPE_CHECKING:
     from kinematify.validation.finding import Finding
     from kinematify.validation.run.outcome import Outcome
     from kinematify.validation.run.report import ValidationReport
-    from kinematify.validation.summary import PairSummary
 
 _PNG_SIZES = slice(16, 24)
 """Where the first chunk of a PNG has width and height."""
@@ -74,24 +70,19 @@ def _model(index: int, outcome: Outcome, picture: bytes, scene: str) -> dict[str
     if isinstance(outcome, Unusable):
         return {"index": index, "outcome": outcome, "unusable": True, "counts": ("", "", "")}
     counts = severity_counts(outcome)
-    groups = [item for item in outcome.groups if not is_pair_note(item)]
-    pairs = outcome.pairs.pairs if outcome.pairs is not None and len(outcome.pairs.bodies) > 1 else None
-    known = [(item.pair, _pair(item)) for item in pairs or ()]
     return {
         "index": index,
         "outcome": outcome,
         "unusable": False,
         "counts": [counts.get(severity, 0) for severity in Severity],
         "summary": summary_words(outcome),
-        "blocks": [(block_of([item]), _shown(outcome, item.finding) if scene else "") for item in groups],
+        "blocks": [(block_of([item]), _shown(outcome, item.finding) if scene else "") for item in outcome.groups],
         "scene": scene.replace("<", "\\u003c"),  # a name must not be able to end the script
         "sliders": [joint for joint in json.loads(scene)["joints"] if joint["mimic"] is None] if scene else [],
         "picture": base64.b64encode(picture).decode("ascii"),
         "extent": struct.unpack(">II", picture[_PNG_SIZES]) if len(picture) >= _PNG_SIZES.stop else None,
         "families": family_table(outcome),
         "joints": joint_table(outcome),
-        "pairs": None if pairs is None else {ends: facts for pair, facts in known for ends in (pair, pair[::-1])},
-        "notes": pair_note_table(outcome),
         "checks": check_table(outcome),
         "environment": json.dumps(outcome.as_json()["environment"], indent=2),
     }
@@ -109,19 +100,3 @@ def _shown(report: ValidationReport, finding: Finding) -> str:
 def _place(q: Mapping[str, float], links: Iterable[str], joint: str | None = None) -> str:
     """Return a configuration, and links or what a joint moves, which the viewer marks, as JSON."""
     return json.dumps({"q": q, "links": list(links), "joint": joint})
-
-
-def _pair(item: PairSummary) -> dict[str, Any]:
-    """Why two bodies touch and where they meet, in a letter, in words and for the viewer."""
-    met = [f"meet while {joint} moves, from {number(value)}" for joint, value, _ in item.meets]
-    reason = item.reason or ""
-    letter = "J" if reason.startswith("joined") else "R" if reason.startswith("in contact at") else "A" * bool(reason)
-    return {
-        "meets": item.meets,
-        "why": "; ".join([*([reason] if reason else []), *met]),
-        "letter": letter + "M" * bool(item.meets),
-        "at_rest": number(1e3 * item.at_rest),
-        "tolerated": number(1e3 * item.tolerated),
-        "deeper": number(1e3 * max((depth for _, _, depth in item.meets), default=0.0)),
-        "shown": _place({joint: value for joint, value, _ in item.meets[:1]}, item.pair),
-    }

@@ -135,18 +135,6 @@ def check_table(report: ValidationReport) -> Table:
     return Table(headings=("check", "status", "seconds", "remark"), rows=rows)
 
 
-def is_pair_note(item: FindingGroup) -> bool:
-    """True if a finding is a note on a pair, such as why it may touch: often hundreds, so no block each."""
-    return item.finding.severity is Severity.NOTE and item.finding.pair is not None and not item.consequences
-
-
-def pair_note_table(report: ValidationReport) -> Table:
-    """Notes on pairs."""
-    notes = [item.finding for item in report.groups if is_pair_note(item)]
-    rows = [(where(note), title(note), measure(note), note.message) for note in notes]
-    return Table(headings=("pair", "check", "measured", "reason"), rows=rows)
-
-
 def alternative(joint: JointSummary) -> str:
     """The joint that would explain the geometry better, in a few words; a dash if there is none."""
     better = joint.best_alternative

@@ -5,7 +5,6 @@ The FCL trees and signed distances of the bodies are built once and shared by al
 
 from __future__ import annotations
 
-from collections import defaultdict
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -20,7 +19,6 @@ from kinematify.geometry.together import looked_at, random_rows
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import transformed
 from kinematify.validation.geometry.formatting import in_document_order
-from kinematify.validation.summary import PairSummary, PairTable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -49,6 +47,7 @@ class GeometryContext:
         seed: int = 0,
         in_time: Callable[[], bool] = lambda: True,
         compare_visible: bool = False,
+        disabled: Mapping[frozenset[str], str] | None = None,
     ) -> None:
         """Keep what is looked at.
 
@@ -57,13 +56,15 @@ class GeometryContext:
             seed: Of the quasi-random configurations.
             in_time: False from when on no further joint may be begun.
             compare_visible: Measure the visual geometry as well where it is another one.
+            disabled: Pairs of links that the SRDF leaves out, with its reason.
         """
         self.scene = scene
         self.overlap = OverlapQueries(scene)
         self.allowance = DepthAllowance(scene, self.overlap)
         self.sweeper = Sweeper(scene, self.overlap, self.allowance)
         self.in_time = in_time
-        self._seed, self._compare_visible = seed, compare_visible
+        self.seed, self._compare_visible = seed, compare_visible
+        self.disabled = disabled or {}
 
     @cached_property
     def visible(self) -> GeometryContext | None:
@@ -98,6 +99,10 @@ class GeometryContext:
     def felt_by_engines(self, pair: Pair) -> bool:
         """True if engines collide two bodies by default: neighbours pass each other, but for those of the base."""
         return pair not in self.scene.connection_of or self.scene.bodies[pair[0]].group == 0
+
+    def is_disabled(self, pair: Pair, values: Mapping[int, float]) -> bool:
+        """True if the SRDF leaves out the two links of two bodies that meet; see `links_at`."""
+        return bool(self.disabled) and frozenset(self.links_at(pair, values)) in self.disabled
 
     def thickness(self, pair: Pair) -> float:
         """Thickness of the thinner of two bodies [m]: no penetration is deeper."""
@@ -150,7 +155,7 @@ class GeometryContext:
         """Quasi-random configurations; None where no joint moves or time is up."""
         if not self.scene.travels or not self.in_time():
             return None
-        return looked_at(self.scene, self.overlap, self.allowance, random_rows(self.scene, self._seed))
+        return looked_at(self.scene, self.overlap, self.allowance, random_rows(self.scene, self.seed))
 
     @cached_property
     def allowed(self) -> dict[Pair, Reason]:
@@ -207,26 +212,6 @@ class GeometryContext:
     @cached_property
     def _overlap_of_links(self) -> OverlapQueries:
         return OverlapQueries(self._links_apart)
-
-    def pair_table(self) -> PairTable:
-        """Return what is known of every pair that touches at rest or meets while one joint moves."""
-        meets: dict[Pair, list[tuple[str, float, float]]] = defaultdict(list)
-        for sweep in self.sweeps:
-            for meeting in (meeting for side in sweep.sides for meeting in side.meetings if meeting.inside):
-                meets[meeting.pair].append((sweep.travel.joint, meeting.first, meeting.depth))
-        return PairTable(
-            bodies=tuple(body.name for body in self.scene.bodies),
-            pairs=tuple(
-                PairSummary(
-                    pair=in_document_order(self.scene.model, *self.scene.name(pair)),
-                    reason=self.allowed[pair].value if pair in self.allowed else None,
-                    at_rest=self.allowance.at_rest(pair),
-                    tolerated=self.allowance.at_rest(pair) + self.allowance.tolerance(pair),
-                    meets=tuple(meets.get(pair, ())),
-                )
-                for pair in sorted({*self.allowed, *meets})
-            ),
-        )
 
 
 def allowed_pairs(scene: Scene, allowance: DepthAllowance, random: JudgedConfigurations | None) -> dict[Pair, Reason]:
@@ -415,18 +400,19 @@ class JointMotion:
         return {}
 
     def clearable(self, meeting: Meeting) -> bool:
-        """True if some other joint at one of its ends keeps the two apart where they are deepest."""
+        """True if the other joints between the two keep them apart somewhere, where this one brings them deepest."""
         scene = self.scene
-        rows = []
-        for leader in scene.between(meeting.pair) - {self.sweep.leader}:
-            for end in (scene.travels[leader].lower, scene.travels[leader].upper):
-                row = scene.mechanism.rest.copy()
-                row[self.sweep.leader], row[leader] = meeting.at, end
-                rows.append(row)
-        if not rows:
+        others = sorted(scene.between(meeting.pair) - {self.sweep.leader})
+        if not others:
             return False
+        spread = random_rows(scene, self.look.seed)
+        rows = np.tile(scene.mechanism.rest, (2 * len(others) + len(spread), 1))
+        for number, leader in enumerate(others):  # one at one of its ends, or all anywhere
+            rows[2 * number : 2 * number + 2, leader] = scene.travels[leader].lower, scene.travels[leader].upper
+        rows[2 * len(others) :, others] = spread[:, others]
+        rows[:, self.sweep.leader] = meeting.at
         overlap, allowance = self.look.overlap, self.look.allowance
-        T = relative(scene.poses(np.array(rows)), meeting.pair)
+        T = relative(scene.poses(rows), meeting.pair)
         hit = overlap.collide(meeting.pair, T) | overlap.may_contain(meeting.pair, T)
         if not hit.all():
             return True

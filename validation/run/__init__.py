@@ -39,7 +39,7 @@ from kinematify.validation.run.needs import (
 from kinematify.validation.run.recorder import Recorder
 from kinematify.validation.run.report import ValidationReport, environment
 from kinematify.validation.stage import StageRequest
-from kinematify.validation.summary import JointSummary, PairTable
+from kinematify.validation.summary import JointSummary
 from kinematify.validation.validated_file import ValidatedFile
 from kinematify.versions import require
 
@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     from kinematify.validation.finding import Suppression
     from kinematify.validation.isolation import Stage, StageEnd
     from kinematify.validation.run.needs import CheckKey
-    from kinematify.validation.summary import Summary
+    from kinematify.validation.summary import JointSummary
     from kinematify.validation.validated_file import DocumentCopy
 
     Progress = Callable[[str, float], None]
@@ -179,7 +179,6 @@ class _Run:
         self._progress = progress or (lambda stage, fraction: None)
         self._results: dict[CheckKey, CheckResult] = {}
         self._joints: dict[str, JointSummary] = {}
-        self._pairs: PairTable | None = None
         self._why: dict[CheckKey, tuple[Status, str]] = {}
         self._started = time.perf_counter()
 
@@ -320,7 +319,6 @@ class _Run:
             model=str(self.path),
             checks=checks,
             joints=tuple(self._in_order(robot)),
-            pairs=self._pairs,
             environment=facts,
         )
 
@@ -329,11 +327,9 @@ class _Run:
         place = {joint.name: number for number, joint in enumerate(() if robot is None else robot.joints)}
         return sorted(self._joints.values(), key=lambda item: place.get(item.joint, len(place)))
 
-    def _take(self, result: CheckResult | Summary) -> None:
+    def _take(self, result: CheckResult | JointSummary) -> None:
         if isinstance(result, JointSummary):
             self._joints[result.joint] = _merged(self._joints.get(result.joint), result)
-        elif isinstance(result, PairTable):
-            self._pairs = result
         else:
             self._results[result.check, result.engine] = result
 

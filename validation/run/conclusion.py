@@ -57,7 +57,7 @@ def concluded(
 ) -> tuple[CheckResult, ...]:
     """Say what all results mean together.
 
-    What one engine shows of the untouched file is no error where another one has none or did not finish; what is laid
+    What one engine shows of the untouched file is no error where another one has none or gave no answer; what is laid
     to an engine and only one shows is a note then, and a warning where no other engine runs the file.
 
     A cause is as bad as the worst that follows from it, and where it is suppressed, so is what follows. A note is the
@@ -95,7 +95,9 @@ def _agreed(finding: Finding, results: Sequence[CheckResult], named: bool) -> Fi
     }
     same = [result for result in results if result.check == finding.check]
     ran = {result.engine for result in same if result.status in (Status.PASS, Status.FAIL)} - failing
-    late = {result.engine for result in same if result.unfinished and result.status is Status.SKIPPED}
+    opened = [item for item in results if item.check == _OPENS and item.engine and ENGINES[item.engine].runs]
+    shut = {item.engine for item in opened if item.findings and "joints" not in item.measured}
+    late = {item.engine for item in same if item.status is Status.SKIPPED and (item.unfinished or item.engine in shut)}
     works, unknown = ([entry.title for name, entry in ENGINES.items() if name in some] for some in (ran, late))
     alone = finding.cause is Cause.ENGINE and not any(
         other.check == finding.check and other.engine != finding.engine for other in errors
@@ -103,7 +105,7 @@ def _agreed(finding: Finding, results: Sequence[CheckResult], named: bool) -> Fi
     if works:
         said, severity = f" It works in {' and '.join(works)}.", Severity.NOTE if alone else Severity.WARNING
     elif unknown or not named:
-        why = f"{' and '.join(unknown)} did not finish" if unknown else "No other engine was asked"
+        why = f"{' and '.join(unknown)} gave no answer" if unknown else "No other engine was asked"
         said, severity = f" {why}.", Severity.WARNING
     else:
         said, severity = "", Severity.WARNING if alone else Severity.ERROR

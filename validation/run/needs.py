@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from kinematify.validation.finding import CheckResult
     from kinematify.validation.geometry.look import JointMotion
     from kinematify.validation.stage import StageRequest
-    from kinematify.validation.summary import Summary
+    from kinematify.validation.summary import JointSummary
 
     Run = Callable[[StageRequest, Recorder], object]
 
@@ -75,10 +75,16 @@ def geometry(request: StageRequest, recorder: Recorder) -> None:
     """Look at collision at rest and along the motion by exact geometry, without an engine."""
     from kinematify.geometry.scene import colliding_shapes, read_scene
     from kinematify.validation.geometry.look import GeometryContext
+    from kinematify.validation.srdf_file import srdf_of
 
     scene = read_scene(model_of(request), request.settings.geometry, colliding_shapes, thin=True)
+    srdf = srdf_of(request.urdf.resolve(), scene.model.name, scene.model.link_by_name)
     look = GeometryContext(
-        scene, seed=request.settings.seed, in_time=lambda: request.remaining > 0.0, compare_visible=True
+        scene,
+        seed=request.settings.seed,
+        in_time=lambda: request.remaining > 0.0,
+        compare_visible=True,
+        disabled=None if srdf is None else srdf.disabled,
     )
     few = "fewer than two bodies have geometry" if len(scene.bodies) < 2 else None
     fixed = few or (None if scene.travels else "no joint moves")
@@ -96,15 +102,13 @@ def geometry(request: StageRequest, recorder: Recorder) -> None:
     )
     if fixed is None:
         motions()
-        recorder.summarise(look.pair_table())
 
 
 def joints(request: StageRequest, recorder: Recorder) -> None:
-    """Hold each declared joint, and each pin without one, against the contact geometry."""
+    """Hold each declared joint against the contact geometry."""
     from kinematify.config import load_config
     from kinematify.validation.evidence.bodies_at_rest import read_bodies
     from kinematify.validation.evidence.case import JointCase, better_joint
-    from kinematify.validation.evidence.loop_pins import shared_pins
     from kinematify.validation.evidence.measure import measure_joints
 
     robot, seed, settings = model_of(request), request.settings.seed, request.settings.evidence
@@ -112,7 +116,7 @@ def joints(request: StageRequest, recorder: Recorder) -> None:
     bodies = read_bodies(robot, config, seed=seed)
     if bodies is None or not bodies.truth.joints:
         nothing = Subjects(items=tuple, nothing="no joint moves a body with geometry against another one")
-        recorder.run({"JointCase": nothing, "SharedPin": nothing})
+        recorder.run({"JointCase": nothing})
         return
     every = measure_joints(bodies, settings, seed=seed)
     all_cases = (
@@ -121,15 +125,8 @@ def joints(request: StageRequest, recorder: Recorder) -> None:
     )
     cases = [case for case in all_cases if request.remaining and (not case.examined or case.measures.posterior)]
     left = len(every) - len(cases)
-    of_joints, of_pins = f"{left} of the joints", "the pins, and before that some of the joints"
-    recorder.run(
-        {
-            "JointCase": Subjects(items=lambda: cases, left=lambda: of_joints if left else None, counted="joints"),
-            "SharedPin": Subjects(
-                items=lambda: () if left else tuple(shared_pins(bodies, robot)), left=lambda: of_pins if left else None
-            ),
-        }
-    )
+    of_joints = f"{left} of the joints" if left else None
+    recorder.run({"JointCase": Subjects(items=lambda: cases, left=lambda: of_joints, counted="joints")})
     for case in cases:
         joint = robot.joint_by_name[case.measures.joint.source]
         recorder.summarise(summary_of(joint, best_alternative=better_joint(robot, case)))
@@ -171,7 +168,7 @@ def _stage(name: str, run: Run, checks: tuple[CheckKey, ...], *imports: str, lib
     return Stage(name=name, run=partial(_recorded, run), checks=checks, imports=imports, library=library)
 
 
-def _recorded(run: Run, request: StageRequest, tell: Callable[[CheckResult | Summary], None]) -> None:
+def _recorded(run: Run, request: StageRequest, tell: Callable[[CheckResult | JointSummary], None]) -> None:
     """Run a stage in its process."""
     run(request, Recorder(tell, request))
 
@@ -192,11 +189,11 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
 
     The evidence of the contacts, and the untouched file in each engine.
     """
-    parts = ("bodies_at_rest", "case", "measure", "loop_pins")
+    parts = ("bodies_at_rest", "case", "measure")
     evidence = _stage(
         "evidence",
         joints,
-        _told("JointCase", "SharedPin"),
+        _told("JointCase"),
         *(f"kinematify.validation.evidence.{name}" for name in parts),
     )
     return [evidence] + [

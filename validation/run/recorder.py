@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from kinematify.validation.stage import StageRequest
-    from kinematify.validation.summary import Summary
+    from kinematify.validation.summary import JointSummary
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -35,7 +35,7 @@ class Subjects:
 class Recorder:
     """Runs the checks of a stage and passes each result on at once."""
 
-    def __init__(self, tell: Callable[[CheckResult | Summary], None], request: StageRequest) -> None:
+    def __init__(self, tell: Callable[[CheckResult | JointSummary], None], request: StageRequest) -> None:
         """Keep where results go and which checks are wanted."""
         self._tell, self._request = tell, request
         self.fatal: set[str] = set()
@@ -109,7 +109,7 @@ class Recorder:
         if left is not None:
             result.leave(left)
 
-    def summarise(self, summary: Summary) -> None:
+    def summarise(self, summary: JointSummary) -> None:
         """Tell what is known of a joint or a pair; later summaries of the same joint add to earlier ones."""
         self._tell(summary)
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings
     from kinematify.validation.finding import CheckResult, Finding
     from kinematify.validation.run.conclusion import FindingGroup
-    from kinematify.validation.summary import JointSummary, PairTable
+    from kinematify.validation.summary import JointSummary
 
 SCHEMA = 2
 _PACKAGES = (
@@ -37,8 +37,6 @@ class ValidationReport:
     """Path as it was given."""
     checks: tuple[CheckResult, ...]
     joints: tuple[JointSummary, ...] = ()
-    pairs: PairTable | None = None
-    """None if the exact geometry was not looked at."""
     environment: Mapping[str, Any] = field(default_factory=dict)
     """Versions, seed, settings, seconds, and ``interrupted`` if it is partial."""
 
