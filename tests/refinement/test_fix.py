@@ -20,8 +20,8 @@ from kinematify.refinement.repair import Fix, fix
 from kinematify.refinement.urdf_editor import UrdfEditor
 from kinematify.robot.mesh_paths import GLTF_SUFFIXES
 from kinematify.robot.read import read_robot
+from kinematify.simulation.engine_file import Unloadable
 from kinematify.simulation.engines import DEFAULT_ENGINES, load_file
-from kinematify.simulation.raw_model import FloatingLink, Unloadable
 from kinematify.validation.finding import Cause, CheckResult, Finding, Severity, Status
 from kinematify.validation.run.report import ValidationReport
 from kinematify.validation.summary import JointSummary
@@ -49,10 +49,9 @@ def refusals(urdf: Path, engines: Sequence[str]) -> dict[str, str]:
     for engine in engines:
         try:
             load_file(engine, urdf, "", [])
-        except FloatingLink:
-            continue
         except Unloadable as error:
-            found[engine] = str(error)
+            if not error.floats:
+                found[engine] = str(error)
     return found
 
 
