@@ -42,7 +42,7 @@ _SLACK = 1e-3
     needs=(lambda urdf: None if urdf.srdf else "no SRDF lies beside the file",),
 )
 def unknown_names(result: OpenCheck, urdf: Urdf) -> None:
-    """Links, joints and groups that the SRDF beside the file names are there (in its folder, `../srdf` or `../config`,
+    """Links, joints and groups that the SRDF beside the file names are there (in its folder, srdf or config beside it,
     of its name or of its robot's), and its states are within the limits of their joints.
 
     Why it matters: Planners skip a group, or check pairs that were meant to be skipped, with a line in a log.
