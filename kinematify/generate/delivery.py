@@ -110,21 +110,18 @@ def names_called(family: Family, blueprint: Blueprint, noun: str) -> list[str]:
 def _called(family: Family, blueprint: Blueprint, noun: str) -> list[Part]:
     wanted = _joined(noun)
     meant = {wanted, *(_joined(stem) for stem, said in family.part_words.items() if wanted in map(_joined, said))}
-    for parameter in family.parameters:
-        if isinstance(parameter.default, int) and wanted in (names := set(map(_joined, parameter.nouns))):
-            meant |= names
+    if counted := count_parameter(family, noun):
+        meant.update(map(_joined, counted.nouns))
     stems = {part.name: stem_of(part.name) for part in blueprint.parts}
     exact = [part for part in blueprint.parts if _joined(stems[part.name]) in meant]
     ends = [part for part in blueprint.parts if key_of(stems[part.name].replace("_", " "))[-1:] == key_of(noun)]
-    if not (exact or ends):
-        others = _ALIKE.get(wanted, "").split()
-        ends = [part for part in blueprint.parts if _joined(stems[part.name]) in others]
-    if exact or ends or wanted not in _JOINTS:
-        return exact or ends
+    others = _ALIKE.get(wanted, "").split()
+    alike = [part for part in blueprint.parts if _joined(stems[part.name]) in others]
+    if (found := exact or ends or alike) or wanted not in _JOINTS:
+        return found
     moving = [joint.child for joint in blueprint.joints if joint.mimic is None and moves_so(joint, wanted)]
-    carried = {name: carried_by(name, blueprint.joints) for name in moving}
     boxes = {part.name: part.bounds for part in blueprint.parts}
-    room = {name: np.array([boxes[part] for part in found]) for name, found in carried.items()}
+    room = {name: np.array([boxes[part] for part in carried_by(name, blueprint.joints)]) for name in moving}
     sizes = {name: float(np.prod(box[:, 1].max(axis=0) - box[:, 0].min(axis=0))) for name, box in room.items()}
     most = stem_of(max(moving, key=sizes.__getitem__, default=""))
     return [part for part in blueprint.parts if part.name in moving and stem_of(part.name) == most]
@@ -207,7 +204,7 @@ def _values(family: Family, request: Request, faults: list[str]) -> Iterator[tup
         (_size_parameter(family, name), name, size) for name, size in request.size.items()
     ]
     for noun, part in request.parts.items():
-        counted = _count_parameter(family, noun)
+        counted = count_parameter(family, noun)
         if counted is not None and part.count is not None:
             wanted.append((counted.name, f"number of {noun}s", part.count))
         if part.count == 0 and "none" in getattr(known.get(noun.replace(" ", "_")), "choices", ()):
@@ -232,14 +229,15 @@ def _values(family: Family, request: Request, faults: list[str]) -> Iterator[tup
                 faults.append(f"{said}: {str(error).rstrip('.')}")
 
 
-def _count_parameter(family: Family, noun: str) -> Parameter | None:
+def count_parameter(family: Family, noun: str) -> Parameter | None:
+    """Return the parameter that counts parts of a noun; None if there is none."""
     counts = [item for item in family.parameters if isinstance(item.default, int)]
-    return next((item for item in counts if noun in item.nouns or noun.replace(" ", "_") == item.name), None)
+    return next((item for item in counts if key_of(noun) in map(key_of, (*item.nouns, item.name))), None)
 
 
 def _is_detail(family: Family, noun: str, made: Blueprint) -> bool:
     """True if a noun is what a parameter counts or chose, and no part: slots, or bars that are handles of drawers."""
-    parameter = _count_parameter(family, noun)
+    parameter = count_parameter(family, noun)
     if parameter is not None:
         return int(made.parameters[parameter.name]) > 0 and not _called(family, made, noun)
     chosen = {item.name: str(made.parameters[item.name]) for item in family.parameters if item.choices}
@@ -337,10 +335,10 @@ def _adjusted(made: Blueprint, names: Sequence[str], part: PartRequest) -> Bluep
     """An object with the looks, ranges and opening of some parts as asked for, as far as that can be."""
     if part.color or part.material:
         made = looking(made, names, part.material or "", part.color or "")
-    moving = [name for name in names if name in made.joint_above]
+    how = part.motion or "move"
+    moving = [joint.child for joint in _serving(made, names, how)]
     if part.range is not None:
-        wanted = part.motion or "move"
-        made = _ranged(made, [name for name in moving if moves_so(made.joint_above[name], wanted)], part.range)
+        made = _ranged(made, [name for name in moving if moves_so(made.joint_above[name], how)], part.range)
     if part.open is not None:
         made = opened(made, moving, part.open)
     return made
@@ -451,7 +449,7 @@ def part_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str]
         names: Their names.
         part: What is asked.
     """
-    parameter = _count_parameter(family, noun)
+    parameter = count_parameter(family, noun)
     there = len(names)
     if parameter and (there < 2 or (part.count and there > part.count and there % part.count == 0)):
         there = int(made.parameters[parameter.name])  # slots are no parts, and a leg may be two
@@ -473,9 +471,9 @@ def part_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str]
         yield f"not at the {part.side}"
     if part.hinge and not _is_hinged(made, names, part.hinge):
         yield f"not hinged on the {part.hinge}"
-    joints = [made.joint_above[name] for name in names if name in made.joint_above]
     how = part.motion
-    if how and not (joints and all(moves_so(joint, how) or _is_carried_so(made, joint, how) for joint in joints)):
+    joints = list(_serving(made, names, how or "move"))
+    if how and not (joints and all(moves_so(joint, how) for joint in joints)):
         kinds = listed(sorted({joint.kind.value for joint in joints} or {"part of the base"}))
         yield f"{how} was asked for, it is {kinds}"
         return
@@ -486,10 +484,22 @@ def part_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str]
         yield f"it does not open so far; its range is {_ranges(joints)}"
 
 
-def _is_carried_so(made: Blueprint, joint: BlueprintJoint, motion: str) -> bool:
-    """True if what carries a part that turns without end moves so: the fork of a caster."""
-    above = made.joint_above.get(joint.parent)
-    return above is not None and joint.kind is JointType.CONTINUOUS and moves_so(above, motion)
+def _serving(made: Blueprint, names: Sequence[str], motion: str) -> Iterator[BlueprintJoint]:
+    """Joints of parts, or of what carries one that turns without end where that moves so: the fork of a caster."""
+    for joint in (made.joint_above[name] for name in names if name in made.joint_above):
+        above = made.joint_above.get(joint.parent, joint)
+        carried = joint.kind is JointType.CONTINUOUS and not moves_so(joint, motion) and moves_so(above, motion)
+        yield above if carried else joint
+
+
+def stands_in(made: Blueprint, names: Sequence[str], columns: int, rows: int) -> bool:
+    """Return True if parts stand in columns, side by side, and in rows, one above or behind another."""
+    boxes = np.array([part.bounds for part in closed(made).parts if part.name in names])
+    if not len(boxes):
+        return False
+    apart = np.diff(np.sort(boxes.mean(axis=1), axis=0), axis=0) > 0.5 * np.ptp(boxes, axis=1).min(axis=0)
+    along = 1 + apart.sum(axis=0)
+    return bool(along[0] == columns and along[1:].max() == rows)
 
 
 def _size_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str], part: PartRequest) -> Iterator[str]:

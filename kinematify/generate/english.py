@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from kinematify.errors import InputError
 from kinematify.generate.kind_search import key_of, words_of
 from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS
-from kinematify.generate.request import ANGLES, UNITS
+from kinematify.generate.request import ANGLES, UNITS, in_si
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -88,7 +88,8 @@ asks: it they that which can could may to
 both: to_either_side to_both_sides to_each_side in_either_direction in_both_directions in_each_direction each_way
 both: either_way to_either_direction
 place: on at along under to of from into through behind beside near by around inside between
-beside: side_by_side
+beside row: side_by_side in_a_row
+beside column: in_a_column
 lines: row rows
 lines: column columns
 filler: a an the of and to in on at by for from is are be been being can may could must i we you like want need please
@@ -158,7 +159,7 @@ _SPELT = (
 def _meanings() -> dict[str, dict[str, Any]]:
     found: dict[str, dict[str, Any]] = {}
     said = [(name, "color", color) for name, color in COLOR_WORDS.items()]
-    said += [(word, "material", name) for name, item in MATERIALS.items() for word in (name, *item.words)]
+    said += [(word, "material", name) for name, item in MATERIALS.items() for word in (name, *item.words.split())]
     for line in _TABLE.strip().splitlines():
         (what, _, value), words = (head := line.split(": "))[0].partition(" "), head[1].split()
         said += [(word.replace("_", " "), what, value or word) for word in words]
@@ -236,10 +237,7 @@ def _refuse_unreadable(text: str, plain: str) -> None:
 def values_of(text: str) -> list[tuple[float, str]]:
     """Numbers of a text in metres or radians, each with its unit or that of the last one."""
     found = re.findall(rf"([-−]?{_NUMBER})(?: ?({_UNIT})(?![a-z]))?", text)
-    scales = {unit: (scale, si) for units, si in ((UNITS, "m"), (ANGLES, "rad")) for unit, scale in units.items()}
-    last = scales.get(found[-1][1], (1.0, ""))
-    read = [(number, *scales.get(unit, last)) for number, unit in found]
-    return [(scale * float(number.replace(",", ".").replace("−", "-")), si) for number, scale, si in read]
+    return [in_si(number.replace(",", "."), unit or found[-1][1]) for number, unit in found]
 
 
 def vocabulary(family: Family) -> dict[str, dict[str, Any]]:

@@ -113,9 +113,8 @@ def nearest_kinds(text: str, count: int = 5) -> list[Family]:
         count: How many.
     """
     words = list(dict.fromkeys(key_of(text)))
-    scored = {name: max(_scores(words, family)) for name, family in known_families().items()}
-    best = sorted(scored, key=lambda name: (-scored[name], len(name)))
-    return [known_families()[name] for name in best[:count]]
+    families = known_families().values()
+    return sorted(families, key=lambda family: (-max(_scores(words, family)), len(family.name)))[:count]
 
 
 def _scores(words: Sequence[str], family: Family) -> Iterator[float]:

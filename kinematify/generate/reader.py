@@ -9,10 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from pydantic import ValidationError
-
 from kinematify.errors import InputError
-from kinematify.generate.delivery import BuildResult, deliver, moves_so
+from kinematify.generate.delivery import BuildResult, count_parameter, deliver, moves_so, names_called, stands_in
 from kinematify.generate.english import OF_SOME, WORDS, Unit, read_units, values_of, vocabulary
 from kinematify.generate.kind_search import (
     key_of,
@@ -25,13 +23,14 @@ from kinematify.generate.kind_search import (
 )
 from kinematify.generate.procedural.family import checked
 from kinematify.generate.procedural.layout import CELLS
-from kinematify.generate.request import PartRequest, Request
+from kinematify.generate.request import request_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.parameter import Parameter
+    from kinematify.generate.request import Request
 
 _SURELY = words_of("hinge joint front bottom back axle motor bearing floor")
 """Nouns of which nobody can tell that an object has none."""
@@ -56,13 +55,8 @@ def read_sentence(text: str, *, nearest: bool = False) -> Sentence:
     sentence = Sentence(text=text, units=read_units(text))
     sentence.find_kind(nearest=nearest)
     sentence.read()
-    try:
-        sentence.fill()
-        return sentence
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = " of ".join(map(str, reversed(first["loc"])))
-        raise InputError(f"The text {text!r} cannot be built: {where}: {first['msg']}.") from error
+    sentence.fill()
+    return sentence
 
 
 @dataclass(kw_only=True)
@@ -75,6 +69,8 @@ class _Thing:
     """Words."""
     odd: list[str] = field(default_factory=list)
     """Words that are not read."""
+    grid: tuple[int, int] | None = None
+    """Columns and rows in which they are to stand."""
     is_guess: bool = False
     """It may be a part; words not read where the object has none."""
     is_counted: bool = True
@@ -235,14 +231,14 @@ class Sentence:
     def _number(self, k: int) -> int:
         said, after = self._mean(k, "number"), self._text(k + 1)
         count = self.things[self.subject].facts.get("count", 0) if self.subject else 0
-        if self._is(k, "beside") and self._cell(self.subject) and count:
-            self.things[self.subject].facts["grid"] = (count, 1)
+        if line := self._mean(k, "beside"):
+            self._stand(line, self._text(k))
             return k + 1
         if said is None or (self._text(k) == "one" and after in ("", "of", "side", "end")):
             return 0
         value = float(said.replace(",", "."))
         if self._is(k + 1, "lines"):
-            if value and self._cell(self.subject) and count % value == 0:
+            if value and count and count % value == 0:
                 columns = int(value) if after.startswith("column") else int(count / value)
                 self.things[self.subject].facts["grid"] = (columns, count // columns)
             else:
@@ -252,7 +248,17 @@ class Sentence:
             self.waiting.odd.append(self._text(k))
         else:
             self._wait(k, "count", int(value))
+            if self._text(k - 1) == "of" and (line := self._text(k - 2)) in ("row", "column"):
+                self.waiting.facts["grid"] = _grid(line, int(value))
         return k + 1 + (after == "of")
+
+    def _stand(self, line: str, words: str) -> None:
+        """Set the last parts in one row or column."""
+        facts = self._thing(self.subject).facts
+        if count := facts.get("count"):
+            facts["grid"] = _grid(line, count)
+        else:
+            self.waiting.odd.append(words)
 
     # ---- nouns -----------------------------------------------------------------------------------------------------
 
@@ -345,7 +351,7 @@ class Sentence:
         )
 
     def _is_placed(self, k: int) -> bool:
-        places = ("on", "at", "along")
+        places = ("on", "at", "along", "across", "in" if self._is(k + 1, "lines") else "on")
         return self._text(k - 1) in places or (
             self._text(k - 1) in ("the", "its", "their", "either", "each", "both") and self._text(k - 2) in places
         )
@@ -364,7 +370,7 @@ class Sentence:
     def _noun(self, k: int, words: str, *, is_guess: bool) -> None:
         """Read a noun, which may only say where something else is: on the panel."""
         the = self._text(k - 1) in ("the", "its", "their") and "count" not in self.waiting.facts
-        is_place = the and self._is(k - 2, "place") and bool(self.subject)
+        is_place = the and self._is(k - 2, "place where") and bool(self.subject)
         if is_place:
             self._settle(self.subject)
         said, self.waiting, before_name = self.waiting, _Thing(), k < self.start
@@ -474,7 +480,7 @@ class Sentence:
                 )
             if place:
                 self._wait(place, "hinge", self._mean(place, "side"))
-                return place + 1
+                return place + 1 + (self._text(place + 1) in ("side", "edge"))
             self._wait(k, "motion", motion)
         else:
             return 0
@@ -578,7 +584,9 @@ class Sentence:
             return k + 2
         elif word == "underneath" or self._is_placed(k):
             leads = self.fresh or not self.subject
-            step = k + 1 + (after in ("side", "hand", "end", "edge")) + (self._text(k + 2) == "side")
+            step = k + 1 + (after in ("side", "hand", "end", "edge", "row")) + (self._text(k + 2) == "side")
+            if after == "row" and not leads:
+                self._stand(after, "row")
             if leads and not self._noun_follows(step):
                 self.waiting.odd.append(f"on the {word}")
                 return step
@@ -624,16 +632,15 @@ class Sentence:
     def _filler(self, k: int) -> int:
         word = self._text(k)
         if self._is(k, "filler refers stroke lines"):
-            if word == "and" and not self._is(k + 1, "color material where"):
+            if word in ("whose", "which", "that") or (word == "and" and not self._is(k + 1, "color material where")):
                 self._settle()
             if word in ("a", "an"):
                 self.waiting.facts.setdefault("article", True)
-            if word in ("whose", "which", "that"):
-                self._settle()
             self.fresh = self.fresh and (word == "all" or not self._is(k, "refers"))
         elif self._is(k, "where both"):
             moving = any(self._is(j, "motion state where") for j in range(k - 5, k))
-            self.waiting.odd += [] if moving else [word]
+            shape = word == "round" and self._is(k + 1, "color material part")
+            self.waiting.odd += [] if moving and not shape else [word]
         elif not self._is(k, "plain"):
             return 0
         return k + 1
@@ -651,6 +658,10 @@ class Sentence:
         paired = self._text(last) == "and" and self._is_part(behind) and not self._is_read(last + 1)
         paired = paired and "count" not in self.waiting.facts
         follows = self._is_part(last) or paired or (self._is(last, "color material") and self._noun_follows(last + 1))
+        counted = f"{self._text(k - 1)}-{self._text(k)}"
+        if follows and self._is(k - 1, "number") and counted in self.text.lower():  # a three-spoke handle
+            self.waiting.facts.pop("count", None)
+            words = f"{self._text(k - 1)} {words}"
         if expected and not follows and not self._is(k - 1, "verbal") and k >= self.stop:
             self._noun(k, words, is_guess=True)
         else:
@@ -738,7 +749,7 @@ class Sentence:
         for cell, facts in fields:
             count = facts.get("count", counted[cell].default or 2)
             text = f"{count}*{cell}" if count != 1 else cell
-            if grid := facts.pop("grid", None):
+            if grid := facts.get("grid"):
                 row = " | ".join([cell] * grid[0])
                 text = " / ".join([f"({row})" if grid[0] > 1 else cell] * grid[1])
             side = facts.get("side", "")
@@ -768,27 +779,29 @@ class Sentence:
             facts = thing.facts
             if facts.get("count") == 0 and facts.keys() - {"count", "at_least", "row"}:
                 raise InputError(f"The text says that there is no {noun}, and what it is like. Say one.")
-            if facts.pop("grid", None):
-                thing.odd.append(f"grid of {noun}")
+            thing.grid = facts.pop("grid", None)
             row = {"row": rows.index(facts["row"]) + 1} if "row" in facts else {}
             if "range" in facts:
                 *facts["range"], si = facts["range"]
                 if facts.get("motion", "move") == "move":
                     facts["motion"] = "slide" if si == "m" else "hinge"
+                elif (facts["motion"] in ("slide", "lift")) is not (si == "m"):
+                    del facts["range"]
+                    thing.odd.append(" ".join(filter(None, thing.said)))
             if noun and (facts or thing.said):  # not a choice of which nothing else is said
-                parts[noun] = PartRequest.model_validate({**facts, **row})
+                parts[noun] = {**facts, **row}
         named = key_of([unit.text for unit in self.units[self.start : self.stop]])
         usual = next((said for word, said in self.family.kinds.items() if key_of(word) == named), {})
         stated = {*sizes, *(item.name for noun in parts if (item := _counted(self.family, noun)))}
-        request = Request(
-            kind=self.family.name,
-            parameters={**{name: value for name, value in usual.items() if name not in stated}, **self.values},
-            size=sizes,  # type: ignore[arg-type]  # by names of dimensions
-            parts=parts,
-            copies=self.copies,
-            instead_of=self.instead_of,
-        )
-        self.request = request.checked()
+        values = {
+            "kind": self.family.name,
+            "parameters": {**{name: value for name, value in usual.items() if name not in stated}, **self.values},
+            "size": sizes,
+            "parts": parts,
+            "copies": self.copies,
+            "instead_of": self.instead_of,
+        }
+        self.request = request_of(values, source=f"text {self.text!r}")
 
     def made(self, *, seed: int | None = None) -> BuildResult:
         """Build the object and measure it.
@@ -807,10 +820,13 @@ class Sentence:
                 unread.append(" ".join(filter(None, dict.fromkeys([*thing.odd, *thing.said]))))
             elif noun not in made.missing:
                 unread += thing.odd
-        names = (*self.family.words, *(part.name.replace("_", " ") for part in made.blueprint.parts))
-        names += tuple(word for item in self.family.parameters for word in item.nouns)
-        names += tuple(word for said in self.family.part_words.values() for word in said)
-        own = {key for name in names for key in key_of(name)} - {word for word in WORDS if "side" in WORDS[word]}
+                names = names_called(self.family, made.blueprint, noun)
+                if thing.grid and not stands_in(made.blueprint, names, *thing.grid):
+                    listed.append("{}: columns and rows are not {} and {}".format(noun, *thing.grid))
+        known = (*self.family.words, *(part.name.replace("_", " ") for part in made.blueprint.parts))
+        known += tuple(word for item in self.family.parameters for word in item.nouns)
+        known += tuple(word for said in self.family.part_words.values() for word in said)
+        own = {key for name in known for key in key_of(name)} - {word for word in WORDS if "side" in WORDS[word]}
         return replace(
             made,
             differences=(*self.faults, *listed),
@@ -822,8 +838,9 @@ class Sentence:
 
 def _counted(family: Family, noun: str) -> Parameter | None:
     """The parameter that counts parts of a noun, where it may have several values."""
-    for item in family.parameters:
-        names = {key_of(word) for word in (*item.nouns, item.name)}
-        if isinstance(item.default, int) and key_of(noun) in names and item.bounds and item.bounds[0] < item.bounds[1]:
-            return item
-    return None
+    item = count_parameter(family, noun)
+    return item if item and item.bounds and item.bounds[0] < item.bounds[1] else None
+
+
+def _grid(line: str, count: int) -> tuple[int, int]:
+    return (count, 1) if line == "row" else (1, count)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -11,7 +10,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 
 from kinematify.errors import InputError
 from kinematify.generate.described import known_families
-from kinematify.generate.kind_search import words_of
+from kinematify.generate.kind_search import key_of, kind_called, nearest_kinds, words_of
 from kinematify.generate.procedural.blueprint_file import read_values
 from kinematify.generate.procedural.family import checked
 from kinematify.generate.procedural.materials import COLOR_WORDS, COLORS, MATERIALS
@@ -48,10 +47,11 @@ def quantity(text: str) -> tuple[float, str]:
     found = _QUANTITY.fullmatch(text.strip())
     if found is None:
         raise ValueError(f"{text!r} is no number with a unit; write for example 80 cm, 0.8 or 30 deg")
-    return _in_si(found[1], found[2])
+    return in_si(found[1], found[2])
 
 
-def _in_si(number: str, unit: str | None) -> tuple[float, str]:
+def in_si(number: str, unit: str | None) -> tuple[float, str]:
+    """Return a number in metres or radians, with that unit; as it is without one."""
     value = float(number.replace(" ", "").replace("−", "-"))
     if unit in UNITS:
         return value * UNITS[unit], "m"
@@ -67,7 +67,7 @@ def _pair(value: Any) -> Any:
         found = _RANGE.fullmatch(value.strip())
         if found is None:
             raise ValueError(f"{value!r} is no range; write for example -30 to 90 deg, or 0 to 40 cm")
-        return _in_si(found[1], found[3])[0], _in_si(found[2], found[3])[0]
+        return in_si(found[1], found[3])[0], in_si(found[2], found[3])[0]
     return value
 
 
@@ -176,16 +176,12 @@ def find_family(name: str) -> Family:
     Raises:
         InputError: There is none; the message names the nearest.
     """
-    wanted = name.strip().lower().replace(" ", "_").replace("-", "_")
-    families = known_families()
-    words = {word.replace(" ", "_"): key for key, family in families.items() for word in (*family.words, key)}
-    if wanted in families:
-        return families[wanted]
-    if wanted in words:
-        return families[words[wanted]]
-    near = [words[match] for match in difflib.get_close_matches(wanted, words, n=5, cutoff=0.6)]
-    hint = f"Did you mean {' or '.join(dict.fromkeys(near))}?" if near else "kinematify generate --list shows all."
-    raise InputError(f"There is no kind {name!r}. {hint}")
+    words = re.findall(r"[a-z0-9]+", name.lower())
+    family = known_families().get("_".join(words)) or kind_called(key_of(words))
+    if family is None:
+        near = " or ".join(item.name for item in nearest_kinds(" ".join(words), 2))
+        raise InputError(f"There is no kind {name!r}. Did you mean {near}? kinematify generate --list shows all.")
+    return family
 
 
 # ---- from words, files and settings --------------------------------------------------------------------------------
@@ -232,26 +228,21 @@ def with_settings(values: Mapping[str, Any], settings: Mapping[str, str]) -> dic
         values: As in a file.
         settings: ``doors`` for a parameter, ``size.width`` for the whole, ``door.color`` for the parts of a name.
     """
-    known = set(PartRequest.model_fields)
     made = {**values, "parameters": dict(values.get("parameters") or {}), "size": dict(values.get("size") or {})}
     parts = {name: dict(part) for name, part in (values.get("parts") or {}).items()}
     for key, value in settings.items():
-        name, dot, fact = key.partition(".")
-        if key in ("copies",):
+        name, _, fact = key.partition(".")
+        field, _, dimension = fact.partition(".")
+        if key == "copies":
             made[key] = value
-        elif name == "size" and dot:
+        elif name == "size" and fact:
             made["size"][fact] = value
-        elif dot and fact.split(".")[0] in known:
-            field, _, dimension = fact.partition(".")
+        elif field in PartRequest.model_fields:
             part = parts.setdefault(name.replace("_", " "), {})
-            part[field] = {**part.get(field, {}), dimension: value} if dimension else _typed(field, value)
+            part[field] = {**part.get(field, {}), dimension: value} if dimension else value
         else:
             made["parameters"][key] = value
     return {**made, "parts": parts}
-
-
-def _typed(field: str, value: str) -> Any:
-    return value if field not in ("count", "row") else int(value) if value.isdigit() else value
 
 
 def schema_of(kind: str | None) -> dict[str, Any]:

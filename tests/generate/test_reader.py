@@ -39,6 +39,12 @@ QUARTER, EIGHTH = math.pi / 2, math.pi / 4
         ("an excavator whose cab rotates 360 degrees on its tracks", {"parts.cab.range": (0.0, 4 * QUARTER)}),
         ("a piano with a lid hinged at the back", {"parts.lid.hinge": "back"}),
         ("a toolbox, 18 in long", {"size": {"length": 0.4572}}),
+        ("a cabinet with a row of two drawers above a door",
+         {"parameters.layout": "(drawer | drawer) / door", "parts.door.row": 2}),
+        ("a dresser with three drawers in a row", {"parameters.layout": "(drawer | drawer | drawer)"}),
+        ("a cupboard with two drawers in the top row", {"parts.drawer.side": "top"}),
+        ("a fridge with a six-spoke handle", {"parts.handle.count": 1}),
+        ("a microwave with a door hinged along the left edge", {"parts.door.hinge": "left", "parameters": {}}),
         ("a dollhouse style doll's cupboard", {"kind": "cabinet"}),
     ],
 )  # fmt: skip
@@ -61,6 +67,11 @@ def test_a_sentence_fills_a_request(text, expected):
         ("a modern cupboard for my grandmother", []),
         ("a standing desk that goes up and down", []),
         ("a washing machine with one knob on the panel", []),
+        ("a safe with a door that swings open 30 cm", ["door swings 30 cm"]),
+        ("a robot arm with a reach of 80 cm", ["reach 80 cm"]),
+        ("a folding table, a round oak top", ["round"]),
+        ("an excavator with a cab that turns all the way round", []),
+        ("an office chair whose seat lifts 8 cm", []),
     ],
 )
 def test_words_that_are_not_read_are_listed_and_never_as_something_that_lacks(text, unread):
@@ -74,6 +85,24 @@ def test_what_was_asked_for_and_is_otherwise_is_listed():
     assert read_sentence("an office chair on nine castors").made().differences[0].startswith("number of casters")
     assert read_sentence("a fridge with 3 drawers").made().differences == ("drawer: a fridge has none; it has door",)
     assert "2 asked for" in "; ".join(read_sentence("a laptop with two screens").made().differences)
+
+
+def test_a_way_in_metres_is_that_of_the_slide_below_what_turns():
+    made = read_sentence("an office chair with a seat that rises by 8 cm").made()
+    (lift,) = (joint for joint in made.blueprint.joints if joint.child == "lift")
+    assert made.is_complete
+    assert lift.upper == pytest.approx(0.08)
+    far = read_sentence("an office chair with a seat that rises by 3 m").made().differences
+    assert far
+    assert far[0].startswith("seat: range 0 to 3 m was asked for, it is 0 to 0.")
+
+
+@pytest.mark.parametrize(("line", "holds"), [("row", True), ("column", False)])
+def test_a_row_is_measured_on_the_object(line, holds):
+    for text in (f"an oven with five knobs in a {line}", f"a stove with a {line} of four knobs"):
+        listed = read_sentence(text).made().differences
+        assert (listed == ()) is holds
+        assert holds or "columns and rows are not 1 and" in listed[0]
 
 
 def test_a_slip_of_the_pen_is_repaired_with_a_word():

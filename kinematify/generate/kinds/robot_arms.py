@@ -30,7 +30,7 @@ if TYPE_CHECKING:
         help="Joints in series.",
         words="joint, dof, axis, degree of freedom, degrees of freedom",
     ),
-    length=length(0.2, 3.0, default=0.9, usual=(0.5, 1.5), help="Sum of the links.", words="reach"),
+    length=length(0.2, 3.0, default=0.9, usual=(0.5, 1.5), help="Sum of the links."),
     gripper=choice(
         {"none": "", "jaws": "gripper, parallel gripper, jaw gripper", "fingers": "finger gripper, fingered gripper"},
         help="What is on its flange.",

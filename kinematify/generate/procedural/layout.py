@@ -56,7 +56,7 @@ def parse_layout(text: str) -> tuple[Cell, ...]:
         InputError: The text is no layout, or has too many cells.
     """
     tokens = _tokens(text)
-    group, rest = _stack(text, tokens)
+    group, rest = _group(text, tokens)
     if rest:
         raise _malformed(text, rest[0])
     cells = _placed(group, (0.0, 1.0), (0.0, 1.0))
@@ -82,24 +82,13 @@ def _tokens(text: str) -> list[str]:
     return found
 
 
-def _stack(text: str, tokens: list[str]) -> tuple[_Group, list[str]]:
-    members = []
-    row, tokens = _row(text, tokens)
-    members.append(row)
-    while tokens and tokens[0] == "/":
-        row, tokens = _row(text, tokens[1:])
-        members.append(row)
-    return _Group(stacked=True, members=tuple(members)), tokens
-
-
-def _row(text: str, tokens: list[str]) -> tuple[_Group, list[str]]:
-    members = []
-    item, tokens = _item(text, tokens)
-    members.append(item)
-    while tokens and tokens[0] == "|":
-        item, tokens = _item(text, tokens[1:])
-        members.append(item)
-    return _Group(stacked=False, members=tuple(members)), tokens
+def _group(text: str, tokens: list[str], sign: str = "/") -> tuple[_Group, list[str]]:
+    members: list[_Group | str] = []
+    while not members or (tokens and tokens[0] == sign):
+        rest = tokens[1:] if members else tokens
+        member, tokens = _group(text, rest, "|") if sign == "/" else _item(text, rest)
+        members.append(member)
+    return _Group(stacked=sign == "/", members=tuple(members)), tokens
 
 
 def _item(text: str, tokens: list[str]) -> tuple[_Group | str, list[str]]:
@@ -107,7 +96,7 @@ def _item(text: str, tokens: list[str]) -> tuple[_Group | str, list[str]]:
         raise _malformed(text, "its end")
     first, *rest = tokens
     if first == "(":
-        group, rest = _stack(text, rest)
+        group, rest = _group(text, rest)
         if not rest or rest[0] != ")":
             raise _malformed(text, "a bracket that is not closed")
         return group, rest[1:]

@@ -72,8 +72,8 @@ class Substance:
     density: float
     """[kg/m^3]."""
     color: RGB
-    words: tuple[str, ...]
-    """How people call it."""
+    words: str = ""
+    """How people call it besides its name; woods within a fifth of its density."""
     roughness: float = 0.5
     """As in `kinematify.robot.appearance.Material`."""
     metallic: float = 0.0
@@ -82,40 +82,36 @@ class Substance:
     """Its own colour shows the grain of wood."""
 
 
-_WOODS = (
-    *("wood", "wooden", "timber", "mdf", "plywood", "beech", "birch", "maple", "teak", "mahogany", "bamboo", "elm"),
-)
-"""Kinds of wood within a fifth of its density."""
 MATERIALS = {
-    "wood": Substance(density=650.0, color=(0.72, 0.53, 0.34), words=_WOODS, roughness=0.7, grain=True),
-    "oak": Substance(density=710.0, color=(0.76, 0.60, 0.39), words=("oak", "oaken"), roughness=0.7, grain=True),
-    "pine": Substance(density=510.0, color=(0.86, 0.71, 0.48), words=("pine",), roughness=0.7, grain=True),
-    "walnut": Substance(density=640.0, color=(0.36, 0.24, 0.16), words=("walnut",), roughness=0.7, grain=True),
-    "steel": Substance(
-        density=7850.0, color=(0.62, 0.64, 0.67), words=("steel", "iron", "stainless"), roughness=0.35, metallic=1.0
+    "wood": Substance(
+        density=650.0,
+        color=(0.72, 0.53, 0.34),
+        words="wooden timber mdf plywood beech birch maple teak mahogany bamboo elm",
+        roughness=0.7,
+        grain=True,
     ),
+    "oak": Substance(density=710.0, color=(0.76, 0.60, 0.39), words="oaken", roughness=0.7, grain=True),
+    "pine": Substance(density=510.0, color=(0.86, 0.71, 0.48), roughness=0.7, grain=True),
+    "walnut": Substance(density=640.0, color=(0.36, 0.24, 0.16), roughness=0.7, grain=True),
+    "steel": Substance(density=7850.0, color=(0.62, 0.64, 0.67), words="iron stainless", roughness=0.35, metallic=1.0),
     "metal": Substance(
         density=2700.0,
         color=(0.70, 0.72, 0.75),
-        words=("metal", "metallic", "aluminium", "aluminum"),
+        words="metallic aluminium aluminum",
         roughness=0.35,
         metallic=1.0,
     ),
-    "brass": Substance(density=8500.0, color=(0.78, 0.62, 0.26), words=("brass",), roughness=0.3, metallic=1.0),
-    "copper": Substance(density=8960.0, color=(0.72, 0.45, 0.30), words=("copper",), roughness=0.3, metallic=1.0),
-    "chrome": Substance(
-        density=7850.0, color=(0.82, 0.84, 0.86), words=("chrome", "chromed"), roughness=0.1, metallic=1.0
-    ),
-    "plastic": Substance(density=1050.0, color=(0.90, 0.90, 0.88), words=("plastic", "abs", "nylon"), roughness=0.45),
+    "brass": Substance(density=8500.0, color=(0.78, 0.62, 0.26), roughness=0.3, metallic=1.0),
+    "copper": Substance(density=8960.0, color=(0.72, 0.45, 0.30), roughness=0.3, metallic=1.0),
+    "chrome": Substance(density=7850.0, color=(0.82, 0.84, 0.86), words="chromed", roughness=0.1, metallic=1.0),
+    "plastic": Substance(density=1050.0, color=(0.90, 0.90, 0.88), words="abs nylon", roughness=0.45),
     "glass": Substance(
-        density=2500.0, color=(0.70, 0.85, 0.90), words=("glass", "glazed", "transparent"), roughness=0.05, opacity=0.3
+        density=2500.0, color=(0.70, 0.85, 0.90), words="glazed transparent", roughness=0.05, opacity=0.3
     ),
-    "mirror": Substance(
-        density=2500.0, color=(0.80, 0.86, 0.88), words=("mirror", "mirrored"), roughness=0.02, metallic=1.0
-    ),
-    "rubber": Substance(density=1100.0, color=(0.15, 0.15, 0.16), words=("rubber",), roughness=0.95),
-    "ceramic": Substance(density=2400.0, color=(0.95, 0.95, 0.93), words=("ceramic", "porcelain"), roughness=0.15),
-    "cardboard": Substance(density=700.0, color=(0.76, 0.62, 0.45), words=("cardboard", "paper"), roughness=0.95),
+    "mirror": Substance(density=2500.0, color=(0.80, 0.86, 0.88), words="mirrored", roughness=0.02, metallic=1.0),
+    "rubber": Substance(density=1100.0, color=(0.15, 0.15, 0.16), roughness=0.95),
+    "ceramic": Substance(density=2400.0, color=(0.95, 0.95, 0.93), words="porcelain", roughness=0.15),
+    "cardboard": Substance(density=700.0, color=(0.76, 0.62, 0.45), words="paper", roughness=0.95),
 }
 """Keyed by name."""
 
