@@ -18,7 +18,7 @@ def affected(path: str) -> set[str]:
         ("kinematify/vision/votes.py", "tests/vision/test_vision.py"),
         ("kinematify/cli/erase.py", "tests/cli/test_cli_erase.py"),  # commands are loaded late, by their names
         ("validation/finding.py", "tests/validation/test_feedback.py"),  # behind a symlink
-        ("kinematify/generate/procedural/pieces/leaves.py", "tests/generate/procedural/test_families.py"),
+        ("kinematify/generate/procedural/pieces/fronts.py", "tests/generate/procedural/test_families.py"),
         ("tests/known.py", "tests/joints/test_kind.py"),
         ("tests/joints/test_kind.py", "tests/joints/test_kind.py"),
         ("configs/paper.yaml", "tests/assembly/test_load.py"),

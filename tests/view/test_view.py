@@ -216,6 +216,6 @@ def test_a_model_whose_collision_mesh_is_missing_is_seen_all_the_same(urdf: Path
     try:
         window.viewer.look_for_collisions()
         assert window.viewer.status == "Nothing collides."  # what is missing is omitted, and the command says so
-        assert any("gone.obj" in note for note in read_robot(urdf, geometry="present").notes)
+        assert any("gone.obj" in note for note in read_robot(urdf).notes)
     finally:
         window.close()

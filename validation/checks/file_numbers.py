@@ -66,7 +66,7 @@ def _remedy(text: str) -> str:
     cause=Cause.ASSET,
 )
 def implausible_numbers(result: OpenCheck, urdf: Urdf) -> None:
-    """No number is larger than `max_number` (a warning for damping and friction, and for limits of a hinge to both
+    """No number is larger than `max_number` (a warning for damping and friction; a note for limits of a hinge to both
     sides, which are none then; an effort or velocity of such a size is no bound, which is fine), and no roll, pitch or
     yaw is more than one turn (a warning).
 
