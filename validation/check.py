@@ -195,8 +195,8 @@ class OpenCheck:
             line=line,
             reproduction=reproduction or None,
         )
-        told = finding if self.source is None else self.source.told(finding)
-        self.findings += () if told is None else (told,)
+        stated = finding if self.source is None else self.source.in_source(finding)
+        self.findings += () if stated is None else (stated,)
 
     def skip(self, reason: str) -> None:
         """Say that it does not apply."""

@@ -62,7 +62,7 @@ class ValidatedFile:
         named = () if robot is None else (item for tag in ("link", "joint") for item in robot.iterfind(tag))
         return cls(lines={(str(item.tag), item.get("name") or ""): int(str(item.sourceline)) for item in named})
 
-    def told(self, finding: Finding) -> Finding | None:
+    def in_source(self, finding: Finding) -> Finding | None:
         """Return a finding as the user reads it; None if it is about the copy or the URDF, and not about the file."""
         if self.copy is not None and finding.engine is None and self.copy.doubts(finding):
             return None

@@ -65,7 +65,7 @@ def meshes(request: StageRequest, recorder: Recorder) -> Robot | None:
     if recorder.run({"MeshContext": Subjects(items=lambda: [look])}, stopped=unusable):
         return None
     cache_model(look.model, request.work)
-    if recorder.is_selected(*(name for name, _ in _told("Physics"))):
+    if recorder.is_selected(*(name for name, _ in _checks_of("Physics"))):
         physics = measure(look.model, request.settings.physics)
         recorder.run({"Physics": Subjects(items=lambda: [physics])})
     return look.model
@@ -159,7 +159,7 @@ def keys(checks: Iterable[Check]) -> tuple[CheckKey, ...]:
     return tuple((check.id, engine) for check in checks for engine in (check.engines or (None,)))
 
 
-def _told(*subjects: str) -> tuple[CheckKey, ...]:
+def _checks_of(*subjects: str) -> tuple[CheckKey, ...]:
     return keys(check for check in CHECKS.values() if check.subject in subjects)
 
 
@@ -176,12 +176,14 @@ def _recorded(run: Run, request: StageRequest, tell: Callable[[CheckResult | Joi
 def mesh_stage() -> Stage:
     """Meshes and declared physics; what comes later needs readable meshes."""
     imports = "kinematify.validation.asset.rigid_bodies", "kinematify.validation.asset.mesh_look"
-    return _stage("asset", meshes, _told("MeshContext", "Physics"), *imports)
+    return _stage("asset", meshes, _checks_of("MeshContext", "Physics"), *imports)
 
 
 def geometry_stage() -> Stage:
     """Exact geometry at rest and in motion."""
-    return _stage("geometry", geometry, _told("GeometryContext", "JointMotion"), "kinematify.validation.geometry.look")
+    return _stage(
+        "geometry", geometry, _checks_of("GeometryContext", "JointMotion"), "kinematify.validation.geometry.look"
+    )
 
 
 def later_stages(chosen: Sequence[str]) -> list[Stage]:
@@ -193,14 +195,14 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
     evidence = _stage(
         "evidence",
         joints,
-        _told("JointCase"),
+        _checks_of("JointCase"),
         *(f"kinematify.validation.evidence.{name}" for name in parts),
     )
     return [evidence] + [
         _stage(
             f"{name} as loaded",
             partial(engine, name=name),
-            tuple(key for key in _told("AsLoadedContext") if key[1] == name),
+            tuple(key for key in _checks_of("AsLoadedContext") if key[1] == name),
             "kinematify.validation.as_loaded_context",
             library=None if ENGINES[name].prints_when_loaded else ENGINES[name].module,
         )
@@ -210,7 +212,7 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
 
 def task_stage() -> Stage:
     """A robot uses the object; it comes after all others, since it wants to know which joints they doubt."""
-    return _stage("task", task, _told("PullTask"))
+    return _stage("task", task, _checks_of("PullTask"))
 
 
 def stages_of(chosen: Sequence[str]) -> list[Stage]:

@@ -1,4 +1,4 @@
-"""Running the checks of a stage on what it makes, each result told as soon as it is known."""
+"""Running the checks of a stage on what it makes, each result reported as soon as it is known."""
 
 from __future__ import annotations
 
