@@ -671,10 +671,13 @@ class MujocoFile(EngineFile):
         option.gravity[:] *= gravity
 
     def poses(self, values: Mapping[str, float]) -> dict[str, FloatArray]:
-        """Implement `EngineFile`; links that fixed joints join are one."""
+        """Implement `EngineFile`; links that fixed joints join are one, bodies without a name are no links."""
         self.begin(values, contacts=False)
-        bodies = map(self._data.body, range(1, self._model.nbody))
-        return {body.name: np.column_stack([body.xmat.reshape(3, 3), body.xpos]) for body in bodies}
+        return {
+            body.name: np.column_stack([body.xmat.reshape(3, 3), body.xpos])
+            for body in map(self._data.body, range(1, self._model.nbody))
+            if body.name
+        }
 
     def steps(self, count: int, every: int = 1) -> Iterator[int]:
         """Implement `EngineFile`."""

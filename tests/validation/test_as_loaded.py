@@ -450,3 +450,16 @@ def test_the_share_that_keeps_the_contract_has_an_interval() -> None:
     assert contract_words(reports) == (
         "contract: kept by 3 of 4 (75%, 95 % interval 30% to 95%); blocked 1, not applicable 1"
     )
+
+
+def test_an_mjcf_whose_outer_body_has_no_name_is_placed_as_its_engine_does(tmp_path: Path) -> None:
+    outer = '<body><geom type="box" size=".5 .5 .5" mass="1"/>'
+    hinge = '<joint name="hinge" axis="1 0 0" range="0 1"/><geom type="box" size=".4 .4 .05" mass="1"/>'
+    flap = f'<body name="flap" pos="0 0 .6">{hinge}</body>'
+    (tmp_path / "box.xml").write_text(
+        f'<mujoco><compiler angle="radian"/><worldbody>{outer}{flap}</body></worldbody></mujoco>'
+    )
+    report = validate(tmp_path / "box.xml", selected=["KV807"], engines=("mujoco",))
+    assert [check.status for check in report.checks if check.check == "KV807" and check.engine == "mujoco"] == [
+        Status.PASS
+    ]

@@ -522,8 +522,9 @@ def puts_links_where_the_file_does(result: OpenCheck, context: AsLoadedContext) 
     for values in context.ends:
         ours = forward_kinematics(context.robot, values)
         for link, pose in context.loaded.poses(values).items():
-            away = float(np.linalg.norm(pose[:3, 3] - ours[link][:3, 3]))
-            turned = float(np.linalg.norm(pose[:3, :3] - ours[link][:3, :3])) / np.sqrt(2.0)  # 2 sin(angle / 2)
+            off = pose[:3] - ours[link][:3]
+            away = float(np.linalg.norm(off[:, 3]))
+            turned = float(np.linalg.norm(off[:, :3])) / np.sqrt(2.0)  # 2 sin(angle / 2)
             share = max(away / (_SAME_PLACE * context.size), turned / _SAME_PLACE)
             result.measured["farthest"] = max(away, result.measured.get("farthest", 0.0))
             if share > worst.get(link, (0.0, 1.0))[1]:
