@@ -5,9 +5,9 @@ from __future__ import annotations
 import difflib
 import shutil
 import tempfile
-import weakref
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from multiprocessing.util import Finalize, get_temp_dir
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -162,58 +162,6 @@ class Target:
         return self.way / abs(self.range)
 
 
-def load_articulated_object(model: str | Path | None) -> ArticulatedObject:
-    """Read the object that a `model` keyword names.
-
-    Args:
-        model: A URDF, a folder with ``model.urdf``, ``bundled:NAME``, ``procedural:FAMILY`` or
-            ``procedural:FAMILY:SEED``, or None for the default.
-
-    Raises:
-        InputError: There is no such model, it cannot be read, or nothing of it moves.
-    """
-    source = f"{PREFIX}{DEFAULT}" if model is None else str(model)
-    folder = Path(tempfile.mkdtemp(prefix="kinematify-env-"))
-    try:
-        articulated_object = _read(source, folder)
-    except BaseException:
-        shutil.rmtree(folder, ignore_errors=True)
-        raise
-    weakref.finalize(articulated_object, shutil.rmtree, folder, ignore_errors=True)
-    return articulated_object
-
-
-def _read(source: str, folder: Path) -> ArticulatedObject:
-    suggested = AUTO
-    if source.startswith((PREFIX, FAMILY_PREFIX)):
-        urdf, suggested = write_bundled(source, folder / "object")
-    elif Path(source).exists():
-        urdf = urdf_of(Path(source)).resolve()
-    else:
-        raise InputError(
-            f"There is no model {source}. Give a URDF file, a folder that kinematify infer or generate has written, "
-            f"{PREFIX}NAME for an object that comes with the package, or {FAMILY_PREFIX}FAMILY."
-        )
-    loaded = loadable(urdf, folder)
-    declared = read_robot(loaded)
-    scene = read_scene(declared, load_settings().geometry)
-    if not scene.travels:
-        raise InputError(
-            f"The model {source} has no joint that moves by itself, so there is nothing to open. Give a model with a "
-            "revolute, continuous or prismatic joint; kinematify infer finds the joints of separate parts."
-        )
-    return ArticulatedObject(
-        source=source,
-        urdf=urdf,
-        loaded=loaded,
-        declared=declared,
-        scene=scene,
-        T_world_root=_standing(scene),
-        suggested=suggested,
-        folder=folder,
-    )
-
-
 def loadable(urdf: Path, folder: Path) -> Path:
     """Return a file that engines load as it is: the given one where its pieces are convex and its links weigh.
 
@@ -348,13 +296,52 @@ def _standing(scene: Scene) -> FloatArray:
 
 
 def shared_articulated_object(model: str | Path | None) -> ArticulatedObject:
-    """Return the object of a `model` keyword, read once per process as long as its file stays the same."""
+    """Return the object of a `model` keyword, read once per process as long as its file stays the same.
+
+    Args:
+        model: A URDF, a folder with ``model.urdf``, ``bundled:NAME``, ``procedural:FAMILY`` or
+            ``procedural:FAMILY:SEED``, or None for the default.
+
+    Raises:
+        InputError: There is no such model, it cannot be read, or nothing of it moves.
+    """
     file = urdf_of(Path(model)) if model is not None and Path(model).exists() else None
     stamp = None if file is None else (file.stat().st_mtime_ns, file.stat().st_size)
-    return _loaded(None if model is None else str(model), stamp)
+    return _loaded(f"{PREFIX}{DEFAULT}" if model is None else str(model), stamp)
 
 
 @lru_cache(maxsize=8)
-def _loaded(model: str | None, stamp: tuple[int, int] | None) -> ArticulatedObject:
+def _loaded(source: str, stamp: tuple[int, int] | None) -> ArticulatedObject:
     del stamp
-    return load_articulated_object(model)
+    # In what multiprocessing removes when the process that began has ended, whatever became of its workers.
+    folder = Path(tempfile.mkdtemp(prefix="kinematify-env-", dir=get_temp_dir()))
+    suggested = AUTO
+    if source.startswith((PREFIX, FAMILY_PREFIX)):
+        urdf, suggested = write_bundled(source, folder / "object")
+    elif Path(source).exists():
+        urdf = urdf_of(Path(source)).resolve()
+    else:
+        raise InputError(
+            f"There is no model {source}. Give a URDF file, a folder that kinematify infer or generate has written, "
+            f"{PREFIX}NAME for an object that comes with the package, or {FAMILY_PREFIX}FAMILY."
+        )
+    loaded = loadable(urdf, folder)
+    declared = read_robot(loaded)
+    scene = read_scene(declared, load_settings().geometry)
+    if not scene.travels:
+        raise InputError(
+            f"The model {source} has no joint that moves by itself, so there is nothing to open. Give a model with a "
+            "revolute, continuous or prismatic joint; kinematify infer finds the joints of separate parts."
+        )
+    articulated_object = ArticulatedObject(
+        source=source,
+        urdf=urdf,
+        loaded=loaded,
+        declared=declared,
+        scene=scene,
+        T_world_root=_standing(scene),
+        suggested=suggested,
+        folder=folder,
+    )
+    Finalize(articulated_object, shutil.rmtree, (folder,), {"ignore_errors": True})
+    return articulated_object

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import multiprocessing
+import os
 import subprocess
 import sys
 from contextlib import suppress
@@ -52,7 +53,9 @@ def require_valid(articulated_object: ArticulatedObject, engine: str, *, allow_i
 
 def content_digest(articulated_object: ArticulatedObject) -> str:
     """Digest of the URDF and of all meshes that it names."""
-    digest = hashlib.sha256(f"{__version__} {articulated_object.urdf}".encode() + articulated_object.urdf.read_bytes())
+    bundled = articulated_object.source.startswith((PREFIX, FAMILY_PREFIX))  # each process writes it in another folder
+    place = articulated_object.source if bundled else articulated_object.urdf
+    digest = hashlib.sha256(f"{__version__} {place}".encode() + articulated_object.urdf.read_bytes())
     for link in articulated_object.declared.links:
         for shape in (*link.visuals, *link.collisions):
             digest.update(shape.mesh.vertices.tobytes())
@@ -80,7 +83,7 @@ def keep(folder: str, digest: str, facts: dict[str, object]) -> None:
     place = cache_folder().parent / folder
     with suppress(OSError):
         place.mkdir(parents=True, exist_ok=True)
-        partly = place / f"{digest}.{hashlib.sha256(repr(id(facts)).encode()).hexdigest()[:8]}.part"
+        partly = place / f"{digest}.{os.getpid()}.part"
         partly.write_text(json.dumps(facts), encoding="utf-8")
         partly.replace(place / f"{digest}.json")
         oldest_first = sorted(place.glob("*.json"), key=lambda item: item.stat().st_mtime)

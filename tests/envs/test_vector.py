@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import gymnasium
 import numpy as np
 import pytest
@@ -56,3 +61,17 @@ def test_success_ends_batched_episodes_when_asked() -> None:
 def test_other_engines_are_refused() -> None:
     with pytest.raises(InputError, match='"sync"'):
         gymnasium.make_vec(kinematify.envs.OPEN_PART, 2, vectorization_mode="vector_entry_point", engine="pybullet")
+
+
+def test_workers_that_are_ended_leave_no_folder(tmp_path: Path) -> None:
+    """Neither those that are killed nor those that the end of the program ends."""
+    program = """
+import gymnasium, os, signal
+envs = gymnasium.make_vec(
+    "kinematify.envs:kinematify/OpenPart-v0", 2, "async", vector_kwargs={"context": "spawn"}, model="bundled:box"
+)
+os.kill(envs.processes[0].pid, signal.SIGKILL)
+"""
+    environment = {**os.environ, "TMPDIR": str(tmp_path)}
+    subprocess.run([sys.executable, "-c", program], env=environment, check=True, capture_output=True, timeout=120)
+    assert not list(tmp_path.iterdir())
