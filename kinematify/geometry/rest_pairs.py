@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -15,14 +14,6 @@ if TYPE_CHECKING:
 
     from kinematify.geometry.scene import Pair, Scene
     from kinematify.robot.arrays import FloatArray
-
-
-class Reason(StrEnum):
-    """Why an overlap of two bodies is tolerated."""
-
-    ADJACENT = "joined and in contact at rest"
-    AT_REST = "in contact at rest without a joint between them"
-    ALWAYS = "in contact in nearly all configurations"
 
 
 @dataclass(frozen=True, kw_only=True)

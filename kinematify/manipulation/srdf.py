@@ -1,7 +1,7 @@
 """Semantic description (SRDF) of a robot for MoveIt: groups, end effector, named poses, and pairs without checks.
 
 Pairs of links are disabled by what was measured: neighbours, pairs that touch at rest, that collide in nearly all
-quasi-random configurations, or in none. The first three are the reasons of KV304; the rest a planner must check.
+quasi-random configurations, or in none. The rest a planner must check.
 """
 
 from __future__ import annotations

@@ -199,14 +199,6 @@ def test_a_whole_model_in_another_unit_is_found(factor: float, severity: Severit
     assert [(f.check, f.severity) for f in bad(results)] == [("KV158", severity)]
 
 
-def test_a_unit_that_a_file_states_is_named(cupboard: Path) -> None:
-    scene = trimesh.Scene(trimesh.creation.box(extents=(0.8, 0.8, 1.0)))
-    scene.export(cupboard.parent / "body.3mf")
-    change(cupboard, "body.obj", "body.3mf")
-    _, results = check_model(cupboard)
-    assert [f.link for f in results["KV159"].findings] == ["body"]
-
-
 LYING = """<robot name="poles">
   <link name="low"><visual><geometry><mesh filename="pole.dae"/></geometry></visual></link>
   <link name="high"><visual><geometry><mesh filename="pole.dae"/></geometry></visual></link>

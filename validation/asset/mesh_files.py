@@ -44,8 +44,6 @@ class MeshFile:
     """As it stands in the file; None where it cannot be read."""
     fault: str
     """Why it cannot be read."""
-    units: frozenset[str]
-    """Units that the file states and that were not converted."""
 
     @property
     def first(self) -> MeshUse:
@@ -93,7 +91,7 @@ def open_mesh_files(robot: _Element, source: GeometrySource, settings: FileSetti
 
 
 def _opened(path: Path, uses: tuple[MeshUse, ...], source: GeometrySource, settings: FileSettings) -> MeshFile:
-    mesh, fault, units = None, "", frozenset[str]()
+    mesh, fault = None, ""
     try:
         size = path.stat().st_size
         if size > settings.max_mesh_bytes:
@@ -101,13 +99,10 @@ def _opened(path: Path, uses: tuple[MeshUse, ...], source: GeometrySource, setti
                 f"The mesh file {path} has {size / _MEGABYTE:.0f} MB; at most "
                 f"{settings.max_mesh_bytes / _MEGABYTE:.0f} MB are opened. Simplify it."
             )
-        parts = read_meshes(path)
+        mesh = merged(read_meshes(path), path.stem)
     except AssemblyError as error:
         fault = str(error)
     except OSError as error:
         fault = f"The mesh file {path} cannot be opened: {error.strerror}. Check who may read it."
-    else:
-        mesh = merged(parts, path.stem)
-        units = frozenset(part.unit for part in parts if part.unit)
     source.cache[path] = fault if mesh is None else mesh
-    return MeshFile(path=path, uses=uses, mesh=mesh, fault=fault, units=units)
+    return MeshFile(path=path, uses=uses, mesh=mesh, fault=fault)

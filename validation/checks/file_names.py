@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from kinematify.validation.document import Urdf
 
 _HARMFUL = re.compile(r"""[\s<>&"'/\\|*?:;,]""")
-_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
 @check("KV110", title="Names are present", fails="Names are missing", severity=Severity.ERROR, cause=Cause.ASSET)
@@ -81,14 +80,12 @@ def repeated_names(result: OpenCheck, urdf: Urdf) -> None:
     cause=Cause.ASSET,
 )
 def odd_names(result: OpenCheck, urdf: Urdf) -> None:
-    """Names hold no spaces, slashes, quotes and the like; a link below a joint is not called world. Other signs that
-    are no part of identifiers are a note.
+    """Names hold no spaces, slashes, quotes and the like; a link below a joint is not called world.
 
     Why it matters: USD, ROS and MuJoCo change or refuse such names, so that results cannot be matched.
 
     Remedy: Use letters, digits and underscores.
     """
-    plain = []
     for element in _named(urdf):
         name = element.get("name") or ""
         bad = _HARMFUL.search(name)
@@ -96,17 +93,6 @@ def odd_names(result: OpenCheck, urdf: Urdf) -> None:
             _odd(result, element, f"holds {bad.group()!r}, which paths and other formats give a meaning of its own")
         elif element.tag == "link" and name == "world" and name not in urdf.roots:
             _odd(result, element, "is what MuJoCo calls the fixed world, but the link hangs on a joint")
-        elif name and not _IDENTIFIER.fullmatch(name):
-            plain.append(element)
-    if plain:
-        result.find(
-            f"Names that are no identifiers: {len(plain)}, the first is {shown(plain[0].get('name'))}. USD and "
-            "many scripts will change them.",
-            "Use letters, digits and underscores, beginning with a letter.",
-            severity=Severity.NOTE,
-            value=len(plain),
-            line=line_of(plain[0]),
-        )
 
 
 def _odd(result: OpenCheck, element: _Element, why: str) -> None:

@@ -123,39 +123,6 @@ def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
 
 
 @check(
-    "KV143",
-    title="Mesh files have names of their own",
-    fails="Mesh files share a name",
-    severity=Severity.NOTE,
-    cause=Cause.ASSET,
-)
-def repeated_base_names(result: OpenCheck, urdf: Urdf) -> None:
-    """No two different mesh files have the same name without folder and suffix.
-
-    Why it matters: MuJoCo names meshes after their files: of two called alike, one is shown for both.
-
-    Remedy: Rename one of the files.
-    """
-    # one note for all of them
-    found: dict[str, dict[Path, _Reference]] = defaultdict(dict)
-    for reference in _references(urdf):
-        if reference.path is not None:
-            found[reference.path.stem].setdefault(reference.path, reference)
-    repeated = {name: list(references.values()) for name, references in found.items() if len(references) > 1}
-    if repeated:
-        name, (first, second, *_) = next(iter(repeated.items()))
-        result.find(
-            f"Names that several mesh files share: {len(repeated)}, the first is {shown(name)} "
-            f"({shown(first.filename)} and {shown(second.filename)}); MuJoCo names meshes after their files and takes "
-            "one for the other when it strips the paths.",
-            "Give every mesh file a name of its own. Here they are renamed for the engines.",
-            link=second.link,
-            value=len(repeated),
-            line=second.line,
-        )
-
-
-@check(
     "KV144",
     title="Mesh paths hold elsewhere",
     fails="Mesh paths hold on one machine only",

@@ -197,33 +197,22 @@ def inward_faces(result: OpenCheck, look: MeshContext) -> None:
 
 @check(
     "KV159",
-    title="Meshes state neither unit nor axes",
-    fails="Meshes state a unit or axes that readers treat differently",
+    title="Meshes stand upright in every reader",
+    fails="Meshes lie on their side where readers ignore their up axis",
     severity=Severity.WARNING,
     cause=Cause.ASSET,
 )
-def stated_units(result: OpenCheck, look: MeshContext) -> None:
-    """Meshes that state a unit or an up axis of their own are named, because readers differ in whether they apply it.
-    It is a warning where the links of the model meet only if the up axis is applied; then all later checks apply it.
+def lying_meshes(result: OpenCheck, look: MeshContext) -> None:
+    """The links of the model meet without the up axis that COLLADA meshes state. Where they meet only with it, all
+    later checks apply it.
 
-    Why it matters: The same file has another size or lies on its side in another simulator.
+    Why it matters: The same file lies on its side in another simulator.
 
-    Remedy: Export OBJ or STL in metres with z up.
+    Remedy: Export OBJ or STL with z up.
     """
-    for file in look.files:
-        if file.units:
-            result.find(
-                f"The mesh {file.called} states the unit {', '.join(sorted(file.units))}, which URDF readers ignore: "
-                "its numbers are taken for metres.",
-                "Write the factor to metres as its scale, or export it in metres.",
-                severity=Severity.NOTE,
-                link=file.first.link,
-                line=file.first.line,
-            )
-    collada = [file for file in look.files if file.path.suffix.lower() == ".dae"]
-    lying = [file for file in collada if file.mesh is not None and file.mesh.up]
     reading = look.model.up_axis
     if reading is not None and reading.respected:
+        lying = [file for file in look.files if file.mesh is not None and file.mesh.up]
         result.find(
             f"{len(lying)} COLLADA meshes, such as {lying[0].called}, state an up axis other than z, and the links "
             f"meet only if it is applied: gaps of {reading.gap_ignored * 1e3:.3g} mm on average close to "
@@ -234,14 +223,4 @@ def stated_units(result: OpenCheck, look: MeshContext) -> None:
             value=reading.gap_ignored,
             limit=reading.gap_respected,
             unit="m",
-        )
-    elif collada:
-        result.find(
-            f"COLLADA meshes: {len(collada)}. Readers differ in whether they apply the unit and the up axis that these "
-            "state; here the unit is applied and the up axis is not, as in RViz.",
-            "Export OBJ or STL in metres with z up to be sure.",
-            severity=Severity.NOTE,
-            link=collada[0].first.link,
-            line=collada[0].first.line,
-            value=len(collada),
         )

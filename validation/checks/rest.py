@@ -1,8 +1,7 @@
-"""KV301 to KV304: what the model looks like at rest, and which overlaps are tolerated from then on."""
+"""KV301 to KV303: what the model looks like at rest."""
 
 from __future__ import annotations
 
-from collections import defaultdict
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +11,7 @@ from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.geometry.formatting import BARELY, SLIMMER, UNSEEN, configuration, in_document_order, length
 
 if TYPE_CHECKING:
-    from kinematify.geometry.rest_pairs import AtRest, Reason
+    from kinematify.geometry.rest_pairs import AtRest
     from kinematify.geometry.scene import Pair
     from kinematify.validation.check import OpenCheck
     from kinematify.validation.geometry.look import GeometryContext
@@ -161,36 +160,3 @@ def hovering(result: OpenCheck, look: GeometryContext) -> None:
                 limit=limit,
                 unit="m",
             )
-
-
-@check(
-    "KV304",
-    title="Nothing has to be tolerated",
-    fails="What is tolerated, and why",
-    severity=Severity.NOTE,
-    cause=Cause.ASSET,
-)
-def tolerated(result: OpenCheck, look: GeometryContext) -> None:
-    """Nothing: it lists the pairs whose contact other checks do not count (joined and in contact at rest, in contact
-    at rest, in contact in more than geometry.always of all configurations), with the overlap that each may reach.
-
-    Why it matters: A check that ignores pairs silently can be made to pass by ignoring more of them.
-
-    Remedy: Nothing to do.
-    """
-    scene, allowance, reasons = look.scene, look.allowance, look.allowed
-    by_reason: dict[Reason, list[Pair]] = defaultdict(list)
-    for pair, reason in reasons.items():
-        by_reason[reason].append(pair)
-    for reason, pairs in by_reason.items():
-        pairs.sort(key=allowance.at_rest, reverse=True)
-        listed = [
-            f"{' - '.join(in_document_order(scene.model, *scene.name(pair)))} "
-            f"({length(allowance.at_rest(pair) + allowance.tolerance(pair))})"
-            for pair in pairs[: scene.settings.listed]
-        ]
-        result.find(
-            f"Pairs that are {reason.value} ({len(pairs)}); this much overlap is tolerated, and more is reported: "
-            f"{', '.join(listed)}{', ...' if len(listed) < len(pairs) else ''}.",
-            "Nothing to do; the table says what later checks do not report.",
-        )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import linecache
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,7 +14,6 @@ from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.report_content import (
     configuration,
-    family,
     follow_words,
     measure,
     printable,
@@ -42,12 +40,10 @@ def as_sarif(outcomes: Sequence[Outcome]) -> str:
     """Return the outcomes as one SARIF run."""
     reports = [outcome for outcome in outcomes if not isinstance(outcome, Unusable)]
     fired = dict.fromkeys(finding.check for report in reports for finding in report.findings)
-    index = {check: position for position, check in enumerate(fired)}
     run = {
         "tool": {"driver": _driver([CHECKS[check] for check in fired])},
-        "columnKind": "utf16CodeUnits",
         "invocations": [_invocation(outcomes)],
-        "results": [_result(report, group, index) for report in reports for group in report.groups],
+        "results": [_result(report, group) for report in reports for group in report.groups],
     }
     document = {"$schema": SARIF_SCHEMA, "version": "2.1.0", "runs": [run]}
     return json.dumps(document, indent=2, allow_nan=False) + "\n"
@@ -57,13 +53,7 @@ def _driver(fired: Sequence[Check]) -> dict[str, Any]:
     return {
         "name": "kinematify validate",
         "version": __version__,
-        "semanticVersion": __version__,
         "rules": [_rule(check) for check in fired],
-        "notifications": [
-            {"id": status.value, "shortDescription": {"text": f"A check was {status.value}."}}
-            for status in (Status.SKIPPED, Status.BLOCKED)
-        ]
-        + [{"id": _UNUSABLE, "shortDescription": {"text": "A file is no URDF at all."}}],
     }
 
 
@@ -72,32 +62,24 @@ def _rule(check: Check) -> dict[str, Any]:
     marked = f"{check.verifies}\n\n**Why it matters:** {check.matters}\n\n**Remedy:** {check.remedy}"
     return {
         "id": check.id,
-        "name": "".join(word[:1].upper() + word[1:] for word in _words(check.fails)) or check.id,
         "shortDescription": {"text": check.fails},
         "fullDescription": {"text": check.verifies},
         "help": {"text": plain, "markdown": marked},
         "defaultConfiguration": {"level": _LEVELS[check.severity]},
-        "properties": {"tags": [family(check.id), check.cause.value, *check.engines]},
     }
 
 
-def _words(text: str) -> list[str]:
-    return "".join(letter if letter.isalnum() and letter.isascii() else " " for letter in text).split()
-
-
-def _result(report: ValidationReport, group: FindingGroup, index: dict[str, int]) -> dict[str, Any]:
+def _result(report: ValidationReport, group: FindingGroup) -> dict[str, Any]:
     finding, follows = group.finding, follow_words(group.consequences)
     about = [part for part in (where(finding), configuration(finding.q), measure(finding)) if part]
     more = [*([f"({'; '.join(about)})"] if about else []), finding.remedy]
     text = printable(" ".join([finding.message, *more, *([f"Follows from it: {follows}."] if follows else [])]))
     result: dict[str, Any] = {
         "ruleId": finding.check,
-        "ruleIndex": index[finding.check],
         "level": _LEVELS[finding.severity],
         "message": {"text": text},
         "locations": [_location(report.model, finding)],
         "partialFingerprints": {"kinematify/v1": _fingerprint(finding)},
-        "properties": _properties(group),
     }
     if finding.suppressed is not None:
         result["suppressions"] = [{"kind": "external", "justification": printable(finding.suppressed)}]
@@ -107,16 +89,7 @@ def _result(report: ValidationReport, group: FindingGroup, index: dict[str, int]
 def _location(model: str, finding: Finding) -> dict[str, Any]:
     # Code scanning shows a result at a line only; what is about the whole model stands at the first.
     line = max(finding.line or 1, 1)
-    text = "" if "\0" in model else linecache.getline(model, line)
-    region = {"startLine": line, "startColumn": len(text) - len(text.lstrip()) + 1}
-    location: dict[str, Any] = {"physicalLocation": {"artifactLocation": {"uri": _uri(model)}, "region": region}}
-    named = [("joint", finding.joint), ("link", finding.link), *(("link", name) for name in finding.pair or ())]
-    logical = [
-        {"name": printable(name), "fullyQualifiedName": printable(f"{kind}/{name}"), "kind": "element"}
-        for kind, name in dict.fromkeys(named)
-        if name is not None
-    ]
-    return {**location, "logicalLocations": logical} if logical else location
+    return {"physicalLocation": {"artifactLocation": {"uri": _uri(model)}, "region": {"startLine": line}}}
 
 
 def _uri(model: str) -> str:
@@ -132,30 +105,6 @@ def _fingerprint(finding: Finding) -> str:
     """The same for the same fault in the next run, whatever the numbers and lines are then."""
     names = (finding.check, finding.engine, finding.joint, finding.link, *(finding.pair or ()))
     return hashlib.sha256(repr(names).encode("utf-8", "backslashreplace")).hexdigest()[:32]
-
-
-def _properties(group: FindingGroup) -> dict[str, Any]:
-    finding = group.finding
-    values: dict[str, Any] = {
-        "title": title(finding),
-        "cause": finding.cause.value,
-        "engine": finding.engine,
-        "value": finding.value,
-        "limit": finding.limit,
-        "unit": finding.unit,
-        "q": dict(finding.q) if finding.q is not None else None,
-        "remedy": printable(finding.remedy),
-        "consequences": [printable(f"{title(item)}: {item.message}") for item in group.consequences] or None,
-    }
-    return {key: value for key, value in values.items() if value is not None and _is_json(value)}
-
-
-def _is_json(value: Any) -> bool:
-    try:
-        json.dumps(value, allow_nan=False)
-    except ValueError:
-        return False
-    return True
 
 
 def _invocation(outcomes: Sequence[Outcome]) -> dict[str, Any]:

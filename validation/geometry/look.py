@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.geometry.overlap import OverlapQueries, boxes_meet
-from kinematify.geometry.rest_pairs import DepthAllowance, Reason
+from kinematify.geometry.rest_pairs import DepthAllowance
 from kinematify.geometry.scene import inverse, read_scene, relative, simplified, visible_shapes
 from kinematify.geometry.sweep import Sweeper
 from kinematify.geometry.together import looked_at, random_rows
@@ -157,11 +157,6 @@ class GeometryContext:
             return None
         return looked_at(self.scene, self.overlap, self.allowance, random_rows(self.scene, self.seed))
 
-    @cached_property
-    def allowed(self) -> dict[Pair, Reason]:
-        """Pairs whose contact in motion does not count, with the reason."""
-        return allowed_pairs(self.scene, self.allowance, self.random)
-
     def links_at(self, pair: Pair, values: Mapping[int, float]) -> tuple[str, str]:
         """Return the links of two bodies that are deepest in each other, or else nearest, in the order of the document.
 
@@ -212,20 +207,6 @@ class GeometryContext:
     @cached_property
     def _overlap_of_links(self) -> OverlapQueries:
         return OverlapQueries(self._links_apart)
-
-
-def allowed_pairs(scene: Scene, allowance: DepthAllowance, random: JudgedConfigurations | None) -> dict[Pair, Reason]:
-    """Return pairs whose contact in motion does not count, with the reason."""
-    reasons = {
-        pair: Reason.ADJACENT if rest.joined else Reason.AT_REST
-        for pair, rest in allowance.pairs.items()
-        if rest.collide or rest.depth > 0.0
-    }
-    if random is not None:
-        share = random.touching.mean(axis=0)
-        for column in np.flatnonzero(share > scene.settings.always).tolist():
-            reasons.setdefault(scene.pairs[column], Reason.ALWAYS)
-    return reasons
 
 
 def _thickness(solid: Solid) -> float:
