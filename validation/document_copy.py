@@ -161,12 +161,19 @@ def _drop_shapes(robot: _Element, finding: Finding) -> bool:
         named = [
             shape for shape in shapes if str(finding.line) in {str(element.sourceline) for element in shape.iter()}
         ]
+        named = [shape for shape in named if _is_told(shape, finding.message)] or named  # all may be in one line
         files = {mesh.get("filename") for shape in named for mesh in shape.iter("mesh")}
         for shape in shapes:
             if shape in named or {mesh.get("filename") for mesh in shape.iter("mesh")} & files:
                 dropped = True
                 _blank(shape)
     return dropped
+
+
+def _is_told(shape: _Element, message: str) -> bool:
+    """True if a message quotes a size or a file of a shape."""
+    texts = [str(text) for item in shape.iterfind("geometry/*") for text in item.values()]
+    return any(text.rsplit("/", 1)[-1] in message for text in texts)
 
 
 def _blank(element: _Element) -> None:

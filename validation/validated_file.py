@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.robot.urdf_text import read_text
 from kinematify.simulation.engines import ENGINES
-from kinematify.validation.finding import is_unfinished
+from kinematify.validation.finding import Severity, is_unfinished
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kinematify.robot.description import Description
     from kinematify.validation.finding import Finding
 
-_OF_TEXT = ("KV104", "KV143", "KV144")
+_OF_TEXT = ("KV104", "KV144")
 """Checks of the URDF's text, which say nothing about a file of another format."""
 
 
@@ -73,10 +73,11 @@ class ValidatedFile:
             return replace(finding, line=finding.line or line)
         if finding.check in _OF_TEXT or (finding.check == "KV220" and finding.joint in self.endless):
             return None
-        message = finding.message
-        if finding.engine is not None and not (finding.engine == "mujoco" and self.native):
-            message += f" ({ENGINES[finding.engine].title} was given the URDF of the {self.form}.)"
-        return replace(finding, line=line, message=message)
+        if finding.engine is None or (finding.engine == "mujoco" and self.native):
+            return replace(finding, line=line)
+        message = f"{finding.message} ({ENGINES[finding.engine].title} was given the URDF of the {self.form}.)"
+        severity = Severity.NOTE if self.native else finding.severity  # nobody loads the file there
+        return replace(finding, line=line, message=message, severity=severity)
 
     def reason(self, why: str | None) -> str | None:
         """Return the reason of a check with how to finish it, if time ran out for it."""

@@ -117,6 +117,7 @@ def parse_robot(element: _Element, path: Path, source: GeometrySource, geometry:
         loops=tuple(_loop(item, names) for item in element.iterchildren("*") if etree.QName(item).localname in _LOOPS),
         path=path.resolve(),
         notes=(*(note for joint in joints if (note := _note(joint))), *source.omitted),
+        lacking=frozenset(source.lacking),
     )
     if source.states_up_axis:
         robot = upright_reading(

@@ -265,6 +265,8 @@ class Robot:
     """The URDF file, absolute; the working directory for what was read from none."""
     notes: tuple[str, ...] = ()
     """What was read with a meaning that the document does not state plainly, one sentence each."""
+    lacking: frozenset[str] = frozenset()
+    """Links with a ``collision`` whose shape is missing or cannot be read."""
     up_axis: UpAxis | None = None
     """How an up axis that meshes state was read; None where none states another one than z."""
 

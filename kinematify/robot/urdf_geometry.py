@@ -61,6 +61,8 @@ class GeometrySource:
 
     omitted: dict[str, None] = field(default_factory=dict)
     """Elements without usable geometry, one sentence each, in order."""
+    lacking: set[str] = field(default_factory=set)
+    """Links with such a ``collision``."""
 
     def shapes(self, link: _Element, tag: str) -> tuple[Shape, ...]:
         """Return all ``visual`` or ``collision`` elements of a link with their triangles.
@@ -83,6 +85,8 @@ class GeometrySource:
 
     def omit(self, element: _Element, error: NoShape) -> None:
         """Note why an element has no shape."""
+        if element.tag == "collision":
+            self.lacking.update(link.get("name", "") for link in element.iterancestors("link"))
         self.omitted[f"A {element.tag} is omitted (line {line_of(element)}). {error}"] = None
 
     def is_usable(self, element: _Element) -> bool:

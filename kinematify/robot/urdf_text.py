@@ -83,7 +83,18 @@ def read_text(path: Path, roots: Sequence[str] = ("robot",)) -> UrdfText:
         return UrdfText(text=text, robot=None, syntax_errors=tuple(syntax_errors(text)))
     if robot.tag not in roots or robot.tag == "robot":
         _refuse_foreign_tree(path, robot)
+    _name_meshes_of_mujoco(robot, path.parent)
     return UrdfText(text=text, robot=robot)
+
+
+def _name_meshes_of_mujoco(robot: _Element, folder: Path) -> None:
+    """Write the paths of meshes that lie only where the document tells MuJoCo to look, which drops folders of names."""
+    for compiler in robot.iterfind("mujoco/compiler[@meshdir]"):
+        for mesh in robot.iter("mesh"):
+            name = mesh.get("filename", "")
+            found = f"{compiler.get('meshdir')}/{name.rsplit('/', 1)[-1]}"
+            if not (folder / name).is_file() and (folder / found).is_file():
+                mesh.set("filename", found)
 
 
 def parse_description(path: Path, roots: Sequence[str] = ("robot",)) -> _Element:

@@ -226,6 +226,27 @@ def test_meshes_in_gltf_become_obj_with_their_colours(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "fixed_meshes" / "0_lid.mtl").is_file()
 
 
+def test_collision_meshes_in_collada_become_obj_and_a_digit_too_many_goes(tmp_path: Path) -> None:
+    box((0.4, 0.4, 0.02)).export(tmp_path / "lid.dae")
+    shape = shaped('<mesh filename="lid.dae"/>')
+    wrong = INERTIAL.format("0 0 0").replace('ixx="0.04" iyy="0.03" izz="0.05"', 'ixx="0.027" iyy="0.27" izz="0.053"')
+    model = tmp_path / "model.urdf"
+    model.write_text(
+        f'<robot name="box"><link name="case">{INERTIAL.format("0 0 0")}</link>'
+        f'<link name="lid">{wrong}{shape}</link>'
+        '<joint name="hinge" type="revolute"><parent link="case"/><child link="lid"/><axis xyz="0 0 1"/>'
+        '<limit lower="0" upper="1" effort="50" velocity="1"/></joint></robot>',
+        encoding="utf-8",
+    )
+    assert "mujoco" in refusals(model, ("mujoco",))
+    done = fixed(model, tmp_path / "out.urdf")
+    assert refusals(done.path, DEFAULT_ENGINES) == {}
+    lid = read_robot(done.path).link_by_name["lid"]
+    assert [shape.file.suffix for shape in lid.collisions if shape.file] == [".obj"]
+    assert lid.inertial is not None
+    assert lid.inertial.tensor.diagonal() == pytest.approx((0.027, 0.027, 0.053))
+
+
 def hinged(folder: Path, limit: str, *stops: float) -> Path:
     """A bar of 0.4 m that turns on a plate, and blocks that end its way, with their middles so far beside it [m]."""
     path = folder / "bar.urdf"

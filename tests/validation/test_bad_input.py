@@ -8,8 +8,12 @@ import pytest
 import trimesh
 
 from kinematify.cli.verdict import describe
+from kinematify.config.validation import load_settings
+from kinematify.robot.read import read_robot
+from kinematify.validation.document_copy import readable_copy
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.run import validate
+from kinematify.validation.stage import StageRequest
 
 LIMIT = '<limit lower="0" upper="0.05" effort="10" velocity="1"/>'
 BOX = '<box size="0.1 0.1 0.1"/>'
@@ -111,6 +115,53 @@ def test_a_broken_mesh_mimic_or_number_blocks_nothing_else(tmp_path: Path, fault
     assert not [(item.check, item.reason) for item in report.checks if item.status is Status.BLOCKED]
     assert [item.check for item in report.findings if item.severity is Severity.ERROR][:1] == [check]
     assert "MuJoCo 1 of 1 joints move" in report.as_loaded
+
+
+ARM = """<robot name="arm">{head}
+  <link name="base"><inertial><mass value="1"/><inertia ixx="1e-2" iyy="1e-2" izz="1e-2" ixy="0" ixz="0" iyz="0"/>
+    </inertial><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="arm"><inertial><origin xyz="0.1 0 0"/><mass value="2"/>
+    <inertia ixx="1e-2" iyy="1e-2" izz="1e-2" ixy="0" ixz="0" iyz="0"/></inertial>
+    <visual><geometry><mesh filename="arm.stl"/></geometry></visual>
+    <collision><geometry><mesh filename="arm.stl"/></geometry></collision></link>
+  <link name="tool"><visual><geometry><sphere radius="0.005"/></geometry></visual></link>
+  <joint name="turn" type="revolute"><origin xyz="0 0 0.1"/><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="1" effort="9" velocity="1"/></joint>
+  <joint name="fixed" type="fixed"><origin xyz="0.3 0 0"/><parent link="arm"/><child link="tool"/></joint>
+</robot>"""
+
+
+def test_of_a_body_without_its_mesh_nothing_is_said_about_its_room(tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(ARM.format(head=""))
+    report = validate(path, engines=(), selected=("KV1*", "KV2*", "KV3*"), workers=1)
+    assert {item.check for item in report.findings if item.severity is not Severity.NOTE} == {"KV141"}
+
+
+def test_meshes_are_found_where_the_file_tells_mujoco_to_look(tmp_path: Path) -> None:
+    path = tmp_path / "urdf" / "arm.urdf"
+    (tmp_path / "meshes").mkdir()
+    path.parent.mkdir()
+    trimesh.creation.box(bounds=[[-0.05, -0.05, 0.0], [0.3, 0.05, 0.05]]).export(tmp_path / "meshes" / "arm.stl")
+    path.write_text(ARM.format(head='<mujoco><compiler meshdir="../meshes"/></mujoco>'))
+    report = validate(path, engines=("mujoco",), workers=1)
+    assert "MuJoCo 1 of 1 joints move" in report.as_loaded
+    assert not [item.message for item in report.findings if item.severity is not Severity.NOTE]
+
+
+def test_a_copy_lacks_the_one_shape_of_a_line_that_is_broken(tmp_path: Path) -> None:
+    shapes = (f'<collision><geometry><box size="1 {side} 1"/></geometry></collision>' for side in (1, -1))
+    path = tmp_path / "lid.urdf"
+    path.write_text(f'<robot name="lid"><link name="lid">{"".join(shapes)}</link></robot>')
+    report = validate(path, engines=(), selected=("KV138", "KV158", "KV240"), workers=1)
+    assert {item.check: item.status for item in report.checks}["KV240"] is Status.PASS
+    (copy,) = report.findings
+    request = StageRequest(
+        urdf=path, package_dirs=(), work=tmp_path, settings=load_settings(), selected=frozenset(), deadline=60.0
+    )
+    readable = readable_copy(request, [copy], "readable.urdf")
+    assert readable is not None
+    assert [shape.size for shape in read_robot(readable.path).links[0].collisions] == [(1.0, 1.0, 1.0)]
 
 
 def test_names_and_meshes_in_any_script_are_kept(tmp_path: Path) -> None:

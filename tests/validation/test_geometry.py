@@ -121,14 +121,6 @@ def test_a_wheel_beside_what_carries_it_is_fine(tmp_path: Path, kind: str, acros
     assert ("KV303" in found(beam(wheel), tmp_path)) is is_reported
 
 
-def test_what_is_tolerated_is_listed_with_its_reason(tmp_path: Path) -> None:
-    model = beam(block("left", 0.0), block("right", 0.098))
-    text = " ".join(finding.message for finding in notes(model, tmp_path, "KV304"))
-    assert "in contact at rest without a joint between them (1)" in text
-    assert "left - right" in text
-    assert "joined and in contact at rest (2)" in text
-
-
 def test_a_drawer_turned_sideways_is_blocked_to_both_sides(tmp_path: Path) -> None:
     model = cabinet().with_part("drawer", axis=(0.0, 1.0, 0.0), limits=(-0.3, 0.3))
     findings = found(model, tmp_path)["KV310"]
@@ -297,10 +289,7 @@ def doors(
         ((-1.5, 0.0), 0.0, 0.0, None),  # repeated, as wardrobes in a row are
         ((-1.5, 0.0), 0.2, 0.0, "the other way round"),
         ((0.0, 3.0), 0.2, 0.0, "twice as wide"),
-        ((0.0, 1.5), 0.2, 0.3, "in different directions"),
-        ((0.0, 1.5), 0.2, 1.0, "in different directions"),
-        ((0.0, 1.5), 0.15, 0.0, "in different places"),
-        ((0.0, 1.5), 0.188, 0.0, None),  # nearly mirrored, as lines drawn by hand are
+        ((0.0, 3.0), 0.15, 0.0, None),  # no twins: the line of one is elsewhere in it
     ],
 )
 def test_twins_whose_joints_differ_are_named(

@@ -17,6 +17,7 @@ from kinematify.validation.finding import Cause, CheckResult, Finding, Severity,
 from kinematify.validation.run.needs import meshes
 from kinematify.validation.run.recorder import Recorder
 from kinematify.validation.stage import StageRequest
+from kinematify.versions import NO_WHEELS
 from tests.validation.engine_models import Box, Model, Part
 
 SETTINGS = load_settings()
@@ -397,7 +398,7 @@ def test_coarse_collision_geometry_is_fine(good: Path) -> None:
     assert not counted(good)
 
 
-def test_a_hollow_collision_mesh_is_a_note(tmp_path: Path) -> None:
+def test_a_hollow_collision_mesh_of_what_does_not_move_is_told(tmp_path: Path) -> None:
     ring = trimesh.creation.annulus(0.4, 0.5, 0.2)
     ring.export(tmp_path / "ring.stl")
     shape = '<geometry><mesh filename="ring.stl"/></geometry>'
@@ -406,10 +407,33 @@ def test_a_hollow_collision_mesh_is_a_note(tmp_path: Path) -> None:
         f'<robot name="r"><link name="ring"><visual>{shape}</visual><collision>{shape}</collision></link></robot>'
     )
     (finding,) = checked(urdf)["KV242"].findings
-    assert (finding.link, finding.severity) == ("ring", Severity.NOTE)
+    assert (finding.link, finding.severity) == ("ring", Severity.WARNING)
     assert finding.value == pytest.approx(0.25 / (0.25 - 0.16), rel=0.02)
     urdf.write_text(urdf.read_text().replace("<collision>", '<collision concave="yes">'))
     assert checked(urdf)["KV242"].findings == ()
+
+
+def test_links_without_mass_that_are_fixed_to_others_are_told_with_what_pybullet_makes_of_them(good: Path) -> None:
+    tree = etree.parse(good)
+    robot = tree.getroot()
+    for name in ("grip", "tip", "lens", "lamp"):
+        robot.append(etree.fromstring(f'<link name="{name}"/>'))
+        robot.append(
+            etree.fromstring(f'<joint name="f_{name}" type="fixed"><parent link="door"/><child link="{name}"/></joint>')
+        )
+    tree.write(good)
+    finding = only(good, "KV201")
+    assert "Links without an <inertial> that are fixed to links with one: 4." in finding.message
+    assert "has 3 kg and gets 4 kg more (frames grip, tip, lens, lamp)" in finding.message
+    pybullet = pytest.importorskip("pybullet", reason=NO_WHEELS)
+    client = pybullet.connect(pybullet.DIRECT)
+    body = pybullet.loadURDF(str(good), physicsClientId=client)
+    masses = {
+        pybullet.getJointInfo(body, index, client)[12].decode(): pybullet.getDynamicsInfo(body, index, client)[0]
+        for index in range(pybullet.getNumJoints(body, client))
+    }
+    pybullet.disconnect(client)
+    assert [masses[name] for name in ("door", "grip", "tip", "lens", "lamp")] == [3.0, 1.0, 1.0, 1.0, 1.0]
 
 
 # ---- left and right ------------------------------------------------------------------------------------------------
@@ -464,6 +488,52 @@ def test_sides_that_differ_everywhere_are_a_style(tmp_path: Path) -> None:
         joint.set("effort", "99")
     tree.write(urdf)
     assert not checked(urdf)["KV227"].findings
+
+
+# ---- parts of one shape --------------------------------------------------------------------------------------------
+
+
+def hand(tmp_path: Path, **odd: object) -> Path:
+    """A palm with four fingers of one shape, each of two phalanges; some values of the last one are changed."""
+    parts = [Part(name="palm", boxes=(Box(size=(0.1, 0.02, 0.1)),), mass=0.5, inertia=(4e-4, 8e-4, 4e-4))]
+    for number in range(4):
+        for name, parent, at in (
+            ("proximal", "palm", (0.025 * number - 0.04, 0.0, 0.05)),
+            ("distal", f"proximal_{number}", (0.0, 0.0, 0.04)),
+        ):
+            part = Part(
+                name=f"{name}_{number}",
+                parent=parent,
+                kind="revolute",
+                at=at,
+                axis=(1.0, 0.0, 0.0),
+                limits=(-0.1, 1.6),
+                boxes=(Box(size=(0.02, 0.015, 0.04), at=(0.0, 0.0, 0.02)),),
+                mass=0.02,
+                inertia=(3e-6, 3e-6, 1e-6),
+                center=(0.0, 0.0, 0.02),
+            )
+            parts.append(replace(part, **odd) if part.name == "distal_3" else part)  # type: ignore[arg-type]
+    return Model(parts=tuple(parts)).write(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("odd", "says"),
+    [
+        ({}, None),
+        ({"mass": 0.2}, "mass"),
+        ({"axis": (0.0, 1.0, 0.0)}, "axis"),
+        ({"axis": (-1.0, 0.0, 0.0)}, "range"),
+        ({"limits": (-0.1, 3.2)}, "range"),
+    ],
+)
+def test_one_of_several_parts_of_one_shape_that_differs_is_named(
+    odd: dict[str, object], says: str | None, tmp_path: Path
+) -> None:
+    found = checked(hand(tmp_path, **odd))["KV227"].findings
+    assert [(item.pair, f"differ in {says}" in item.message) for item in found] == [
+        (("distal_0", "distal_3"), True)
+    ] * (says is not None)
 
 
 # ---- one digit -----------------------------------------------------------------------------------------------------

@@ -64,8 +64,9 @@ def test_what_is_not_there_is_named(old: str, new: str, says: str, tmp_path: Pat
     assert says in finding.message
 
 
-def test_a_pair_that_meets_is_not_one_that_never_does(tmp_path: Path) -> None:
-    (finding,) = counted(folded(tmp_path, GOOD.format(reason="Never"), apart=0.3))
+@pytest.mark.parametrize("reason", ["Never", "Adjacent"])
+def test_a_pair_that_meets_is_left_out_for_a_true_reason(reason: str, tmp_path: Path) -> None:
+    (finding,) = counted(folded(tmp_path, GOOD.format(reason=reason), apart=0.3))
     assert (finding.check, finding.pair) == ("KV305", ("near", "far"))
 
 

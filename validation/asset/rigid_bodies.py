@@ -209,8 +209,9 @@ class Physics:
 def measure(model: Robot, settings: PhysicsSettings) -> Physics:
     """Measure every link once."""
     rooms = Rooms()
-    visual = {link.name: room for link in model.links if (room := rooms.of(link.visuals)) is not None}
-    collision = {link.name: room for link in model.links if (room := rooms.of(link.collisions)) is not None}
+    links = [link for link in model.links if link.name not in model.lacking]
+    visual = {link.name: room for link in links if (room := rooms.of(link.visuals)) is not None}
+    collision = {link.name: room for link in links if (room := rooms.of(link.collisions)) is not None}
     poses = forward_kinematics(model, {})
     bodies = []
     for group in rigid_groups(model):
@@ -221,7 +222,10 @@ def measure(model: Robot, settings: PhysicsSettings) -> Physics:
                 links=tuple(model.link_by_name[name] for name in group.links),
                 T_body_link={name: T_body_world @ poses[name] for name in group.links},
                 joint=None if above is None else above.name,
-                rooms={name: room for name in group.links if (room := _both(name, visual, collision)) is not None},
+                # nobody knows the room of a body of which a shape is missing
+                rooms={}
+                if model.lacking.intersection(group.links)
+                else {name: room for name in group.links if (room := _both(name, visual, collision)) is not None},
             )
         )
     return Physics(

@@ -62,6 +62,11 @@ def nothing_moves(context: AsLoadedContext) -> str | None:
     return None if context.travels else "no joint moves"
 
 
+def _open_chains(context: AsLoadedContext) -> str | None:
+    """No chain that closes: engines hold it closed by springs."""
+    return "no engine says what energy the springs hold that close its chains" if context.robot.loops else None
+
+
 @check(
     "KV801",
     title="As loaded: the engine opens the file",
@@ -457,13 +462,13 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
     cause=Cause.ENGINE,
     runs_in=_RUNS,
     follows=NOT_A_BODY,
-    needs=(not_loaded, nothing_moves, late),
+    needs=(not_loaded, nothing_moves, _open_chains, late),
 )
 def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
     """In the untouched file all joints are given a hand's speed and let go for as_loaded.release_seconds, with the
     friction and damping of the file, without motors and contacts. The sum of kinetic and potential energy never grows
     by more than as_loaded.energy of the largest kinetic energy. What one engine alone gains is its time step's: a note
-    if the file works in another one, else a warning.
+    if the file works in another one, else a warning. It is not asked of linkages.
 
     Why it matters: What gains energy by itself blows up, sooner or later, with whatever hangs on it.
 

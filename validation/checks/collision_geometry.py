@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.validation.check import check
-from kinematify.validation.checks.shared import something_collides
+from kinematify.validation.checks.shared import something_collides, something_moves
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
@@ -31,7 +31,8 @@ if TYPE_CHECKING:
 def missing_collisions(result: OpenCheck, physics: Physics) -> None:
     """Every body with geometry has collision geometry, and so has each of its links that projects from the rest by
     `bare_share` of its size (others are a note, unless they are fewer than `bare_minority` of all links; so are those
-    below `marker` of the model's size). Where no link of the file has any, that is one finding.
+    below `marker` of the model's size, and primitives without a mass on another link, which mark a place). Where no
+    link of the file has any, that is one finding.
 
     Why it matters: Grippers and other parts pass through the link in every engine.
 
@@ -61,14 +62,16 @@ def _uncovered(result: OpenCheck, physics: Physics, body: Body) -> None:
         if name in physics.collision or (felt is None and name != body.called):
             continue
         counts = felt is None or exception or _stands_out(body, name, felt) > physics.settings.bare_share
-        counts &= room.diagonal > physics.settings.marker * physics.diagonal
+        link = physics.model.link_by_name[name]
+        drawn = link.inertial is None and name != body.called and all(shape.file is None for shape in link.visuals)
+        counts &= room.diagonal > physics.settings.marker * physics.diagonal and not drawn
         result.find(
             f"The link {name} has no collision geometry, though it measures {room.diagonal:.3g} m and other "
             "links of the model have some: " + ("what meets it passes through." if counts else "it is small."),
             "Copy its <visual> to a <collision>, or write a simpler shape.",
             severity=None if counts else Severity.NOTE,
             link=name,
-            line=physics.model.link_by_name[name].line,
+            line=link.line,
         )
 
 
@@ -153,12 +156,13 @@ def _vector(values: FloatArray) -> str:
     "KV242",
     title="Collision meshes are nearly convex",
     fails="A collision mesh is far from its hull",
-    severity=Severity.NOTE,
+    severity=Severity.WARNING,
     cause=Cause.PHYSICS,
     needs=(something_collides,),
 )
 def inflated_hulls(result: OpenCheck, physics: Physics) -> None:
-    """The hull of a closed collision mesh has at most `inflation` times its volume, unless it is declared concave.
+    """The hull of a closed collision mesh has at most `inflation` times its volume, unless it is declared concave. It
+    is a warning where no joint moves: cups and shelves are there for what goes into them.
 
     Why it matters: MuJoCo and PyBullet collide the hull: a drawer cannot enter a cabinet that is one mesh.
     Kinematify cuts such meshes into convex pieces for its own runs.
@@ -178,6 +182,7 @@ def inflated_hulls(result: OpenCheck, physics: Physics) -> None:
                 f"The hull of the collision mesh {name} of the link {link.name} has {ratio:.3g} times the "
                 "volume of the mesh, and MuJoCo and PyBullet see the hull: what reaches into its hollows collides.",
                 "Cut it into convex pieces and write each as a <collision> (kinematify export --to urdf, or CoACD).",
+                severity=Severity.NOTE if something_moves(physics) is None else None,
                 link=link.name,
                 value=ratio,
                 limit=physics.settings.inflation,

@@ -44,8 +44,9 @@ def implausible_ranges(result: OpenCheck, physics: Physics) -> None:
     at plus and minus 10 rad or a multiple of pi, where no limit was meant; a warning for some turns to both sides that
     are no round numbers), unless both limits are round numbers of degrees up to `widest_wrist`; it is a note where the
     range would be less than ten degrees if it were degrees. No slide moves by more than `slide_sizes` times the size
-    of the model, by `widest_slide` where no geometry shows its size; beyond `slide_wrong` times it is an error. A range
-    of more than 100,000 rad or m means no limit and is a note.
+    of the model, by `widest_slide` where no geometry shows its size; beyond `slide_wrong` times it is an error. It is
+    a note of slides that carry all geometry, as those of a base on the floor do, and of a range of more than 100,000
+    rad or m, which means no limit.
 
     Why it matters: Degrees for radians and millimetres for metres load in every engine, and the joint then moves
     freely.
@@ -113,7 +114,7 @@ def _slide(result: OpenCheck, physics: Physics, joint: Joint) -> None:
         + (f", {width / size:.3g} times the size of the model ({size:.3g} m)." if size > 0.0 else "."),
         f"Write lower and upper in metres: {joint.lower / 1000:g} and {joint.upper / 1000:g} if they are millimetres.",
         severity=Severity.NOTE
-        if width > _BOUNDLESS
+        if width > _BOUNDLESS or _carries_all(physics, joint)
         else Severity.ERROR
         if size > 0.0 and width > settings.slide_wrong * size
         else Severity.WARNING,
@@ -124,6 +125,14 @@ def _slide(result: OpenCheck, physics: Physics, joint: Joint) -> None:
         unit="m",
         line=joint.line,
     )
+
+
+def _carries_all(physics: Physics, joint: Joint) -> bool:
+    """True of a slide that stands for a drive over the floor: no geometry is above it."""
+    above = physics.body_of[joint.parent]
+    while not above.rooms and above.joint is not None:
+        above = physics.body_of[physics.model.joint_by_name[above.joint].parent]
+    return not above.rooms
 
 
 @check(

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 )
 def missing_masses(result: OpenCheck, physics: Physics) -> None:
     """Of the links that fixed joints hold together, at least one has an <inertial>. Where no body of the file has one,
-    that is one finding.
+    that is one finding. So are links without one beside others that have it: it is a warning if PyBullet, which takes
+    1 kg for each, even if it merges them, makes a body that moves twice as heavy; else a note.
 
     Why it matters: Without it PyBullet takes 1 kg, MuJoCo what its collision geometry weighs, Pinocchio nothing: no two
     engines move the model alike.
@@ -32,6 +33,7 @@ def missing_masses(result: OpenCheck, physics: Physics) -> None:
     Remedy: Add an <inertial> to the link; 100 to 1000 kg/m3 times its volume is a start.
     """
     moving = [body for body in physics.bodies if body.moves]
+    _merged(result, [body for body in moving if body.mass > 0.0])
     without = [body for body in moving if all(link.inertial is None for link in body.links)]
     if not without:
         return
@@ -57,6 +59,27 @@ def missing_masses(result: OpenCheck, physics: Physics) -> None:
             link=body.called,
             line=physics.model.link_by_name[body.called].line,
         )
+
+
+def _merged(result: OpenCheck, weighed: list[Body]) -> None:
+    """Report links without a mass that are fixed to others with one, the body that changes most by them first."""
+    extra = {body: [link for link in body.links if link.inertial is None] for body in weighed}
+    worst = max(weighed, key=lambda body: len(extra[body]) / body.mass, default=None)
+    if worst is None or not extra[worst]:
+        return
+    solid = [link.name for link in extra[worst] if link.name in worst.rooms]
+    frames = [link.name for link in extra[worst] if link.name not in worst.rooms]
+    kinds = (f"{title} {', '.join(names)}" for title, names in (("frames", frames), ("solid", solid)) if names)
+    result.find(
+        f"Links without an <inertial> that are fixed to links with one: {sum(map(len, extra.values()))}. "
+        f"PyBullet gives each 1 kg: what {worst.joint} moves has {worst.mass:.3g} kg and gets {len(extra[worst])} kg "
+        f"more ({'; '.join(kinds)}).",
+        "Write an <inertial> of 1e-6 kg for frames, and the true one for what is solid.",
+        severity=Severity.WARNING if len(extra[worst]) >= worst.mass else Severity.NOTE,
+        joint=worst.joint,
+        link=extra[worst][0].name,
+        line=extra[worst][0].line,
+    )
 
 
 def _suggested(room: Room | None) -> str:

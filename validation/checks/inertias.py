@@ -294,8 +294,8 @@ def _centre(body: Body, link: Link, inertial: Inertial) -> FloatArray:
 )
 def centres_outside(result: OpenCheck, physics: Physics) -> None:
     """The centre of mass lies in the hull of the body, inflated by `centre_outside` of its diagonal; beyond
-    `centre_far` it is an error. Links without geometry count above `frame_share` of the body's mass: below, they are
-    frames and sensors with a mass that means nothing.
+    `centre_far` it is an error for bodies that move. Links without geometry count above `frame_share` of the body's
+    mass: below, they are frames and sensors with a mass that means nothing.
 
     Why it matters: Gravity turns the part the wrong way, and joints need torques that they do not need in truth.
 
@@ -315,7 +315,9 @@ def centres_outside(result: OpenCheck, physics: Physics) -> None:
                 f"measures {room.diagonal:.3g} m.",
                 f"Write it inside the geometry, for instance {_middle(physics, link)}; check units and frame of "
                 "the <origin> of its <inertial>.",
-                severity=Severity.ERROR if outside > settings.centre_far * room.diagonal else Severity.WARNING,
+                severity=Severity.ERROR
+                if body.moves and outside > settings.centre_far * room.diagonal
+                else Severity.WARNING,
                 link=link.name,
                 value=outside,
                 limit=settings.centre_outside * room.diagonal,

@@ -105,8 +105,9 @@ def through_parent(result: OpenCheck, motion: JointMotion) -> None:
 def into_others(result: OpenCheck, motion: JointMotion) -> None:
     """While each joint moves alone over its range, bodies that are no neighbours do not meet. If another joint can
     clear the way (a door before the drawer behind it), it is a note. So is what arms, legs and fingers do: a chain
-    that folds onto itself, or two limbs that meet, after the joint was free over geometry.early of its range, or
-    over geometry.early_turn; and what a joint without limits does (a whole turn is none).
+    that folds onto itself, two limbs that meet, or two fingers that the joint moves both, after the joint was free
+    over geometry.early of its range, or over geometry.early_turn; and what a joint without limits does (a whole turn
+    is none).
 
     Why it matters: Parts that always meet hang on the wrong parent, or the range is too wide.
 
@@ -158,10 +159,13 @@ def into_others(result: OpenCheck, motion: JointMotion) -> None:
 def _folds(motion: JointMotion, meeting: Meeting) -> bool:
     """True if a chain of joints reaches itself, and not at once.
 
-    One body carries the other with others between them, or both stand on limbs of their own.
+    One body carries the other with others between them, both stand on limbs of their own, or the joint closes a gripper
+    and moves both.
     """
     travel, scene = motion.sweep.travel, motion.scene
-    chain = scene.carries(meeting.pair) or len(scene.between(meeting.pair)) > _LIMBS
+    moved = scene.mechanism.moved[motion.sweep.leader]
+    closes = all(moved[scene.bodies[body].group] for body in meeting.pair)
+    chain = closes or scene.carries(meeting.pair) or len(scene.between(meeting.pair)) > _LIMBS
     return chain and (motion.late(meeting) or abs(meeting.first - travel.rest) > scene.settings.early * travel.range)
 
 

@@ -98,9 +98,9 @@ def unknown_names(result: OpenCheck, urdf: Urdf) -> None:
     ),
 )
 def wrong_reasons(result: OpenCheck, look: GeometryContext) -> None:
-    """Pairs that the SRDF leaves out as pairs that never meet (`reason="Never"`) do not meet at rest, nor in one of
-    geometry.random_rows quasi-random configurations. Of pairs that it leaves out, overlaps at rest (KV301, KV302)
-    are notes, and meetings (KV311) are not mentioned.
+    """Pairs that the SRDF leaves out as pairs that never meet (`reason="Never"`), or as neighbours (`"Adjacent"`)
+    though other bodies are between them, do not meet in one of geometry.random_rows quasi-random configurations. Of
+    pairs that it leaves out, overlaps at rest (KV301, KV302) are notes, and meetings (KV311) are not mentioned.
 
     Why it matters: A planner drives the two through each other.
 
@@ -111,9 +111,11 @@ def wrong_reasons(result: OpenCheck, look: GeometryContext) -> None:
     for pair, hits in zip(look.scene.pairs, look.random.meeting.T, strict=True):
         values = dict(enumerate(rows[hits.argmax()].tolist()))
         links = look.links_at(pair, values) if hits.any() else ("", "")
-        if look.disabled.get(frozenset(links)) == "Never":
+        reason = look.disabled.get(frozenset(links))
+        if reason == "Never" or (reason == "Adjacent" and pair not in look.scene.connection_of):
+            said = "never meet" if reason == "Never" else "are neighbours, and other bodies are between them"
             result.find(
-                f"The SRDF says that {links[0]} and {links[1]} never meet; they do in {hits.sum()} of {len(rows)} "
+                f"The SRDF says that {links[0]} and {links[1]} {said}; they meet in {hits.sum()} of {len(rows)} "
                 "quasi-random configurations.",
                 "Delete its disable_collisions of the two, or correct their collision geometry.",
                 pair=links,

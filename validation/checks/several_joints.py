@@ -31,22 +31,20 @@ def _two_joints(look: GeometryContext) -> str | None:
     needs=(joints_move, _two_joints),
 )
 def unlike_twins(result: OpenCheck, look: GeometryContext) -> None:
-    """Two parts of one size that mirror or repeat each other at rest have joints of one type that do so too: their axes
-    run alike and through the same place of both parts, and their ranges are about as wide and lead the same way. It is
-    a finding only if no symmetry of the two explains both joints. Axes that differ are one only if the surfaces of both
-    parts agree, and the axes differ either in direction or in place.
+    """Two parts of one size that mirror or repeat each other at rest, and whose axes do so too, have joints of one type
+    whose ranges are about as wide and lead the same way. It is a finding only if no symmetry of the two explains both
+    joints.
 
     Why it matters: One leg that bends the wrong way, or one door that opens inwards, is stopped by nothing in an
     engine.
 
-    Remedy: Compare the two joints; correct <axis>, <origin>, the type or the limits of the one that is wrong.
+    Remedy: Compare the two joints; correct the type, the axis or the limits of the one that is wrong.
     """
-    for found in twins_at_odds(look.scene):
-        first, second = found.joints
+    for first, second, how in twins_at_odds(look.scene):
         result.find(
-            f"{first.child} and {second.child} mirror or repeat each other, but {found.how}: "
-            f"{' and '.join(f'{joint.name} ({_line_and_range(joint)})' for joint in found.joints)}.",
-            "Compare the two: correct <axis> or <origin> of the one that is wrong, or its type or its limits.",
+            f"{first.child} and {second.child} mirror or repeat each other, but {how}: "
+            f"{' and '.join(f'{joint.name} ({_line_and_range(joint)})' for joint in (first, second))}.",
+            "Compare the two: correct the type, <axis> or limits of the one that is wrong.",
             pair=(first.child, second.child),
             line=second.line,
         )

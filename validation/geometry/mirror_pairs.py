@@ -2,8 +2,7 @@
 
 A pair counts only where the shapes at rest and what carries them agree. A difference counts only if no symmetry of
 the pair explains the two joints: knobs side by side may turn the same way or mirrored, doors with both hinges on the
-left repeat each other. Of lines that differ, only one thing may: the direction where both pass through one place of
-the two parts, or the place where both run the same way; and the surfaces must agree, not only the boxes.
+left repeat each other. Parts whose lines differ are no twins.
 """
 
 from __future__ import annotations
@@ -36,28 +35,11 @@ _LOPSIDED = 0.2
 _WIDER = 1.8
 """A range that is this many times that of its twin is another one."""
 
-_OTHER_DEG = 10.0  # axes of twins that differ by more are at odds
-_BESIDE = 0.05  # of the part's size: lines of twins that run farther beside each other are at odds
-_SOME = 5  # every so many of a surface's points are compared
-_FITS = 0.02  # of the part's size: how far its surface may be from that of its twin
-
 OTHER_WAY = "one moves the other way round"
 OTHER_TYPE = "one turns and the other slides"
 TWICE = "the range of one is about twice as wide"
-OTHER_AXIS = "their axes run in different directions"
-OTHER_PLACE = "their axes are in different places"
-_NEARLY = "their axes nearly agree"  # never reported: no other symmetry then shows that the lines differ
-_RANKED = (OTHER_PLACE, OTHER_AXIS, OTHER_WAY, OTHER_TYPE, TWICE)
-"""If several symmetries show a difference, the last of these is reported; the first two are about lines."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Difference:
-    """Two twins whose joints are at odds."""
-
-    joints: tuple[Joint, Joint]
-    how: str
-    """What differs, to follow "they are twins, but"."""
+_RANKED = (OTHER_WAY, OTHER_TYPE, TWICE)
+"""If several symmetries show a difference, the last of these is reported."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -82,8 +64,8 @@ class _Part:
         return np.array([self.joint.lower - self.rest, self.joint.upper - self.rest])
 
 
-def twins_at_odds(scene: Scene) -> Iterator[Difference]:
-    """Find twins whose joints differ in type, direction or width.
+def twins_at_odds(scene: Scene) -> Iterator[tuple[Joint, Joint, str]]:
+    """Find joints of twins that differ in type, direction or width, and what differs, to follow "they are twins, but".
 
     Args:
         scene: The model at rest.
@@ -95,10 +77,9 @@ def twins_at_odds(scene: Scene) -> Iterator[Difference]:
             (_difference(scene, first, second, sign), np.count_nonzero(sign < 0.0) == 2)
             for sign in _symmetries(scene, boxes, first, second)
         ]
-        listed = _RANKED[2:] if any(how == _NEARLY for how, _ in compared) else _RANKED
-        shown = [how for how, turned in compared if how and how in listed and not turned]  # half a turn only explains
+        shown = [how for how, turned in compared if how and not turned]  # half a turn only explains
         if shown and all(how is not None for how, _ in compared):
-            yield Difference(joints=(first.joint, second.joint), how=max(shown, key=_RANKED.index))
+            yield first.joint, second.joint, max(shown, key=_RANKED.index)
 
 
 def _box(scene: Scene, body: int) -> FloatArray:
@@ -150,7 +131,8 @@ def _symmetries(scene: Scene, boxes: list[FloatArray], first: _Part, second: _Pa
             off = _mapped(boxes[first.parent].mean(axis=0), sign, first, second) - boxes[first.parent].mean(axis=0)
             agrees = not turned or np.abs(off).max() <= 2.0 * same
         else:
-            agrees = _lands([boxes[second.parent]], _mapped(boxes[first.parent], sign, first, second), 2.0 * same)
+            mapped = np.sort(_mapped(boxes[first.parent], sign, first, second), axis=0)
+            agrees = np.abs(mapped - boxes[second.parent]).max() <= 2.0 * same
         if agrees:
             yield sign
 
@@ -163,20 +145,15 @@ def _tolerance(scene: Scene, part: _Part) -> float:
     return min(_SAME * scene.size, _SAME_PART * float(np.linalg.norm(part.high - part.low)))
 
 
-def _lands(boxes: list[FloatArray], box: FloatArray, same: float) -> bool:
-    """True if a box that was mapped is one of some others."""
-    mapped = np.sort(box, axis=0)
-    return any(bool(np.abs(mapped - other).max() <= same) for other in boxes)
-
-
 def _difference(scene: Scene, first: _Part, second: _Part, sign: FloatArray) -> str | None:
     """Return what differs under one symmetry: None if nothing does, "" if it is no such pair."""
     turns = first.joint.kind is JointType.REVOLUTE
     kinds = first.joint.kind is second.joint.kind
     axis = sign * first.axis * (np.prod(sign) if turns else 1.0)
-    other = _other_line(scene, first, second, sign, axis, turns=turns and kinds)
-    if other is not None:
-        return other if kinds else ""
+    off = _mapped(first.point, sign, first, second) - second.point
+    beside = np.abs(off - (off @ second.axis) * second.axis).max() > _tolerance(scene, first)
+    if np.degrees(np.arccos(np.clip(abs(axis @ second.axis), 0.0, 1.0))) > _SAME_DEG or (turns and kinds and beside):
+        return ""
     if not kinds:
         return OTHER_TYPE
     ends = first.ends if axis @ second.axis > 0.0 else -first.ends[::-1]
@@ -187,32 +164,3 @@ def _difference(scene: Scene, first: _Part, second: _Part, sign: FloatArray) -> 
     if turned_round and abs(second.ends.sum()) > _LOPSIDED * wide:
         return OTHER_WAY
     return TWICE if wide > _WIDER * narrow else None
-
-
-def _other_line(
-    scene: Scene, first: _Part, second: _Part, sign: FloatArray, axis: FloatArray, *, turns: bool
-) -> str | None:
-    """Return the difference of the mapped line of one joint from the other's: None if equal, "" if not clear."""
-    angle = np.degrees(np.arccos(np.clip(abs(axis @ second.axis), 0.0, 1.0)))
-    off = _mapped(first.point, sign, first, second) - second.point
-    off = off - (off @ second.axis) * second.axis if angle <= _SAME_DEG else off
-    beside = float(np.abs(off).max()) if turns else 0.0
-    same = _tolerance(scene, first)
-    if angle <= _SAME_DEG and beside <= same:
-        return None
-    size = float(np.linalg.norm(first.high - first.low))
-    if angle <= _OTHER_DEG and beside <= _BESIDE * size:
-        return _NEARLY
-    unclear = _SAME_DEG < angle <= _OTHER_DEG or (angle > _OTHER_DEG and beside > same)
-    if unclear or not _fits(scene, first, second, sign, _FITS * size):
-        return ""
-    return OTHER_PLACE if angle <= _SAME_DEG else OTHER_AXIS
-
-
-def _fits(scene: Scene, first: _Part, second: _Part, sign: FloatArray, most: float) -> bool:
-    """True if the surface of one part, mapped, is that of the other one."""
-    T = scene.at_rest[first.child]
-    points = transformed(scene.bodies[first.child].solid.points[::_SOME], T)
-    T = scene.at_rest[second.child]
-    local = (_mapped(points, sign, first, second) - T[:3, 3]) @ T[:3, :3]
-    return bool((scene.bodies[second.child].solid.distance(local) <= most).all())
