@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.library.mechanisms import case, legs, lever
-from kinematify.generate.library.panels import drawer, leaf
-from kinematify.generate.procedural.solids import X, Y, Z, beam, box
+from kinematify.generate.library.panels import carcass, drawer, leaf, seam
+from kinematify.generate.procedural.solids import X, Y, Z, beam, box, scaled
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -77,7 +79,13 @@ def chest_of_drawers(b: ObjectBuilder, width: float, depth: float, height: float
             )
 
 
-@kind("parametric nightstand", like="cabinet", width=length(0.35, 0.6), height=length(0.4, 0.7), leg=length(0.05, 0.2))
+@kind(
+    "parametric nightstand",
+    like="cabinet",
+    width=length(0.35, 0.6),
+    height=length(0.4, 0.7),
+    leg=length(0.05, 0.2),
+)
 def nightstand(b: ObjectBuilder, width: float, height: float, leg: float) -> None:
     """On legs, a drawer over a shelf or a door."""
     case(b, "stand", lower=(-width / 2, 0, leg), upper=(width / 2, 0.8 * width, height), opening=-Y, wall=0.018)
@@ -131,7 +139,13 @@ def gateleg_table(b: ObjectBuilder, width: float, depth: float, m: float) -> Non
         )
 
 
-@kind("parametric recliner", like="recliner", width=length(0.6, 0.9), depth=length(0.5, 0.6), height=length(0.38, 0.48))
+@kind(
+    "parametric recliner",
+    like="recliner",
+    width=length(0.6, 0.9),
+    depth=length(0.5, 0.6),
+    height=length(0.38, 0.48),
+)
 def parametric_recliner(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
     """A back that leans and a foot rest that comes up."""
     b.part("seat", box((-width / 2, 0, 0.05), (width / 2, depth, height)), material="wood")
@@ -149,7 +163,12 @@ def parametric_recliner(b: ObjectBuilder, width: float, depth: float, height: fl
         lever(b, "handle", parent="seat", at=(width / 2 + 0.12, 0.3 * depth, height), out=X, along=-Y, length=0.15)
 
 
-@kind("parametric folding bed", like="murphy_bed", width=length(0.9, 1.6), height=length(2.0, 2.2))
+@kind(
+    "parametric folding bed",
+    like="murphy_bed",
+    width=length(0.9, 1.6),
+    height=length(2.0, 2.2),
+)
 def folding_bed(b: ObjectBuilder, width: float, height: float) -> None:
     """A bed that folds down out of a wall case."""
     case(
@@ -236,3 +255,122 @@ def mirror_on_stand(b: ObjectBuilder, width: float, height: float) -> None:
             b.cylinder(0.006, (width / 2 - 0.001, 0, z), (width / 2 + 0.02, 0, z)),
         )
     b.hinge("mirror", parent="stand", axis=X, pivot=(0, 0, z), upper=0.5, lower=-0.5)
+
+
+@kind(
+    "drawer table",
+    like="table",
+    width=length(0.7, 1.8),
+    depth=length(0.45, 0.9),
+    height=length(0.45, 0.8),
+    top=length(0.015, 0.04),
+    apron=length(0.08, 0.16),
+    number=whole(1, 3, words="drawer"),
+)
+def drawer_table(
+    b: ObjectBuilder, width: float, depth: float, height: float, top: float, apron: float, number: int
+) -> None:
+    """A table or desk whose apron or pedestal holds drawers: fronts alone, trays or blocks."""
+    wall = 0.018
+    b.part("table", box((-width / 2, -0.02, height - top), (width / 2, depth, height)), material="wood")
+    legs(
+        b,
+        "table",
+        lower=(-width / 2 + 0.03, 0.0, 0),
+        upper=(width / 2 - 0.03, depth - 0.02, height - top + 0.002),
+        thick=b.draw(0.03, 0.08),
+    )
+    low = height - top - apron
+    high = height - top
+    carcass(
+        b,
+        "table",
+        lower=(-width / 2 + 0.05, 0.02, low),
+        upper=(width / 2 - 0.05, depth - 0.05, high),
+        wall=wall,
+        uprights=np.linspace(-width / 2 + 0.05, width / 2 - 0.05, number + 1)[1:-1],
+    )
+    for k, x in enumerate(spread(number, -width / 2 + 0.05, width / 2 - 0.05)):
+        half = (width - 0.1) / 2 / number - wall - 0.001
+        b.bore("table", box((x - half, 0.0, low + wall + 0.001), (x + half, depth - 0.06, high - wall - 0.001)))
+        drawer(
+            b,
+            f"drawer_{k}",
+            parent="table",
+            lower=(x - half, 0.02, low + wall + 0.001),
+            upper=(x + half, b.draw(0.5, 0.9) * depth, high - wall - 0.001),
+            lap=0,
+        )
+    if b.maybe(0.4):
+        side = b.pick(X, -X)
+        play = max(seam(b, 0.3, 0.01), 0)
+        z = low - 0.02 - play
+        b.part(
+            "board",
+            box(0.45 * width * side + 0.1 * depth * Y + z * Z, 0.1 * width * side + 0.8 * depth * Y + (z + 0.015) * Z),
+        )
+        b.slide("board", parent="table", axis=side, upper=b.draw(0.15, 0.3) * width)
+
+
+@kind(
+    "desk with pedestal",
+    like="table",
+    width=length(1.1, 1.8),
+    depth=length(0.55, 0.8),
+    height=length(0.7, 0.78),
+    p=length(0.35, 0.5),
+)
+def desk_with_pedestal(b: ObjectBuilder, width: float, depth: float, height: float, p: float) -> None:
+    """A desk with three drawers on one side and a keyboard tray."""
+    b.part(
+        "desk",
+        box((-width / 2, 0, height - 0.03), (width / 2, depth, height)),
+        box((width / 2 - 0.03, 0, 0), (width / 2, depth, height)),
+        material="wood",
+    )
+    b.part("desk", box((-width / 2, 0.02, 0), (-width / 2 + p, depth, height - 0.02)))
+    for k, z in enumerate(spread(3, 0.05, height - 0.04)):
+        drawer(
+            b,
+            f"drawer_{k}",
+            parent="desk",
+            lower=(-width / 2 + 0.03, 0.02, z - 0.09),
+            upper=(-width / 2 + p - 0.03, depth - 0.08, z + 0.09),
+            out=-Y,
+        )
+    if b.maybe(0.6):
+        g = b.gap(0.02)
+        x0 = -width / 2 + p + 0.1
+        x1 = width / 2 - 0.1
+        for x in (x0 - 0.015, x1 + 0.015):
+            b.part("desk", box((x - 0.015 + g, 0.05, height - 0.1), (x + 0.015 - g, depth - 0.1, height - 0.025)))
+        b.part("tray", box((x0, 0.03, height - 0.1), (x1, 0.4, height - 0.08)))
+        b.slide("tray", parent="desk", axis=-Y, upper=0.3)
+
+
+@kind(
+    "glider chair",
+    like="swing_seat",
+    size=length(0.9, 1.1),
+)
+def glider_chair(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part(
+        "stand",
+        box(p(-0.4, -0.4, 0), p(0.4, 0.4, 0.04)),
+        [box(p(s * 0.36 - 0.02, -0.03, 0.03), p(s * 0.36 + 0.02, 0.03, 0.62)) for s in (-1, 1)],
+        material="wood",
+    )
+    b.bore("stand", b.cylinder(0.0115 * size, p(-1, 0, 0.58), p(1, 0, 0.58)))
+    b.part(
+        "seat",
+        box(p(-0.28, -0.28, 0.36), p(0.28, 0.25, 0.4)),
+        beam(0.56 * size, 0.03 * size, p(0, 0.24, 0.38), p(0, 0.36, 1), X),
+        [box(p(s * 0.3, -0.25, 0.55), p(s * 0.25, 0.25, 0.61)) for s in (-1, 1)],
+        [box(p(s * 0.28, -0.22, 0.38), p(s * 0.25, -0.17, 0.56)) for s in (-1, 1)],
+        [box(p(s * 0.28, 0.17, 0.38), p(s * 0.25, 0.22, 0.56)) for s in (-1, 1)],
+        [b.cylinder(0.01 * size, p(s * 0.29, 0, 0.58), p(s * 0.39, 0, 0.58)) for s in (-1, 1)],
+        material="wood",
+        color="brown",
+    )
+    b.hinge("seat", parent="stand", axis=X, pivot=p(0, 0, 0.58), upper=0.3, lower=-0.3)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import angle, kind, length, yes
-from kinematify.generate.library.mechanisms import button, case, crank, knob, lever
+from kinematify.generate.library.mechanisms import bail, button, case, crank, knob, lever, rotor
 from kinematify.generate.library.panels import drawer, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box
 
@@ -462,3 +462,65 @@ def dishwasher_with_racks(b: ObjectBuilder, height: float) -> None:
         for y in spread(b.count(3, 6), 0.04, t - 0.08):
             b.part(f"rack_{k}", b.cylinder(0.004, (-a, y, z + 0.1), (a, y, z + 0.1)))
         b.slide(f"rack_{k}", parent="washer", axis=-Y, upper=0.4)
+
+
+@kind("lazy susan", like="cake_stand", radius=length(0.15, 0.35))
+def lazy_susan(b: ObjectBuilder, radius: float) -> None:
+    b.part(
+        "base",
+        b.cylinder(0.4 * radius, (0, 0, 0), (0, 0, 0.02)),
+        b.cylinder(0.02, (0, 0, 0.02), (0, 0, 0.028)),
+        material="wood",
+    )
+    b.part("tray", b.cylinder(radius, (0, 0, 0.021), (0, 0, 0.05)), material="wood")
+    b.cut("tray", b.cylinder(0.95 * radius, (0, 0, 0.036), (0, 0, 0.1)), b.cylinder(0.022, (0, 0, 0), (0, 0, 0.03)))
+    b.spin("tray", parent="base", axis=Z, pivot=(0, 0, 0))
+
+
+@kind("radio", like="boombox", width=length(0.18, 0.3), height=length(0.12, 0.18))
+def radio(b: ObjectBuilder, width: float, height: float) -> None:
+    w = width / 2
+    b.part("case", box((-w, -0.03, 0), (w, 0.03, height)), material="wood")
+    for k, x in enumerate((0.4 * w, 0.75 * w)):
+        knob(b, f"knob_{k}", parent="case", at=(x, -0.03, 0.35 * height), radius=0.016, high=0.015, out=-Y)
+    b.part(
+        "case",
+        [
+            box((-0.85 * w, -0.033, z - 0.002), (0.1 * w, -0.029, z + 0.002))
+            for z in spread(8, 0.15 * height, 0.85 * height)
+        ],
+        b.cylinder(0.005, (-0.8 * w, 0.02, height - 0.01), (-0.8 * w, 0.02, height + 0.06)),
+    )
+    b.bore("case", b.cylinder(0.0037, (-0.8 * w, 0.02, 0.02), (-0.8 * w, 0.02, height + 0.1)))
+    b.part(
+        "antenna",
+        b.cylinder(0.0025, (-0.8 * w, 0.02, 0.025), (-0.8 * w, 0.02, height + 0.07)),
+        ball(0.004, (-0.8 * w, 0.02, height + 0.072)),
+        material="chrome",
+    )
+    b.slide("antenna", parent="case", axis=Z, upper=0.1)
+    bail(
+        b,
+        "handle",
+        parent="case",
+        start=(-w, 0, height - 0.02),
+        end=(w, 0, height - 0.02),
+        high=0.05,
+        thick=0.008,
+        up=Z,
+        lower=-1.2,
+        upper=1.2,
+    )
+
+
+@kind("ceiling fan", like="fan", height=length(0.2, 0.4), radius=length(0.4, 0.7))
+def ceiling_fan(b: ObjectBuilder, height: float, radius: float) -> None:
+    """Blades on a motor below a rod, pull chain now and then."""
+    b.part(
+        "mount",
+        b.cylinder(0.06, (0, 0, height), (0, 0, height + 0.04)),
+        b.cylinder(0.012, (0, 0, 0), (0, 0, height + 0.02)),
+        b.cylinder(0.08, (0, 0, -0.06), (0, 0, 0.02)),
+        material="metal",
+    )
+    rotor(b, "rotor", parent="mount", at=(0, 0, -0.06), out=-Z, radius=radius, blades=b.count(3, 5), wide=0.2)

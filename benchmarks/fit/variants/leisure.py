@@ -9,9 +9,9 @@ import numpy as np
 
 from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import choice, kind, length, whole, yes
-from kinematify.generate.library.mechanisms import bail, button, case, caster, knob, legs, lever, plunger, wheel
+from kinematify.generate.library.mechanisms import bail, button, case, caster, crank, knob, legs, lever, plunger, wheel
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, prism, vector
+from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, prism, scaled, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -873,3 +873,37 @@ def lighthouse_lamp(b: ObjectBuilder, size: float) -> None:
     if b.maybe():
         b.part("lamp", b.cylinder(0.08 * size, (0, 0, 1.15 * size), (0, -0.4 * size, 1.15 * size)))
     b.spin("lamp", parent="tower", axis=Z, pivot=(0, 0, size))
+
+
+@kind("movie camera", like="camera", size=length(0.9, 1.2))
+def movie_camera(b: ObjectBuilder, size: float) -> None:
+    p = scaled(size)
+    b.part(
+        "body",
+        box(p(-0.05, -0.1, 0), p(0.05, 0.1, 0.16)),
+        box(p(-0.02, -0.02, -0.1), p(0.02, 0.03, 0.01)),
+        material="metal",
+        color="black",
+    )
+    b.cut("body", box(p(0, -0.08, 0.02), p(0.1, 0.08, 0.14)))
+    b.part(
+        "lens",
+        b.cylinder(0.03 * size, p(0, -0.101, 0.11), p(0, -0.16, 0.11)),
+        b.cylinder(0.034 * size, p(0, -0.13, 0.11), p(0, -0.15, 0.11)),
+        material="metal",
+        color="grey",
+    )
+    b.spin("lens", parent="body", axis=-Y, pivot=p(0, -0.1, 0.11))
+    leaf(
+        b,
+        "door",
+        parent="body",
+        lower=p(0.051, -0.09, 0.01),
+        upper=p(0.057, 0.09, 0.15),
+        hinge=Y,
+        out=X,
+        reach=1.8,
+        handle=False,
+        material="metal",
+    )
+    crank(b, "crank", parent="body", at=p(-0.05, 0.03, 0.08), out=-X, length=0.05 * size)

@@ -11,7 +11,7 @@ import numpy as np
 from kinematify.generate.library.kind import kind, length
 from kinematify.generate.library.mechanisms import arm, bail, case, knob, plunger, rotor
 from kinematify.generate.library.panels import leaf
-from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, scaled, vector
+from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, scaled, vector
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -570,3 +570,56 @@ def parametric_door_bolt(b: ObjectBuilder, length: float) -> None:
         material="steel",
     )
     b.slide("bolt", parent="plate", axis=X, upper=3 * k)
+
+
+@kind("steering rack", like="rack_and_pinion", length=length(0.5, 1.0))
+def steering_rack(b: ObjectBuilder, length: float) -> None:
+    L = length
+    b.part(
+        "housing",
+        b.cylinder(0.04 * L, (-0.3 * L, 0, 0), (0.3 * L, 0, 0)),
+        b.cylinder(0.035 * L, (0, -0.03 * L, 0.03 * L), (0, -0.03 * L, 0.12 * L)),
+        [
+            box((s * 0.25 * L - 0.02 * L, -0.06 * L, -0.06 * L), (s * 0.25 * L + 0.02 * L, 0.06 * L, -0.03 * L))
+            for s in (-1, 1)
+        ],
+        material="metal",
+    )
+    b.bore("housing", b.cylinder(0.0215 * L, (-L, 0, 0), (L, 0, 0)))
+    b.bore("housing", b.cylinder(0.0135 * L, (0, -0.03 * L, 0.045 * L), (0, -0.03 * L, L)))
+    b.part(
+        "rack",
+        b.cylinder(0.02 * L, (-0.42 * L, 0, 0), (0.42 * L, 0, 0)),
+        [ball(0.03 * L, (s * 0.43 * L, 0, 0)) for s in (-1, 1)],
+        material="steel",
+    )
+    b.slide("rack", parent="housing", axis=X, lower=-0.08 * L, upper=0.08 * L)
+    b.part(
+        "pinion",
+        b.cylinder(0.012 * L, (0, -0.03 * L, 0.055 * L), (0, -0.03 * L, 0.3 * L)),
+        b.cylinder(0.03 * L, (0, -0.03 * L, 0.28 * L), (0, -0.03 * L, 0.3 * L)),
+        material="steel",
+    )
+    b.hinge("pinion", parent="housing", axis=Z, pivot=[0, -0.03 * L, 0], lower=-6.28, upper=6.28)
+    b.follow("rack", leader="pinion", multiplier=0.0127 * L)
+
+
+@kind("shock absorber", like="hydraulic_cylinder", length=length(0.2, 0.5))
+def shock_absorber(b: ObjectBuilder, length: float) -> None:
+    L = length
+    b.part(
+        "cylinder",
+        b.cylinder(0.07 * L, (0, 0, 0.06 * L), (0, 0, 0.6 * L)),
+        b.cylinder(0.05 * L, (-0.04 * L, 0, 0.03 * L), (0.04 * L, 0, 0.03 * L)),
+        material="steel",
+        color="black",
+    )
+    b.bore("cylinder", b.cylinder(0.027 * L, (0, 0, 0.12 * L), (0, 0, L)))
+    b.part(
+        "rod",
+        b.cylinder(0.025 * L, (0, 0, 0.2 * L), (0, 0, 0.97 * L)),
+        b.cylinder(0.05 * L, (-0.04 * L, 0, L), (0.04 * L, 0, L)),
+        b.cylinder(0.08 * L, (0, 0, 0.9 * L), (0, 0, 0.92 * L)),
+        material="chrome",
+    )
+    b.slide("rod", parent="cylinder", axis=Z, lower=-0.07 * L, upper=0.22 * L)

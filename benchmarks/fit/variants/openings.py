@@ -8,9 +8,9 @@ import numpy as np
 
 from kinematify.generate.kinds.openings import surround
 from kinematify.generate.library.builder import spread
-from kinematify.generate.library.kind import choice, kind, length, whole, yes
+from kinematify.generate.library.kind import angle, choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import knob, lever
-from kinematify.generate.library.panels import leaf, pane, seam
+from kinematify.generate.library.panels import grip, leaf, pane, seam
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box, vector
 
 if TYPE_CHECKING:
@@ -165,7 +165,13 @@ def slab_gate(
         )
 
 
-@kind("house shutters", like="shutters", width=length(0.7, 1.4), height=length(0.8, 1.6), thickness=length(0.02, 0.04))
+@kind(
+    "house shutters",
+    like="shutters",
+    width=length(0.7, 1.4),
+    height=length(0.8, 1.6),
+    thickness=length(0.02, 0.04),
+)
 def house_shutters(b: ObjectBuilder, width: float, height: float, thickness: float) -> None:
     """Two leaves before a wall beside a window, shut or folded back."""
     for x in (-0.5 * width - 0.6, 0.5 * width):
@@ -284,3 +290,113 @@ def plain_sliding_window(
             pane(b, name, lower=corners[0], upper=corners[1])
             s = 1 if k == 0 else -1
             b.slide(name, parent="frame", axis=s * (Z if upright else X), upper=b.draw(0.75, 0.9) * (share - lap))
+
+
+@kind(
+    "double door",
+    like="door",
+    width=length(1.1, 2.2),
+    height=length(1.9, 2.6),
+    thickness=length(0.03, 0.08),
+    reach=angle(1.2, 2.2),
+)
+def double_door(b: ObjectBuilder, width: float, height: float, thickness: float, reach: float) -> None:
+    """Two leaves that meet in the middle, of one width or one narrow."""
+    low = b.pick(0, 0, 0.02)
+    surround(b, "frame", wide=width, low=low, high=height, front=-thickness, sill=b.maybe(0.3))
+    middle = b.pick(0, 0, b.draw(-0.15, 0.15) * width)
+    for k, (side, edge) in enumerate(((-X, -width / 2), (X, width / 2))):
+        leaf(
+            b,
+            f"leaf_{k}",
+            parent="frame",
+            lower=(edge, -thickness, low),
+            upper=(middle, 0, height),
+            hinge=side,
+            inset=True,
+            reach=reach,
+            glazed=0.25,
+        )
+
+
+@kind(
+    "folding door",
+    like="door",
+    number=whole(2, 4, words="panel, leaf, fold"),
+    width=length(0.35, 0.6),
+    height=length(1.6, 2.2),
+    thickness=length(0.02, 0.04),
+    stands=yes(0.5),
+)
+def folding_door(b: ObjectBuilder, number: int, width: float, height: float, thickness: float, stands: bool) -> None:
+    """Two to four narrow leaves that hang on each other: a bifold door or a screen."""
+    if stands:
+        surround(b, "frame", wide=number * width, low=0.0, high=height, front=-thickness, sill=False)
+    else:
+        pane(b, "frame", lower=(-number * width / 2 - width, -thickness, 0.0), upper=(-number * width / 2, 0.0, height))
+    parent = "frame"
+    for k in range(number if not stands else 2):
+        x = -number * width / 2 + k * width
+        leaf(
+            b,
+            f"leaf_{k}",
+            parent=parent,
+            lower=(x, -thickness, 0.0),
+            upper=(x + width, 0.0, height),
+            hinge=-X,
+            out=Y if k % 2 else -Y,
+            inset=True,
+            reach=1.5 if k == 0 else 2.8,
+            handle=k == 1,
+            glazed=0.25,
+        )
+        parent = f"leaf_{k}"
+
+
+@kind(
+    "sliding room door",
+    like="door",
+    width=length(0.8, 1.3),
+    height=length(1.9, 2.3),
+    thickness=length(0.03, 0.05),
+    number=whole(1, 2, words="leaf, panel"),
+)
+def sliding_room_door(b: ObjectBuilder, width: float, height: float, thickness: float, number: int) -> None:
+    """A leaf or two before a wall or behind it, on a rail or on nothing."""
+    half = width * number
+    for s in (-1, 1):
+        if number == 2 or s > 0:
+            b.part(
+                "wall",
+                box((s * width * number / 2, 0, 0), (s * (half + width), b.draw(0.08, 0.2), height + 0.3)),
+                material="wood",
+            )
+        else:
+            b.part(
+                "wall", box((-width * number / 2, 0, 0), (-width * number / 2 - 0.1, b.draw(0.08, 0.2), height + 0.3))
+            )
+    b.part("wall", box((-half, 0, height), (half + 0.05, 0.1, height + 0.3)))
+    if b.maybe():
+        b.part("wall", box((-half - 0.5 * width * (number - 1), 0, 0), (half + 0.5 * width, 0.1, -0.02)))
+    play = seam(b, 0.5, thickness)
+    for k in range(number):
+        s = 1 if k == number - 1 else -1
+        a = s * -0.02 if number == 2 else -width / 2
+        b_ = s * (width if number == 2 else width / 2)
+        if number == 2:
+            a = s * max(play, 0)
+        pane(b, f"leaf_{k}", lower=(a, -thickness - play, 0.005), upper=(b_, -play, height + 0.03))
+        grip(
+            b, f"leaf_{k}", at=(a + s * 0.1, -thickness - play, 0.5 * height), out=-Y, along=Z, length=b.draw(0.1, 0.4)
+        )
+        b.slide(f"leaf_{k}", parent="wall", axis=s * X, upper=b.draw(0.7, 0.95) * width)
+    if b.maybe(0.5):
+        b.part(
+            "wall",
+            b.cylinder(
+                0.02,
+                (-half, -thickness - play - 0.03, height + 0.15),
+                (half + width, -thickness - play - 0.03, height + 0.15),
+            ),
+            box((half - 0.02, -thickness - play - 0.05, height + 0.12), (half + 0.02, 0.02, height + 0.18)),
+        )

@@ -9,7 +9,7 @@ import numpy as np
 
 from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import angle, choice, kind, length, whole, yes
-from kinematify.generate.library.mechanisms import legs, wheel
+from kinematify.generate.library.mechanisms import case, caster, legs, wheel
 from kinematify.generate.library.panels import carcass, drawer, grip, leaf, pane, seam
 from kinematify.generate.procedural.solids import X, Y, Z, box, prism
 
@@ -541,3 +541,161 @@ def plain_suitcase(
                 b.cut("body", b.cylinder(0.003 + 1.5 * g, (a, 0, z - half - 0.011), (a, 0, z + half + 0.011)))
                 b.part("grip", b.cylinder(0.003, (a, 0, z - half - 0.01), (a, 0, z + half + 0.01)))
             b.hinge("grip", parent="body", axis=Z, pivot=(a, 0, z), upper=1.2, lower=-1.2, ajar=False)
+
+
+@kind(
+    "wall cupboard",
+    like="cabinet",
+    width=length(0.5, 1.2),
+    height=length(0.35, 0.8),
+    depth=length(0.25, 0.4),
+    rows=whole(1, 2, words="flap, door"),
+)
+def wall_cupboard(b: ObjectBuilder, width: float, height: float, depth: float, rows: int) -> None:
+    """Flaps that go up, or doors, on a wall unit."""
+    case(b, "unit", lower=(-width / 2, 0, 0), upper=(width / 2, depth, height), opening=-Y, wall=0.018)
+    for k, z in enumerate(spread(rows, 0, height)):
+        if rows == 2:
+            b.part("unit", box((-width / 2, 0, height / 2 - 0.009), (width / 2, depth, height / 2 + 0.009)))
+        leaf(
+            b,
+            f"flap_{k}",
+            parent="unit",
+            lower=(-width / 2, -0.018, z - height / 2 / rows + 0.002),
+            upper=(width / 2, 0, z + height / 2 / rows - 0.002),
+            hinge=Z,
+            out=-Y,
+            reach=b.draw(1.2, 1.8),
+        )
+
+
+@kind(
+    "kitchen block",
+    like="cabinet",
+    number=whole(2, 4, words="door"),
+)
+def kitchen_block(b: ObjectBuilder, number: int) -> None:
+    """A row of base units: doors, drawers, a sink front that tilts."""
+    h = 0.87
+    t = 0.58
+    case(b, "block", lower=(0, 0, 0), upper=(0.6 * number, t, h), opening=-Y, wall=0.02)
+    b.part("block", box((-0.01, -0.03, h), (0.6 * number + 0.01, t, h + 0.04)))
+    for k, x in enumerate(spread(number, 0, 0.6 * number)):
+        if k:
+            b.part("block", box((x - 0.31, 0, 0), (x - 0.29, t, h)))
+        kind = b.pick("door", "drawers", "tilt")
+        low = x - 0.28
+        high = x + 0.28
+        if kind == "drawers":
+            b.part("block", box((low - 0.01, 0.01, 0.1), (high + 0.01, t, h)))
+            for i, z in enumerate(spread(3, 0.12, h - 0.02)):
+                drawer(
+                    b,
+                    f"drawer_{k}_{i}",
+                    parent="block",
+                    lower=(low + 0.01, 0, z - 0.105),
+                    upper=(high - 0.01, 0.5, z + 0.105),
+                    out=-Y,
+                    handle=True,
+                )
+        elif kind == "door":
+            leaf(
+                b,
+                f"door_{k}",
+                parent="block",
+                lower=(low - 0.005, -0.018, 0.1),
+                upper=(high + 0.005, 0, h - 0.02),
+                hinge=b.pick(X, -X),
+                out=-Y,
+            )
+        else:
+            leaf(
+                b,
+                f"front_{k}",
+                parent="block",
+                lower=(low - 0.005, -0.018, 0.1),
+                upper=(high + 0.005, 0, h - 0.02),
+                hinge=-Z,
+                out=-Y,
+                reach=b.draw(0.4, 1.5),
+            )
+
+
+@kind(
+    "medicine cabinet",
+    like="cabinet",
+    width=length(0.35, 0.8),
+    height=length(0.5, 0.7),
+)
+def medicine_cabinet(b: ObjectBuilder, width: float, height: float) -> None:
+    n = 2 if width > 0.55 else 1
+    carcass(
+        b,
+        "cabinet",
+        lower=(-width / 2, 0, 0),
+        upper=(width / 2, 0.14, height),
+        wall=0.015,
+        shelves=(0.33 * height, 0.66 * height),
+    )
+    for k, x in enumerate(spread(n, -width / 2, width / 2)):
+        leaf(
+            b,
+            f"door_{k}",
+            parent="cabinet",
+            lower=(x - width / 2 / n, -0.016, 0),
+            upper=(x + width / 2 / n, 0, height),
+            hinge=X if k else -X,
+            out=-Y,
+            reach=1.8,
+            material="mirror",
+        )
+
+
+@kind(
+    "drawer box",
+    like="cabinet",
+    rows=whole(2, 4),
+    columns=whole(1, 3),
+)
+def desk_organizer(b: ObjectBuilder, rows: int, columns: int) -> None:
+    width = 0.1 * columns + 0.02
+    height = 0.06 * rows + 0.01
+    case(b, "body", lower=(-width / 2, 0, 0), upper=(width / 2, 0.16, height), material="plastic")
+    for i, z in enumerate(spread(rows, 0.005, height - 0.005)):
+        for k, x in enumerate(spread(columns, -width / 2 + 0.01, width / 2 - 0.01)):
+            drawer(
+                b,
+                f"drawer_{i}_{k}",
+                parent="body",
+                lower=(x - 0.044, 0, z - 0.023),
+                upper=(x + 0.044, 0.14, z + 0.023),
+                out=-Y,
+                material="plastic",
+            )
+
+
+@kind(
+    "office drawer unit",
+    like="tool_cart",
+    width=length(0.35, 0.45),
+    depth=length(0.5, 0.7),
+    height=length(0.5, 0.65),
+)
+def office_drawer_unit(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
+    """A roll container."""
+    foot = 0.07
+    case(b, "unit", lower=(-width / 2, 0, foot), upper=(width / 2, depth, height), material="steel")
+    n = b.count(2, 4)
+    for k, z in enumerate(spread(n, foot + 0.02, height - 0.02)):
+        b_ = 0.42 * (height - foot - 0.04) / n
+        drawer(
+            b,
+            f"drawer_{k}",
+            parent="unit",
+            lower=(-0.44 * width, 0, z - b_),
+            upper=(0.44 * width, 0.85 * depth, z + b_),
+            out=-Y,
+            material="steel",
+        )
+    for k, (x, y) in enumerate([(x, y) for x in (-0.4 * width, 0.4 * width) for y in (0.12 * depth, 0.88 * depth)]):
+        caster(b, f"caster_{k}", parent="unit", top=(x, y, foot), high=foot)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.library.kind import angle, kind, length, whole, yes
+from kinematify.generate.library.kind import angle, choice, kind, length, whole, yes
 from kinematify.generate.library.mechanisms import button, knob, pinned
 from kinematify.generate.library.panels import seam
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, vector
@@ -108,7 +108,13 @@ def plain_pliers(
     )
 
 
-@kind("capped pen", like="pen", radius=length(0.004, 0.01), length=length(0.09, 0.15), capped=yes(0.6))
+@kind(
+    "capped pen",
+    like="pen",
+    radius=length(0.004, 0.01),
+    length=length(0.09, 0.15),
+    capped=yes(0.6),
+)
 def capped_pen(b: ObjectBuilder, radius: float, length: float, capped: bool) -> None:
     """A pen on end or lying: a cap that is drawn off, or a button that is pressed, and a clip."""
     out = b.pick(Z, -Y)
@@ -170,7 +176,12 @@ def capped_pen(b: ObjectBuilder, radius: float, length: float, capped: bool) -> 
         )
 
 
-@kind("parametric pump bottle", like="soap_dispenser", radius=length(0.02, 0.05), height=length(0.08, 0.25))
+@kind(
+    "parametric pump bottle",
+    like="soap_dispenser",
+    radius=length(0.02, 0.05),
+    height=length(0.08, 0.25),
+)
 def pump_bottle(b: ObjectBuilder, radius: float, height: float) -> None:
     """A bottle with a head that goes down or a cap that turns or comes off; round, square or waisted."""
     neck = 0.4 * radius
@@ -217,7 +228,13 @@ def pump_bottle(b: ObjectBuilder, radius: float, height: float) -> None:
             b.slide("cap", parent="bottle", axis=Z, upper=b.draw(0.02, 0.06))
 
 
-@kind("plain bucket", like="bucket", radius=length(0.1, 0.2), height=length(0.12, 0.35), wire=length(0.003, 0.008))
+@kind(
+    "plain bucket",
+    like="bucket",
+    radius=length(0.1, 0.2),
+    height=length(0.12, 0.35),
+    wire=length(0.003, 0.008),
+)
 def plain_bucket(b: ObjectBuilder, radius: float, height: float, wire: float) -> None:
     """A pail or a basket with one bow or two that swing about their ends, upright or laid on the rim."""
     b.part("pail", b.cone(b.draw(0.6, 1) * radius, radius, (0, 0, 0), (0, 0, height)), material="metal")
@@ -314,7 +331,11 @@ def slab_laptop(d: ObjectBuilder, width: float, depth: float, a: float, b: float
     )
 
 
-@kind("plain globe", like="globe", radius=length(0.06, 0.2))
+@kind(
+    "plain globe",
+    like="globe",
+    radius=length(0.06, 0.2),
+)
 def plain_globe(b: ObjectBuilder, radius: float) -> None:
     """A ball between the ends of a bow, or on a rod: it turns about a tilted line, with pins or without."""
     tilt = b.pick(0, b.draw(0.2, 0.5))
@@ -404,7 +425,12 @@ def rod_lamp(
     )
 
 
-@kind("plain clock", like="clock", radius=length(0.04, 0.25), thickness=length(0.01, 0.06))
+@kind(
+    "plain clock",
+    like="clock",
+    radius=length(0.04, 0.25),
+    thickness=length(0.01, 0.06),
+)
 def plain_clock(b: ObjectBuilder, radius: float, thickness: float) -> None:
     """A disc or a box with two or three thin hands before it about one line; a knob behind at times."""
     b.part(
@@ -445,7 +471,13 @@ def plain_clock(b: ObjectBuilder, radius: float, thickness: float) -> None:
         )
 
 
-@kind("box fan", like="fan", radius=length(0.04, 0.25), thickness=length(0.03, 0.12), number=whole(3, 7, words="blade"))
+@kind(
+    "box fan",
+    like="fan",
+    radius=length(0.04, 0.25),
+    thickness=length(0.03, 0.12),
+    number=whole(3, 7, words="blade"),
+)
 def box_fan(b: ObjectBuilder, radius: float, thickness: float, number: int) -> None:
     """Blades in a ring or a box that nothing visible holds, or a spindle behind them does."""
     b.part("case", box((-1.15 * radius, -thickness / 2, -1.15 * radius), (1.15 * radius, thickness / 2, 1.15 * radius)))
@@ -470,3 +502,70 @@ def box_fan(b: ObjectBuilder, radius: float, thickness: float, number: int) -> N
         box((-2 * radius, 0.33 * thickness, -2 * radius), (2 * radius, 0.4 * thickness + 1, 2 * radius)),
     )
     b.spin("rotor", parent="case", axis=-Y, pivot=(0, 0, 0))
+
+
+@kind(
+    "flip cap bottle",
+    like="bottle",
+    width=length(0.015, 0.04),
+    thickness=length(0.008, 0.02),
+    height=length(0.03, 0.07),
+    kind=choice(("flips", "turns", "off")),
+    share=length(0.5, 0.75),
+)
+def flip_cap(b: ObjectBuilder, width: float, thickness: float, height: float, kind: str, share: float) -> None:
+    """A stick or a block with a cover: hinged at an end, turning about a pin, or drawn off: a lighter, a USB stick."""
+    b.part("body", box((-width / 2, -thickness / 2, 0), (width / 2, thickness / 2, share * height)), material="metal")
+    play = seam(b, thickness, 0.004)
+    if kind == "turns":
+        g = max(b.gap(thickness), 0) if b.style.has_bore else b.pick(0, b.gap(thickness))
+        sheet = 0.08 * thickness
+        for s in (-1, 1):
+            b.part(
+                "cover",
+                box(
+                    (-0.5 * width, s * (thickness / 2 + g), -0.1 * height),
+                    (0.5 * width, s * (thickness / 2 + g + sheet), 0.9 * height),
+                ),
+            )
+        b.part(
+            "cover",
+            box(
+                (-0.5 * width, -thickness / 2 - g - sheet, 0.9 * height),
+                (0.5 * width, thickness / 2 + g + sheet, 0.9 * height + sheet),
+            ),
+        )
+        b.part(
+            "body",
+            [
+                b.cylinder(
+                    0.08 * width, (0, s * thickness / 2, 0.15 * height), (0, s * (thickness / 2 - 0.001), 0.15 * height)
+                )
+                for s in (-1, 1)
+            ],
+        )
+        b.hinge(
+            "cover",
+            parent="body",
+            axis=Y,
+            pivot=(0, 0, 0.15 * height),
+            upper=b.draw(2, 3.1),
+            lower=-b.draw(2, 3.1),
+            ajar=False,
+        )
+    else:
+        b.part("body", box((-0.35 * width, -0.35 * thickness, 0), (0.35 * width, 0.35 * thickness, 0.9 * height)))
+        low = share * height + play
+        b.part("cover", box((-width / 2, -thickness / 2, low), (width / 2, thickness / 2, height)), material="metal")
+        b.bore("cover", box((-0.4 * width, -0.4 * thickness, 0), (0.4 * width, 0.4 * thickness, 0.95 * height)))
+        if kind == "flips":
+            b.hinge(
+                "cover",
+                parent="body",
+                axis=Y,
+                pivot=(width / 2, 0, share * height + b.pick(0, 0.5, 1) * play),
+                upper=b.draw(1.5, 2.8),
+                ajar=False,
+            )
+        else:
+            b.slide("cover", parent="body", axis=Z, upper=b.draw(0.3, 0.6) * height)

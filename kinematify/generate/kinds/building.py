@@ -164,10 +164,21 @@ def fields_of(face: Field, front: float, thick: float, *, bar: float, rows: int,
 
 @kind(
     "door",
+    usual={
+        "sliding room door, sliding door, barn door, pocket door, patio door, sliding barn door": {"kind": "sliding"},
+        "folding door, bifold door, accordion door, bi-fold door, concertina door": {"kind": "folding", "leaves": 2},
+        (
+            "double door, french doors, double leaf door, french door, saloon doors, swing doors, pair of doors, "
+            "two leaf door"
+        ): {"leaves": 2, "width": 1.6},
+    },
     words=(
-        "doorway, gate, garden gate, front door, house door, interior door, room door, baby gate, safety "
-        "gate, yard gate, fence gate, cellar door, closet door, shower door, entrance door, back door, office "
-        "door, cell door, side gate, picket gate"
+        "doorway, gate, garden gate, front door, house door, interior door, room door, baby gate, safety gate, "
+        "yard gate, fence gate, cellar door, closet door, shower door, entrance door, back door, office door, "
+        "cell door, side gate, picket gate, double door, french doors, double leaf door, french door, saloon "
+        "doors, swing doors, pair of doors, two leaf door, folding door, bifold door, accordion door, bi-fold "
+        "door, concertina door, sliding room door, sliding door, barn door, pocket door, patio door, sliding barn "
+        "door"
     ),
     material="wood",
     width=length(0.7, 5.0, default=0.95, usual=(0.8, 1.4), help="Outer width."),

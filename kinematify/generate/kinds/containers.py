@@ -161,10 +161,16 @@ def box_(
 
 @kind(
     "bottle",
+    usual={
+        "flip cap bottle, flip top bottle, tube with a flip cap, toothpaste tube, sauce bottle, flip top tube": {
+            "cap": "flip"
+        },
+    },
     words=(
-        "water bottle, wine bottle, drinking bottle, flask, milk bottle, bottle of water, thermos, thermos "
-        "flask, vacuum flask, perfume bottle, sports bottle, shampoo bottle, ketchup bottle, medicine bottle, "
-        "baby bottle, oil bottle, beer bottle, vinegar bottle, vial, soda bottle, juice bottle"
+        "water bottle, wine bottle, drinking bottle, flask, milk bottle, bottle of water, thermos, thermos flask, "
+        "vacuum flask, perfume bottle, sports bottle, shampoo bottle, ketchup bottle, medicine bottle, baby "
+        "bottle, oil bottle, beer bottle, vinegar bottle, vial, soda bottle, juice bottle, flip cap bottle, flip "
+        "top bottle, tube with a flip cap, toothpaste tube, sauce bottle, flip top tube"
     ),
     title="bottle with a cap",
     material="plastic",

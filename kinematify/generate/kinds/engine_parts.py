@@ -6,7 +6,7 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 from kinematify.generate.library.kind import kind, length, whole
-from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box
+from kinematify.generate.procedural.solids import X, Y, Z, beam, box
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
@@ -50,69 +50,6 @@ def disc_brake(b: ObjectBuilder, radius: float) -> None:
             color="black",
         )
         b.slide(f"pad_{k + 1}", parent="carrier", axis=-s * Y, upper=0.025 * r)
-
-
-@kind(
-    "shock absorber",
-    words="damper, gas spring, gas strut, suspension strut, telescopic damper",
-    part_words={"rod": "piston, piston rod"},
-    length=length(0.2, 0.5),
-)
-def shock_absorber(b: ObjectBuilder, length: float) -> None:
-    L = length
-    b.part(
-        "cylinder",
-        b.cylinder(0.07 * L, (0, 0, 0.06 * L), (0, 0, 0.6 * L)),
-        b.cylinder(0.05 * L, (-0.04 * L, 0, 0.03 * L), (0.04 * L, 0, 0.03 * L)),
-        material="steel",
-        color="black",
-    )
-    b.bore("cylinder", b.cylinder(0.027 * L, (0, 0, 0.12 * L), (0, 0, L)))
-    b.part(
-        "rod",
-        b.cylinder(0.025 * L, (0, 0, 0.2 * L), (0, 0, 0.97 * L)),
-        b.cylinder(0.05 * L, (-0.04 * L, 0, L), (0.04 * L, 0, L)),
-        b.cylinder(0.08 * L, (0, 0, 0.9 * L), (0, 0, 0.92 * L)),
-        material="chrome",
-    )
-    b.slide("rod", parent="cylinder", axis=Z, lower=-0.07 * L, upper=0.22 * L)
-
-
-@kind(
-    "steering rack",
-    words="rack and pinion steering, steering gear",
-    part_words={"rack": "tie rod, bar", "pinion": "shaft, steering shaft"},
-    length=length(0.5, 1.0),
-)
-def steering_rack(b: ObjectBuilder, length: float) -> None:
-    L = length
-    b.part(
-        "housing",
-        b.cylinder(0.04 * L, (-0.3 * L, 0, 0), (0.3 * L, 0, 0)),
-        b.cylinder(0.035 * L, (0, -0.03 * L, 0.03 * L), (0, -0.03 * L, 0.12 * L)),
-        [
-            box((s * 0.25 * L - 0.02 * L, -0.06 * L, -0.06 * L), (s * 0.25 * L + 0.02 * L, 0.06 * L, -0.03 * L))
-            for s in (-1, 1)
-        ],
-        material="metal",
-    )
-    b.bore("housing", b.cylinder(0.0215 * L, (-L, 0, 0), (L, 0, 0)))
-    b.bore("housing", b.cylinder(0.0135 * L, (0, -0.03 * L, 0.045 * L), (0, -0.03 * L, L)))
-    b.part(
-        "rack",
-        b.cylinder(0.02 * L, (-0.42 * L, 0, 0), (0.42 * L, 0, 0)),
-        [ball(0.03 * L, (s * 0.43 * L, 0, 0)) for s in (-1, 1)],
-        material="steel",
-    )
-    b.slide("rack", parent="housing", axis=X, lower=-0.08 * L, upper=0.08 * L)
-    b.part(
-        "pinion",
-        b.cylinder(0.012 * L, (0, -0.03 * L, 0.055 * L), (0, -0.03 * L, 0.3 * L)),
-        b.cylinder(0.03 * L, (0, -0.03 * L, 0.28 * L), (0, -0.03 * L, 0.3 * L)),
-        material="steel",
-    )
-    b.hinge("pinion", parent="housing", axis=Z, pivot=[0, -0.03 * L, 0], lower=-6.28, upper=6.28)
-    b.follow("rack", leader="pinion", multiplier=0.0127 * L)
 
 
 @kind(

@@ -10,85 +10,11 @@ import numpy as np
 from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import choice, kind, length, whole
 from kinematify.generate.library.mechanisms import case, caster, legs, wheel
-from kinematify.generate.library.panels import drawer, grip, leaf
+from kinematify.generate.library.panels import grip
 from kinematify.generate.procedural.solids import X, Y, Z, beam, box
 
 if TYPE_CHECKING:
     from kinematify.generate.library.builder import ObjectBuilder
-
-
-@kind("kitchen block", words="row of kitchen units, kitchen counter, kitchenette", number=whole(2, 4, words="door"))
-def kitchen_block(b: ObjectBuilder, number: int) -> None:
-    """A row of base units: doors, drawers, a sink front that tilts."""
-    h = 0.87
-    t = 0.58
-    case(b, "block", lower=(0, 0, 0), upper=(0.6 * number, t, h), opening=-Y, wall=0.02)
-    b.part("block", box((-0.01, -0.03, h), (0.6 * number + 0.01, t, h + 0.04)))
-    for k, x in enumerate(spread(number, 0, 0.6 * number)):
-        if k:
-            b.part("block", box((x - 0.31, 0, 0), (x - 0.29, t, h)))
-        kind = b.pick("door", "drawers", "tilt")
-        low = x - 0.28
-        high = x + 0.28
-        if kind == "drawers":
-            b.part("block", box((low - 0.01, 0.01, 0.1), (high + 0.01, t, h)))
-            for i, z in enumerate(spread(3, 0.12, h - 0.02)):
-                drawer(
-                    b,
-                    f"drawer_{k}_{i}",
-                    parent="block",
-                    lower=(low + 0.01, 0, z - 0.105),
-                    upper=(high - 0.01, 0.5, z + 0.105),
-                    out=-Y,
-                    handle=True,
-                )
-        elif kind == "door":
-            leaf(
-                b,
-                f"door_{k}",
-                parent="block",
-                lower=(low - 0.005, -0.018, 0.1),
-                upper=(high + 0.005, 0, h - 0.02),
-                hinge=b.pick(X, -X),
-                out=-Y,
-            )
-        else:
-            leaf(
-                b,
-                f"front_{k}",
-                parent="block",
-                lower=(low - 0.005, -0.018, 0.1),
-                upper=(high + 0.005, 0, h - 0.02),
-                hinge=-Z,
-                out=-Y,
-                reach=b.draw(0.4, 1.5),
-            )
-
-
-@kind(
-    "wall cupboard",
-    words="overhead cabinet, overhead locker, overhead cupboard",
-    width=length(0.5, 1.2),
-    height=length(0.35, 0.8),
-    depth=length(0.25, 0.4),
-    rows=whole(1, 2, words="flap, door"),
-)
-def wall_cupboard(b: ObjectBuilder, width: float, height: float, depth: float, rows: int) -> None:
-    """Flaps that go up, or doors, on a wall unit."""
-    case(b, "unit", lower=(-width / 2, 0, 0), upper=(width / 2, depth, height), opening=-Y, wall=0.018)
-    for k, z in enumerate(spread(rows, 0, height)):
-        if rows == 2:
-            b.part("unit", box((-width / 2, 0, height / 2 - 0.009), (width / 2, depth, height / 2 + 0.009)))
-        leaf(
-            b,
-            f"flap_{k}",
-            parent="unit",
-            lower=(-width / 2, -0.018, z - height / 2 / rows + 0.002),
-            upper=(width / 2, 0, z + height / 2 / rows - 0.002),
-            hinge=Z,
-            out=-Y,
-            reach=b.draw(1.2, 1.8),
-        )
 
 
 @kind(
@@ -127,42 +53,6 @@ def sideboard_with_sliding_doors(b: ObjectBuilder, width: float, height: float, 
                 ),
             )
         b.slide(f"door_{k}", parent="case", axis=-s * X, upper=width / 2 - 0.04)
-
-
-@kind(
-    "desk with pedestal",
-    words="pedestal desk, computer desk, office desk",
-    width=length(1.1, 1.8),
-    depth=length(0.55, 0.8),
-    height=length(0.7, 0.78),
-    p=length(0.35, 0.5),
-)
-def desk_with_pedestal(b: ObjectBuilder, width: float, depth: float, height: float, p: float) -> None:
-    """A desk with three drawers on one side and a keyboard tray."""
-    b.part(
-        "desk",
-        box((-width / 2, 0, height - 0.03), (width / 2, depth, height)),
-        box((width / 2 - 0.03, 0, 0), (width / 2, depth, height)),
-        material="wood",
-    )
-    b.part("desk", box((-width / 2, 0.02, 0), (-width / 2 + p, depth, height - 0.02)))
-    for k, z in enumerate(spread(3, 0.05, height - 0.04)):
-        drawer(
-            b,
-            f"drawer_{k}",
-            parent="desk",
-            lower=(-width / 2 + 0.03, 0.02, z - 0.09),
-            upper=(-width / 2 + p - 0.03, depth - 0.08, z + 0.09),
-            out=-Y,
-        )
-    if b.maybe(0.6):
-        g = b.gap(0.02)
-        x0 = -width / 2 + p + 0.1
-        x1 = width / 2 - 0.1
-        for x in (x0 - 0.015, x1 + 0.015):
-            b.part("desk", box((x - 0.015 + g, 0.05, height - 0.1), (x + 0.015 - g, depth - 0.1, height - 0.025)))
-        b.part("tray", box((x0, 0.03, height - 0.1), (x1, 0.4, height - 0.08)))
-        b.slide("tray", parent="desk", axis=-Y, upper=0.3)
 
 
 @kind(
@@ -300,33 +190,6 @@ def bar_cart(b: ObjectBuilder, width: float, depth: float, height: float, kind: 
 
 
 @kind(
-    "office drawer unit",
-    words="roll container, mobile pedestal, rolling drawer unit, rolling pedestal",
-    width=length(0.35, 0.45),
-    depth=length(0.5, 0.7),
-    height=length(0.5, 0.65),
-)
-def office_drawer_unit(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
-    """A roll container."""
-    foot = 0.07
-    case(b, "unit", lower=(-width / 2, 0, foot), upper=(width / 2, depth, height), material="steel")
-    n = b.count(2, 4)
-    for k, z in enumerate(spread(n, foot + 0.02, height - 0.02)):
-        b_ = 0.42 * (height - foot - 0.04) / n
-        drawer(
-            b,
-            f"drawer_{k}",
-            parent="unit",
-            lower=(-0.44 * width, 0, z - b_),
-            upper=(0.44 * width, 0.85 * depth, z + b_),
-            out=-Y,
-            material="steel",
-        )
-    for k, (x, y) in enumerate([(x, y) for x in (-0.4 * width, 0.4 * width) for y in (0.12 * depth, 0.88 * depth)]):
-        caster(b, f"caster_{k}", parent="unit", top=(x, y, foot), high=foot)
-
-
-@kind(
     "swivel bookcase",
     words="rotating bookcase, revolving bookcase",
     width=length(0.35, 0.5),
@@ -339,10 +202,9 @@ def swivel_bookcase(b: ObjectBuilder, width: float, height: float, foot: float) 
     g = b.gap(width)
     b.part("case", box((-width / 2, -width / 2, foot + g), (width / 2, width / 2, height)), material="wood")
     for z in spread(3, foot, height):
-        b.cut(
-            "case",
-            box((-width / 2 - 1, -width / 2 + 0.02, z - 0.12 * height), (-0.02, width / 2 - 0.02, z + 0.12 * height)),
-        )
+        for s in (-1, 1):
+            corner = (s * (width / 2 + 1), 0.02 - width / 2, z - 0.12 * height)
+            b.cut("case", box(corner, (s * 0.02, width / 2 - 0.02, z + 0.12 * height)))
     b.spin("case", parent="foot", axis=Z, pivot=(0, 0, foot))
 
 

@@ -151,6 +151,7 @@ def air_conditioner(b: ObjectBuilder, width: float, number: int) -> None:
 
 @kind(
     "cat litter box",
+    walls=4,
     words="litter box, litter tray, pet carrier, cat carrier",
     width=length(0.35, 0.55),
 )
@@ -317,30 +318,6 @@ def lift_top_table(b: ObjectBuilder, width: float, depth: float) -> None:
         material="wood",
     )
     b.slide("top", parent="body", axis=Z, upper=0.12)
-
-
-@kind("glider chair", words="hanging chair", size=length(0.9, 1.1))
-def glider_chair(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
-    b.part(
-        "stand",
-        box(p(-0.4, -0.4, 0), p(0.4, 0.4, 0.04)),
-        [box(p(s * 0.36 - 0.02, -0.03, 0.03), p(s * 0.36 + 0.02, 0.03, 0.62)) for s in (-1, 1)],
-        material="wood",
-    )
-    b.bore("stand", b.cylinder(0.0115 * size, p(-1, 0, 0.58), p(1, 0, 0.58)))
-    b.part(
-        "seat",
-        box(p(-0.28, -0.28, 0.36), p(0.28, 0.25, 0.4)),
-        beam(0.56 * size, 0.03 * size, p(0, 0.24, 0.38), p(0, 0.36, 1), X),
-        [box(p(s * 0.3, -0.25, 0.55), p(s * 0.25, 0.25, 0.61)) for s in (-1, 1)],
-        [box(p(s * 0.28, -0.22, 0.38), p(s * 0.25, -0.17, 0.56)) for s in (-1, 1)],
-        [box(p(s * 0.28, 0.17, 0.38), p(s * 0.25, 0.22, 0.56)) for s in (-1, 1)],
-        [b.cylinder(0.01 * size, p(s * 0.29, 0, 0.58), p(s * 0.39, 0, 0.58)) for s in (-1, 1)],
-        material="wood",
-        color="brown",
-    )
-    b.hinge("seat", parent="stand", axis=X, pivot=p(0, 0, 0.58), upper=0.3, lower=-0.3)
 
 
 @kind(

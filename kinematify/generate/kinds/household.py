@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import kind, length, whole
-from kinematify.generate.library.mechanisms import bail, button, cap, case, knob, legs, lever, rotor
+from kinematify.generate.library.mechanisms import bail, button, cap, case, knob, legs, lever
 from kinematify.generate.library.panels import drawer, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, vector
 
@@ -199,28 +199,26 @@ def towel_rail(b: ObjectBuilder, height: float, number: int) -> None:
 def ironing_board(b: ObjectBuilder, width: float, depth: float, height: float) -> None:
     """Legs that fold about a pin under a board."""
     b.part("board", box((-width / 2, -depth / 2, height), (width / 2, depth / 2, height + 0.03)), material="steel")
-    for s in (-1, 1):
-        b.part(
-            "board",
-            box(
-                (0.2 * width - 0.02, s * 0.3 * depth - 0.01, height - 0.04),
-                (0.2 * width + 0.02, s * 0.3 * depth + 0.01, height + 0.01),
-            ),
-        )
+    for x, v in ((0.2 * width, 0.3 * depth), (-0.2 * width, 0.3 * depth - 0.025)):
+        b.part("board", [block((x, s * v, height - 0.015), (0.04, 0.02, 0.05)) for s in (-1, 1)])
     y = 0.3 * depth - 0.01 - b.gap(0.02) - 0.01
-    for s in (-1, 1):
-        b.part("legs", beam(0.02, 0.02, (0.2 * width, s * y, height - 0.025), (-0.3 * width, s * y, 0.02)))
-    b.part(
-        "legs",
-        beam(0.02, 0.02, (-0.3 * width, -0.4 * depth, 0.02), (-0.3 * width, 0.4 * depth, 0.02)),
-        beam(0.02, 0.02, (0, -y, height * 0.6), (0, y, height * 0.6)),
-    )
+    for k, (name, inner) in enumerate((("legs", 0.0), ("rear_legs", 0.025))):
+        s, at = 1 - 2 * k, y - inner
+        bars = [((0.2, side, height - 0.025), (-0.3, side, 0.02)) for side in (-at, at)]
+        bars += [
+            ((-0.3, -0.4 * depth, 0.02), (-0.3, 0.4 * depth, 0.02)),
+            ((-0.2, -at, 0.22 * height), (-0.2, at, 0.22 * height)),
+        ]
+        b.part(name, [beam(0.02, 0.02, *((s * width * x, v, z) for x, v, z in bar)) for bar in bars])
     if b.style.barrels:
         b.part(
             "legs",
             b.cylinder(0.006, (0.2 * width, -0.3 * depth, height - 0.025), (0.2 * width, 0.3 * depth, height - 0.025)),
         )
-    b.hinge("legs", parent="board", axis=Y, pivot=(0.2 * width, 0, height - 0.025), upper=0.4, lower=-0.3, ajar=False)
+    for s, name in ((1, "legs"), (-1, "rear_legs")):
+        at = (s * 0.2 * width, 0, height - 0.025)
+        b.hinge(name, parent="board", axis=s * Y, pivot=at, upper=0.4, lower=-0.1, ajar=False)
+    b.follow("rear_legs", "legs")
 
 
 @kind("bread bin", words="bread box, roll top bread bin", width=length(0.3, 0.45), radius=length(0.1, 0.16))
@@ -356,20 +354,9 @@ def window_blind(b: ObjectBuilder, width: float, number: int) -> None:
         b.hinge(f"slat_{k}", parent="rail", axis=X, pivot=(0, 0, z), upper=0.9, lower=-0.9, ajar=False)
 
 
-@kind("ceiling fan", words="overhead fan", height=length(0.2, 0.4), radius=length(0.4, 0.7))
-def ceiling_fan(b: ObjectBuilder, height: float, radius: float) -> None:
-    """Blades on a motor below a rod, pull chain now and then."""
-    b.part(
-        "mount",
-        b.cylinder(0.06, (0, 0, height), (0, 0, height + 0.04)),
-        b.cylinder(0.012, (0, 0, 0), (0, 0, height + 0.02)),
-        b.cylinder(0.08, (0, 0, -0.06), (0, 0, 0.02)),
-        material="metal",
-    )
-    rotor(b, "rotor", parent="mount", at=(0, 0, -0.06), out=-Z, radius=radius, blades=b.count(3, 5), wide=0.2)
-
-
-@kind("tower fan", words="column fan, oscillating tower fan", height=length(0.7, 1.1), radius=length(0.06, 0.1))
+@kind(
+    "tower fan", walls=7, words="column fan, oscillating tower fan", height=length(0.7, 1.1), radius=length(0.06, 0.1)
+)
 def tower_fan(b: ObjectBuilder, height: float, radius: float) -> None:
     """A column that swings on its base, with buttons and a dial."""
     b.part("base", b.cylinder(1.8 * radius, (0, 0, 0), (0, 0, 0.03)))

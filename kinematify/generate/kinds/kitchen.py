@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import kind, length, whole
 from kinematify.generate.library.mechanisms import button, case, knob
-from kinematify.generate.library.panels import carcass, leaf
+from kinematify.generate.library.panels import leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, scaled
 
 if TYPE_CHECKING:
@@ -88,6 +88,7 @@ def pressure_cooker(b: ObjectBuilder, radius: float, height: float) -> None:
 
 @kind(
     "air fryer",
+    walls=6,
     words="hot air fryer",
     width=length(0.24, 0.32),
     height=length(0.28, 0.36),
@@ -307,23 +308,6 @@ def egg_slicer(b: ObjectBuilder, size: float) -> None:
     b.hinge("frame", parent="base", axis=-X, pivot=p(0, 0.075, 0.025), upper=1.6)
 
 
-@kind(
-    "lazy susan",
-    words="rotating tray, turntable tray, serving turntable, revolving tray",
-    radius=length(0.15, 0.35),
-)
-def lazy_susan(b: ObjectBuilder, radius: float) -> None:
-    b.part(
-        "base",
-        b.cylinder(0.4 * radius, (0, 0, 0), (0, 0, 0.02)),
-        b.cylinder(0.02, (0, 0, 0.02), (0, 0, 0.028)),
-        material="wood",
-    )
-    b.part("tray", b.cylinder(radius, (0, 0, 0.021), (0, 0, 0.05)), material="wood")
-    b.cut("tray", b.cylinder(0.95 * radius, (0, 0, 0.036), (0, 0, 0.1)), b.cylinder(0.022, (0, 0, 0), (0, 0, 0.03)))
-    b.spin("tray", parent="base", axis=Z, pivot=(0, 0, 0))
-
-
 @kind("spice rack", words="spice carousel, revolving spice rack", number=whole(4, 8))
 def spice_rack(b: ObjectBuilder, number: int) -> None:
     b.part(
@@ -337,13 +321,9 @@ def spice_rack(b: ObjectBuilder, number: int) -> None:
     )
     b.cut("rack", b.cylinder(0.0095, (0, 0, 0), (0, 0, 1)))
     for a in [2 * pi * k / number for k in range(number)]:
-        b.part(
-            "rack",
-            [
-                b.cylinder(0.022, (0.07 * cos(a), 0.07 * sin(a), z + 0.01), (0.07 * cos(a), 0.07 * sin(a), z + 0.1))
-                for z in (0.03, 0.16)
-            ],
-        )
+        x, y = 0.07 * cos(a), 0.07 * sin(a)
+        jars = [b.cylinder(0.022, (x, y, z + 0.01), (x, y, z + 0.1)) for z in (0.03, 0.16)]
+        b.part("rack", b.painted(*jars, material="glass", color="green"))
     b.spin("rack", parent="base", axis=Z, pivot=(0, 0, 0))
 
 
@@ -432,6 +412,7 @@ def popcorn_machine(b: ObjectBuilder, width: float) -> None:
 
 @kind(
     "deep fryer",
+    walls=5,
     words="chip pan, fryer",
     width=length(0.2, 0.3),
     depth=length(0.25, 0.35),
@@ -530,6 +511,7 @@ def cocktail_shaker(b: ObjectBuilder, radius: float, height: float) -> None:
 
 @kind(
     "toaster oven",
+    walls=6,
     words="mini oven, countertop oven, reflow oven",
     width=length(0.35, 0.5),
     depth=length(0.28, 0.36),
@@ -748,6 +730,7 @@ def cutlery_box(b: ObjectBuilder, width: float, depth: float) -> None:
 
 @kind(
     "shower cabin",
+    walls=9,
     words="shower cubicle, shower stall, shower enclosure, corner shower",
     width=length(0.8, 1.1),
     height=length(1.9, 2.1),
@@ -880,37 +863,8 @@ def bidet(b: ObjectBuilder, height: float) -> None:
 
 
 @kind(
-    "medicine cabinet",
-    words="mirror cabinet, bathroom cabinet, first aid cabinet",
-    width=length(0.35, 0.8),
-    height=length(0.5, 0.7),
-)
-def medicine_cabinet(b: ObjectBuilder, width: float, height: float) -> None:
-    n = 2 if width > 0.55 else 1
-    carcass(
-        b,
-        "cabinet",
-        lower=(-width / 2, 0, 0),
-        upper=(width / 2, 0.14, height),
-        wall=0.015,
-        shelves=(0.33 * height, 0.66 * height),
-    )
-    for k, x in enumerate(spread(n, -width / 2, width / 2)):
-        leaf(
-            b,
-            f"door_{k}",
-            parent="cabinet",
-            lower=(x - width / 2 / n, -0.016, 0),
-            upper=(x + width / 2 / n, 0, height),
-            hinge=X if k else -X,
-            out=-Y,
-            reach=1.8,
-            material="mirror",
-        )
-
-
-@kind(
     "laundry basket",
+    walls=5,
     words="laundry hamper, linen bin, laundry bin",
     width=length(0.35, 0.5),
     height=length(0.5, 0.7),
@@ -935,7 +889,7 @@ def laundry_basket(b: ObjectBuilder, width: float, height: float) -> None:
     )
 
 
-@kind("toilet brush", words="toilet brush set, brush holder", height=length(0.35, 0.45))
+@kind("toilet brush", walls=5, words="toilet brush set, brush holder", height=length(0.35, 0.45))
 def toilet_brush(b: ObjectBuilder, height: float) -> None:
     b.part("holder", b.cylinder(0.05, (0, 0, 0), (0, 0, 0.14)), material="steel")
     b.cut("holder", b.cylinder(0.046, (0, 0, 0.006), (0, 0, 1)))
@@ -951,6 +905,7 @@ def toilet_brush(b: ObjectBuilder, height: float) -> None:
 
 @kind(
     "toilet paper holder",
+    walls=2.5,
     words="toilet roll holder, paper roll holder",
     size=length(0.9, 1.2),
 )

@@ -316,7 +316,7 @@ def glove_box(b: ObjectBuilder, width: float) -> None:
     )
 
 
-@kind("petri dish", radius=length(0.04, 0.14), height=length(0.015, 0.09))
+@kind("petri dish", radius=length(0.04, 0.14, default=0.045), height=length(0.015, 0.09, default=0.018))
 def petri_dish(b: ObjectBuilder, radius: float, height: float) -> None:
     b.part("dish", b.cylinder(radius, (0, 0, 0), (0, 0, height)), material="glass")
     b.cut("dish", b.cylinder(0.95 * radius, (0, 0, 0.002), (0, 0, 1)))

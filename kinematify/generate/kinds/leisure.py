@@ -397,7 +397,10 @@ def camera_on_tripod(b: ObjectBuilder, height: float) -> None:
 
 
 @kind(
-    "dentist treatment chair", walls=40, words="treatment chair, dentist unit, examination chair", z=length(0.45, 0.6)
+    "dentist treatment chair",
+    walls=40,
+    words="dentist chair, dental chair, treatment chair, dentist unit, examination chair",
+    z=length(0.45, 0.6),
 )
 def dentist_chair(b: ObjectBuilder, z: float) -> None:
     """A seat on a column, a back, a head rest that slides, a lamp on an arm."""
@@ -494,14 +497,9 @@ def sash_window(b: ObjectBuilder, width: float, height: float, flat: bool) -> No
             z0, z1 = (g, height / 2 + 0.03) if k == 0 else (height / 2 - 0.03, height - g)
             low = (-width / 2 + g, y, z0)
             high = (width / 2 - g, y + 0.035, z1)
-        b.part(f"sash_{k}", box(low, high), material="wood")
-        lo = np.array(low)
-        hi = np.array(high)
-        b.cut(
-            f"sash_{k}",
-            box(lo + vector(0.05, -0.1, 0.05), vector(hi[0] - 0.05, y + 0.014, hi[2] - 0.05)),
-            box(vector(lo[0] + 0.05, y + 0.021, lo[2] + 0.05), vector(hi[0] - 0.05, 1, hi[2] - 0.05)),
-        )
+        inner = vector(low[0] + 0.05, y + 0.014, low[2] + 0.05), vector(high[0] - 0.05, y + 0.021, high[2] - 0.05)
+        pane = b.painted(box(*inner), material="glass")
+        b.part(f"sash_{k}", box(low, high) - box(inner[0] - Y, inner[1] + Y), pane, material="wood")
         way = (-X if k == 0 else X) if flat else Z if k == 0 else -Z
         b.slide(f"sash_{k}", parent="frame", axis=way, upper=(width if flat else height) / 2 - 0.05)
 

@@ -23,13 +23,14 @@ if TYPE_CHECKING:
 @kind(
     "tool cart",
     words=(
-        "tool trolley, tool chest, roller cabinet, workshop trolley, tool cabinet, mechanic cart, cart, "
-        "trolley, utility cart, medical cart, hospital cart, crash cart, cleaning cart, workshop cart, tool "
-        "trolley cart, drinks trolley, dessert cart, food cart, hot dog cart, ice cream cart, mail cart, book "
-        "cart, library cart, av cart, tv cart, projector cart, laptop cart, computer cart, instrument "
-        "trolley, surgical trolley, surgical cart, medicine trolley, medication cart, janitor cart, "
-        "housekeeping cart, linen cart, hotel cart, airline trolley, rolling cart, roll cart, craft cart, art "
-        "cart, equipment cart, dish cart, drinks cart, service cart, service trolley, tool wagon"
+        "tool trolley, tool chest, roller cabinet, workshop trolley, tool cabinet, mechanic cart, cart, trolley, "
+        "utility cart, medical cart, hospital cart, crash cart, cleaning cart, workshop cart, tool trolley cart, "
+        "drinks trolley, dessert cart, food cart, hot dog cart, ice cream cart, mail cart, book cart, library "
+        "cart, av cart, tv cart, projector cart, laptop cart, computer cart, instrument trolley, surgical "
+        "trolley, surgical cart, medicine trolley, medication cart, janitor cart, housekeeping cart, linen cart, "
+        "hotel cart, airline trolley, rolling cart, roll cart, craft cart, art cart, equipment cart, dish cart, "
+        "drinks cart, service cart, service trolley, tool wagon, office drawer unit, roll container, mobile "
+        "pedestal, rolling drawer unit, rolling pedestal"
     ),
     width=length(0.55, 0.8),
     depth=length(0.4, 0.5),
@@ -185,7 +186,10 @@ def ball_valve(b: ObjectBuilder, radius: float, number: int) -> None:
 
 @kind(
     "control box",
-    words="control cabinet, operator panel, control station, pendant control, machine control",
+    words=(
+        "control cabinet, operator panel, control station, pendant control, machine control, dial plate, knob "
+        "panel, dial panel"
+    ),
     width=length(0.15, 0.4),
     height=length(0.15, 0.5),
     depth=length(0.06, 0.2),
@@ -402,6 +406,7 @@ def bottle_jack(b: ObjectBuilder, radius: float, height: float) -> None:
 
 @kind(
     "telescope mast",
+    walls=9,
     words="telescopic mast, telescopic antenna, telescopic pole, telescoping boom",
     number=whole(2, 4, words="section, stage, tube"),
     radius=length(0.02, 0.1),

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import kind, length, whole
-from kinematify.generate.library.mechanisms import bail, button, case, crank, knob
-from kinematify.generate.library.panels import drawer, leaf
+from kinematify.generate.library.mechanisms import bail, button, knob
+from kinematify.generate.library.panels import leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, box, prism, scaled, vector
 
 if TYPE_CHECKING:
@@ -131,49 +131,8 @@ def rotary_phone(b: ObjectBuilder, size: float) -> None:
 
 
 @kind(
-    "radio",
-    words="transistor radio, portable radio",
-    width=length(0.18, 0.3),
-    height=length(0.12, 0.18),
-)
-def radio(b: ObjectBuilder, width: float, height: float) -> None:
-    w = width / 2
-    b.part("case", box((-w, -0.03, 0), (w, 0.03, height)), material="wood")
-    for k, x in enumerate((0.4 * w, 0.75 * w)):
-        knob(b, f"knob_{k}", parent="case", at=(x, -0.03, 0.35 * height), radius=0.016, high=0.015, out=-Y)
-    b.part(
-        "case",
-        [
-            box((-0.85 * w, -0.033, z - 0.002), (0.1 * w, -0.029, z + 0.002))
-            for z in spread(8, 0.15 * height, 0.85 * height)
-        ],
-        b.cylinder(0.005, (-0.8 * w, 0.02, height - 0.01), (-0.8 * w, 0.02, height + 0.06)),
-    )
-    b.bore("case", b.cylinder(0.0037, (-0.8 * w, 0.02, 0.02), (-0.8 * w, 0.02, height + 0.1)))
-    b.part(
-        "antenna",
-        b.cylinder(0.0025, (-0.8 * w, 0.02, 0.025), (-0.8 * w, 0.02, height + 0.07)),
-        ball(0.004, (-0.8 * w, 0.02, height + 0.072)),
-        material="chrome",
-    )
-    b.slide("antenna", parent="case", axis=Z, upper=0.1)
-    bail(
-        b,
-        "handle",
-        parent="case",
-        start=(-w, 0, height - 0.02),
-        end=(w, 0, height - 0.02),
-        high=0.05,
-        thick=0.008,
-        up=Z,
-        lower=-1.2,
-        upper=1.2,
-    )
-
-
-@kind(
     "boombox",
-    words="cassette recorder, cassette player, tape recorder, cd player",
+    words=("cassette recorder, cassette player, tape recorder, cd player, radio, transistor radio, portable radio"),
     width=length(0.4, 0.6),
 )
 def boombox(b: ObjectBuilder, width: float) -> None:
@@ -206,7 +165,7 @@ def boombox(b: ObjectBuilder, width: float) -> None:
     )
 
 
-@kind("dvd player", words="blu ray player, disc player", width=length(0.3, 0.43))
+@kind("dvd player", walls=5, words="blu ray player, disc player", width=length(0.3, 0.43))
 def dvd_player(b: ObjectBuilder, width: float) -> None:
     w = width / 2
     b.part(
@@ -517,44 +476,6 @@ def film_clapper(b: ObjectBuilder, width: float) -> None:
 
 
 @kind(
-    "movie camera",
-    words="cine camera, super 8 camera",
-    size=length(0.9, 1.2),
-)
-def movie_camera(b: ObjectBuilder, size: float) -> None:
-    p = scaled(size)
-    b.part(
-        "body",
-        box(p(-0.05, -0.1, 0), p(0.05, 0.1, 0.16)),
-        box(p(-0.02, -0.02, -0.1), p(0.02, 0.03, 0.01)),
-        material="metal",
-        color="black",
-    )
-    b.cut("body", box(p(0, -0.08, 0.02), p(0.1, 0.08, 0.14)))
-    b.part(
-        "lens",
-        b.cylinder(0.03 * size, p(0, -0.101, 0.11), p(0, -0.16, 0.11)),
-        b.cylinder(0.034 * size, p(0, -0.13, 0.11), p(0, -0.15, 0.11)),
-        material="metal",
-        color="grey",
-    )
-    b.spin("lens", parent="body", axis=-Y, pivot=p(0, -0.1, 0.11))
-    leaf(
-        b,
-        "door",
-        parent="body",
-        lower=p(0.051, -0.09, 0.01),
-        upper=p(0.057, 0.09, 0.15),
-        hinge=Y,
-        out=X,
-        reach=1.8,
-        handle=False,
-        material="metal",
-    )
-    crank(b, "crank", parent="body", at=p(-0.05, 0.03, 0.08), out=-X, length=0.05 * size)
-
-
-@kind(
     "flashlight",
     words="torch, pocket torch, pocket lamp, penlight",
     length=length(0.12, 0.22),
@@ -841,29 +762,6 @@ def tablet_stand(b: ObjectBuilder, size: float) -> None:
         material="metal",
     )
     b.hinge("back", parent="arm", axis=X, pivot=p(0, 0, 0.14), upper=0.25, lower=-0.4)
-
-
-@kind(
-    "drawer box",
-    words="desk organizer, desk tidy, parts cabinet, small parts organizer, craft organizer",
-    rows=whole(2, 4),
-    columns=whole(1, 3),
-)
-def desk_organizer(b: ObjectBuilder, rows: int, columns: int) -> None:
-    width = 0.1 * columns + 0.02
-    height = 0.06 * rows + 0.01
-    case(b, "body", lower=(-width / 2, 0, 0), upper=(width / 2, 0.16, height), material="plastic")
-    for i, z in enumerate(spread(rows, 0.005, height - 0.005)):
-        for k, x in enumerate(spread(columns, -width / 2 + 0.01, width / 2 - 0.01)):
-            drawer(
-                b,
-                f"drawer_{i}_{k}",
-                parent="body",
-                lower=(x - 0.044, 0, z - 0.023),
-                upper=(x + 0.044, 0.14, z + 0.023),
-                out=-Y,
-                material="plastic",
-            )
 
 
 @kind(

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @kind(
     "swing seat",
-    words="garden swing seat, hollywood swing, canopy swing, swing bench",
+    words=("garden swing seat, hollywood swing, canopy swing, swing bench, glider chair, hanging chair"),
     part_words={"seat": "bench, swing"},
     details={"roof": 1, "frame": 1},
     width=length(1.2, 2.0),

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 @kind(
     "spinning top",
+    walls=3,
     words="humming top, toy top",
     size=length(0.9, 1.3),
 )

@@ -57,28 +57,58 @@ def drawer_stacks(text: str) -> list[int]:
     "cabinet",
     words=(
         "cupboard, wardrobe, closet, chest, chest of drawers, dresser, sideboard, nightstand, bedside table, "
-        "drawer unit, commode, locker, bookcase, shelf, pantry, credenza, kitchen unit, base unit, wall unit, "
-        "tv stand, tv unit, tallboy, storage unit, filing cabinet, file cabinet, bureau, chiffonier, vitrine, "
-        "armoire, drawer cabinet, tool drawer cabinet, shoe cupboard, toy shelf, book cabinet, apothecary "
-        "chest, apothecary cabinet, card catalogue, card catalog, kitchen island, aquarium stand, fish tank "
-        "stand, media console, media cabinet, media unit, hi-fi stand, bar cabinet, liquor cabinet, wine "
-        "cabinet, curio cabinet, china cabinet, hutch, gun cabinet, linen cabinet, key cabinet, wall cabinet, "
-        "spice cabinet, vanity unit, washstand, sink unit, changing table, baby changing table, night table, "
-        "end table, night stand, printer stand, plant stand, garderobe, linen closet, tv bench, tv lowboard, "
-        "lowboard, entertainment center, entertainment unit, media bench, tallboy dresser, lingerie chest, "
-        "map cabinet, buffet, storage cabinet, utility cabinet, base cabinet, sink cabinet, under sink "
-        "cabinet, vanity cabinet, bathroom vanity, chemical cabinet, lab cabinet, record cabinet, toy "
-        "cabinet, craft cabinet, larder, pantry cupboard, broom closet, broom cupboard, trophy case, trophy "
-        "cabinet, showcase, display case, gym locker, school locker, tool locker, parcel locker, pie safe, "
-        "desk organiser, organizer, organiser, drawer organizer, jewelry cabinet, jewellery cabinet, advent "
-        "calendar, tea cabinet, sewing cabinet, puzzle box, seed box, switch cabinet, electrical cabinet, "
-        "lateral file, lateral filing cabinet, file drawer cabinet, rolling tool chest, rolling cabinet, tool "
-        "storage cabinet, charging station, charging cabinet, switchgear, plc cabinet, evidence locker, ice "
-        "box, meat locker, proofing cabinet"
+        "drawer unit, commode, locker, bookcase, shelf, pantry, credenza, kitchen unit, base unit, wall unit, tv "
+        "stand, tv unit, tallboy, storage unit, filing cabinet, file cabinet, bureau, chiffonier, vitrine, "
+        "armoire, drawer cabinet, tool drawer cabinet, shoe cupboard, toy shelf, book cabinet, apothecary chest, "
+        "apothecary cabinet, card catalogue, card catalog, kitchen island, aquarium stand, fish tank stand, media "
+        "console, media cabinet, media unit, hi-fi stand, bar cabinet, liquor cabinet, wine cabinet, curio "
+        "cabinet, china cabinet, hutch, gun cabinet, linen cabinet, key cabinet, wall cabinet, spice cabinet, "
+        "vanity unit, washstand, sink unit, changing table, baby changing table, night table, end table, night "
+        "stand, printer stand, plant stand, garderobe, linen closet, tv bench, tv lowboard, lowboard, "
+        "entertainment center, entertainment unit, media bench, tallboy dresser, lingerie chest, map cabinet, "
+        "buffet, storage cabinet, utility cabinet, base cabinet, sink cabinet, under sink cabinet, vanity "
+        "cabinet, bathroom vanity, chemical cabinet, lab cabinet, record cabinet, toy cabinet, craft cabinet, "
+        "larder, pantry cupboard, broom closet, broom cupboard, trophy case, trophy cabinet, showcase, display "
+        "case, gym locker, school locker, tool locker, parcel locker, pie safe, desk organiser, organizer, "
+        "organiser, drawer organizer, jewelry cabinet, jewellery cabinet, advent calendar, tea cabinet, sewing "
+        "cabinet, puzzle box, seed box, switch cabinet, electrical cabinet, lateral file, lateral filing cabinet, "
+        "file drawer cabinet, rolling tool chest, rolling cabinet, tool storage cabinet, charging station, "
+        "charging cabinet, switchgear, plc cabinet, evidence locker, meat locker, proofing cabinet, wall "
+        "cupboard, overhead cabinet, overhead locker, overhead cupboard, kitchen block, row of kitchen units, "
+        "kitchen counter, kitchenette, medicine cabinet, mirror cabinet, bathroom cabinet, first aid cabinet, "
+        "desk organizer, desk tidy, parts cabinet, small parts organizer, craft organizer"
     ),
     title="cabinet or chest",
     material="wood",
     usual={
+        "desk organizer, desk tidy, parts cabinet, small parts organizer, craft organizer": {
+            "width": 0.22,
+            "height": 0.2,
+            "depth": 0.18,
+            "wall": 0.006,
+            "layout": "3*(2*drawer)",
+        },
+        "medicine cabinet, mirror cabinet, bathroom cabinet, first aid cabinet": {
+            "width": 0.55,
+            "height": 0.6,
+            "depth": 0.16,
+            "doors": 2,
+            "drawers": 0,
+        },
+        "kitchen block, row of kitchen units, kitchen counter, kitchenette": {
+            "width": 1.8,
+            "height": 0.9,
+            "depth": 0.6,
+            "doors": 3,
+            "drawers": 3,
+        },
+        "wall cupboard, overhead cabinet, overhead locker, overhead cupboard": {
+            "width": 0.85,
+            "height": 0.6,
+            "depth": 0.35,
+            "doors": 2,
+            "drawers": 0,
+        },
         "nightstand, bedside table": {"width": 0.45, "height": 0.55, "depth": 0.4, "doors": 0, "drawers": 2},
         "wardrobe, armoire, closet": {"width": 1.0, "height": 2.0, "depth": 0.6, "doors": 2, "drawers": 0},
         "sideboard, credenza": {"width": 1.6, "height": 0.8, "depth": 0.45, "doors": 3, "drawers": 0},
@@ -144,7 +174,7 @@ def drawer_stacks(text: str) -> list[int]:
             "display case, gym locker, school locker, tool locker, parcel locker, pie safe"
         ): {"width": 0.8, "height": 1.8, "depth": 0.4, "doors": 2, "drawers": 0},
         (
-            "desk organiser, organizer, organiser, drawer organizer, jewelry cabinet, jewellery cabinet, advent "
+            "organizer, organiser, drawer organizer, jewelry cabinet, jewellery cabinet, advent "
             "calendar, tea cabinet, sewing cabinet, puzzle box, seed box"
         ): {"width": 0.35, "height": 0.25, "depth": 0.25, "doors": 0, "drawers": 3},
         "switch cabinet, electrical cabinet": {
@@ -177,7 +207,7 @@ def drawer_stacks(text: str) -> list[int]:
             "drawers": 0,
             "material": "steel",
         },
-        "switchgear, plc cabinet, evidence locker, ice box, meat locker, proofing cabinet": {
+        "switchgear, plc cabinet, evidence locker, meat locker, proofing cabinet": {
             "width": 0.5,
             "height": 1.6,
             "depth": 0.6,
@@ -275,15 +305,22 @@ def cabinet(
     words=(
         "desk, writing desk, workbench, console table, vanity, side table, bench table, study desk, writing "
         "table, school table, reading desk, entrance table, counter, work table, dining table, lab bench, "
-        "cocktail table, sofa table, tea table, hallway table, entry table, sewing table, potting bench, "
-        "school desk, chess table, occasional table, conference table, meeting table, kitchen table, "
-        "breakfast table, bistro table, poker table, lab table, laboratory table, examination table, packing "
-        "table, welding table, prep table, butcher block, train table, play table, altar, laboratory bench, "
-        "carpenter bench, woodworking bench, workshop bench, tool bench, work bench, garden table, gaming "
-        "desk, student desk, art desk, craft table, sewing desk, teacher desk, kids desk, children desk, kids "
-        "table, reception table, nail table, makeup table, bathroom table"
+        "cocktail table, sofa table, tea table, hallway table, entry table, sewing table, potting bench, school "
+        "desk, chess table, occasional table, conference table, meeting table, kitchen table, breakfast table, "
+        "bistro table, poker table, lab table, laboratory table, examination table, packing table, welding table, "
+        "prep table, butcher block, train table, play table, altar, laboratory bench, carpenter bench, "
+        "woodworking bench, workshop bench, tool bench, work bench, garden table, gaming desk, student desk, art "
+        "desk, craft table, sewing desk, teacher desk, kids desk, children desk, kids table, reception table, "
+        "nail table, makeup table, bathroom table, drawer table, table with a drawer, table with drawers, hall "
+        "table, dressing table, vanity table, console table with drawers, desk with pedestal, pedestal desk, "
+        "computer desk, office desk"
     ),
     usual={
+        "desk with pedestal, pedestal desk, computer desk, office desk": {
+            "arrangement": "pedestal",
+            "drawers": 3,
+            "width": 1.45,
+        },
         "counter, work table, dining table, lab bench": {"width": 1.2, "depth": 0.6, "height": 0.75},
         "cocktail table, sofa table, tea table": {"width": 1.1, "depth": 0.6, "height": 0.5},
         "hallway table, entry table, sewing table, potting bench": {"width": 1, "depth": 0.4, "height": 0.8},

@@ -298,9 +298,12 @@ def coffee_machine(
 
 @kind(
     "fan",
+    usual={
+        "ceiling fan, overhead fan": {"kind": "ceiling"},
+    },
     words=(
         "ventilator, blower, table fan, floor fan, desk fan, pedestal fan, standing fan, room fan, usb fan, "
-        "electric fan"
+        "electric fan, ceiling fan, overhead fan"
     ),
     material="plastic",
     kind=choice(

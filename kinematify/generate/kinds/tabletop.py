@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.library.kind import choice, kind, length
-from kinematify.generate.library.panels import leaf, seam
+from kinematify.generate.library.kind import kind, length
+from kinematify.generate.library.panels import leaf
 from kinematify.generate.procedural.solids import X, Y, Z, box, vector
 
 if TYPE_CHECKING:
@@ -17,74 +17,8 @@ if TYPE_CHECKING:
 
 
 @kind(
-    "flip cap bottle",
-    words="flip top bottle, tube with a flip cap, toothpaste tube, sauce bottle, flip top tube",
-    width=length(0.015, 0.04),
-    thickness=length(0.008, 0.02),
-    height=length(0.03, 0.07),
-    kind=choice(("flips", "turns", "off")),
-    share=length(0.5, 0.75),
-)
-def flip_cap(b: ObjectBuilder, width: float, thickness: float, height: float, kind: str, share: float) -> None:
-    """A stick or a block with a cover: hinged at an end, turning about a pin, or drawn off: a lighter, a USB stick."""
-    b.part("body", box((-width / 2, -thickness / 2, 0), (width / 2, thickness / 2, share * height)), material="metal")
-    play = seam(b, thickness, 0.004)
-    if kind == "turns":
-        g = max(b.gap(thickness), 0) if b.style.has_bore else b.pick(0, b.gap(thickness))
-        sheet = 0.08 * thickness
-        for s in (-1, 1):
-            b.part(
-                "cover",
-                box(
-                    (-0.5 * width, s * (thickness / 2 + g), -0.1 * height),
-                    (0.5 * width, s * (thickness / 2 + g + sheet), 0.9 * height),
-                ),
-            )
-        b.part(
-            "cover",
-            box(
-                (-0.5 * width, -thickness / 2 - g - sheet, 0.9 * height),
-                (0.5 * width, thickness / 2 + g + sheet, 0.9 * height + sheet),
-            ),
-        )
-        b.part(
-            "body",
-            [
-                b.cylinder(
-                    0.08 * width, (0, s * thickness / 2, 0.15 * height), (0, s * (thickness / 2 - 0.001), 0.15 * height)
-                )
-                for s in (-1, 1)
-            ],
-        )
-        b.hinge(
-            "cover",
-            parent="body",
-            axis=Y,
-            pivot=(0, 0, 0.15 * height),
-            upper=b.draw(2, 3.1),
-            lower=-b.draw(2, 3.1),
-            ajar=False,
-        )
-    else:
-        b.part("body", box((-0.35 * width, -0.35 * thickness, 0), (0.35 * width, 0.35 * thickness, 0.9 * height)))
-        low = share * height + play
-        b.part("cover", box((-width / 2, -thickness / 2, low), (width / 2, thickness / 2, height)), material="metal")
-        b.bore("cover", box((-0.4 * width, -0.4 * thickness, 0), (0.4 * width, 0.4 * thickness, 0.95 * height)))
-        if kind == "flips":
-            b.hinge(
-                "cover",
-                parent="body",
-                axis=Y,
-                pivot=(width / 2, 0, share * height + b.pick(0, 0.5, 1) * play),
-                upper=b.draw(1.5, 2.8),
-                ajar=False,
-            )
-        else:
-            b.slide("cover", parent="body", axis=Z, upper=b.draw(0.3, 0.6) * height)
-
-
-@kind(
     "bag",
+    walls=4,
     words="handbag, shopping bag, tote bag, gym bag, doctor bag, purse",
     width=length(0.2, 0.45),
     depth=length(0.08, 0.2),

@@ -339,7 +339,7 @@ def scotch_yoke(b: ObjectBuilder, radius: float) -> None:
 
 @kind(
     "rack and pinion",
-    words="rack and pinion gear, gear rack",
+    words=("rack and pinion gear, gear rack, steering rack, rack and pinion steering, steering gear"),
     radius=length(0.02, 0.05),
 )
 def rack_and_pinion(b: ObjectBuilder, radius: float) -> None:

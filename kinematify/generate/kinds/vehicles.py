@@ -14,7 +14,20 @@ from kinematify.generate.library.panels import grip, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, beam, block, box, prism, vector
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from manifold3d import Manifold
+
     from kinematify.generate.library.builder import ObjectBuilder
+    from kinematify.generate.procedural.solids import Point
+
+
+def _windows(d: ObjectBuilder, lower: Point, upper: Point) -> Sequence[Manifold]:
+    """Dark windows all around a box, which stand out of it by 5 mm."""
+    low, high = np.array(lower), np.array(upper)
+    edge = 0.1 * (high - low) * (1, 1, 0)
+    bands = [box(low + edge * a - 0.005 * b, high - edge * a + 0.005 * b) for a, b in ((Y, X), (X, Y))]
+    return d.painted(*bands, material="plastic", color="black")
 
 
 @kind(
@@ -31,6 +44,11 @@ def box_car(b: ObjectBuilder, length: float, width: float, radius: float) -> Non
         "body",
         box((-length / 2, -width / 2, radius), (length / 2, width / 2, radius + 0.55)),
         box((-0.45 * length, -0.45 * width, radius + 0.5), (0.15 * length, 0.45 * width, radius + 1.1)),
+        _windows(
+            b,
+            (-0.45 * length, -0.45 * width, radius + 0.68),
+            (0.15 * length, 0.45 * width, radius + 1.0),
+        ),
         material="steel",
     )
     axles(
@@ -98,6 +116,7 @@ def pickup_truck(b: ObjectBuilder, length: float, width: float, radius: float) -
         box((-length / 2, -width / 2, radius), (length / 2, width / 2, radius + 0.4)),
         box((-0.05 * length, -0.46 * width, radius + 0.3), (0.28 * length, 0.46 * width, radius + 1.15)),
         box((0.2 * length, -width / 2, radius), (length / 2, width / 2, radius + 0.7)),
+        _windows(b, (-0.05 * length, -0.46 * width, radius + 0.78), (0.28 * length, 0.46 * width, radius + 1.08)),
         material="steel",
     )
     for s in (-1, 1):
@@ -148,6 +167,7 @@ def van(b: ObjectBuilder, length: float, width: float, height: float) -> None:
     """A sliding side door, two rear doors, wheels."""
     r = 0.33
     case(b, "body", lower=(-length / 2, -width / 2, r), upper=(length / 2, width / 2, r + height), material="steel")
+    b.part("body", _windows(b, (0.2 * length, -width / 2, r + 0.5 * height), (length / 2, width / 2, r + 0.9 * height)))
     leaf_w = width / 2 - 0.02
     for s, side in ((-1, "right"), (1, "left")):
         leaf(
@@ -196,6 +216,7 @@ def bus_or_tram(b: ObjectBuilder, length: float, swings: bool) -> None:
     r = 0.45
     h = 2.5
     case(b, "body", lower=(-length / 2, -w / 2, r), upper=(length / 2, w / 2, r + h), material="steel")
+    b.part("body", _windows(b, (-length / 2, 0.01 - w / 2, r + 1.0), (length / 2, w / 2, r + 2.1)))
     g = b.gap(0.1) + 0.002
     for i, x in enumerate(spread(1 if length < 9 else 2, -0.25 * length, 0.2 * length)):
         for s in (-1, 1):

@@ -168,7 +168,7 @@ def hexapod(
     "humanoid",
     words=(
         "humanoid robot, android, biped, bipedal robot, person shaped robot, toy robot, robot toy, wind up "
-        "robot, robot figure, action figure, mannequin, articulated doll, robot man, toy humanoid"
+        "robot, robot figure, action figure, mannequin, robot man, toy humanoid"
     ),
     title="robot with arms and legs",
     material="plastic",

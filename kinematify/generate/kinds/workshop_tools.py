@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @kind(
     "ratchet wrench",
-    words="ratchet, socket wrench, torque wrench, ratchet spanner",
+    words="socket wrench, torque wrench, ratchet spanner",
     length=length(0.18, 0.3),
 )
 def ratchet_wrench(b: ObjectBuilder, length: float) -> None:

@@ -151,6 +151,10 @@ class ObjectBuilder:
         self._parts.setdefault(name, _Drawn(look=(material, color))).solids.extend(shapes)
         return name
 
+    def painted(self, *shapes: Manifold, material: str, color: str | None = None) -> Sequence[Manifold]:
+        """Give shapes a look of their own, whatever they become part of; returns them."""
+        return self.workshop.painted(*shapes, look=(material, color))
+
     def front(self, name: str, parent: str, *shapes: Solids, material: str | None = None) -> str:
         """Add a part that looks like its parent, unless a material is given; returns its name."""
         look = (material, None) if material else self._parts[parent].look

@@ -117,7 +117,7 @@ def grip(
     if d.style.grips == "apart":
         d.fix(d.part(f"{on}_grip", *shapes, material="metal"), on)
     else:
-        d.part(on, *d.workshop.as_handle(*shapes))
+        d.part(on, *d.workshop.painted(*shapes))
 
 
 def leaf(
@@ -192,7 +192,7 @@ def leaf(
         at = middle - share * half * hinge + 0.5 * thick * out
         size = min(room, d.pick(min(d.draw(0.2, 0.9) * room, 0.3), min(0.25 * wide, 0.15)))
         grip(d, name, at, out, along if lengthwise else across, size, "" if handle is True else handle)
-        if d.maybe(0.15):  # one on either side
+        if d.maybe(0.15) and not d.style.has_bore:  # one on either side, into what is behind
             behind = middle - 0.85 * half * hinge - 0.5 * thick * out
             d.part(name, d.cylinder(0.02 * wide, behind, behind - 0.05 * wide * out))
     d.hinge(name, parent, np.cross(out, hinge), pivot, reach, -back)
@@ -278,7 +278,7 @@ def _filled(d: ObjectBuilder, name: str, low: FloatArray, high: FloatArray, out:
     if d.style.grips == "apart" and d.maybe():
         d.fix(d.part(f"{name}_pane", glass, material="glass"), name)
     else:
-        d.part(name, glass)
+        d.part(name, *d.painted(glass, material="glass"))
 
 
 def drawer(

@@ -152,10 +152,10 @@ class Workshop:
         self._looks[name] = material or self._material, color or (None if material else self._color)
         return name
 
-    def as_handle(self, *solids: Manifold) -> Sequence[Manifold]:
-        """Make solids look like the handles of this object, whatever they become part of; returns them."""
+    def painted(self, *solids: Manifold, look: Look | None = None) -> Sequence[Manifold]:
+        """Give solids a look of their own, whatever they become part of: that of handles if None; returns them."""
         for solid in solids:
-            self._painted.update(dict.fromkeys(solid.to_mesh64().run_original_id, self._handles))
+            self._painted.update(dict.fromkeys(solid.to_mesh64().run_original_id, look or self._handles))
         return solids
 
     @property
