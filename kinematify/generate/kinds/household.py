@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.generate.library.builder import spread
 from kinematify.generate.library.kind import kind, length, whole
-from kinematify.generate.library.mechanisms import bail, button, cap, case, knob, legs, lever
+from kinematify.generate.library.mechanisms import bail, button, case, knob, legs, lever
 from kinematify.generate.library.panels import drawer, leaf
 from kinematify.generate.procedural.solids import X, Y, Z, ball, beam, block, box, prism, vector
 
@@ -120,7 +120,17 @@ def jar_with_clip(b: ObjectBuilder, radius: float, height: float) -> None:
         b.part("lid", block((0, 1.06 * radius, height + g + 0.006), (0.3 * radius, 0.14 * radius, 0.01)))
         b.hinge("lid", parent="jar", axis=-X, pivot=(0, 1.1 * radius, height + g), upper=2.0)
     else:
-        cap(b, "lid", parent="jar", at=(0, 0, height), radius=radius, high=0.02, out=Z, turns=b.maybe())
+        turns = b.maybe()
+        gap = b.gap(radius)
+        b.part("jar", b.cylinder(0.8 * radius, (0, 0, height - 0.1 * 0.02), (0, 0, height + 0.75 * 0.02)))
+        b.part("lid", b.cylinder(radius, (0, 0, height + gap), (0, 0, height + 0.02)))
+        if b.style.has_bore:
+            hole = (0, 0, height - 0.02), (0, 0, height + 0.8 * 0.02 + gap)
+            b.cut("lid", b.cylinder(0.8 * radius + 1.5 * gap, *hole))
+        if turns:
+            b.spin("lid", parent="jar", axis=Z, pivot=(0, 0, height))
+        else:
+            b.slide("lid", parent="jar", axis=Z, upper=0.02)
 
 
 @kind(
@@ -216,8 +226,8 @@ def ironing_board(b: ObjectBuilder, width: float, depth: float, height: float) -
             b.cylinder(0.006, (0.2 * width, -0.3 * depth, height - 0.025), (0.2 * width, 0.3 * depth, height - 0.025)),
         )
     for s, name in ((1, "legs"), (-1, "rear_legs")):
-        at = (s * 0.2 * width, 0, height - 0.025)
-        b.hinge(name, parent="board", axis=s * Y, pivot=at, upper=0.4, lower=-0.1, ajar=False)
+        pin = (s * 0.2 * width, 0, height - 0.025)
+        b.hinge(name, parent="board", axis=s * Y, pivot=pin, upper=0.4, lower=-0.1, ajar=False)
     b.follow("rear_legs", "legs")
 
 

@@ -250,7 +250,6 @@ def arm(
     *,
     lower: float = -1.0,
     upper: float = 1.0,
-    material: str = "metal",
     side: float | None = None,
 ) -> None:
     """A link of a chain that turns about `axis` at `start`: beside what carries it, or in it.
@@ -265,7 +264,6 @@ def arm(
         axis: Of the joint.
         lower: Limit [rad].
         upper: Limit [rad].
-        material: Of the link.
         side: How far beside the plane of the joint it lies, along the axis [m]; careful hands lay it beside its parent.
     """
     beside = (thick + d.gap(thick) if d.style.has_bore else 0.0) if side is None else side
@@ -273,10 +271,10 @@ def arm(
     half = 0.5 * thick * axis
     kind = d.pick("beam", "beam", "rod", "plate")
     if kind == "rod" and not d.style.has_bore:
-        d.part(name, d.rod(0.5 * thick, a, b), material=material)
+        d.part(name, d.rod(0.5 * thick, a, b), material="metal")
     else:
         wide = thick if kind == "beam" else 1.4 * thick
-        d.part(name, beam(wide, 0.9 * thick, a, b, axis), material=material)
+        d.part(name, beam(wide, 0.9 * thick, a, b, axis), material="metal")
         d.part(name, *(d.cylinder(0.5 * wide, p - 0.45 * thick * axis, p + 0.45 * thick * axis) for p in (a, b)))
     if d.style.has_bore:
         gap = d.gap(thick)
@@ -298,8 +296,6 @@ def plunger(
     radius: float,
     *,
     travel: float,
-    square: bool = False,
-    material: str = "metal",
 ) -> None:
     """A rod that slides along itself, from `end` inside its parent outward past `start`.
 
@@ -308,39 +304,9 @@ def plunger(
     a, b = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
     out = (a - b) / float(np.linalg.norm(a - b))
     gap = d.gap(radius)
-    if square:
-        d.part(name, beam(2.0 * radius, 2.0 * radius, a, b), material=material)
-        d.bore(parent, beam(2.0 * (radius + gap), 2.0 * (radius + gap), a, b - gap * out))
-    else:
-        d.part(name, d.cylinder(radius, a, b), material=material)
-        d.bore(parent, d.cylinder(radius + 1.5 * gap, a, b - gap * out))
+    d.part(name, d.cylinder(radius, a, b), material="metal")
+    d.bore(parent, d.cylinder(radius + 1.5 * gap, a, b - gap * out))
     d.slide(name, parent, out, travel)
-
-
-def cap(
-    d: ObjectBuilder,
-    name: str,
-    parent: str,
-    at: Point,
-    radius: float,
-    high: float,
-    out: FloatArray,
-    *,
-    turns: bool,
-    material: str = "plastic",
-) -> None:
-    """A cap over a neck, which it turns about or is drawn off from."""
-    at = np.asarray(at, dtype=np.float64)
-    gap = d.gap(radius)
-    top = at + high * out
-    d.part(parent, d.cylinder(0.8 * radius, at - 0.1 * high * out, at + 0.75 * high * out))
-    d.part(name, d.cylinder(radius, at + gap * out, top), material=material)
-    if d.style.has_bore:
-        d.cut(name, d.cylinder(0.8 * radius + 1.5 * gap, at - high * out, at + 0.8 * high * out + gap * out))
-    if turns:
-        d.spin(name, parent, out, at)
-    else:
-        d.slide(name, parent, out, high)
 
 
 def rotor(
@@ -353,17 +319,13 @@ def rotor(
     blades: int,
     *,
     wide: float = 0.15,
-    deep: float | None = None,
-    material: str = "plastic",
 ) -> None:
-    """Blades about a hub in front of a surface; `deep` as for `knob`, without a shaft if None."""
+    """Blades about a hub in front of a surface."""
     at = np.asarray(at, dtype=np.float64)
     hub = 0.14 * radius
     gap = d.gap(hub)
     foot = at + (gap - d.style.max_penetration * hub) * out
-    d.part(name, d.cylinder(hub, foot, at + 1.6 * hub * out), material=material)
-    if deep is not None:
-        _shaft(d, name, parent, at, 0.5 * hub, out, deep, gap)
+    d.part(name, d.cylinder(hub, foot, at + 1.6 * hub * out))
     if d.maybe():
         d.part(name, d.cone(hub, 0.2 * hub, at + 1.6 * hub * out, at + 2.6 * hub * out))
     side = np.roll(out, 1)
@@ -434,20 +396,18 @@ def hand_wheel(
     spokes: int = 4,
     rim: bool = True,
     reach: float | None = None,
-    deep: float | None = None,
-    material: str = "metal",
 ) -> None:
-    """Spokes on a shaft, with or without a rim, turned clockwise; `reach` and `deep` as for `knob`."""
+    """Spokes on a shaft, with or without a rim, turned clockwise; `reach` as for `knob`."""
     at = np.asarray(at, dtype=np.float64)
     wire, gap = 0.1 * radius, d.gap(radius)
     level, side = at + (gap + 3.0 * wire) * out, _across(out, (1.0, 1.0))[1]
     for angle in np.arange(spokes) * 2.0 * np.pi / spokes:
         tip = level + radius * (np.cos(angle) * side + np.sin(angle) * np.cross(side, out))
-        d.part(name, d.rod((0.6 if rim else 0.8) * wire, level, tip), material=material)
+        d.part(name, d.rod((0.6 if rim else 0.8) * wire, level, tip), material="metal")
     if rim:
         d.part(name, d.torus(radius, wire, level, out))
     d.part(name, d.cylinder(1.5 * wire, at + gap * out, level))
-    _shaft(d, name, parent, at, wire, out, deep or 2.0 * wire, gap)
+    _shaft(d, name, parent, at, wire, out, 2.0 * wire, gap)
     if reach is None:
         d.spin(name, parent, -out, at)
     else:
@@ -463,22 +423,20 @@ def crank(
     length: float,
     *,
     spins: bool = True,
-    deep: float | None = None,
-    material: str = "metal",
 ) -> None:
-    """A shaft out of a surface, `deep` in it as for `knob`, an arm across and a grip, which may turn by itself."""
+    """A shaft out of a surface, an arm across and a grip, which may turn by itself."""
     at = np.asarray(at, dtype=np.float64)
     thick = 0.1 * length
     along = np.roll(out, 1)
     level = at + 0.35 * length * out
     gap = d.gap(thick)
-    start = at - ((deep or 0.3 * length) if d.style.has_bore else -gap) * out
+    start = at - (0.3 * length if d.style.has_bore else -gap) * out
     d.bore(parent, d.cylinder(0.5 * thick + 1.5 * gap, start - gap * out, at + 1e-3 * length * out))
     d.part(
         name,
         d.cylinder(0.5 * thick, start, level),
         beam(thick, 0.8 * thick, level - 0.6 * thick * along, level + length * along, out),
-        material=material,
+        material="metal",
     )
     foot = level + 0.9 * length * along + (0.4 * thick + gap) * out
     handle = d.cylinder(0.7 * thick, foot, foot + 0.5 * length * out)
@@ -503,7 +461,6 @@ def bail(
     *,
     lower: float = -1.5,
     upper: float = 1.5,
-    material: str = "metal",
 ) -> None:
     """A bow over the line from `start` to `end`, about which it swings."""
     a, b = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
@@ -516,7 +473,7 @@ def bail(
         return d.cylinder(r, start, end) if d.style.sides > 12 else beam(2 * r, 2 * r, start, end)
 
     posts = [bar(foot - 0.8 * thick * up, foot + high * up) for foot in (a, b)]
-    d.part(name, *posts, bar(a + high * up - r * along, b + high * up + r * along), material=material)
+    d.part(name, *posts, bar(a + high * up - r * along, b + high * up + r * along), material="metal")
     if d.style.has_bore:
         d.part(
             name,

@@ -243,11 +243,11 @@ def _knuckles(
     return pivot
 
 
-def pane(d: ObjectBuilder, name: str, lower: Point, upper: Point, out: FloatArray = -Y, material: str = "wood") -> None:
-    """A plate between two corners that is a plain slab, has a panel let in, or is a frame about a pane."""
+def pane(d: ObjectBuilder, name: str, lower: Point, upper: Point) -> None:
+    """A plate of wood between two corners that is a plain slab, has a panel let in, or is a frame about a pane."""
     low, high = np.minimum(lower, upper), np.maximum(lower, upper)
-    d.part(name, material=material)
-    _filled(d, name, low, high, out, d.pick("plain", "panel", "pane", "pane"))
+    d.part(name, material="wood")
+    _filled(d, name, low, high, -Y, d.pick("plain", "panel", "pane", "pane"))
 
 
 def _filled(d: ObjectBuilder, name: str, low: FloatArray, high: FloatArray, out: FloatArray, kind: str) -> None:

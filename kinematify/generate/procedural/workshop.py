@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.materials import RGB
     from kinematify.generate.procedural.solids import Point, Solids
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.robot import Mimic
 
 
 STYLES = ("clean", "remeshed", "coarse", "bumpy")
@@ -190,7 +189,6 @@ class Workshop:
         limits: tuple[float, float] | None = None,
         *,
         rest: float = 0.0,
-        follows: Mimic | None = None,
     ) -> None:
         """Hang a body on another one by a hinge, or by a bearing that turns without end.
 
@@ -201,13 +199,12 @@ class Workshop:
             pivot: A point on the axis [m].
             limits: [rad]; none for a continuous joint.
             rest: Share of the way from zero to the upper limit at which it is shown, in [0, 1].
-            follows: The body whose joint leads, and how many times as far this one goes.
         """
         kind = JointType.CONTINUOUS if limits is None else JointType.REVOLUTE
         lower, upper = limits or (-math.inf, math.inf)
         joint = BlueprintJoint(
             parent=parent, child=child, kind=kind, axis=np.asarray(axis), pivot=np.asarray(pivot), lower=lower,
-            upper=upper, mimic=follows,
+            upper=upper,
         )  # fmt: skip
         self.add_joint(joint, rest)
 
