@@ -15,9 +15,9 @@ import yaml
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from kinematify.generate.described import known_families
 from kinematify.generate.procedural.layout import parse_layout, stacked
 from kinematify.generate.procedural.materials import COLOR_WORDS, COLORS, MATERIALS
+from kinematify.generate.registry import all_kinds
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ def _family(made: Blueprint, closed: Blueprint, wanted: str) -> list[str]:
 
 
 def _object(made: Blueprint, closed: Blueprint, wanted: list[str]) -> list[str]:
-    family = known_families().get(made.family)
+    family = all_kinds().get(made.family)
     kind = made.family.replace("_", " ")
     names = (*family.words, kind) if family else (kind,)
     called = any(f" {name}".endswith(f" {word}") for name in names for word in wanted)

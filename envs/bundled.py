@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.generate.blueprint_files import true_model
-from kinematify.generate.delivery import build_kind
-from kinematify.generate.families import FAMILIES
+from kinematify.generate.registry import FAMILIES, build
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 
@@ -60,7 +59,7 @@ def write_bundled(model: str, folder: Path) -> tuple[Path, str]:
     family, settings, joint, seed = _found(model)
     folder.mkdir(parents=True)
     config = load_config()
-    built = true_model(build_kind(family, settings, seed=seed), config)
+    built = true_model(build(family, settings, seed=seed), config)
     return write_model(simulable_model(built, config).robot, folder), joint
 
 

@@ -13,11 +13,10 @@ from PIL import Image
 from kinematify.config import load_config
 from kinematify.errors import OutputError
 from kinematify.generate.blueprint_files import true_model
-from kinematify.generate.described import known_families, library
-from kinematify.generate.families import FAMILIES
-from kinematify.generate.procedural.family import COMMON, build
+from kinematify.generate.library.kind import COMMON
 from kinematify.generate.procedural.parameter import PARAMETER_HEADINGS, parameter_rows
 from kinematify.generate.reader import read_sentence
+from kinematify.generate.registry import FAMILIES, all_kinds, build
 from kinematify.model.picture_scene import best_azimuth, joint_glyphs, moving_joints, opened_configuration
 from kinematify.model.preview import MARGIN, draw_panels, panel_size, rest_and_moved, scene_of
 from kinematify.render.picture import BACKGROUND, camera_for, render_scene
@@ -27,8 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from kinematify.config import PreviewConfig
+    from kinematify.generate.library.kind import Kind
     from kinematify.generate.procedural.blueprint import Blueprint
-    from kinematify.generate.procedural.family import Family
     from kinematify.model.kinematic_model import KinematicModel
 
 SENTENCES = (
@@ -65,9 +64,9 @@ _BAR = r"\|"  # in a cell of a Markdown table
 
 def write_gallery(
     folder: Path,
-    families: Mapping[str, Family],
+    families: Mapping[str, Kind],
     sentences: Sequence[str],
-    described: Mapping[str, Family],
+    described: Mapping[str, Kind],
     *,
     command: str,
     progress: Callable[[str, float], None],
@@ -162,9 +161,7 @@ def _draw_opening(model: KinematicModel, path: Path, config: PreviewConfig) -> N
     first.save(path, save_all=True, append_images=others, duration=_STEP_MS, loop=0, quality=_QUALITY, method=6)
 
 
-def _page(
-    families: Mapping[str, Family], sentences: Sequence[str], described: Mapping[str, Family], command: str
-) -> str:
+def _page(families: Mapping[str, Kind], sentences: Sequence[str], described: Mapping[str, Kind], command: str) -> str:
     said = {f"sentence_{number}": text for number, text in enumerate(sentences, start=1)}
     return f"""# Gallery
 
@@ -212,7 +209,7 @@ def _pictures(shown: Mapping[str, str]) -> str:
     return _table(("",) * _COLUMNS, rows)
 
 
-def _row(name: str, family: Family) -> tuple[str, ...]:
+def _row(name: str, family: Kind) -> tuple[str, ...]:
     asked = ", ".join(f"`{parameter.name}`" for parameter in family.parameters)
     return f"`{name}`", ", ".join(family.words[:5]), asked
 
@@ -220,7 +217,7 @@ def _row(name: str, family: Family) -> tuple[str, ...]:
 def _kinds() -> str:
     """The title of every kind of the library, a line per module."""
     found: dict[str, list[str]] = {}
-    for item in library().values():
+    for item in (item for name, item in all_kinds().items() if name not in FAMILIES):
         found.setdefault(item.module or "others", []).append(item.title)
     lines = [(name, ", ".join(sorted(titles))) for name, titles in sorted(found.items()) if name != "others"]
     return _table(("kinds", "objects"), [*lines, ("others", ", ".join(sorted(found["others"])))])
@@ -234,13 +231,13 @@ def _table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 def main() -> None:
     """Draw the page of all sentences, families and some of the objects that files describe."""
     folder = Path(sys.argv[1])
-    described = {name: known_families()[name] for name in SHOWN}
+    families, described = ({name: all_kinds()[name] for name in names} for names in (FAMILIES, SHOWN))
     command = f"python -m tools.draw_gallery {folder.as_posix()}"
 
     def show(name: str, done: float) -> None:
         sys.stderr.write(f"{done:4.0%} {name}\n")
 
-    sys.stdout.write(f"{write_gallery(folder, FAMILIES, SENTENCES, described, command=command, progress=show)}\n")
+    sys.stdout.write(f"{write_gallery(folder, families, SENTENCES, described, command=command, progress=show)}\n")
 
 
 if __name__ == "__main__":

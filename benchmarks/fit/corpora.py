@@ -25,9 +25,8 @@ from kinematify.assembly.erasure import erase
 from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, InputError, KinematifyError
-from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.blueprint import ground_truth
-from kinematify.generate.procedural.family import build
+from kinematify.generate.registry import FAMILIES, build
 from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 from kinematify.robot.read import read_robot
 

@@ -11,18 +11,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.described import known_families
 from kinematify.generate.library.builder import ModelingStyle, ObjectBuilder
 from kinematify.generate.library.kind import KINDS, carry_out
-from kinematify.generate.procedural.family import Values
 from kinematify.generate.procedural.workshop import Workshop
+from kinematify.generate.registry import all_kinds
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from kinematify.generate.library.kind import Kind
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
-    from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.parameter import Parameter, Value
     from kinematify.robot.arrays import FloatArray
 
@@ -31,11 +30,11 @@ _SEEDS = "library 4"
 
 
 @cache
-def corpus_kinds() -> Mapping[str, Family]:
+def corpus_kinds() -> Mapping[str, Kind]:
     """All kinds, and other ways to build some of them, keyed by name."""
     for file in sorted(Path(__file__).with_name("variants").glob("[a-z]*.py")):
         import_module(f"benchmarks.fit.variants.{file.stem}")
-    return {**known_families(), **{name: item for name, item in KINDS.items() if item.like}}
+    return {**all_kinds(), **{name: item for name, item in KINDS.items() if item.like}}
 
 
 DRAWN = tuple(sorted(name for name, item in corpus_kinds().items() if item.draw))
@@ -67,15 +66,14 @@ def drawn_object(name: str, seed: int, style: ModelingStyle | None = None) -> Bl
     return replace(built, parts=parts, joints=tuple(_seen(joint, placed, mirrored) for joint in built.joints))
 
 
-def _drawn_by(family: Family, style: ModelingStyle, rng: np.random.Generator) -> Blueprint:
+def _drawn_by(family: Kind, style: ModelingStyle, rng: np.random.Generator) -> Blueprint:
     """An object of a kind that is drawn, with everything drawn."""
     assert family.draw is not None, family.name
     workshop = Workshop(family.name, material="plastic")
     builder = ObjectBuilder(family.name, style, workshop, rng)
-    usual = Values({"material": "", "color": "", "open": 0.0}, rng)
     taken = family.draw.__code__.co_varnames[: family.draw.__code__.co_argcount]
     given = {item.name: _some(item, builder) for item in family.parameters if item.name in taken}
-    carry_out(family.draw, builder, given, usual, workshop)
+    carry_out(family.draw, builder, given, {"material": "", "color": "", "open": 0.0})
     return workshop.finish(family.name, {}, style="clean", clearance=style.gap, rng=rng)
 
 

@@ -7,10 +7,8 @@ from typing import TYPE_CHECKING, Any
 from benchmarks.expectations import SETS, load_sentences
 from benchmarks.goldens.values import array_hash, blueprint_values, made, plain
 from kinematify.errors import InputError
-from kinematify.generate.described import known_families
-from kinematify.generate.families import FAMILIES
-from kinematify.generate.procedural.family import build
 from kinematify.generate.reader import read_sentence
+from kinematify.generate.registry import FAMILIES, all_kinds, build
 
 if TYPE_CHECKING:
     from benchmarks.goldens.values import Values
@@ -36,15 +34,14 @@ def family_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
 
 def object_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
     """Objects that files describe: one that a seed draws of each, and all as they usually are."""
-    described = [name for name in known_families() if name not in FAMILIES]
+    described = [name for name in all_kinds() if name not in FAMILIES]
     return {name: (name, (0,) if sample else (None, 0)) for name in described[:: 8 if sample else 1]}, {}
 
 
 def family_values(item: tuple[str, tuple[int | None, ...]]) -> dict[str, Values]:
     """Objects of one family."""
     name, seeds = item
-    family = known_families()[name]
-    return _values({f"{name} {'defaults' if seed is None else seed}": build(family, {}, seed=seed) for seed in seeds})
+    return _values({f"{name} {'defaults' if seed is None else seed}": build(name, seed=seed) for seed in seeds})
 
 
 # ---- sentences and requests ------------------------------------------------------------------------------------------

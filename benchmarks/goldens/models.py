@@ -19,8 +19,7 @@ from kinematify.errors import InputError
 from kinematify.evaluation.benchmark_job import erased_item, shown_parts
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, bench_folder, find_objects
 from kinematify.generate.blueprint_files import write_blueprint
-from kinematify.generate.families import FAMILIES
-from kinematify.generate.procedural.family import build
+from kinematify.generate.registry import FAMILIES, build
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 from kinematify.simulation.engines import DEFAULT_ENGINES
@@ -103,7 +102,7 @@ def inference_items(sample: bool) -> tuple[dict[str, Any], dict[str, str]]:
 def inference_values(item: BenchObject | Generated) -> dict[str, Values]:
     """Files of the inference; of `inference.json` all but times, versions and the configuration that was given."""
     if isinstance(item, Generated):
-        parts = build(FAMILIES[item.family], {}, seed=item.seed).assembly
+        parts = build(item.family, seed=item.seed).assembly
     else:
         parts = shown_parts(erased_item(item, _REST))
     with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
@@ -202,7 +201,7 @@ def finding_values(item: Path | Generated | Mutants) -> dict[str, Values]:
         folder = Path(name)
         if isinstance(item, Mutants):
             return _reports(dict(_written(item, folder)), folder)
-        write_blueprint(build(FAMILIES[item.family], {}, seed=item.seed), folder, load_config())
+        write_blueprint(build(item.family, seed=item.seed), folder, load_config())
         return _reports({"report": (folder / "model.urdf", DEFAULT_ENGINES)}, folder)
 
 

@@ -21,8 +21,7 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.described import ObjectDescription
-from kinematify.generate.families import FAMILIES
-from kinematify.generate.procedural.family import build
+from kinematify.generate.registry import build
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 from kinematify.validation.checks import CHECKS
@@ -89,7 +88,7 @@ def _help_of(command: click.Command, name: str, parent: click.Context | None) ->
 def _statuses() -> Iterator[_Golden]:
     with tempfile.TemporaryDirectory(prefix="kinematify-") as name:
         folder = Path(name)
-        write_blueprint(build(FAMILIES["cabinet"], {}), folder / "model", load_config())
+        write_blueprint(build("cabinet"), folder / "model", load_config())
         text = (folder / "model" / "model.urdf").read_text("utf-8")
         axis = next(line for line in text.splitlines() if "<axis" in line)
         (folder / "zero_axis.urdf").write_text(
@@ -121,7 +120,7 @@ def _schemas() -> Iterator[_Golden]:
         yield name, _without_annotations(model.model_json_schema()), None
     with tempfile.TemporaryDirectory(prefix="kinematify-") as name:
         folder = Path(name)
-        blueprint = build(FAMILIES["cabinet"], {})
+        blueprint = build("cabinet")
         write_blueprint(blueprint, folder, load_config())
         write_inference(infer(blueprint.assembly), folder / "out", preview=False)
         report = validate(folder / "model.urdf", engines=(), workers=1).as_json()

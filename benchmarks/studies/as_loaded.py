@@ -34,10 +34,8 @@ from kinematify.evaluation.datasets import CONDITIONS, find_objects
 from kinematify.evaluation.metrics import score_blueprint
 from kinematify.evaluation.result_record import grouped, table
 from kinematify.generate.blueprint_files import true_model
-from kinematify.generate.described import known_families
-from kinematify.generate.families import FAMILIES
-from kinematify.generate.procedural.family import build
 from kinematify.generate.reader import read_sentence
+from kinematify.generate.registry import FAMILIES, all_kinds, build
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.pipeline.infer_assembly import infer
@@ -120,7 +118,7 @@ def measure(options: AsLoadedOptions, work: Work) -> Measured:
         for family in options.families or FAMILIES:
             cases[f"{family} {seed} inferred"] = case(made="inferred", family=family, seed=seed)
     for seed in range(options.described):
-        for family in sorted(known_families().keys() - FAMILIES.keys()):
+        for family in sorted(all_kinds().keys() - set(FAMILIES)):
             cases[f"{family} {seed}"] = case(made="exact", family=family, seed=seed)
     for seed in range(options.sentences):
         for number, said in enumerate(load_sentences("fresh"), start=1):
@@ -171,7 +169,7 @@ def _joints_right(blueprint: Blueprint, inference: Inference) -> bool:
 def _generated(case: TriedFile) -> Blueprint:
     if case.sentence:
         return read_sentence(case.sentence).made(seed=case.seed).blueprint
-    return build(known_families()[case.family], {}, seed=case.seed, name=f"{case.family}_{case.seed}")
+    return build(case.family, seed=case.seed, name=f"{case.family}_{case.seed}")
 
 
 def _written(model: KinematicModel, config: Config, engines: Sequence[str], *, powered: bool = False) -> Record:

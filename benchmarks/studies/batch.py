@@ -31,8 +31,7 @@ from kinematify.batch.manifest import RECORD
 from kinematify.config import load_config
 from kinematify.evaluation.result_record import table
 from kinematify.generate.blueprint_files import write_blueprint
-from kinematify.generate.families import FAMILIES
-from kinematify.generate.procedural.family import build
+from kinematify.generate.registry import FAMILIES, build
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -96,7 +95,7 @@ def written_object(asked: Drawn) -> Record:
     rng = np.random.default_rng(asked.seed)
     seed, share = int(rng.integers(2**31)), round(float(rng.uniform(0.05, 0.6)), 2)
     name = f"{asked.family}_{asked.seed[1]:03d}"
-    blueprint = build(FAMILIES[asked.family], {"open": share if rng.random() < 0.25 else 0.0}, seed=seed, name=name)
+    blueprint = build(asked.family, {"open": share if rng.random() < 0.25 else 0.0}, seed=seed, name=name)
     asked.folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=asked.folder.parent) as aside:
         write_blueprint(blueprint, Path(aside, name), load_config())

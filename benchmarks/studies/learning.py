@@ -21,7 +21,7 @@ from pydantic import Field
 from benchmarks.study import Options, Study, explained
 from kinematify.envs.expert import HandExpert
 from kinematify.evaluation.result_record import table
-from kinematify.generate.delivery import build_kind
+from kinematify.generate.registry import build
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.record import write_inference
 from kinematify.versions import require
@@ -104,7 +104,7 @@ def trained(asked: Training) -> Record:
         keywords: Record = {"model": model, "control": CONTROL, "randomize": True}
         if joint is not None:
             keywords |= {"model": str(Path(folder, "inferred")), "joint": joint}
-            write_inference(infer(build_kind(model).assembly), Path(keywords["model"]))
+            write_inference(infer(build(model).assembly), Path(keywords["model"]))
         env = gymnasium.make(_OPEN_PART, **keywords)
         bare: Any = env.unwrapped
         name, expert, rng = env.reset(seed=0)[1]["joint"], HandExpert(bare), np.random.default_rng(0)

@@ -304,11 +304,10 @@ def _pairs(settings: Sequence[str]) -> dict[str, str]:
 
 
 def _categories() -> str:
-    from kinematify.generate.described import known_families
+    from kinematify.generate.registry import all_kinds
 
     rows = [
-        (family.name, family.title, ", ".join(p.name for p in family.parameters))
-        for family in known_families().values()
+        (family.name, family.title, ", ".join(p.name for p in family.parameters)) for family in all_kinds().values()
     ]
     table = format_table(("category", "what it is", "parameters"), rows, width=_WIDTH)
     return f"{table}\n\nParameters with units and ranges: kinematify generate --list --category NAME"
@@ -326,10 +325,10 @@ def _list(category: str | None, json_to: str | None, *, is_schema: bool) -> None
 
 def _listing(category: str | None) -> dict[str, Any]:
     """Categories with their parameters, or one of them, as JSON values."""
-    from kinematify.generate.described import known_families
+    from kinematify.generate.registry import all_kinds
     from kinematify.generate.request import find_family
 
-    families = [find_family(category)] if category else list(known_families().values())
+    families = [find_family(category)] if category else list(all_kinds().values())
     return {
         "schema": 1,
         "categories": [

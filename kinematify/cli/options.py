@@ -120,9 +120,9 @@ def words_of(given: str, known: Sequence[str], option: str) -> tuple[str, ...]:
 
 def complete_categories(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[str]:
     """Categories of objects that begin so."""
-    from kinematify.generate.described import known_families
+    from kinematify.generate.registry import all_kinds
 
-    return [name for name in known_families() if name.startswith(begun)]
+    return [name for name in all_kinds() if name.startswith(begun)]
 
 
 def complete_checks(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[str]:

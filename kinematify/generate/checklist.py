@@ -9,7 +9,7 @@ from pydantic import Field, ValidationError
 
 from kinematify.errors import InputError
 from kinematify.generate.delivery import closed, fits_size, names_called, part_faults
-from kinematify.generate.procedural.family import Family
+from kinematify.generate.library.kind import Kind
 from kinematify.generate.request import PartRequest
 
 if TYPE_CHECKING:
@@ -47,9 +47,9 @@ def read_facts(values: Any) -> tuple[Fact, ...]:
         raise InputError(f"A fact of the checklist cannot be used: {place}: {first['msg']}.") from error
 
 
-def broken_facts(blueprint: Blueprint, facts: Sequence[Fact], family: Family | None = None) -> list[str]:
+def broken_facts(blueprint: Blueprint, facts: Sequence[Fact], family: Kind | None = None) -> list[str]:
     """Return what of a checklist does not hold of an object, one line each; one joint serves one fact of motion."""
-    kind = family or Family(name="object", title="object", words=("object",), parameters=(), build=lambda *_: None)
+    kind = family or Kind(name="object", title="object", words=("object",), parameters=(), make=lambda *_: None)
     found = [line for fact in facts for line in _broken(blueprint, fact, kind)]
     moving: dict[tuple[str, ...], str] = {}
     for fact in facts:
@@ -59,12 +59,12 @@ def broken_facts(blueprint: Blueprint, facts: Sequence[Fact], family: Family | N
     return found
 
 
-def _names(blueprint: Blueprint, nouns: Sequence[str], kind: Family) -> set[str]:
+def _names(blueprint: Blueprint, nouns: Sequence[str], kind: Kind) -> set[str]:
     own = {part.name for part in blueprint.parts}
     return {name for noun in nouns for name in ([noun] if noun in own else names_called(kind, blueprint, noun))}
 
 
-def _broken(blueprint: Blueprint, fact: Fact, kind: Family) -> Iterator[str]:
+def _broken(blueprint: Blueprint, fact: Fact, kind: Kind) -> Iterator[str]:
     names = sorted(_names(blueprint, fact.parts, kind))
     if fact.parts and not names and fact.count != 0:
         yield f"{fact.phrase!r}: no part is called {' or '.join(fact.parts)}"

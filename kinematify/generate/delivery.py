@@ -13,19 +13,20 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.kind_search import key_of, words_of
+from kinematify.generate.library.kind import checked
 from kinematify.generate.procedural.clearance import carried_by, may_go
-from kinematify.generate.procedural.family import build, checked
 from kinematify.generate.procedural.materials import MATERIALS, of_one_material, surface_of
 from kinematify.generate.procedural.parameter import pairs
-from kinematify.generate.request import listed, request_of, with_settings
+from kinematify.generate.registry import build
+from kinematify.generate.request import listed
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from kinematify.assembly.part import Part
+    from kinematify.generate.library.kind import Kind
     from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
-    from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.parameter import Parameter, Value
     from kinematify.generate.request import PartRequest, Request
     from kinematify.robot.arrays import FloatArray
@@ -82,7 +83,7 @@ def stem_of(name: str) -> str:
     return _NUMBERED.sub("", name)
 
 
-def names_called(family: Family, blueprint: Blueprint, noun: str) -> list[str]:
+def names_called(family: Kind, blueprint: Blueprint, noun: str) -> list[str]:
     """Return the names of the parts that a noun means, e.g. ``door``, ``left door`` or ``third drawer``."""
     words = noun.lower().replace("_", " ").split()
     picked = [word for word in words[:-1] if word in _PICKED or word in _ORDINALS]
@@ -107,7 +108,7 @@ def names_called(family: Family, blueprint: Blueprint, noun: str) -> list[str]:
     return [part.name for part in found]
 
 
-def _called(family: Family, blueprint: Blueprint, noun: str) -> list[Part]:
+def _called(family: Kind, blueprint: Blueprint, noun: str) -> list[Part]:
     wanted = _joined(noun)
     meant = {wanted, *(_joined(stem) for stem, said in family.part_words.items() if wanted in map(_joined, said))}
     if counted := count_parameter(family, noun):
@@ -177,26 +178,12 @@ def deliver(request: Request, *, seed: int | None = None) -> BuildResult:
     )
 
 
-def build_kind(name: str, settings: Mapping[str, Any] | None = None, *, seed: int | None = None) -> Blueprint:
-    """Return an object of a kind.
-
-    Args:
-        name: Of the kind.
-        settings: As `with_settings` takes them.
-        seed: Draws what is not set.
-
-    Raises:
-        InputError: There is no such kind, or a setting does not fit.
-    """
-    return deliver(request_of(with_settings({"kind": name}, settings or {})), seed=seed).blueprint
-
-
 def closed(blueprint: Blueprint) -> Blueprint:
     """Return an object with all joints at the zero of their design."""
     return blueprint.moved({joint.child: -joint.value for joint in blueprint.joints})
 
 
-def _values(family: Family, request: Request, faults: list[str]) -> Iterator[tuple[str, Value]]:
+def _values(family: Kind, request: Request, faults: list[str]) -> Iterator[tuple[str, Value]]:
     """Parameters of a kind that the request sets, by itself or by the sizes, counts and looks of parts."""
     known = {item.name: item for item in family.all_parameters}
     yield from request.parameters.items()
@@ -229,13 +216,13 @@ def _values(family: Family, request: Request, faults: list[str]) -> Iterator[tup
                 faults.append(f"{said}: {str(error).rstrip('.')}")
 
 
-def count_parameter(family: Family, noun: str) -> Parameter | None:
+def count_parameter(family: Kind, noun: str) -> Parameter | None:
     """Return the parameter that counts parts of a noun; None if there is none."""
     counts = [item for item in family.parameters if isinstance(item.default, int)]
     return next((item for item in counts if key_of(noun) in map(key_of, (*item.nouns, item.name))), None)
 
 
-def _is_detail(family: Family, noun: str, made: Blueprint) -> bool:
+def _is_detail(family: Kind, noun: str, made: Blueprint) -> bool:
     """True if a noun is what a parameter counts or chose, and no part: slots, or bars that are handles of drawers."""
     parameter = count_parameter(family, noun)
     if parameter is not None:
@@ -245,7 +232,7 @@ def _is_detail(family: Family, noun: str, made: Blueprint) -> bool:
     return noun.rsplit(maxsplit=1)[-1] in (set(chosen.values()) | own)
 
 
-def _length_names(family: Family, noun: str, size: str) -> list[str]:
+def _length_names(family: Kind, noun: str, size: str) -> list[str]:
     """Parameters that are a size of a part: ``door_height``, or ``blade`` for its length."""
     own = noun.replace(" ", "_")
     lengths = {item.name: item for item in family.parameters if item.unit == "m"}
@@ -253,7 +240,7 @@ def _length_names(family: Family, noun: str, size: str) -> list[str]:
     return [name for name in (f"{own}_{size}", *plain) if name in lengths][:1]
 
 
-def _size_parameter(family: Family, size: str) -> str:
+def _size_parameter(family: Kind, size: str) -> str:
     """Name of the parameter for a size of the whole; empty if there is none."""
     lengths = {item.name: item for item in family.parameters if item.unit == "m"}
     for name, item in lengths.items():
@@ -263,7 +250,7 @@ def _size_parameter(family: Family, size: str) -> str:
     return across[-1] if size == "length" and len(across) > 1 else ""
 
 
-def _refitted(family: Family, made: Blueprint, request: Request) -> dict[str, Value]:
+def _refitted(family: Kind, made: Blueprint, request: Request) -> dict[str, Value]:
     """Parameters that make a size of the whole what was asked for where a frame or a handle comes on top of them."""
     found: dict[str, Value] = {}
     for size, wanted in request.size.items():
@@ -317,7 +304,7 @@ def _same(one: float, other: float) -> bool:
     return math.isclose(one, other, rel_tol=_SAME)
 
 
-def _mirror_helps(family: Family, made: Blueprint, request: Request) -> bool:
+def _mirror_helps(family: Kind, made: Blueprint, request: Request) -> bool:
     """True if all that is to be on the left is on the right, or the other way round."""
     sides = ("left", "right")
     held = [
@@ -412,7 +399,7 @@ def _ranged(blueprint: Blueprint, names: Sequence[str], wanted: tuple[float, flo
 # ---- measuring -----------------------------------------------------------------------------------------------------
 
 
-def _faults(family: Family, made: Blueprint, request: Request, missing: Sequence[str]) -> Iterator[str]:
+def _faults(family: Kind, made: Blueprint, request: Request, missing: Sequence[str]) -> Iterator[str]:
     kind = family.title
     shut = closed(made)
     for name, wanted in request.size.items():
@@ -439,7 +426,7 @@ def _faults(family: Family, made: Blueprint, request: Request, missing: Sequence
             yield f"{other}: it is the same as the {one}, {listed(sorted(mine)[:4])}"
 
 
-def part_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str], part: PartRequest) -> Iterator[str]:
+def part_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], part: PartRequest) -> Iterator[str]:
     """Return what is asked of some parts and is otherwise, in words.
 
     Args:
@@ -502,7 +489,7 @@ def stands_in(made: Blueprint, names: Sequence[str], columns: int, rows: int) ->
     return bool(along[0] == columns and along[1:].max() == rows)
 
 
-def _size_faults(family: Family, made: Blueprint, noun: str, names: Sequence[str], part: PartRequest) -> Iterator[str]:
+def _size_faults(family: Kind, made: Blueprint, noun: str, names: Sequence[str], part: PartRequest) -> Iterator[str]:
     shut = closed(made)
     boxes = [item for item in shut.parts if item.name in names]
     for size, wanted in part.size.items():

@@ -5,14 +5,12 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from kinematify.generate.families import FAMILIES, all_kinds
-from kinematify.generate.library.kind import put_together
+from kinematify.generate.library.kind import Kind, put_together
 from kinematify.generate.procedural.blueprint_file import (
     MIRRORS,
     BlueprintDescription,
@@ -20,17 +18,16 @@ from kinematify.generate.procedural.blueprint_file import (
     Repetition,
     Vector,
 )
-from kinematify.generate.procedural.family import Family, Values
 from kinematify.generate.procedural.parameter import Parameter, details_of, number, parse_table
-from kinematify.generate.procedural.workshop import Workshop
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+    from pathlib import Path
 
     from kinematify.generate.procedural.blueprint import BlueprintJoint
+    from kinematify.generate.procedural.parameter import Value
+    from kinematify.generate.procedural.workshop import Workshop
     from kinematify.robot.arrays import FloatArray
-
-_FOLDER = Path(__file__).with_name("kinds")
 
 
 class CopyDescription(BaseModel):
@@ -71,15 +68,15 @@ class CountParameters(BaseModel):
     """Word for what belongs to a part -> how many of it there are."""
 
     walls: float | None = None
-    """Of `Family`."""
+    """Of `Kind`."""
 
     category: Name
     counts: dict[str, dict[str, Any]] = Field({})
     """Word for what repeats -> how often it may; named where a shape or a copy is repeated."""
 
-    def as_family(self, material: str, build: Callable[[Values, Workshop], None]) -> Family:
-        """The object as a family that leaves nothing to choose but its counts and what every family does."""
-        return Family(
+    def as_kind(self, material: str, make: Callable[..., None]) -> Kind:
+        """The object as a kind that leaves nothing to choose but its counts and what every kind does."""
+        return Kind(
             name=self.category,
             title=self.title or self.words[0],
             words=self.words,
@@ -87,7 +84,7 @@ class CountParameters(BaseModel):
             material=material,
             walls=self.walls,
             part_words=self.part_words,
-            build=build,
+            make=make,
         )
 
 
@@ -109,9 +106,9 @@ class ObjectDescription(CountParameters, BlueprintDescription):
                 self._refuse_unknown_count(copy.repeated)
         return self
 
-    def build(self, values: Values, workshop: Workshop) -> None:
-        """Add the object to a workshop."""
-        counts = {word: values.count(f"{word}s") for word in self.counts}
+    def make(self, workshop: Workshop, values: Mapping[str, Value], _: np.random.Generator | None) -> None:
+        """Add the object to a workshop; see `Kind.make`."""
+        counts = {word: int(values[f"{word}s"]) for word in self.counts}
         looks = {part.name: (part.material, part.color) for part in self.parts}
         solids = {part.name: part.solid(counts) for part in self.parts}
         joints = {joint.child: joint.joint() for joint in self.joints}
@@ -127,7 +124,7 @@ class ObjectDescription(CountParameters, BlueprintDescription):
                     solid, joint = given[name]
                     looks[names[name]], solids[names[name]] = looks[name], solid.transform(transform)
                     joints[names[name]] = _joint_elsewhere(joint, names, transform)
-        put_together(solids, looks, list(joints.values()), values, workshop)
+        put_together(workshop, solids, looks, list(joints.values()), values)
 
 
 def _repeated(word: str, said: Mapping[str, Any]) -> Parameter:
@@ -165,8 +162,8 @@ def _joint_elsewhere(joint: BlueprintJoint, names: Mapping[str, str], transform:
     )
 
 
-def _kind_in(file: Path) -> Family:
-    """The kind of a file, of which all but its heading is only read once one is built."""
+def kind_in(file: Path) -> Kind:
+    """Return the kind of a file, of which all but its heading is only read once one is built."""
     text = file.read_text(encoding="utf-8")
 
     @cache
@@ -175,18 +172,4 @@ def _kind_in(file: Path) -> Family:
 
     said = CountParameters.model_validate({"category": file.stem, **parse_table(text.partition("\nparts:\n")[0])})
     material = re.search(r"\nparts:\n- name: .*\n  material: (\w+)", text)
-    return said.as_family(material[1] if material else "plastic", lambda *given: described().build(*given))
-
-
-@cache
-def library() -> Mapping[str, Family]:
-    """Kinds that are no members of `FAMILIES`, keyed by name: those that are drawn, and blueprints."""
-    found = [(item.module, item) for item in all_kinds().values() if item.name not in FAMILIES]
-    found += [(file.stem, _kind_in(file)) for file in sorted(_FOLDER.glob("*.yaml"))]
-    return {item.name: item for _, item in sorted(found, key=lambda pair: pair[0])}
-
-
-@cache
-def known_families() -> Mapping[str, Family]:
-    """All kinds: the families of corpora, then the library."""
-    return {**FAMILIES, **library()}
+    return said.as_kind(material[1] if material else "plastic", lambda *given: described().make(*given))

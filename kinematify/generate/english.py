@@ -14,7 +14,7 @@ from kinematify.generate.request import ANGLES, UNITS, in_si
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from kinematify.generate.procedural.family import Family
+    from kinematify.generate.library.kind import Kind
     from kinematify.generate.procedural.parameter import Parameter
 
 LONGEST = 200
@@ -240,7 +240,7 @@ def values_of(text: str) -> list[tuple[float, str]]:
     return [in_si(number.replace(",", "."), unit or found[-1][1]) for number, unit in found]
 
 
-def vocabulary(family: Family) -> dict[str, dict[str, Any]]:
+def vocabulary(family: Kind) -> dict[str, dict[str, Any]]:
     """Words of a kind -> what they may mean: a ``part``, or a ``length`` or ``choice`` with parameter and value."""
     found: dict[str, dict[str, Any]] = {noun: {"part": ""} for noun, means in WORDS.items() if "part" in means}
     said: list[tuple[str, str, Any]] = [

@@ -7,13 +7,13 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING
 
-from kinematify.generate.described import known_families
 from kinematify.generate.procedural.parameter import pairs
+from kinematify.generate.registry import all_kinds
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from kinematify.generate.procedural.family import Family
+    from kinematify.generate.library.kind import Kind
 
 _BRITISH = pairs(
     "aluminium aluminum|tyre tire|castor caster|jewellery jewelry|jewelery jewelry|vice vise|gray grey|metre meter|"
@@ -68,16 +68,16 @@ def key_of(words: str | Sequence[str]) -> tuple[str, ...]:
 
 
 @cache
-def _names() -> Mapping[str, Family]:
+def _names() -> Mapping[str, Kind]:
     """Every name of every kind as one word, so that a dollhouse is a doll house."""
-    found: dict[str, Family] = {}
-    for family in known_families().values():
+    found: dict[str, Kind] = {}
+    for family in all_kinds().values():
         for word in (*family.words, family.name.replace("_", " ")):
             found.setdefault("".join(key_of(word)), family)
     return found
 
 
-def kind_called(words: Sequence[str]) -> Family | None:
+def kind_called(words: Sequence[str]) -> Kind | None:
     """Return the kind that is called by these words, as `key_of` writes them; None if none is."""
     return _names().get("".join(words))
 
@@ -85,7 +85,7 @@ def kind_called(words: Sequence[str]) -> Family | None:
 @cache
 def words_of_names() -> frozenset[str]:
     """Every word of a name."""
-    return frozenset(key for family in known_families().values() for word in family.words for key in key_of(word))
+    return frozenset(key for family in all_kinds().values() for word in family.words for key in key_of(word))
 
 
 def repaired(word: str, known: frozenset[str]) -> str | None:
@@ -105,7 +105,7 @@ def _one_letter_off(one: str, other: str) -> bool:
     return a[1:] == b[1:] or a[1:] == b or a == b[1:] or sorted(a) == sorted(b)
 
 
-def nearest_kinds(text: str, count: int = 5) -> list[Family]:
+def nearest_kinds(text: str, count: int = 5) -> list[Kind]:
     """Return the kinds that are nearest to what a text names, by its nouns, things that do the same, and parts.
 
     Args:
@@ -113,11 +113,11 @@ def nearest_kinds(text: str, count: int = 5) -> list[Family]:
         count: How many.
     """
     words = list(dict.fromkeys(key_of(text)))
-    families = known_families().values()
+    families = all_kinds().values()
     return sorted(families, key=lambda family: (-max(_scores(words, family)), len(family.name)))[:count]
 
 
-def _scores(words: Sequence[str], family: Family) -> Iterator[float]:
+def _scores(words: Sequence[str], family: Kind) -> Iterator[float]:
     parts = {key for item in family.parameters for word in (item.name, *item.words) for key in key_of(word)}
     parts |= {key for said in (*family.part_words, *sum(family.part_words.values(), ())) for key in key_of(said)}
     shared = 0.3 * len(parts & set(words[1:]))

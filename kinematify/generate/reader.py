@@ -21,14 +21,14 @@ from kinematify.generate.kind_search import (
     words_of,
     words_of_names,
 )
-from kinematify.generate.procedural.family import checked
+from kinematify.generate.library.kind import checked
 from kinematify.generate.procedural.layout import CELLS
 from kinematify.generate.request import request_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.generate.procedural.family import Family
+    from kinematify.generate.library.kind import Kind
     from kinematify.generate.procedural.parameter import Parameter
     from kinematify.generate.request import Request
 
@@ -84,7 +84,7 @@ class Sentence:
     text: str
     units: list[Unit]
     request: Request = field(init=False)
-    family: Family = field(init=False)
+    family: Kind = field(init=False)
     words: Mapping[str, Mapping[str, Any]] = field(init=False)
     """Of the kind."""
     start: int = 0
@@ -141,7 +141,7 @@ class Sentence:
         self.family, self.start, self.stop = found
         self.words = vocabulary(self.family)
 
-    def _named(self, words: list[str], limit: int) -> tuple[Family, int, int] | None:
+    def _named(self, words: list[str], limit: int) -> tuple[Kind, int, int] | None:
         for start in range(limit):
             for end in range(min(start + 6, len(words)), start, -1):
                 family = kind_called(words[start:end]) if all(words[start:end]) else None
@@ -791,7 +791,7 @@ class Sentence:
             if noun and (facts or thing.said):  # not a choice of which nothing else is said
                 parts[noun] = {**facts, **row}
         named = key_of([unit.text for unit in self.units[self.start : self.stop]])
-        usual = next((said for word, said in self.family.kinds.items() if key_of(word) == named), {})
+        usual = next((said for word, said in self.family.usual.items() if key_of(word) == named), {})
         stated = {*sizes, *(item.name for noun in parts if (item := _counted(self.family, noun)))}
         values = {
             "kind": self.family.name,
@@ -836,7 +836,7 @@ class Sentence:
         )
 
 
-def _counted(family: Family, noun: str) -> Parameter | None:
+def _counted(family: Kind, noun: str) -> Parameter | None:
     """The parameter that counts parts of a noun, where it may have several values."""
     item = count_parameter(family, noun)
     return item if item and item.bounds and item.bounds[0] < item.bounds[1] else None

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from kinematify.errors import InputError
-from kinematify.generate.described import known_families
 from kinematify.generate.kind_search import key_of, kind_called, nearest_kinds, words_of
+from kinematify.generate.library.kind import checked
 from kinematify.generate.procedural.blueprint_file import read_values
-from kinematify.generate.procedural.family import checked
 from kinematify.generate.procedural.materials import COLOR_WORDS, COLORS, MATERIALS
+from kinematify.generate.registry import kind_named
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from kinematify.generate.procedural.family import Family
+    from kinematify.generate.library.kind import Kind
     from kinematify.generate.procedural.parameter import Parameter
 
 UNITS = {
@@ -139,7 +139,7 @@ class Request(_Fields):
     instead_of: str = Field("", description="What was asked for, where the kind is only the nearest one.")
 
     @property
-    def family(self) -> Family:
+    def family(self) -> Kind:
         """Return its kind.
 
         Raises:
@@ -159,7 +159,7 @@ class Request(_Fields):
         return self.model_copy(update={"kind": family.name, "parameters": values})
 
 
-def _said(family: Family, name: str, value: Any) -> Any:
+def _said(family: Kind, name: str, value: Any) -> Any:
     """A value of a parameter that is a number, where the text says a unit."""
     parameter = next((item for item in family.all_parameters if item.name == name), None)
     if isinstance(value, str) and parameter is not None and not isinstance(parameter.default, str):
@@ -170,14 +170,14 @@ def _said(family: Family, name: str, value: Any) -> Any:
     return value
 
 
-def find_family(name: str) -> Family:
+def find_family(name: str) -> Kind:
     """Return the kind of a name, in any letter case, with spaces or underscores.
 
     Raises:
         InputError: There is none; the message names the nearest.
     """
     words = re.findall(r"[a-z0-9]+", name.lower())
-    family = known_families().get("_".join(words)) or kind_called(key_of(words))
+    family = kind_named("_".join(words)) or kind_called(key_of(words))
     if family is None:
         near = " or ".join(item.name for item in nearest_kinds(" ".join(words), 2))
         raise InputError(f"There is no kind {name!r}. Did you mean {near}? kinematify generate --list shows all.")

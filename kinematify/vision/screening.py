@@ -12,7 +12,7 @@ import numpy as np
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.assembly.pieces import connected_sheets
-from kinematify.generate.procedural.family import build
+from kinematify.generate.registry import build
 from kinematify.generate.request import find_family
 from kinematify.grouping.numbered_pieces import NamedPart
 from kinematify.robot.joint_type import JointType

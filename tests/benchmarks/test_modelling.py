@@ -7,13 +7,12 @@ import pytest
 
 from benchmarks.fit.composed import compose
 from benchmarks.fit.modelling import WAYS, augment
-from kinematify.generate.families import FAMILIES
-from kinematify.generate.procedural.family import build
+from kinematify.generate.registry import build
 
 
 @pytest.mark.parametrize("way", sorted(WAYS))
 def test_every_way_keeps_the_joints_and_leaves_parts(way: str) -> None:
-    drawn = build(FAMILIES["cabinet"], {}, seed=1)
+    drawn = build("cabinet", seed=1)
     changed = augment(drawn, way, rng=np.random.default_rng(0))
     assert changed.joints == drawn.joints
     assert [part.name for part in changed.parts] == [part.name for part in drawn.parts]

@@ -10,7 +10,7 @@ from kinematify.envs import OPEN_PART, TASK_IDS
 from kinematify.envs.expert import HandExpert
 from kinematify.envs.tasks import TASKS, TEST, TRAIN
 from kinematify.errors import InputError
-from kinematify.generate.delivery import build_kind
+from kinematify.generate.registry import build
 
 
 def done_by_hand(env: gymnasium.Env, *, seed: int) -> dict[str, object]:
@@ -33,7 +33,7 @@ def test_there_are_twenty_tasks_and_their_splits_are_apart() -> None:
 def test_every_object_of_a_task_has_its_joint(name: str) -> None:
     family, joint = TASKS[name]
     for seed in (*TRAIN.objects, *TEST.objects):
-        built = build_kind(family, seed=seed)
+        built = build(family, seed=seed)
         assert joint.removesuffix("_joint") in {made.child for made in built.joints}, seed
 
 

@@ -16,7 +16,7 @@ from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.errors import InputError, OutputError
 from kinematify.generate.blueprint_files import true_model
-from kinematify.generate.delivery import build_kind
+from kinematify.generate.registry import build
 from kinematify.geometry.convex import signed_volume
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model as write_files
@@ -148,7 +148,7 @@ def test_mjcf_holds_the_hollow_of_a_tray_and_lets_followers_follow(urdf: Path, t
 def carved(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A model as `kinematify generate` writes it, with pieces carved by the motion."""
     config = load_config()
-    model = true_model(build_kind(request.param, seed=1), config)
+    model = true_model(build(request.param, seed=1), config)
     return write_files(simulable_model(model, config).robot, tmp_path_factory.mktemp(request.param))
 
 

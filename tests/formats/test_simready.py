@@ -10,7 +10,7 @@ import pytest
 from kinematify import export, infer
 from kinematify.config import load_config
 from kinematify.generate.blueprint_files import true_model
-from kinematify.generate.delivery import build_kind
+from kinematify.generate.registry import build
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.validation.checks import CHECKS
@@ -32,7 +32,7 @@ def test_only_what_the_docs_list_is_left(tmp_path: Path, name: str) -> None:
     given = ("gripper", {}) if name == "robot" else ("cabinet", {"drawers": 1, "doors": 0})
     (tmp_path / "model").mkdir()
     (tmp_path / "asset").mkdir()
-    built = build_kind(*given, seed=0)
+    built = build(*given, seed=0)
     config = load_config()
     model = infer(built.assembly, config=config).model if name == "inferred" else true_model(built, config)
     urdf = write_model(simulable_model(model, config).robot, tmp_path / "model")

@@ -10,13 +10,12 @@ from manifold3d import Manifold, Mesh64
 
 from kinematify.config import load_config
 from kinematify.errors import InputError
-from kinematify.generate.described import ObjectDescription, known_families, library
-from kinematify.generate.families import FAMILIES
+from kinematify.generate.described import ObjectDescription
 from kinematify.generate.procedural.blueprint_file import described_blueprint
-from kinematify.generate.procedural.family import build
+from kinematify.generate.registry import FAMILIES, all_kinds, build
 from kinematify.model.masses import inertial_of
 
-DESCRIBED = sorted(set(known_families()) - set(FAMILIES))
+DESCRIBED = sorted(set(all_kinds()) - set(FAMILIES))
 
 
 def solid_of(part):
@@ -29,13 +28,13 @@ def overlaps(blueprint):
     return [(a, b) for a, b in combinations(solids, 2) if (solids[a] ^ solids[b]).volume() > 1e-9]
 
 
-IN_STEPS = [name for name in DESCRIBED if library()[name].draw]
+IN_STEPS = [name for name in DESCRIBED if all_kinds()[name].draw]
 SAMPLE = [name for name in DESCRIBED if name not in IN_STEPS] + IN_STEPS[::9]
 COUNTED = [
     (name, {parameter.name: int(bound)})
     for name in DESCRIBED
     if name not in IN_STEPS
-    for parameter in known_families()[name].parameters
+    for parameter in all_kinds()[name].parameters
     for bound in parameter.bounds
     if bound != parameter.default
 ]
@@ -43,7 +42,7 @@ COUNTED = [
 
 @pytest.mark.parametrize(("name", "given"), [*((name, {}) for name in SAMPLE), *COUNTED])
 def test_parts_move_freely_to_both_ends(name, given):
-    blueprint = build(known_families()[name], given)
+    blueprint = build(name, given)
     assert blueprint.joints
     assert not overlaps(blueprint)
     for joint in blueprint.joints:
@@ -54,7 +53,7 @@ def test_parts_move_freely_to_both_ends(name, given):
 def test_a_follower_has_the_range_that_its_leader_asks_for():
     """A leader that goes beyond what its follower may do is stopped by it, or stops it, in an engine."""
     narrow, followers = [], 0
-    for name, family in known_families().items():
+    for name, family in all_kinds().items():
         if family.draw and "follow" not in family.draw.__code__.co_names:
             continue
         joints = {joint.child: joint for joint in build(family, {}).joints}
@@ -89,18 +88,18 @@ van 1600-2600|vending_machine 200-350|vise 5-14|washing_machine 55-85|wheelchair
 def test_no_mass_is_off_by_more_than_a_factor_of_three(line):
     name, _, masses = line.partition(" ")
     least, most = map(float, masses.split("-"))
-    parts, config = build(known_families()[name], {}).parts, load_config().model
+    parts, config = build(name).parts, load_config().model
     mass = sum(inertial_of(part, np.zeros(3), thickness=1e-3, config=config).mass for part in parts)
     assert least / 3.0 <= mass <= 3.0 * most
 
 
 def test_gondolas_hang_on_their_wheel():
-    joints = build(known_families()["ferris_wheel"], {}).joints[1:]
+    joints = build("ferris_wheel").joints[1:]
     assert np.allclose([np.linalg.norm(joint.pivot - (0.0, 0.0, 1.3)) for joint in joints], 0.9)
 
 
 def test_no_word_names_two_families():
-    words = [word for family in known_families().values() for word in family.words]
+    words = [word for family in all_kinds().values() for word in family.words]
     assert sorted(words) == sorted(set(words))
 
 
@@ -121,7 +120,7 @@ def test_copies_take_along_what_they_carry() -> None:
             "copies": [{"like": "caster_1", "mirrored": "x"}, {"like": "caster_1", "repeated": {"count": 2}}],
         }
     )
-    made = build(described.as_family("plastic", described.build), {})
+    made = build(described.as_kind("plastic", described.make))
     above = made.joint_above
     assert set(above) == {f"caster_{k}{part}" for k in (1, 2, 3) for part in ("", "_wheel")}
     assert above["caster_2_wheel"].parent == "caster_2"

@@ -11,9 +11,10 @@ import pytest
 
 from kinematify.cli.app import run
 from kinematify.errors import InputError
-from kinematify.generate.delivery import build_kind, closed, deliver, part_faults
+from kinematify.generate.delivery import closed, deliver, part_faults
 from kinematify.generate.procedural.clearance import solid_of
 from kinematify.generate.procedural.materials import COLORS
+from kinematify.generate.registry import build
 from kinematify.generate.request import request_of, schema_of, with_settings
 from kinematify.robot.joint_type import JointType
 
@@ -97,7 +98,7 @@ def test_a_size_without_a_parameter_scales_the_whole_and_its_ways():
 
 
 def test_a_mirror_keeps_the_object_and_swaps_its_sides():
-    made = build_kind("winch")
+    made = build("winch")
     flipped = made.scaled(1.0, mirrored=True)
     assert [solid_of(part).volume() for part in flipped.parts] == pytest.approx(
         [solid_of(part).volume() for part in made.parts]

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.blueprint import Blueprint
-from kinematify.generate.procedural.family import build
+from kinematify.generate.registry import build
 from kinematify.joints.candidate import JointEstimate
 from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import infer_joints
@@ -20,7 +19,7 @@ def known(blueprint: Blueprint) -> KnownObject:
 
 
 def estimates(family: str, **given: float | int | str) -> dict[str, JointEstimate]:
-    return infer_joints(known(build(FAMILIES[family], given)))
+    return infer_joints(known(build(family, given)))
 
 
 def test_a_round_button_with_a_square_foot_slides() -> None:
@@ -72,7 +71,7 @@ def test_a_round_cap_that_a_thread_holds_is_not_lifted() -> None:
 
 @pytest.mark.parametrize("opened", [0.0, 0.4])
 def test_an_open_door_closes_to_where_it_belongs(opened: float) -> None:
-    blueprint = build(FAMILIES["cabinet"], {"doors": 1, "drawers": 1, "open": opened})
+    blueprint = build("cabinet", {"doors": 1, "drawers": 1, "open": opened})
     found = infer_joints(known(blueprint))
     for joint in blueprint.joints:
         estimate = found[joint.child]

@@ -10,8 +10,7 @@ from kinematify import infer
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.contact.build_graph import build_contact_graph
-from kinematify.generate.families import FAMILIES
-from kinematify.generate.procedural.family import build
+from kinematify.generate.registry import build
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointEstimate
 from kinematify.pipeline.warnings import Compound, CompoundKind, compounds, described, missed_linkages
@@ -113,6 +112,6 @@ def test_a_tray_that_only_turning_arms_carry_is_a_linkage_that_was_not_found() -
 
 def test_the_inference_tells_of_fingers_of_a_gripper_and_of_nothing_in_a_cabinet() -> None:
     objects = {"gripper": {"fingers": 2}, "cabinet": {}}
-    warnings = {name: infer(build(FAMILIES[name], given, seed=1).assembly).warnings for name, given in objects.items()}
+    warnings = {name: infer(build(name, given, seed=1).assembly).warnings for name, given in objects.items()}
     assert any("mirror each other as fingers do" in sentence for sentence in warnings["gripper"])
     assert not any("mirror each other" in s or "together a" in s for s in warnings["cabinet"])

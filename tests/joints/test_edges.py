@@ -23,10 +23,9 @@ from benchmarks.fit.edges import (
 )
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault
-from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.blueprint import ground_truth
-from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box, cylinder
+from kinematify.generate.registry import build
 from kinematify.joints.choice import edges
 from kinematify.joints.choice.edges import (
     edge_probabilities,
@@ -60,7 +59,7 @@ def test_probabilities_are_those_over_all_spanning_trees(seed: int) -> None:
 @pytest.mark.parametrize(("family", "parameters"), [("door", {"kind": "folding", "leaves": 2}), ("stapler", {})])
 def test_parts_that_touch_several_others_hang_where_their_joint_is(family: str, parameters: dict[str, object]) -> None:
     """Leaves of a folding door on each other, the arm of a stapler on its magazine."""
-    blueprint = build(FAMILIES[family], parameters, seed=0)
+    blueprint = build(family, parameters, seed=0)
     truth = ground_truth(blueprint)
     inference = infer(blueprint.assembly, config=CONFIG)
     names = blueprint.assembly.names
@@ -93,7 +92,7 @@ def test_a_lid_over_a_rim_hangs_on_the_pot_though_it_touches_the_handle_alone() 
 def small_examples() -> list[TreeExample]:
     found = []
     for name in ("stapler", "fridge", "oven", "toilet"):
-        blueprint = build(FAMILIES[name], {}, seed=0)
+        blueprint = build(name, seed=0)
         found.append(
             tree_example(
                 blueprint.assembly,

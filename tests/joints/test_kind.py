@@ -5,10 +5,8 @@ from __future__ import annotations
 import pytest
 
 from kinematify import infer
-from kinematify.generate.delivery import build_kind
-from kinematify.generate.families import FAMILIES
-from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box, cylinder
+from kinematify.generate.registry import build
 from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import (
     infer_joints,
@@ -19,20 +17,20 @@ from tests.known import known_object, sliding, turning
 @pytest.mark.parametrize("seed", range(2))
 def test_a_drawer_behind_the_whole_front_of_a_cabinet_slides(seed: int) -> None:
     """Half as deep as its front is high: no door, for it is inside its body."""
-    inference = infer(build_kind("cabinet", {"doors": 0, "drawers": 1}, seed=seed).assembly)
+    inference = infer(build("cabinet", {"doors": 0, "drawers": 1}, seed=seed).assembly)
     assert [joint.kind for joint in inference.joints] == [JointType.PRISMATIC]
 
 
 def test_a_gantry_slides_on_its_rails() -> None:
     """Its bridge and its ram are thin as doors are, but rails hold them."""
-    inference = infer(build(FAMILIES["gantry"], {}, seed=0).assembly)
+    inference = infer(build("gantry", seed=0).assembly)
     assert [joint.kind for joint in inference.joints] == [JointType.PRISMATIC] * 3
 
 
 def test_bars_in_short_sleeves_slide_in_machines() -> None:
     """The ram of a coarse gantry and the spline of an arm: their rails are faint, but nothing about them is round."""
     for family, child, style in (("gantry", "ram", "coarse"), ("scara", "spindle", "remeshed")):
-        blueprint = build(FAMILIES[family], {"style": style}, seed=0)
+        blueprint = build(family, {"style": style}, seed=0)
         names = [part.name for part in blueprint.assembly.parts]
         found = {names[item.child]: item.kind for item in infer(blueprint.assembly).joints}
         assert found[child] is JointType.PRISMATIC, family

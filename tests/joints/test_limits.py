@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.generate.families import FAMILIES
-from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.pieces.bearing_pieces import barrel
 from kinematify.generate.procedural.solids import box, cylinder
+from kinematify.generate.registry import build
 from kinematify.joints.choice.limits import find_range
 from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
@@ -78,7 +77,7 @@ def test_a_button_on_the_foot_of_a_lamp_is_pressed_down() -> None:
 @pytest.mark.parametrize("share", [0.0, 0.6])
 def test_what_stands_ajar_opens_to_a_right_angle_from_its_stop(share: float) -> None:
     """Arms of glasses stop at the frame one way, and meet nothing the other way round."""
-    made = build(FAMILIES["eyeglasses"], {"open": share}, seed=7)
+    made = build("eyeglasses", {"open": share}, seed=7)
     joints = [turning(joint.parent, joint.child, joint.axis, joint.pivot, (0.0, 1.0)) for joint in made.joints]
     parts = made.assembly.parts
     glasses = KnownObject(name="glasses", parts=parts, joints=tuple(joints), root=parts[0].name)

@@ -11,7 +11,7 @@ import pytest
 
 from kinematify.config import load_config
 from kinematify.generate.blueprint_files import true_model
-from kinematify.generate.delivery import build_kind
+from kinematify.generate.registry import build
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.robot.joint_type import JointType
@@ -32,7 +32,7 @@ FAMILIES = ("box", "microwave", "toilet")
 @pytest.fixture(scope="module", params=FAMILIES)
 def written(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[SimulableModel, Path]:
     config = load_config()
-    model = simulable_model(true_model(build_kind(request.param, seed=1), config), config)
+    model = simulable_model(true_model(build(request.param, seed=1), config), config)
     return model, write_model(model.robot, tmp_path_factory.mktemp(request.param))
 
 
@@ -111,6 +111,6 @@ def test_the_record_says_what_was_fitted(written: tuple[SimulableModel, Path]) -
 def test_visual_meshes_collide_where_they_are_asked_for() -> None:
     config = load_config()
     config = config.model_copy(update={"collision": config.collision.model_copy(update={"mode": "mesh"})})
-    made = simulable_model(true_model(build_kind("cabinet", seed=1), config), config)
+    made = simulable_model(true_model(build("cabinet", seed=1), config), config)
     assert made.record() == {"mode": "mesh"}
     assert all(link.collisions == link.visuals for link in made.robot.links)

@@ -11,8 +11,7 @@ import pytest
 from PIL import Image
 
 from kinematify.errors import OutputError
-from kinematify.generate.described import known_families, library
-from kinematify.generate.families import FAMILIES
+from kinematify.generate.registry import FAMILIES, all_kinds
 from tests.places import ROOT
 from tools.draw_gallery import OPENING, PICTURES, SENTENCES, SHOWN, write_gallery
 
@@ -30,21 +29,21 @@ def pictures_of(page: str) -> dict[str, str]:
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("gallery")
-    shown = {name: FAMILIES[name] for name in ("gripper", "laptop")}
-    described = {"seesaw": known_families()["seesaw"]}
+    shown = {name: all_kinds()[name] for name in ("gripper", "laptop")}
+    described = {"seesaw": all_kinds()["seesaw"]}
     return write_gallery(folder, shown, TOLD, described, command="make it", progress=lambda name, done: None)
 
 
 def test_each_family_has_a_picture_a_row_and_its_parameters(made):
     page = made.read_text("utf-8")
-    said = [f"`{name}`: {FAMILIES[name].title}" for name in ("gripper", "laptop")]
-    seesaw = f"`seesaw`: {', '.join(known_families()['seesaw'].words[:2])}"
+    said = [f"`{name}`: {all_kinds()[name].title}" for name in ("gripper", "laptop")]
+    seesaw = f"`seesaw`: {', '.join(all_kinds()['seesaw'].words[:2])}"
     assert list(pictures_of(page).values()) == [*TOLD, *said, seesaw]
     assert "Made by `make it`." in page
-    for family in (FAMILIES["gripper"], FAMILIES["laptop"]):
+    for family in (all_kinds()["gripper"], all_kinds()["laptop"]):
         row = next(line for line in page.splitlines() if line.startswith(f"| `{family.name}` |"))
         assert all(f"`{parameter.name}`" in row for parameter in family.parameters)
-    assert all(item.title in page for item in library().values())
+    assert all(item.title in page for item in all_kinds().values())
 
 
 def test_pictures_are_small_and_show_two_states(made):
@@ -79,7 +78,7 @@ def test_the_committed_page_shows_every_family_and_names_every_kind():
     links = [DOCS / link for link in pictures_of(page)]
     assert [link.stem for link in links[len(SENTENCES) :]] == [*FAMILIES, *SHOWN], "run: make pictures"
     assert tuple(pictures_of(page).values())[: len(SENTENCES)] == SENTENCES
-    missing = [item.title for item in library().values() if item.title not in page]
+    missing = [item.title for item in all_kinds().values() if item.title not in page]
     assert not missing, "run: make pictures"
     sizes = [link.stat().st_size for link in links]
     assert len(links) < MOST_PICTURES

@@ -1,4 +1,4 @@
-"""Kinds of objects in Python: a function with bounded parameters that draws with a builder, and the registry of all.
+"""Kinds of objects: names, bounded parameters, and the function that makes one; those in Python draw with a builder.
 
 ```python
 @kind("moka pot", words="stovetop espresso maker, espresso pot", radius=length(0.035, 0.055), height=length(0.13, 0.2))
@@ -15,24 +15,29 @@ its parameters decides if it is given them.
 
 from __future__ import annotations
 
-from dataclasses import replace
+import difflib
+import math
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.library.builder import CAREFUL, ObjectBuilder
 from kinematify.generate.procedural import parameter as parameters_of
 from kinematify.generate.procedural.blueprint_file import parents_first
-from kinematify.generate.procedural.family import Family, Values
+from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.generate.procedural.parameter import Parameter, details_of, phrases
 from kinematify.generate.procedural.solids import SEGMENTS
-from kinematify.generate.procedural.workshop import Workshop
+from kinematify.generate.procedural.workshop import STYLES, Workshop
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from manifold3d import Manifold
 
-    from kinematify.generate.procedural.blueprint import BlueprintJoint
+    from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
     from kinematify.generate.procedural.parameter import Value, Words
     from kinematify.generate.procedural.workshop import Look
 
@@ -44,10 +49,174 @@ MODELING: dict[str, dict[str, Any]] = {
     "overlapping": {"has_bore": False, "max_penetration": 0.3, "gap": 0.0},
 }
 """How a drawn object is modelled -> what differs from the careful way, in which everything moves freely."""
-KINDS: dict[str, Family] = {}
+KINDS: dict[str, Kind] = {}
 """Kinds whose modules are imported, keyed by name."""
 _HELP = "As the object has it."
 _Range = tuple[float, float]
+
+
+# ---- kinds and objects of them ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Kind:
+    """A kind of object that can be built, in Python or in a file."""
+
+    name: str
+    """One word, as in ``--category``."""
+    title: str
+    """A few words for lists."""
+    words: tuple[str, ...]
+    """How people call it, singular."""
+    parameters: tuple[Parameter, ...]
+    """Besides those that every kind has, see `COMMON`."""
+    make: Callable[[Workshop, Mapping[str, Value], np.random.Generator | None], None]
+    """Adds bodies and joints to the workshop, with values of all parameters; nothing is drawn without a generator."""
+    material: str = "wood"
+    """Of its base, if nothing is asked for."""
+    walls: float | None = None
+    """Mass of the walls of what is hollow [kg/m^2]: thin sheet has 5, armour 700; as configured if None."""
+    usual: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
+    """What is usual of those that are called by one of the words, where a sentence says nothing else."""
+    part_words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """How people call its parts, besides the names that they have without their numbers."""
+    like: str = ""
+    """The kind that it is another way to build, which the fit alone knows; empty of a kind of its own."""
+    module: str = ""
+    """The theme that it is listed under: the module of `kinematify.generate.kinds` with its function."""
+    draw: Callable[..., None] | None = None
+    """Draws it with a builder, in any style of modelling; None where it is carved or listed by a blueprint."""
+
+    @property
+    def all_parameters(self) -> tuple[Parameter, ...]:
+        """Its own and the common ones."""
+        return (*self.parameters, *COMMON)
+
+
+_INSTEAD = "How far {} stand open instead of a share; {} stay closed."
+COMMON = (
+    parameters_of.number("open", 0.0, (0.0, 1.0), "Share of the way that moving parts stand open."),
+    parameters_of.number(
+        "clearance", 0.001, (0.0, 0.003), "Gap between what moves past each other.", unit="m", usual=(2e-4, 3e-3)
+    ),
+    parameters_of.choice("style", STYLES, "Of the meshes: as drawn, or as from elsewhere."),
+    parameters_of.choice("material", ("", *MATERIALS), "What the base is made of."),
+    parameters_of.choice("color", ("", *COLORS), "Colour of what names no material of its own."),
+    parameters_of.choice(
+        "handle_material", sorted(MATERIALS, key="metal".__ne__), "What handles are made of.", drawn=False
+    ),
+    parameters_of.choice("handle_color", ("", *COLORS), "Colour of handles, if painted.", drawn=False),
+    parameters_of.number(
+        "open_angle", 0.0, (0.0, math.pi), _INSTEAD.format("hinges", "slides"), unit="rad", drawn=False
+    ),
+    parameters_of.number("open_distance", 0.0, (0.0, 5.0), _INSTEAD.format("slides", "hinges"), unit="m", drawn=False),
+)
+"""Parameters of every kind."""
+
+
+_NOT_DRAWN = ("material", "color")
+_FAR = {JointType.REVOLUTE: "open_angle", JointType.PRISMATIC: "open_distance"}
+
+
+def built(kind: Kind, given: Mapping[str, Value], *, seed: int | None = None, name: str = "") -> Blueprint:
+    """Build an object of a kind.
+
+    Args:
+        kind: What to build.
+        given: Parameter -> value in metres, radians, counts or words; others take their default, or what the seed
+            draws from their usual range.
+        seed: Draws what is not given; none takes the defaults.
+        name: Of the object; the kind's if empty.
+
+    Raises:
+        InputError: A parameter is unknown or out of its bounds; the message names the nearest or the bounds.
+    """
+    rng = np.random.default_rng(seed)
+    asked = {key: checked(kind, key, value) for key, value in given.items()}
+    values = {p.name: _drawn(p, rng) if seed is not None and p.drawn else p.default for p in kind.all_parameters}
+    values.update(asked)
+    workshop = Workshop(
+        kind.name,
+        material=str(values["material"]) or kind.material,
+        color=str(values["color"]) or None,
+        handles=(str(values["handle_material"]), str(values["handle_color"]) or None),
+        walls=kind.walls,
+    )
+    far = {moves: float(values[key]) for moves, key in _FAR.items() if values[key]}
+    # What opens at all is asked of the kind by opening it; how far, is set on the joints.
+    kind.make(workshop, {**values, "open": 1.0} if far else values, None if seed is None else rng)
+    if not workshop.moves:
+        counts = ", ".join(p.name for p in kind.parameters if isinstance(p.default, int))
+        raise InputError(f"Nothing of this {kind.title} would move. Ask for one of {counts} at least.")
+    if far:
+        workshop.set_opening(far, title=kind.title)
+    return workshop.finish(
+        name or kind.name,
+        {"seed": seed, **values},
+        style=str(values["style"]),
+        clearance=float(values["clearance"]),
+        rng=np.random.default_rng(seed),
+    )
+
+
+def _drawn(parameter: Parameter, rng: np.random.Generator) -> Value:
+    """Draw a value; always the same number of draws, so that giving one parameter does not change the others."""
+    share = float(rng.random())
+    if parameter.choices and parameter.name not in _NOT_DRAWN:
+        return parameter.choices[int(share * len(parameter.choices))]
+    if parameter.usual is None:
+        return parameter.default
+    low, high = parameter.usual
+    if isinstance(parameter.default, int):
+        return int(low) + int(share * (int(high) - int(low) + 1))
+    return low + share * (high - low)
+
+
+def checked(kind: Kind, name: str, value: Any) -> Value:
+    """Return a value of a parameter as its type says.
+
+    Raises:
+        InputError: There is no such parameter, or the value is out of its bounds.
+    """
+    parameter = next((p for p in kind.all_parameters if p.name == name), None)
+    if parameter is None:
+        known = [p.name for p in kind.all_parameters]
+        near = difflib.get_close_matches(name, known, n=1)
+        hint = f" Did you mean {near[0]}?" if near else ""
+        raise InputError(f"A {kind.title} has no parameter {name!r}.{hint} It has {', '.join(known)}.")
+    if isinstance(parameter.default, str):
+        return _checked_choice(kind, parameter, str(value))
+    return _checked_number(kind, parameter, value)
+
+
+def _checked_choice(kind: Kind, parameter: Parameter, value: str) -> str:
+    if parameter.choices and value not in parameter.choices:
+        choices = ", ".join(choice for choice in parameter.choices if choice)
+        raise InputError(f"The {parameter.name} of a {kind.title} cannot be {value!r}. Choose one of {choices}.")
+    return value
+
+
+def _checked_number(kind: Kind, parameter: Parameter, value: Any) -> float | int:
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    low, high = parameter.bounds or (-math.inf, math.inf)
+    whole = isinstance(parameter.default, int)
+    if not low <= number <= high or (whole and number != int(number)):
+        raise InputError(
+            f"The parameter {parameter.name} of a {kind.title} is {_shown(parameter, value)}, but must be "
+            f"{'a whole number' if whole else 'a number'} from {low:g} to {_shown(parameter, high)}."
+        )
+    return int(number) if whole else number
+
+
+def _shown(parameter: Parameter, value: Any) -> str:
+    """A value with its unit; angles in degrees, too. What is no number stands in quotes."""
+    if not isinstance(value, float | int):
+        return repr(value)
+    degrees = f" ({math.degrees(value):.0f} degrees)" if parameter.unit == "rad" else ""
+    return f"{value:g} {parameter.unit}".strip() + degrees
 
 
 # ---- parameters ------------------------------------------------------------------------------------------------------
@@ -94,7 +263,7 @@ def yes(chance: float, *, help: str = _HELP, **facts: Any) -> Parameter:
     return replace(parameters_of.choice("", usual, help, **facts), yes=chance)
 
 
-# ---- kinds -----------------------------------------------------------------------------------------------------------
+# ---- registering -----------------------------------------------------------------------------------------------------
 
 
 def kind(
@@ -123,7 +292,7 @@ def kind(
         details: Word for what belongs to a part -> how many of it there are.
         usual: Names, split at their commas -> what is usual of those that are called so.
         styles: It may be modelled in any of `MODELING`; of what is drawn alone.
-        walls: Of `Family`.
+        walls: Of `Kind`.
         parameters: What may be asked for, under its name.
     """
     asked = tuple(replace(item, name=name) for name, item in parameters.items())
@@ -136,7 +305,7 @@ def kind(
         taken = code.co_varnames[1 : code.co_argcount]
         carves = draw.__annotations__[code.co_varnames[0]] == "Workshop"
         modeling = choice(tuple(MODELING), help="How it is modelled.", drawn=False)
-        KINDS[name] = Family(
+        KINDS[name] = Kind(
             name=name,
             title=title or called,
             words=(called, *phrases(words)),
@@ -145,10 +314,10 @@ def kind(
                 *details_of(details or {}),
                 *([replace(modeling, name="modeling")] if styles and not carves else ()),
             ),
-            build=_carver(draw, taken) if carves else _drawer(draw, taken, name),
+            make=_carver(draw, taken) if carves else _drawer(draw, taken, name),
             material=material,
             walls=walls,
-            kinds={word: what for group, what in (usual or {}).items() for word in phrases(group)},
+            usual={word: what for group, what in (usual or {}).items() for word in phrases(group)},
             part_words={part: phrases(said) for part, said in (part_words or {}).items()},
             like=like,
             module=draw.__module__.rpartition(".")[2],
@@ -159,27 +328,26 @@ def kind(
     return register
 
 
-def _carver(draw: Callable[..., None], taken: Sequence[str]) -> Callable[[Values, Workshop], None]:
-    def build(values: Values, workshop: Workshop) -> None:
-        draw(workshop, **{name: values.value(name) for name in taken})
+def _carver(draw: Callable[..., None], taken: Sequence[str]) -> Callable[..., None]:
+    def make(workshop: Workshop, values: Mapping[str, Value], _: np.random.Generator | None) -> None:
+        draw(workshop, **{name: values[name] for name in taken})
 
-    return build
+    return make
 
 
-def _drawer(draw: Callable[..., None], taken: Sequence[str], name: str) -> Callable[[Values, Workshop], None]:
-    def build(values: Values, workshop: Workshop) -> None:
-        differs = MODELING[values.choice("modeling")] if values.has("modeling") else {"sides": SEGMENTS}
-        style = replace(CAREFUL, **{"gap": values.number("clearance"), **differs})
-        builder = ObjectBuilder(name, style, workshop, values.rng if values.drawn else None)
-        carry_out(draw, builder, {key: values.value(key) for key in taken}, values, workshop)
+def _drawer(draw: Callable[..., None], taken: Sequence[str], name: str) -> Callable[..., None]:
+    def make(workshop: Workshop, values: Mapping[str, Value], rng: np.random.Generator | None) -> None:
+        differs = MODELING[str(values["modeling"])] if "modeling" in values else {"sides": SEGMENTS}
+        style = replace(CAREFUL, **{"gap": float(values["clearance"]), **differs})
+        carry_out(draw, ObjectBuilder(name, style, workshop, rng), {key: values[key] for key in taken}, values)
 
-    return build
+    return make
 
 
 def carry_out(
-    draw: Callable[..., None], builder: ObjectBuilder, given: Mapping[str, Value], values: Values, workshop: Workshop
+    draw: Callable[..., None], builder: ObjectBuilder, given: Mapping[str, Value], values: Mapping[str, Value]
 ) -> None:
-    """Draw an object with what is given, and put it together in a workshop.
+    """Draw an object with what is given, and put it together in the workshop of the builder.
 
     Raises:
         InputError: It cannot be built.
@@ -190,17 +358,17 @@ def carry_out(
         solids = builder.solids()
     except ValueError as error:
         raise InputError(f"The object {builder.name} cannot be built: {error}.") from error
-    put_together(solids, builder.looks, builder.joints, values, workshop)
+    put_together(builder.workshop, solids, builder.looks, builder.joints, values)
     for loop in builder.loops:
-        workshop.closes(*loop)
+        builder.workshop.closes(*loop)
 
 
 def put_together(
+    workshop: Workshop,
     solids: Mapping[str, Manifold],
     looks: Mapping[str, Look],
     joints: Sequence[BlueprintJoint],
-    values: Values,
-    workshop: Workshop,
+    values: Mapping[str, Value],
 ) -> None:
     """Add parts and joints to a workshop; joints stand at their `value` unless they are to be open.
 
@@ -209,7 +377,7 @@ def put_together(
     base = looks[next(iter(solids))]
     for name, solid in solids.items():
         material, color = looks[name]
-        asked = (values.choice("material"), values.choice("color")) if looks[name] == base else ("", "")
+        asked = (str(values["material"]), str(values["color"])) if looks[name] == base else ("", "")
         workshop.body(name, solid, material=None if asked[0] else material, color=asked[1] or color)
     for joint in parents_first(joints):
-        workshop.add_joint(joint, values.number("open"))
+        workshop.add_joint(joint, float(values["open"]))

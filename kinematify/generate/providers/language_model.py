@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from pydantic import BaseModel
 
     from kinematify.config.services import LanguageModelConfig
-    from kinematify.generate.procedural.family import Family
+    from kinematify.generate.library.kind import Kind
     from kinematify.generate.procedural.parameter import Parameter
     from kinematify.generate.providers.job import PaidJob
     from kinematify.generate.providers.source import Progress, Prompt
@@ -254,7 +254,7 @@ def question(prompt: Prompt) -> list[dict[str, Any]]:
     ]
 
 
-def _kind_line(family: Family) -> str:
+def _kind_line(family: Kind) -> str:
     shown = [item for item in family.parameters if item.name not in ("modeling", "clearance")]
     shown = [item for item in shown if item.bounds is None or item.bounds[0] < item.bounds[1]][:_PARAMETERS]
     return f"{family.name} ({', '.join(family.words[:2])}): {', '.join(map(_parameter, shown)) or 'no parameters'}"

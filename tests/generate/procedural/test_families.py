@@ -8,10 +8,9 @@ import trimesh
 from trimesh.collision import CollisionManager
 
 from kinematify.errors import InputError
-from kinematify.generate.families import FAMILIES
 from kinematify.generate.procedural.blueprint import Blueprint
-from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.workshop import STYLES
+from kinematify.generate.registry import FAMILIES, all_kinds, build
 
 SEEDS = (None, 0)
 
@@ -39,7 +38,7 @@ def carried(blueprint: Blueprint, name: str) -> set[str]:
 @pytest.fixture(scope="module", params=[(name, seed) for name in FAMILIES for seed in SEEDS], ids=str)
 def blueprint(request: pytest.FixtureRequest) -> Blueprint:
     name, seed = request.param
-    return build(FAMILIES[name], {"style": "clean"}, seed=seed)
+    return build(name, {"style": "clean"}, seed=seed)
 
 
 def test_parts_are_closed_and_in_one_piece(blueprint):
@@ -80,7 +79,7 @@ def test_every_joint_moves_through_its_range_without_a_collision(blueprint):
 
 @pytest.mark.parametrize("style", [style for style in STYLES if style != "clean"])
 def test_a_style_changes_the_mesh_and_leaves_the_joints_free(style):
-    clean, other = (build(FAMILIES["gripper"], {"style": name, "fingers": 3}, seed=0) for name in ("clean", style))
+    clean, other = (build("gripper", {"style": name, "fingers": 3}, seed=0) for name in ("clean", style))
     shapes = [[part.vertices.shape for part in made.parts] for made in (clean, other)]
     assert shapes[0] != shapes[1]
     for one, two in zip(clean.parts, other.parts, strict=True):
@@ -90,7 +89,7 @@ def test_a_style_changes_the_mesh_and_leaves_the_joints_free(style):
 
 
 def test_a_drawer_that_is_out_cannot_be_lifted():
-    made = build(FAMILIES["table"], {"layout": "2*drawer | drawer", "open_distance": 0.15})
+    made = build("table", {"layout": "2*drawer | drawer", "open_distance": 0.15})
     manager, lifted = manager_of(made), np.eye(4)
     lifted[2, 3] = 0.005
     for joint in made.joints:
@@ -103,18 +102,18 @@ def test_a_drawer_that_is_out_cannot_be_lifted():
 
 @pytest.mark.parametrize("name", FAMILIES)
 def test_a_seed_gives_the_same_object_and_another_seed_what_is_given_and_draws_the_rest(name):
-    first, again = (build(FAMILIES[name], {}, seed=3) for _ in range(2))
+    first, again = (build(name, seed=3) for _ in range(2))
     for one, two in zip(first.parts, again.parts, strict=True):
         np.testing.assert_array_equal(one.vertices, two.vertices)
-    parameter = next(p for p in FAMILIES[name].parameters if p.unit == "m" and p.usual)
+    parameter = next(p for p in all_kinds()[name].parameters if p.unit == "m" and p.usual)
     given = {parameter.name: 0.5 * sum(parameter.usual)}
-    other = build(FAMILIES[name], given, seed=4)
+    other = build(name, given, seed=4)
     assert given.items() <= other.parameters.items()
     assert other.parameters | given != first.parameters | given
 
 
 def test_unknown_parameters_and_values_out_of_bounds_are_refused_with_a_hint():
     with pytest.raises(InputError, match="Did you mean drawers"):
-        build(FAMILIES["cabinet"], {"drawer": 3})
+        build("cabinet", {"drawer": 3})
     with pytest.raises(InputError, match="bar, knob"):
-        build(FAMILIES["cabinet"], {"handle": "rope"})
+        build("cabinet", {"handle": "rope"})
