@@ -362,7 +362,7 @@ def parking_bollard(b: ObjectBuilder, height: float) -> None:
     )
     b.part(
         "post",
-        box((-0.05, -0.04, 0.03), (0.05, 0.04, height)),
+        box((-0.05, -0.04, 0.035), (0.05, 0.04, height)),
         box((-0.0501, -0.0401, 0.7 * height), (0.0501, 0.0401, 0.8 * height)),
         material="steel",
         color="yellow",
