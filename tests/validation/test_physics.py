@@ -552,35 +552,3 @@ def test_what_several_powers_of_ten_would_repair_is_not_guessed(good: Path) -> N
     edited(good, "//link[@name='door']/inertial/inertia", ixy="0.9")
     finding = next(item for item in counted(good) if item.link == "door")
     assert "power" not in finding.remedy
-
-
-# ---- groups of a mesh ----------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(("holder", "lost"), [("o", True), ("g", True), ("usemtl", False)])
-def test_groups_of_an_obj_that_mujoco_leaves_out_are_named(holder: str, lost: bool, tmp_path: Path) -> None:
-    text, count = "", 0
-    for name, shift in (("a", 0.0), ("b", 0.5)):
-        mesh = trimesh.creation.box((0.1, 0.1, 0.1))
-        text += "".join(f"v {x + shift} {y} {z}\n" for x, y, z in mesh.vertices) + f"{holder} {name}\n"
-        text += "".join(f"f {' '.join(str(corner + count + 1) for corner in face)}\n" for face in mesh.faces)
-        count += len(mesh.vertices)
-    (tmp_path / "part.obj").write_text(text)
-    geometry = '<geometry><mesh filename="part.obj"/></geometry>'
-    urdf = tmp_path / "model.urdf"
-    urdf.write_text(
-        f'<robot name="r"><link name="a"><visual>{geometry}</visual><collision>{geometry}</collision></link></robot>'
-    )
-    found = checked(urdf)["KV244"].findings
-    assert ["12 of 24 faces" in item.message for item in found] == [True] * lost
-    mujoco = pytest.importorskip("mujoco")
-    model = mujoco.MjModel.from_xml_path(str(urdf))
-    assert int(model.mesh_facenum.sum()) == (12 if lost else 24)
-
-
-def test_a_slide_without_an_end_is_a_note(good: Path) -> None:
-    edited(good, "//joint[@name='drawer_joint']/limit", lower="-999999", upper="999999")
-    (finding,) = checked(good)["KV220"].findings
-    assert finding.severity is Severity.NOTE
-    edited(good, "//joint[@name='drawer_joint']/limit", lower="0", upper="300")
-    assert only(good, "KV220").severity is Severity.ERROR

@@ -1,8 +1,7 @@
-"""KV240 to KV244: collision geometry, and whether it is where the visual geometry is."""
+"""KV240 to KV242: collision geometry, and whether it is where the visual geometry is."""
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,8 +11,6 @@ from kinematify.validation.checks.shared import something_collides, something_mo
 from kinematify.validation.finding import Cause, Severity
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from kinematify.config.validation import PhysicsSettings
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Link
@@ -188,48 +185,3 @@ def inflated_hulls(result: OpenCheck, physics: Physics) -> None:
                 limit=physics.settings.inflation,
                 line=shape.line,
             )
-
-
-_HOLDERS = re.compile(rb"^(?:([og])\b|f\b)", re.MULTILINE)
-"""Lines of an OBJ file that begin an object or a group, and faces."""
-
-
-@check(
-    "KV244",
-    title="MuJoCo reads collision meshes whole",
-    fails="MuJoCo reads only the first group of a collision mesh",
-    severity=Severity.WARNING,
-    cause=Cause.ASSET,
-    needs=(something_collides,),
-)
-def lost_groups(result: OpenCheck, physics: Physics) -> None:
-    """No OBJ file of the collision geometry has faces in several objects (`o`) or groups (`g`).
-
-    Why it matters: MuJoCo takes the first of them for the mesh, so that what meets the others passes through.
-
-    Remedy: Write each group as a file and a <collision> of its own; PyBullet takes each for a convex piece already.
-    """
-    shapes = [(link, shape) for link in physics.model.links for shape in link.collisions if shape.file is not None]
-    found = [(link, shape, shares) for link, shape in shapes if len(shares := _groups(shape.file)) > 1]
-    if found:
-        link, shape, faces = min(found, key=lambda item: item[2][0] / sum(item[2]))
-        result.find(
-            f"The collision mesh {shape.file} of the link {link.name} has {len(faces)} groups, and "
-            f"MuJoCo reads the first one: {faces[0]} of {sum(faces)} faces (such meshes: {len(found)}).",
-            "Write each group as a file and a <collision> of its own, as PyBullet takes them.",
-            link=link.name,
-            line=shape.line,
-        )
-
-
-def _groups(path: Path | None) -> list[int]:
-    """Return how many faces each group of an OBJ file has; nothing of other files."""
-    if path is None or path.suffix.lower() != ".obj":
-        return []
-    faces = [0]
-    for found in _HOLDERS.finditer(path.read_bytes()):
-        if found[1]:
-            faces.append(0)
-        else:
-            faces[-1] += 1
-    return [count for count in faces if count]
