@@ -35,6 +35,8 @@ _RANGE, _PLACE, _ALONG = 0.1, 0.02, 0.985
 """Difference of ranges (of the wider one) and of places (of the model's size), cosine of 10 deg between axes."""
 _WIDER = 1.8
 """Ratio of the widths of two ranges of one shape from which on they differ."""
+_DIGITS = 4
+"""Of the ends of shapes that are one [m]."""
 _PLACED = 1e-3
 """Difference of the poses of one shape in the frame of another [m, entries of a rotation]."""
 
@@ -193,9 +195,13 @@ def _repeated(physics: Physics) -> Iterator[tuple[str, Link | Joint, Link | Join
 
 
 def _shapes(link: Link) -> tuple[object, ...]:
-    """What the shapes of a link are made of; equal for links of one shape."""
-    shapes = link.visuals or link.collisions
-    return tuple((shape.kind, shape.file or shape.size or id(shape), *shape.scale.tolist()) for shape in shapes)
+    """Size and place in their own frames of the shapes of a link; equal for links of one shape."""
+    found = []
+    for shape in filter(lambda shape: len(shape.mesh.vertices), link.visuals or link.collisions):
+        points = (shape.mesh.vertices - shape.T_link_shape[:3, 3]) @ shape.T_link_shape[:3, :3]
+        ends = np.round([points.min(axis=0), points.max(axis=0)], _DIGITS) + 0.0
+        found.append((shape.kind, len(points), ends.tobytes()))
+    return tuple(found)
 
 
 def _beside(links: Mapping[str, Link], first: Joint, second: Joint) -> Iterator[tuple[str, str]]:
