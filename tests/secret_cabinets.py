@@ -9,7 +9,7 @@ from typing import Any
 
 from kinematify.evaluation.benchmark_job import JobResult
 from kinematify.evaluation.result_record import Report
-from kinematify.evaluation.run_benchmark import bench
+from kinematify.evaluation.run_benchmark import run_benchmark
 
 BOX = '<visual><geometry><box size="{size}"/></geometry></visual>'
 
@@ -44,4 +44,4 @@ def write_object(folder: Path, *, with_knob: bool) -> None:
 
 def request(data: Path, work: Path, infer: str, **changes: Any) -> partial[Report[JobResult]]:
     settings = {"jobs": 2, "infer": f"quick_inference:{infer}", "timeout": 60.0, **changes}
-    return partial(bench, data, work=work, **settings)
+    return partial(run_benchmark, data, work=work, **settings)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib
+import inspect
 import re
 import subprocess
 import sys
@@ -77,7 +79,12 @@ def test_public_names_resolve_and_are_all_there_is() -> None:
 
 def test_each_public_name_is_the_object_of_its_home() -> None:
     for name, home in kinematify._HOMES.items():
-        assert getattr(kinematify, name) is getattr(sys.modules[home], name)
+        value = getattr(kinematify, name)
+        if name in kinematify._PACKAGES:
+            assert value is sys.modules[f"kinematify.{name}"]
+            assert inspect.signature(value) == inspect.signature(getattr(importlib.import_module(home), name))
+        else:
+            assert value is getattr(sys.modules[home], name)
 
 
 def test_unknown_names_raise_attribute_error() -> None:

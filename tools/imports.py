@@ -15,7 +15,8 @@ ROOT = Path(__file__).resolve().parent.parent
 ORDER = (
     "errors", "versions", "processes", "configs", "config", "robot", "assembly", "geometry", "render",
     "contact", "joints", "grouping", "topology", "paper", "model", "generate", "pipeline", "simulation", "manipulation",
-    "formats", "validation", "refinement", "vision", "batch", "envs", "view", "evaluation", "cli", "__main__",
+    "formats", "validation", "refinement", "vision", "creation", "batch", "envs", "view", "evaluation", "cli",
+    "__main__",
 )  # fmt: skip
 """Packages and modules of `kinematify`: each imports only from what stands to its left; none imports `benchmarks`."""
 

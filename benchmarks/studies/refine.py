@@ -34,10 +34,10 @@ from kinematify.config.validation import load_settings
 from kinematify.evaluation.benchmark_job import erased_item
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
 from kinematify.evaluation.result_record import grouped, table
-from kinematify.refinement import refine
 from kinematify.refinement.candidates import CandidateJoints, is_same
 from kinematify.refinement.choose import MARGIN, Chooser
 from kinematify.refinement.joint_plan import Plan
+from kinematify.refinement.loop import refine
 from kinematify.refinement.simulate import Simulator
 
 if TYPE_CHECKING:

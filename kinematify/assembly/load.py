@@ -78,7 +78,7 @@ def load_assembly(
     config: AssemblyConfig | None = None,
     up: str = "auto",
     scale: float | None = None,
-    labels: Path | None = None,
+    labels: str | Path | None = None,
     pieces: str = "auto",
     number: int | None = None,
 ) -> Assembly:
@@ -114,7 +114,9 @@ def load_assembly(
     _check_arguments(up, scale)
     if pieces not in PIECES_CHOICES:
         raise InputError(f"The word {pieces!r} for pieces is unknown. Choose one of {', '.join(PIECES_CHOICES)}.")
-    reading = _Reading(up=up, scale=scale, labels=labels, pieces=pieces, config=config)
+    reading = _Reading(
+        up=up, scale=scale, labels=None if labels is None else Path(labels), pieces=pieces, config=config
+    )
     given = _given(path, reading)
     scaled, lengths = in_metres(given.meshes, scale, config)
     given = replace(given, meshes=tuple(scaled))

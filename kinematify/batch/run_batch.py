@@ -66,7 +66,7 @@ class BatchResult:
 
 def batch(
     inputs: Sequence[str],
-    out: str,
+    out: str | Path,
     *,
     steps: Sequence[str] = ("infer", "validate"),
     to: Sequence[str] = ("mjcf",),
@@ -82,7 +82,8 @@ def batch(
     scale: float | None = None,
     pieces: str = "auto",
     vlm: str = "off",
-    config: Config | None = None,
+    config: str | Path | Config = "default",
+    seed: int | None = None,
     settings: ValidationSettings | None = None,
     progress: Progress | None = None,
 ) -> BatchResult:
@@ -105,7 +106,8 @@ def batch(
         scale: The same.
         pieces: The same.
         vlm: As `kinematify.infer` takes it.
-        config: All stages, the default ones if absent.
+        config: All stages: a shipped name, a file or the configuration.
+        seed: Of everything random, instead of the configuration's.
         settings: Of the validation; the shipped ones if absent.
         progress: Called with the object that has ended and the share done.
 
@@ -117,9 +119,14 @@ def batch(
         OutputError: The output cannot be written, holds a run that must not be touched, or is full.
         EnvironmentFault: A store or a cluster cannot be opened.
     """
+    if retry and not resume:
+        raise InputError("--retry belongs to --resume. Give both, or leave it out.")
+    if address and engine != "ray":
+        raise InputError("--address belongs to --engine ray. Leave it out.")
     reading = {"up": up, "scale": scale, "pieces": pieces}
-    conversion = _conversion(steps, to, reading, vlm, (config or load_config(), settings or load_settings()))
-    start, place = time.perf_counter(), absolute(*filesystem(out))
+    values = load_config(config, seed=seed), load_settings(settings or "validation", seed=seed)
+    conversion = _conversion(steps, to, reading, vlm, values)
+    start, place = time.perf_counter(), absolute(*filesystem(str(out)))
     sources = {
         source.place: source
         for source in find_sources(inputs, besides=place)

@@ -8,7 +8,6 @@ from __future__ import annotations
 import importlib
 import sys
 import traceback
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NoReturn
 
 import click
@@ -40,14 +39,6 @@ COMMANDS = {
 """Each is a module of this package that defines `command`, here with what it does."""
 
 
-@dataclass
-class _Session:
-    """Arguments that the error boundary needs."""
-
-    traceback: bool = False
-    """True if the user wants the traceback under the message."""
-
-
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run the command line and end the process with the exit status."""
     sys.exit(run(arguments))
@@ -59,9 +50,9 @@ def run(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: Words after `kinematify`; those of the process if absent.
     """
-    session = _Session()
+    asked: dict[str, bool] = {}  # of the error boundary
     try:
-        status = cli.main(arguments, prog_name="kinematify", standalone_mode=False, obj=session)
+        status = cli.main(arguments, prog_name="kinematify", standalone_mode=False, obj=asked)
     except click.ClickException as error:
         error.show()
         return ExitStatus.UNUSABLE
@@ -69,10 +60,10 @@ def run(arguments: Sequence[str] | None = None) -> int:
         _say("Interrupted. Nothing half-written was left: a result appears at its place only when it is complete.")
         return ExitStatus.INTERRUPTED
     except KinematifyError as error:
-        _say(f"Error: {error}", with_traceback=session.traceback)
+        _say(f"Error: {error}", with_traceback="traceback" in asked)
         return error.exit_status
     except Exception as error:  # the boundary itself: whatever is left is a defect of ours
-        _say(_crash_message(error, session), with_traceback=session.traceback)
+        _say(_crash_message(error, shown="traceback" in asked), with_traceback="traceback" in asked)
         return ExitStatus.FAULT
     return status if isinstance(status, int) else 0
 
@@ -83,9 +74,9 @@ def _say(message: str, *, with_traceback: bool = False) -> None:
     click.echo(message, err=True)
 
 
-def _crash_message(error: Exception, session: _Session) -> str:
+def _crash_message(error: Exception, *, shown: bool) -> str:
     what = f"Error: Kinematify failed unexpectedly with {type(error).__name__}: {error}. This is a defect of ours."
-    if session.traceback:
+    if shown:
         return f"{what} Please report it with the traceback above, the command, and what `kinematify doctor` prints."
     return f"{what} Run the same command with --traceback to see where, and report it with what that prints."
 
@@ -123,7 +114,7 @@ class _LazyGroup(click.Group):
 
 def _ask_for_traceback(ctx: click.Context, _parameter: click.Parameter, value: bool) -> None:
     if value:
-        ctx.find_object(_Session).traceback = True  # type: ignore[union-attr]  # `run` always gives one
+        ctx.find_root().obj["traceback"] = True
 
 
 _TRACEBACK = click.Option(

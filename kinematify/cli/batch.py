@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.asking import vlm_option
-from kinematify.cli.options import examples, listed, pieces_option, scale_option
+from kinematify.cli.options import examples, listed, pieces_option, scale_option, vlm_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
@@ -43,13 +42,19 @@ def _share(_context: click.Context, _parameter: click.Parameter, words: str) -> 
 @click.option("-o", "--out", required=True, metavar="DIR|URL", help="Where the results go.")
 @click.option(
     "--steps",
+    callback=listed,
     default="infer,validate",
     show_default=True,
     metavar="LIST",
     help="Of infer, refine, validate, export; without infer the inputs are URDFs.",
 )
 @click.option(
-    "--to", default="mjcf", show_default=True, metavar="LIST", help="Formats of the step export: mjcf, usd, sdf, glb."
+    "--to",
+    callback=listed,
+    default="mjcf",
+    show_default=True,
+    metavar="LIST",
+    help="Formats of the step export: mjcf, usd, sdf, glb.",
 )
 @click.option(
     "--engine",
@@ -94,7 +99,7 @@ def _share(_context: click.Context, _parameter: click.Parameter, words: str) -> 
 )
 @click.option("--seed", type=int, help="Seed of everything random, instead of the configuration's.")
 @json_option
-def command(**values: Any) -> int:
+def command(*, json_to: str | None, **given: Any) -> int:
     """Convert every INPUT (path, pattern, URL, folder of assets), as `kinematify infer` takes it, into its own model.
 
     OUT gets objects/NAME/ for each, manifest.jsonl with a line for each that has ended (status, verdict, time, memory,
@@ -105,20 +110,10 @@ def command(**values: Any) -> int:
     """
     from kinematify.batch.batch_summary import write_page
     from kinematify.batch.run_batch import batch
-    from kinematify.config import load_config
-    from kinematify.config.validation import load_settings
 
-    if values["retry"] and not values["resume"]:
-        raise click.UsageError("--retry belongs to --resume. Give both, or leave it out.")
-    if values["address"] and values["engine"] != "ray":
-        raise click.UsageError("--address belongs to --engine ray. Leave it out.")
-    seed = {} if (drawn := values.pop("seed")) is None else {"seed": drawn}
-    json_to = values.pop("json_to")
-    values |= {"config": load_config(values["config"], **seed), "settings": load_settings(**seed)}
-    values |= {name: listed(values[name]) for name in ("steps", "to")}
     signal.signal(signal.SIGTERM, lambda *_: signal.raise_signal(signal.SIGINT))  # as schedulers of clusters stop jobs
     with progress_reporter() as progress:
-        result = batch(**values, progress=progress)
+        result = batch(**given, progress=progress)
     page = write_page(result.out)
     if write_answer(_answer(result), json_to):
         click.echo(f"{_described(result)}\n{page}")

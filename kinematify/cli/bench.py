@@ -3,37 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.checkout import benchmark_module, has_benchmarks
-from kinematify.cli.options import examples, listed, words_of
+from kinematify.cli.options import examples, listed
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from kinematify.evaluation.benchmark_job import JobResult
-    from kinematify.evaluation.result_record import Report
-    from kinematify.evaluation.run_benchmark import Variant
-
-
-_HEADINGS = (
-    "config",
-    "objects",
-    "number",
-    "angle [deg]",
-    "line [mm]",
-    "TED",
-    "root",
-    "types [%]",
-    "time [s]",
-    "failed",
-)
+from kinematify.evaluation.checkout import benchmark_module, has_benchmarks
 
 
 class _BenchCommand(click.Command):
@@ -104,6 +83,7 @@ def _list(context: click.Context, _parameter: click.Parameter, asked: bool) -> N
 )
 @click.option(
     "--conditions",
+    callback=listed,
     metavar="LIST",
     default="rest,random-0,random-1,random-2,yaw37",
     show_default=True,
@@ -111,7 +91,6 @@ def _list(context: click.Context, _parameter: click.Parameter, asked: bool) -> N
 )
 @click.option(
     "--objects",
-    "patterns",
     multiple=True,
     metavar="GLOB",
     help="Only objects of such a name, category or kind; may be given more than once.",
@@ -127,28 +106,14 @@ def _list(context: click.Context, _parameter: click.Parameter, asked: bool) -> N
 @click.option("--fresh", is_flag=True, help="Run everything again instead of resuming an earlier run.")
 @click.option(
     "--degrade",
+    callback=listed,
     metavar="LIST",
-    default="none",
-    show_default=True,
+    show_default="none",
     help="Also measure faulty meshes; all, or some of voxels-300, voxels-150, vertex-noise, faces-1000, "
     "faces-300, hulls, holes, flipped, gaps, interpenetration, open, cut-2, cut-3.",
 )
 @json_option
-def command(
-    *,
-    data: str | None,
-    configs: tuple[str, ...],
-    ablation: bool,
-    conditions: str,
-    patterns: tuple[str, ...],
-    out: Path,
-    name: str,
-    baseline: Path | None,
-    jobs: int | None,
-    fresh: bool,
-    degrade: str,
-    json_to: str | None,
-) -> int:
+def command(*, json_to: str | None, **given: Any) -> int:
     """Erase the joints of every URDF below DATA, infer them again and measure the errors.
 
     DATA is a folder with URDF files at any depth, one URDF file, or one of the words pip (robots of the package
@@ -167,89 +132,15 @@ def command(
 
     `kinematify bench STUDY` runs another study; --list names them, and each has its own options.
     """
-    from kinematify.evaluation.benchmark_job import CLEAN
-    from kinematify.evaluation.result_record import as_json, load_report, table, write_report
-    from kinematify.evaluation.run_benchmark import RESULTS, bench
+    from kinematify.evaluation.accuracy import HEADINGS, bench, summary_rows
+    from kinematify.evaluation.result_record import as_json
+    from kinematify.evaluation.run_benchmark import RESULTS
 
-    if degrade != "none" and baseline is not None:
-        raise click.UsageError("--degrade cannot be combined with --baseline. Give one of them.")
-    earlier = load_report(baseline, RESULTS) if baseline is not None else None
-    find = None if baseline is None else benchmark_module("regression", "--baseline").find_regressions
-    detailed = has_benchmarks()
-    faults, by = _faults(degrade)
     with progress_reporter() as progress:
-        report = bench(
-            data,
-            variants=_variants(configs, ablation=ablation),
-            conditions=listed(conditions),
-            inputs=(CLEAN, *faults),
-            degrade=by,
-            objects=patterns,
-            fresh=fresh,
-            jobs=jobs,
-            progress=progress,
-        )
-        if detailed:
-            blocks = benchmark_module("tables", "The report").benchmark_blocks(report, earlier)
-        else:
-            blocks = [table(_HEADINGS, _rows(report))]
-        written = write_report(report, RESULTS, blocks, out, name=name, title=name)
-    regressions = () if find is None else find(report, earlier)
-    if write_answer(as_json(report, RESULTS), json_to):
-        click.echo(f"{_describe(report)}\n\nReport: {', '.join(map(str, written))}")
-    for worse in regressions:
-        click.echo(worse.sentence, err=True)
-    return ExitStatus.FAILURES if regressions else 0
-
-
-def _faults(given: str) -> tuple[tuple[str, ...], str]:
-    """Return what is asked for of `--degrade`, and the function that does it, as ``module:name``."""
-    if given == "none":
-        return (), ""
-    module = benchmark_module("degrade", "--degrade")
-    return words_of(given, module.DEGRADED, "--degrade"), f"{module.__name__}:{module.degraded.__name__}"
-
-
-def _variants(configs: Sequence[str], *, ablation: bool) -> tuple[Variant, ...]:
-    """One variant per configuration; in a checkout `paper` has its ablations too, and `default` where it is asked."""
-    from kinematify.evaluation.run_benchmark import Variant
-
-    several: dict[str, tuple[Variant, ...]] = {}
-    if ablation or has_benchmarks():
-        published = benchmark_module("paper", "--ablation")
-        several = {"paper": published.PAPER_VARIANTS, **({"default": published.DEFAULT_ABLATION} if ablation else {})}
-    own = [Variant(label=Path(config).stem, config=config) for config in configs]
-    return tuple(variant for one in own for variant in several.get(one.label, (one,)))
-
-
-def _describe(report: Report[JobResult]) -> str:
-    """Return the means per configuration and kind of object, the paper's below them."""
-    return format_table(_HEADINGS, _rows(report))
-
-
-def _rows(report: Report[JobResult]) -> list[tuple[str, ...]]:
-    rows = [
-        _summary_row(key, [run for run in report.records if (run.variant, run.kind, run.input) == key])
-        for key in dict.fromkeys((run.variant, run.kind, run.input) for run in report.records)
-    ]
-    if has_benchmarks():
-        published = benchmark_module("paper", "The report")
-        for paper in (published.mean_over_robots(), published.TABLE_I["everyday"]):
-            values = (f"{paper.angle_deg:.2f}", "", f"{paper.ted:.2f}")
-            rows.append(("(the paper)", paper.label, "", *values, "", "", "", ""))
-    return rows
-
-
-def _summary_row(key: tuple[str, str, str], runs: Sequence[JobResult]) -> tuple[str, ...]:
-    from kinematify.evaluation.benchmark_job import CLEAN
-    from kinematify.evaluation.benchmark_summary import summarise
-    from kinematify.evaluation.result_record import number
-
-    summary = summarise(runs)
-    columns = (("angle_deg", 1.0, 2), ("line_m", 1e3, 2), ("ted", 1.0, 2), ("root", 1.0, 2), ("types", 100.0, 1))
-    cells = [
-        number(summary.values.get(metric), digits, scale) for metric, scale, digits in (*columns, ("seconds", 1.0, 1))
-    ]
-    variant, kind, given = key
-    objects = kind if given == CLEAN else f"{kind}, {given}"
-    return (variant, objects, str(summary.objects), *cells, str(summary.failed_runs + summary.unscored_runs))
+        done = bench(**given, progress=progress)
+    if write_answer(as_json(done, RESULTS), json_to):
+        rows = format_table(HEADINGS, summary_rows(done))
+        click.echo(f"{rows}\n\nReport: {', '.join(map(str, done.files))}")
+    for sentence in done.regressions:
+        click.echo(sentence, err=True)
+    return ExitStatus.FAILURES if done.regressions else ExitStatus.FINE

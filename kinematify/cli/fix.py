@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -42,17 +42,7 @@ if TYPE_CHECKING:
 @force_file_option
 @package_dirs_option
 @json_option
-def command(
-    *,
-    model: Path,
-    arguments: dict[str, str],
-    out: Path,
-    everything: bool,
-    kinematics: bool,
-    force: bool,
-    package_dirs: tuple[Path, ...],
-    json_to: str | None,
-) -> int:
+def command(*, json_to: str | None, **given: Any) -> int:
     """Write MODEL as a URDF in which certain findings of `validate` are fixed.
 
     MODEL is a URDF, xacro, MJCF, SDF, USD or a model folder; what the URDF does not hold of it is listed.
@@ -76,16 +66,7 @@ def command(
     from kinematify.robot.description import notes_of
 
     with progress_reporter() as progress:
-        done = fix(
-            model,
-            out,
-            package_dirs=package_dirs,
-            arguments=arguments,
-            overwrite=force,
-            everything=everything,
-            kinematics=kinematics,
-            progress=progress,
-        )
+        done = fix(**given, progress=progress)
     if write_answer(done.as_json(), json_to):
         urdf = Path(done.before.report.model)
         for note in notes_of(urdf):

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import json
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,16 +12,26 @@ from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.options import complete_categories, examples, say, scale_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
-from kinematify.errors import ExitStatus, InputError
+from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from kinematify.cli.progress import Reporter
+    from kinematify.creation.generated_model import GeneratedModel
+    from kinematify.evaluation.metrics import ObjectScore
     from kinematify.generate.delivery import BuildResult
 
 _WIDTH = 100
 """Characters of a line of --list."""
+
+
+def _pairs(_context: click.Context, _parameter: click.Parameter, settings: tuple[str, ...]) -> dict[str, str] | None:
+    """Fields of a request by their keys."""
+    pairs = {}
+    for setting in settings:
+        key, sign, value = setting.partition("=")
+        if not sign or not key:
+            raise click.UsageError(f"The setting {setting!r} is not KEY=VALUE, e.g. --set drawers=3.")
+        pairs[key.strip()] = value.strip()
+    return pairs or None
 
 
 @click.command(
@@ -52,12 +61,12 @@ _WIDTH = 100
     "--set",
     "settings",
     multiple=True,
+    callback=_pairs,
     metavar="KEY=VALUE",
     help="A field of the request: a parameter of the kind, size.width, door.color, door.range; repeatable.",
 )
 @click.option(
     "--request",
-    "request_file",
     type=click.Path(path_type=Path),
     metavar="FILE",
     help="What to build, as a typed request in YAML or JSON; --set goes before it.",
@@ -114,11 +123,18 @@ _WIDTH = 100
 @click.option(
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
 )
-@click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
-@click.option("--no-preview", is_flag=True, help="Write no picture.")
-@click.option("--no-validation", is_flag=True, help="Skip the validation, which takes most of the time.")
+@click.option("--force", "overwrite", is_flag=True, help="Replace OUT if it is a model folder.")
+@click.option("--no-preview", "preview", is_flag=True, flag_value=False, default=True, help="Write no picture.")
+@click.option(
+    "--no-validation",
+    "validation",
+    is_flag=True,
+    flag_value=False,
+    default=True,
+    help="Skip the validation, which takes most of the time.",
+)
 @json_option
-def command(**given: Any) -> int:
+def command(*, words: tuple[str, ...], schema: str | None, listing: bool, json_to: str | None, **given: Any) -> int:
     """Build what a sentence, a request or a blueprint asks for, with its exact joints, and validate it.
 
     A request names a kind, its parameters, sizes, and facts about named parts: count, size, colour, material, side,
@@ -141,166 +157,139 @@ def command(**given: Any) -> int:
     and sends back what does not hold. The job is saved beside OUT (OUT.job): the same command resumes it, and no step
     is paid for twice.
     """
-    words, text, category, out, source = (given[name] for name in ("words", "text", "category", "out", "source"))
+    sentence, text, category, out = (" ".join(words), given["text"], given["category"], given["out"])
     if words and text is not None:
-        raise click.UsageError(f'The sentence is given twice: "{" ".join(words)}" and --text "{text}". Remove one.')
-    given["text"] = text = " ".join(words) or text
-    schema = given["schema"]
-    if schema is not None or given["listing"]:
-        _list(category if schema is None else schema or category, given["json_to"], is_schema=schema is not None)
+        raise click.UsageError(f'The sentence is given twice: "{sentence}" and --text "{text}". Remove one.')
+    given["text"] = sentence or text
+    if schema is not None or listing:
+        _list(category if schema is None else schema or category, json_to, is_schema=schema is not None)
         return 0
-    _check(given)
-    from kinematify.config import load_config
-    from kinematify.processes.lock import writing
-
-    out = _needed(out)
-    config = load_config(given["config"])
-    if source in ("rodin", "command"):
-        from kinematify.cli.provided import model_of_parts
-
-        with writing(out), progress_reporter() as progress:
-            status, answer, said = model_of_parts(given, out, config, progress)
-        return _ended(status, answer, given["json_to"], lambda: say(said))
+    if out is None:
+        raise click.UsageError("Give the folder of the result: -o FOLDER.")
     from kinematify.processes.start import ONE_THREAD, environment_variables
 
     with environment_variables(ONE_THREAD):  # several cost more than they gain, and NumPy reads them as it loads
-        from kinematify.cli.generation import write_generated
-    ready = None if source is not None else _builder(given)
-    by: list[Any] = []
+        from kinematify.creation.generate_model import generate
+    with progress_reporter() as progress:
+        done = generate(**given, progress=progress)
+    if write_answer(_as_answer(done), json_to):
+        say("\n\n".join(block for block in _blocks(done) if block))
+        if done.exit_status == ExitStatus.INTERRUPTED:
+            click.echo("Interrupted. The model is complete, its validation is not.", err=True)
+    return done.exit_status
 
-    def build(progress: Reporter) -> BuildResult:
-        if ready is not None:
-            return ready()
-        from kinematify.cli.provided import model_asked, written_by
 
-        model = model_asked(given, config)
-        by[:] = [model, written_by(model, given, out, config, progress)]
-        return cast("BuildResult", by[1].made)
+def _as_answer(done: GeneratedModel) -> dict[str, Any]:
+    """Everything as JSON values."""
+    from kinematify.cli.inferred import validation_answer
+    from kinematify.creation.generated_model import job_folder
 
-    with writing(out), progress_reporter() as progress:
-        found = write_generated(
-            build, out, preview=not given["no_preview"], validated=not given["no_validation"],
-            inferred=given["inferred"], config=config, strict=given["strict"], overwrite=given["force"],
-            progress=progress,
-        )  # fmt: skip
-    answer = found.as_json()
-    if by:
-        written = by[1]
+    made, written, parts = done.made, done.written, done.parts
+    answer: dict[str, Any] = {"schema": 1, "out": str(done.out), "validation": validation_answer(done.report)}
+    if parts is not None:
+        return {**answer, "job": str(job_folder(done.out)), "provenance": parts.provenance.as_json()}
+    assert made is not None
+    score = _score(done)
+    answer |= {
+        "category": made.blueprint.family,
+        "parameters": dict(made.blueprint.parameters),
+        "request": made.facts.get("request"),
+        "notes": list(made.notes),
+        "differences": list(made.differences),
+        "unread": list(made.unread),
+        "accuracy": None if score is None else _accuracy(score),
+    }
+    if written is not None:
         answer["language_model"] = {
             "rounds": written.rounds, "tokens": written.tokens, "answer": str(written.path)
         }  # fmt: skip
-
-    def print_text() -> None:
-        if by:
-            from kinematify.cli.provided import say_written
-
-            say_written(*by)
-        found.print()
-
-    return _ended(found.exit_status, answer, given["json_to"], print_text)
+    return answer
 
 
-def _ended(status: int, answer: dict[str, Any], json_to: str | None, print_text: Callable[[], None]) -> int:
-    """Write the answer, print the words unless a machine reads stdout, and return the exit status."""
-    if write_answer(answer, json_to):
-        print_text()
-        if status == ExitStatus.INTERRUPTED:
-            click.echo("Interrupted. The model is complete, its validation is not.", err=True)
-    return status
+def _blocks(done: GeneratedModel) -> list[str]:
+    """What is said, how well the joints were inferred last."""
+    from kinematify.cli.inferred import describe, describe_files, describe_joints, describe_validation
+    from kinematify.creation.generated_model import job_folder, not_as_asked
+    from kinematify.generate.blueprint_files import INFERRED_FOLDER
+
+    made, written, judged = done.made, done.written, describe_validation(done.report, done.out)
+    if done.parts is not None and done.inference is not None:
+        maker = done.parts.provenance
+        words = (
+            f"Parts of {maker.provider} ({maker.model}), cost: {maker.cost or 'unknown'}. Terms: {maker.licence}\n"
+            f"{job_folder(done.out)}: everything that the generator made; the same request is not sent again"
+        )
+        return [words, describe(done.inference, done.out), judged]
+    assert made is not None
+    score = _score(done)
+    by = ""
+    if written is not None:
+        how = "Drawn" if made.request is None else "Filled in"
+        model = made.blueprint.parameters["model"]
+        by = f"{how} by {model} in {written.rounds} rounds, {written.tokens} tokens: {written.path}"
+    inferred = f"Inferred from the parts alone: {done.out / INFERRED_FOLDER / 'model.urdf'}\n"
+    return [
+        by,
+        _read(made),
+        f"Base: {done.model.root}\n\n{describe_joints(done.model.joints)}",
+        "\n".join(describe_files(done.out)),
+        judged,
+        "" if score is None else inferred + _describe_score(score),
+        not_as_asked(made),
+    ]
 
 
-def _builder(given: dict[str, Any]) -> Callable[[], BuildResult]:
-    """Read what the options ask for, and return what builds it.
+def _score(done: GeneratedModel) -> ObjectScore | None:
+    """Comparison of the inferred joints with those that the object was built with."""
+    from kinematify.evaluation.metrics import score_blueprint
 
-    Raises:
-        InputError: It cannot be read; building raises it where a parameter is out of its bounds.
-    """
-    text, file = given["text"], given["request_file"]
-    if given["blueprint"] is not None:
-        from kinematify.generate.delivery import BuildResult
-        from kinematify.generate.procedural.blueprint_file import read_blueprint
-
-        return partial(BuildResult, blueprint=read_blueprint(given["blueprint"]))
-    if text is not None:
-        from kinematify.generate.reader import read_sentence
-
-        return partial(read_sentence(text, nearest=given["nearest"]).made, seed=given["seed"])
-    from kinematify.generate.delivery import deliver
-    from kinematify.generate.request import read_request, request_of, with_settings
-
-    values = {"kind": given["category"]} if file is None else read_request(file)
-    source = "request" if file is None else f"request {file}"
-    request = request_of(with_settings(values, _pairs(given["settings"])), source=source)
-
-    def build() -> BuildResult:
-        made = deliver(request, seed=given["seed"])
-        if made.missing:  # a sentence may name what is not there; a request says exactly what is
-            raise InputError(f"{made.differences[0][0].upper()}{made.differences[0][1:]}.")
-        return made
-
-    return build
+    return None if done.inference is None or done.made is None else score_blueprint(done.made.blueprint, done.inference)
 
 
-_SOURCES = ("rodin", "command", "llm")
-_TAKEN_BY: dict[str, tuple[str, tuple[str | None, ...]]] = {
-    "--category": ("category", (None,)),
-    "--set": ("settings", (None,)),
-    "--request": ("request_file", (None,)),
-    "--blueprint": ("blueprint", (None,)),
-    "--nearest": ("nearest", (None,)),
-    "--infer": ("inferred", (None, "llm")),
-    "--seed": ("seed", (None, "rodin", "command")),
-    "--image": ("images", _SOURCES),
-    "--command": ("program", ("command",)),
-    "--time-limit": ("time_limit", _SOURCES),
-    "--budget": ("budget", ("rodin", "llm")),
-    "--rounds": ("rounds", ("llm",)),
-    "--record": ("record", _SOURCES),
-    "--replay": ("replay", _SOURCES),
-    "--resend": ("resend", _SOURCES),
-}
-"""Options -> names of their values, and the sources that take them; None is the library."""
+def _read(made: BuildResult) -> str:
+    """The request as it was read, for who wants to see whether that is what was meant."""
+    if made.request is None:
+        return ""
+    asked = made.request
+    facts = [f"{name} {value}" for name, value in asked.parameters.items()]
+    facts += [f"{name} {value:.3g} m" for name, value in asked.size.items()]
+    for noun, part in asked.parts.items():
+        said = part.model_dump(exclude_defaults=True)
+        facts.append(f"{noun} ({', '.join(f'{name} {_shown(value)}' for name, value in said.items()) or 'any'})")
+    copies = f"{asked.copies} of " if asked.copies > 1 else ""
+    return "\n".join([*made.notes, f"Request: {copies}{asked.kind}{': ' if facts else ''}{'; '.join(facts)}."])
 
 
-def _check(given: dict[str, Any]) -> None:
-    """Refuse options that do not go together."""
-    text, settings, source = given["text"], given["settings"], given["source"]
-    for option, (name, takers) in _TAKEN_BY.items():
-        if given[name] not in (None, (), False) and source not in takers:
-            wanted = f"--source {' or '.join(filter(None, takers))}" if takers != (None,) else "no --source"
-            if source is None:
-                raise click.UsageError(f"{option} needs {wanted}. Give it as well.")
-            raise click.UsageError(f"{option} cannot be combined with --source {source}; it needs {wanted}.")
-    if given["record"] is not None and given["replay"] is not None:
-        raise click.UsageError("--record and --replay exclude each other.")
-    if source is not None:
-        return
-    asked = {"a sentence": "text", "--category": "category", "--request": "request_file", "--blueprint": "blueprint"}
-    if sum(given[name] is not None for name in asked.values()) != 1:
-        raise click.UsageError(f"Give one of {', '.join(asked)} (or --list for all).")
-    if given["blueprint"] is not None and (settings or given["seed"] is not None):
-        raise click.UsageError("--set and --seed have no effect on a --blueprint. Remove them.")
-    if settings and text is not None:
-        raise click.UsageError("--set belongs to --category and --request. Put the value into the sentence.")
-    for name in ("nearest", "strict"):
-        if given[name] and text is None:
-            raise click.UsageError(f"--{name} belongs to a sentence. Remove it.")
+def _shown(value: Any) -> str:
+    return (
+        ", ".join(map(_shown, value))
+        if isinstance(value, tuple)
+        else f"{value:.3g}"
+        if isinstance(value, float)
+        else str(value)
+    )
 
 
-def _needed(out: Path | None) -> Path:
-    if out is None:
-        raise click.UsageError("Give the folder of the result: -o FOLDER.")
-    return out
+def _accuracy(score: ObjectScore) -> dict[str, Any]:
+    angles = [joint.angle_deg for joint in score.joints]
+    return {
+        "joints": len(angles),
+        "types_right": sum(joint.type_right for joint in score.joints),
+        "tree_edit_distance": score.ted.value,
+        "mean_axis_angle_deg": sum(angles) / len(angles) if angles else None,
+        "largest_axis_angle_deg": max(angles, default=None),
+    }
 
 
-def _pairs(settings: Sequence[str]) -> dict[str, str]:
-    pairs = {}
-    for setting in settings:
-        key, sign, value = setting.partition("=")
-        if not sign or not key:
-            raise click.UsageError(f"The setting {setting!r} is not KEY=VALUE, e.g. --set drawers=3.")
-        pairs[key.strip()] = value.strip()
-    return pairs
+def _describe_score(score: ObjectScore) -> str:
+    facts = _accuracy(score)
+    if not facts["joints"]:
+        return "Against the known joints: there are none."
+    return (
+        f"Against the known joints: {facts['types_right']} of {facts['joints']} types right, axes off by "
+        f"{facts['mean_axis_angle_deg']:.2f} deg on average and {facts['largest_axis_angle_deg']:.2f} deg at most, "
+        f"tree {'exact' if facts['tree_edit_distance'] == 0 else 'off by ' + format(facts['tree_edit_distance'], 'g')}."
+    )
 
 
 def _categories() -> str:

@@ -9,32 +9,24 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.asking import vlm_option
 from kinematify.cli.inferred import (
     describe,
-    describe_lengths,
     describe_validation,
     estimates,
-    load_validation,
     renamed,
-    validated,
     validation_answer,
     validation_status,
 )
-from kinematify.cli.options import examples, pieces_option, scale_option, up_option
+from kinematify.cli.options import examples, pieces_option, scale_option, up_option, vlm_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
-    from kinematify.config import Config
     from kinematify.pipeline.inference import Inference
     from kinematify.robot.robot import Joint
 
-_INFERRED, _WRITTEN = 0.5, 0.8
-"""Shares of the whole time after the inference and after the files and the picture."""
 
-
-def _masses(_context: click.Context, _parameter: click.Parameter, given: tuple[str, ...]) -> dict[str, float]:
+def _masses(_context: click.Context, _parameter: click.Parameter, given: tuple[str, ...]) -> dict[str, float] | None:
     """Masses [kg] by part; no number is a mass that none has."""
     masses = {}
     for text in given:
@@ -43,7 +35,7 @@ def _masses(_context: click.Context, _parameter: click.Parameter, given: tuple[s
             masses[part] = float(number)
         except ValueError:
             masses[part or text] = math.nan
-    return masses
+    return masses or None
 
 
 @click.command(
@@ -113,33 +105,18 @@ def _masses(_context: click.Context, _parameter: click.Parameter, given: tuple[s
     type=click.Path(path_type=Path),
     help="Which pieces are one moving part, as a person or a chat answered `kinematify question`.",
 )
-@click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
-@click.option("--no-preview", is_flag=True, help="Write no picture.")
-@click.option("--no-validation", is_flag=True, help="Do not check the model or load it into engines.")
+@click.option("--force", "overwrite", is_flag=True, help="Replace OUT if it is a model folder.")
+@click.option("--no-preview", "preview", is_flag=True, flag_value=False, default=True, help="Write no picture.")
+@click.option(
+    "--no-validation",
+    "validation",
+    is_flag=True,
+    flag_value=False,
+    default=True,
+    help="Do not check the model or load it into engines.",
+)
 @json_option
-def command(
-    *,
-    assembly: Path,
-    out: Path,
-    up: str,
-    scale: float | None,
-    labels: Path | None,
-    pieces: str,
-    groups: Path | None,
-    number: int | None,
-    density: float | None,
-    masses: dict[str, float],
-    base: str | None,
-    hints: tuple[str, ...],
-    config: str,
-    seed: int | None,
-    vlm: str,
-    answer: Path | None,
-    force: bool,
-    no_preview: bool,
-    no_validation: bool,
-    json_to: str | None,
-) -> int:
+def command(*, out: Path, json_to: str | None, **given: Any) -> int:
     """Infer the joints of ASSEMBLY and write OUT, a folder with a URDF and its meshes.
 
     ASSEMBLY is the object in one pose, as rigid parts: a folder with a mesh file per part (OBJ, STL, PLY, GLB, OFF,
@@ -155,57 +132,26 @@ def command(
     model has an error, with 3 if an engine failed, or with --vlm if the vision model gave no answer. OUT is written in
     all cases.
     """
-    from kinematify.processes.lock import writing
     from kinematify.processes.start import ONE_THREAD, environment_variables
 
     with environment_variables(ONE_THREAD):
-        from kinematify.assembly.load import load_assembly
-        from kinematify.config import load_config
-        from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
-        from kinematify.pipeline.record import write_inference_files
         from kinematify.vision.infer_object import infer
+    with progress_reporter() as progress:
 
-    check_output(out, overwrite=force)
-    settings = load_config(config) if seed is None else load_config(config, seed=seed)
-    with writing(out), progress_reporter() as progress:
-        if not no_validation:
-            load_validation()
-        use_one_thread(settings)
-        progress("reading the parts", 0.0)
-        given = load_assembly(
-            assembly, config=settings.assembly, up=up, scale=scale, labels=labels, pieces=pieces, number=number
-        )
-        click.echo(describe_lengths(given), err=True)
-        inference = infer(
-            given, groups=groups, answer=answer, vlm=vlm, density=density, masses=masses, base=base, hints=hints,
-            config=settings, progress=lambda stage, done: progress(stage, _INFERRED * done),
-        )  # fmt: skip
-        write_model_folder(
-            out,
-            lambda folder: write_inference_files(
-                inference, folder, preview=not no_preview,
-                progress=lambda stage, done: progress(stage, _INFERRED + (_WRITTEN - _INFERRED) * done),
-            ),
-            overwrite=force,
-        )  # fmt: skip
-        report = None
-        if not no_validation:
-            progress("checking the geometry and loading the file into engines", _WRITTEN)
-            report = validated(out / MODEL_FILE)
-        progress("done", 1.0)
+        def told(stage: str, done: float) -> None:
+            if stage.startswith("Lengths: "):  # which stays to be read
+                click.echo(stage, err=True)
+            else:
+                progress(stage, done)
+
+        inference = infer(out=out, **given, progress=told)
     asked = inference.vision or {}
-    if write_answer({**_as_answer(inference, out), **validation_answer(report)}, json_to):
-        blocks = (asked.get("described", ""), describe(inference, out), describe_validation(report, out))
+    if write_answer({**_as_answer(inference, out), **validation_answer(inference.report)}, json_to):
+        blocks = (
+            asked.get("described", ""), describe(inference, out), describe_validation(inference.report, out)
+        )  # fmt: skip
         click.echo("\n\n".join(block for block in blocks if block))
-    return int(ExitStatus.FAULT) if asked.get("fault") else validation_status(report)
-
-
-def use_one_thread(config: Config) -> None:
-    """Keep torch to one thread: DW-CAVL's tensors are small, so that more threads cost time and change last digits."""
-    if config.joints.method == "cavl":
-        import torch
-
-        torch.set_num_threads(1)
+    return int(ExitStatus.FAULT) if asked.get("fault") else validation_status(inference.report)
 
 
 def _as_answer(inference: Inference, out: Path) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
 from kinematify.model.output import MODEL_FILE
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.lengths import length_text, range_text
+from kinematify.robot.lengths import range_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -46,12 +46,6 @@ def describe(inference: Inference, out: Path) -> str:
     return "\n".join(lines)
 
 
-def describe_lengths(assembly: Assembly) -> str:
-    """Return the size of an object and how its lengths were read."""
-    size = " x ".join(length_text(float(side)) for side in assembly.bounds[1] - assembly.bounds[0])
-    return f"Lengths: {size} (x, y, z), read as {assembly.lengths}"
-
-
 def renamed(assembly: Assembly) -> dict[str, str]:
     """Parts that got another name than in the input, which maps to that."""
     return {new: old for new, old in assembly.original_names.items() if new != old and new in assembly.names}
@@ -67,36 +61,6 @@ def describe_joints(joints: Sequence[Joint], inferred: Mapping[str, JointEstimat
     ended = ["; ".join(dict.fromkeys(filter(None, item.stops))) for item in found]
     sure = [(*rows[k], f"{item.confidence:.0%}", ended[k]) for k, item in enumerate(found)]
     return format_table((*headings, "confidence", "ended by"), sure)
-
-
-_CHECKS = ("KV1", "KV2", "KV30", "KV31", "KV32", "KV33", "KV80")
-"""Of the file, masses and inertias, exact geometry, and the file as loaded: all that is judged without a second run."""
-
-
-def validated(urdf: Path) -> ValidationReport | KinematifyError:
-    """Return what is wrong with a written model, or why that is not known."""
-    from kinematify.errors import KinematifyError
-    from kinematify.validation.run import validate
-
-    try:
-        return validate(urdf, selected=_checks())
-    except KinematifyError as error:
-        return error
-
-
-def load_validation() -> None:
-    """Start to load what `validated` needs, on another core than the inference."""
-    from kinematify.simulation.engines import DEFAULT_ENGINES
-    from kinematify.validation.isolation import start_server
-    from kinematify.validation.run.needs import needed, stages_of
-
-    start_server(needed(stages_of(DEFAULT_ENGINES), _checks()))
-
-
-def _checks() -> set[str]:
-    from kinematify.validation.checks import checks_of
-
-    return {check.id for check in checks_of(*_CHECKS)}
 
 
 def describe_validation(report: ValidationReport | KinematifyError | None, out: Path) -> str:
@@ -126,7 +90,7 @@ def validation_status(report: ValidationReport | KinematifyError | None) -> int:
     """Return 1 for a model with an error, 3 where an engine failed or time ran out, 130 after an interrupt, else 0."""
     if report is None:
         return 0
-    interrupted = not isinstance(report, Exception) and report.environment.get("interrupted")
+    interrupted = not isinstance(report, Exception) and report.interrupted
     return int(ExitStatus.INTERRUPTED if interrupted else report.exit_status)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -41,7 +41,6 @@ _SHOWN = 20
 @click.argument("data", required=False)
 @click.option(
     "--objects",
-    "patterns",
     multiple=True,
     metavar="GLOB",
     help="Only objects of such a name, category or kind; may be given more than once.",
@@ -53,18 +52,7 @@ _SHOWN = 20
     "--jobs", type=click.IntRange(min=1), help="Processes at a time; as many as there are cores if not given."
 )
 @json_option
-def command(
-    *,
-    config: str,
-    out: Path | None,
-    data: str | None,
-    patterns: tuple[str, ...],
-    baseline: str | None,
-    accepted: str | None,
-    smoke: bool,
-    jobs: int | None,
-    json_to: str | None,
-) -> int:
+def command(*, accepted: str | None, json_to: str | None, **given: Any) -> int:
     """Infer every object of the benchmark, validate the models, and report what changed since earlier nights.
 
     DATA is a folder with URDF files at any depth, or a word that `kinematify bench` takes; without it the configuration
@@ -75,16 +63,12 @@ def command(
     """
     from kinematify.evaluation.nightly.run_night import accept, nightly
 
-    folder = out or Path("out/nightly-smoke" if smoke else "results/nightly")
     if accepted is not None:
-        accept(folder, accepted)
+        folder = accept(given["out"], accepted, smoke=given["smoke"])
         click.echo(f"{accepted} is the baseline of {folder} from now on.")
         return 0
     with progress_reporter() as progress:
-        result = nightly(
-            data, folder, config=config, objects=patterns, baseline=baseline, smoke=smoke,
-            jobs=jobs, progress=progress,
-        )  # fmt: skip
+        result = nightly(**given, progress=progress)
     from kinematify.evaluation.nightly.comparison import CHANGES
 
     night, changes = result.night, CHANGES.dump_python(result.night.changes, mode="json")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    pass
 
 
 def _package_dirs(context: click.Context, _parameter: click.Parameter, given: tuple[Path, ...]) -> tuple[Path, ...]:
@@ -41,18 +41,18 @@ package_dirs_option = click.option(
 )
 
 
-def _arguments(_context: click.Context, _parameter: click.Parameter, given: tuple[str, ...]) -> dict[str, str]:
+def _arguments(_context: click.Context, _parameter: click.Parameter, given: tuple[str, ...]) -> dict[str, str] | None:
     """Arguments of a xacro, by name."""
     wrong = next((word for word in given if not word.partition(":=")[0] or ":=" not in word), None)
     if wrong is not None:
         raise click.BadParameter(f"{wrong!r} is no NAME:=VALUE. Give one model, and arguments if it is a xacro.")
-    return {name: value for name, _, value in (word.partition(":=") for word in given)}
+    return {name: value for name, _, value in (word.partition(":=") for word in given)} or None
 
 
 arguments_argument = click.argument("arguments", nargs=-1, metavar="[NAME:=VALUE]...", callback=_arguments)
 """What follows a xacro."""
 
-force_file_option = click.option("--force", is_flag=True, help="Replace the file of -o if it exists.")
+force_file_option = click.option("--force", "overwrite", is_flag=True, help="Replace the file of -o if it exists.")
 
 sampling_seed_option = click.option(
     "--seed", type=int, help="Seed of the sampled configurations, instead of the configuration's."
@@ -92,8 +92,17 @@ pieces_option = click.option(
     "node or group; group: these are grouped too; cut: after cuts where surfaces fold inwards; keep: all pieces.",
 )
 
+vlm_option = click.option(
+    "--vlm",
+    default="off",
+    show_default=True,
+    metavar="off|auto|URL",
+    help="Ask a vision-language model which pieces move together, and how: a chat interface, or that of "
+    "KINEMATIFY_VLM_URL. One question an object, none where parts are given and no joint is doubtful.",
+)
 
-def listed(words: str | None) -> tuple[str, ...]:
+
+def listed(_context: click.Context, _parameter: click.Parameter, words: str | None) -> tuple[str, ...]:
     """The words of an option that takes several, separated by commas; none if it was not given."""
     return tuple(word.strip() for word in (words or "").split(",") if word.strip())
 
@@ -101,21 +110,6 @@ def listed(words: str | None) -> tuple[str, ...]:
 def examples(*lines: str) -> str:
     """Return an epilog that shows `lines` as they are, one below the other."""
     return "\n".join(("\b", "Examples:", *(f"  {line}" for line in lines)))  # \b keeps click from re-flowing
-
-
-def words_of(given: str, known: Sequence[str], option: str) -> tuple[str, ...]:
-    """The words of a list, in the order in which they are known; all of them for ``all``.
-
-    Raises:
-        click.UsageError: A word is unknown.
-    """
-    if given == "all":
-        return tuple(known)
-    words = [word.strip() for word in given.split(",")]
-    unknown = [word for word in words if word not in known]
-    if unknown:
-        raise click.UsageError(f"{option} names {unknown[0]!r}. Known are all, {', '.join(known)}.")
-    return tuple(word for word in known if word in words)
 
 
 def complete_categories(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[str]:

@@ -30,7 +30,7 @@ def command(*, mesh: Path, out: Path, up: str, scale: float | None, pieces: str)
     text around the JSON does no harm. `kinematify infer MESH --answer OUT/answer.json` with the same options makes the
     model; `infer MESH --vlm URL` asks a model by itself.
     """
-    from kinematify.cli.asking import asked_question, infer_command
+    from kinematify.vision.piece_question import asked_question, infer_command
 
     question = asked_question(mesh, up, scale, pieces)
     try:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,28 +9,25 @@ import click
 
 from kinematify.cli.options import examples, listed, package_dirs_option, sampling_seed_option, say
 from kinematify.cli.progress import progress_reporter
-from kinematify.cli.report_files import report_paths, write_reports
-from kinematify.errors import ConfigError, ExitStatus, InputError, OutputError
+from kinematify.errors import DescriptionError, ExitStatus
 from kinematify.validation.finding import Severity
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.config.validation import ValidationSettings
-    from kinematify.manipulation.plan_request import TaskRequest
     from kinematify.validation.finding import Suppression
-    from kinematify.validation.formats.report_picture import Drawing
     from kinematify.validation.run.outcome import Outcome
 
 
-_QUICK = "KV1*,KV2*,KV30*,KV31*,KV32*,KV801,KV802,KV803,KV804"
-"""Checks of `--quick`."""
-_COARSE = {"points": 450}
-"""Settings of its sweeps: half of the usual points."""
-_PICTURES = 12
-"""With more models an HTML report shows none: it would take long to make and to load."""
-_PICTURE_SECONDS = 15.0
-"""A picture that takes longer is omitted [s]; known robots take 1 to 3."""
+_REPORTS = ("json", "junit", "sarif", "html", "suggest_accept")
+_OF_A_TASK = ("robot", "tool", "gripper", "grasp", "base", "scale", "films")
+
+
+def _engines(context: click.Context, parameter: click.Parameter, words: str | None) -> tuple[str, ...] | None:
+    """Engines by name; none for ``none``."""
+    if words is None:
+        return None
+    return tuple(word.lower() for word in listed(context, parameter, words) if word.lower() != "none")
 
 
 @click.command(
@@ -53,8 +47,10 @@ _PICTURE_SECONDS = 15.0
 )
 @click.argument("models", nargs=-1, required=True, metavar="MODEL... [NAME:=VALUE]...")
 @package_dirs_option
-@click.option("--checks", metavar="LIST", help="Only these: ids or patterns such as KV3*, separated by commas.")
-@click.option("--skip", metavar="LIST", help="All but these.")
+@click.option(
+    "--checks", callback=listed, metavar="LIST", help="Only these: ids or patterns such as KV3*, separated by commas."
+)
+@click.option("--skip", callback=listed, metavar="LIST", help="All but these.")
 @click.option(
     "--quick",
     is_flag=True,
@@ -74,6 +70,7 @@ _PICTURE_SECONDS = 15.0
 )
 @click.option(
     "--engines",
+    callback=_engines,
     metavar="LIST",
     show_default="all that are installed",
     help="Engines to run, separated by commas; none: only file and geometry.",
@@ -109,7 +106,12 @@ _PICTURE_SECONDS = 15.0
     "--robot", type=click.Path(path_type=Path), metavar="FILE", help="URDF of the robot, if not the built-in arm."
 )
 @click.option("--tool", metavar="LINK", help="Link of the robot that carries the fingers.")
-@click.option("--gripper", metavar="JOINTS", help="Joints of its fingers, separated by commas; found if not given.")
+@click.option(
+    "--gripper",
+    callback=listed,
+    metavar="JOINTS",
+    help="Joints of its fingers, separated by commas; found if not given.",
+)
 @click.option(
     "--grasp", type=float, nargs=3, metavar="X Y Z", help="Where to hold the object: root frame, units of the file."
 )
@@ -130,7 +132,7 @@ _PICTURE_SECONDS = 15.0
 @click.option(
     "--all", "everything", is_flag=True, help="Also show notes, all places and numbers, joints, and skipped checks."
 )
-@click.option("--json", "json_to", metavar="FILE", help="Report as JSON; - is stdout, and then nothing else is.")
+@click.option("--json", metavar="FILE", help="Report as JSON; - is stdout, and then nothing else is.")
 @click.option("--junit", type=click.Path(path_type=Path), metavar="FILE", help="Report as JUnit XML.")
 @click.option("--sarif", type=click.Path(path_type=Path), metavar="FILE", help="Report as SARIF 2.1.0.")
 @click.option(
@@ -155,25 +157,26 @@ def command(**given: Any) -> int:
 
     load_imports()  # before anything loads NumPy
     from kinematify.cli.verdict import describe_briefly
-    from kinematify.robot.description import form_of
+    from kinematify.validation.formats.report_files import report_paths, write_reports
     from kinematify.validation.models import find_models
-    from kinematify.validation.run import validate
+    from kinematify.validation.run.model_validation import validate
     from kinematify.validation.run.outcome import Unusable
     from kinematify.validation.run.suppression_file import load_suppressions
 
-    files = report_paths(given)
-    folders, quick = _existing(given["package_dirs"]), given["quick"]
-    task = _task(given, files, folders)
-    words = given["models"]
+    words, everything, fail_on = given.pop("models"), given.pop("everything"), Severity(given.pop("fail_on"))
+    wanted = {name: given.pop(name) for name in _REPORTS}
+    files, quiet = report_paths(**wanted), wanted["json"] == "-"
+    if given["task"] is None:
+        for name in _OF_A_TASK:
+            if given[name]:
+                raise click.UsageError(f"--{name} belongs to a task. Give --task pull with it.")
+    elif given["films"] is None:
+        given["films"] = next((path.absolute().parent for path in files.values()), None)
     models = find_models([word for word in words if ":=" not in word])
-    arguments = dict(word.split(":=", 1) for word in words if ":=" in word)
-    selected = _selected(given["checks"] or (_QUICK if quick else None), given["skip"], contract=given["contract"])
-    engines = ("mujoco",) if quick else _engines(given["engines"])
+    given["arguments"] = dict(word.split(":=", 1) for word in words if ":=" in word)
     rules = load_suppressions(given["suppress"]) if given["suppress"] is not None else ()
-    settings = _settings(given["config"], budget=given["budget"], seed=given["seed"], quick=quick)
-    several, quiet = len(models) > 1, given["json_to"] == "-"
+    several = len(models) > 1
     outcomes: list[Outcome] = []
-    drawings: dict[str, Drawing] = {}
     interrupted = False
     try:
         with progress_reporter() as progress:
@@ -184,57 +187,23 @@ def command(**given: Any) -> int:
                     progress(prefix + stage, (done + share) / len(models))
 
                 try:
-                    outcomes.append(
-                        validate(
-                            model,
-                            package_dirs=folders,
-                            arguments=arguments if form_of(model) == "xacro" else None,
-                            settings=settings,
-                            selected=selected,
-                            engines=engines,
-                            named=not quick,
-                            suppressions=rules,
-                            task=_task_of(task, model, several=several),
-                            workers=given["jobs"] or os.cpu_count() or 1,
-                            progress=report,
-                        )
-                    )
-                except InputError as error:
+                    outcomes.append(validate(model, **given, progress=report))
+                except DescriptionError as error:
                     outcomes.append(Unusable(model=str(model), message=str(error)))
                 if several and not quiet:
                     say(f"{describe_briefly(outcomes[-1])}\n")
-                interrupted = _is_interrupted(outcomes[-1])
+                interrupted = outcomes[-1].interrupted
                 if interrupted:
                     break
-                if given["html"] is not None and len(models) <= _PICTURES and _can_be_drawn(outcomes[-1]):
-                    from kinematify.validation.formats.report_picture import drawing_of
-
-                    report("picture", 0.97)
-                    drawings[outcomes[-1].model] = drawing_of(model, folders, settings, seconds=_PICTURE_SECONDS)
     except KeyboardInterrupt:
         interrupted = True
-    write_reports(files, outcomes, drawings, rules, to_stdout=quiet)
-    _print(outcomes, len(models), rules, quiet=quiet, interrupted=interrupted, everything=given["everything"])
+    write_reports(outcomes, **wanted, rules=rules, package_dirs=given["package_dirs"])
+    _print(outcomes, len(models), rules, quiet=quiet, interrupted=interrupted, everything=everything)
     if interrupted:
         return ExitStatus.INTERRUPTED
-    found = {item.status_at(Severity(given["fail_on"])) for item in outcomes}
+    found = {item.status_at(fail_on) for item in outcomes}
     order = (ExitStatus.UNUSABLE, ExitStatus.FAILURES, ExitStatus.FAULT)
     return next((status for status in order if status in found), ExitStatus.FINE)
-
-
-def _is_interrupted(outcome: Outcome) -> bool:
-    from kinematify.validation.run.outcome import Unusable
-
-    return not isinstance(outcome, Unusable) and bool(outcome.environment.get("interrupted"))
-
-
-def _can_be_drawn(outcome: Outcome) -> bool:
-    """True if the file and its meshes can be read."""
-    from kinematify.validation.run.outcome import Unusable
-
-    return not isinstance(outcome, Unusable) and not any(
-        item.check.startswith("KV1") and item.severity is Severity.ERROR for item in outcome.findings
-    )
 
 
 def _print(
@@ -265,100 +234,3 @@ def _print(
         click.echo(f"Interrupted. What is known by now was reported ({done}, the last one in part).", err=True)
     elif unused := describe_unused(unused_suppressions(rules, reports)):
         click.echo(unused, err=True)
-
-
-def _task(given: dict[str, Any], files: dict[str, Path], package_dirs: tuple[Path, ...]) -> TaskRequest | None:
-    """Return what the options ask of a robot; it is read once, so that what is wrong with it is said at once.
-
-    Raises:
-        InputError: There is no such robot, tool or gripper.
-        OutputError: Films cannot be written where they should go.
-    """
-    if given["task"] is None:
-        for name in ("robot", "tool", "gripper", "grasp", "base", "scale", "films"):
-            if given[name]:
-                raise click.UsageError(f"--{name} belongs to a task. Give --task pull with it.")
-        return None
-    beside = next((path.absolute().parent for path in files.values()), None)
-    films = beside if given["films"] is None else given["films"].absolute()
-    if films is not None and not films.is_dir():
-        raise OutputError(f"--films {films} is no folder. Give a folder that exists.")
-    from kinematify.manipulation.manipulator import robot_of
-    from kinematify.manipulation.plan_request import TaskRequest
-
-    request = TaskRequest(
-        robot=given["robot"] and given["robot"].absolute(),
-        tool=given["tool"],
-        gripper=listed(given["gripper"]),
-        package_dirs=package_dirs,
-        grasp=given["grasp"] or None,
-        base=given["base"] or None,
-        scale=given["scale"],
-        films=films,
-    )
-    with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
-        robot_of(request, Path(folder))
-    return request
-
-
-def _task_of(task: TaskRequest | None, model: Path, *, several: bool) -> TaskRequest | None:
-    """The task with names of films that distinguish the models."""
-    stem = f"{model.absolute().parent.name}_{model.stem}" if several else model.stem
-    return None if task is None else replace(task, stem=f"{stem}_{task.stem}")
-
-
-def _existing(folders: Sequence[Path]) -> tuple[Path, ...]:
-    for folder in folders:
-        if not folder.is_dir():
-            raise InputError(f"--package-dir {folder} is no folder. Give the folder of a package, or of packages.")
-    return tuple(folders)
-
-
-def _selected(checks: str | None, skip: str | None, *, contract: bool) -> frozenset[str]:
-    from kinematify.validation.run.loaded_words import CONTRACT
-
-    parts, wanted = _matching(f"{CONTRACT}*"), _matching(checks or "*")
-    if contract:
-        wanted |= parts
-    elif CONTRACT not in (checks or "").upper():
-        wanted -= parts
-    left = wanted - (_matching(skip) if skip is not None else frozenset())
-    if not left:
-        raise click.UsageError(f"--checks {checks} and --skip {skip} leave no check. Give other patterns.")
-    return left
-
-
-def _matching(patterns: str) -> frozenset[str]:
-    from fnmatch import fnmatchcase
-
-    from kinematify.validation.checks import CHECKS
-    from kinematify.validation.run.suppression_file import known_pattern
-
-    known = [known_pattern(word) for word in patterns.split(",")]
-    return frozenset(check for check in CHECKS if any(fnmatchcase(check, pattern) for pattern in known))
-
-
-def _engines(words: str | None) -> tuple[str, ...]:
-    from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
-
-    if words is None:
-        return DEFAULT_ENGINES
-    chosen = [word.strip().lower() for word in words.split(",")] if words.strip().lower() not in ("", "none") else []
-    unknown = [word for word in chosen if word not in ENGINES]
-    if unknown:
-        raise click.UsageError(f"--engines names {unknown[0]!r}. Known are {', '.join(ENGINES)}; none leaves all out.")
-    return tuple(engine for engine in ENGINES if engine in chosen)
-
-
-def _settings(config: str, *, budget: float | None, seed: int | None, quick: bool) -> ValidationSettings:
-    from kinematify.config.validation import load_settings
-
-    settings = load_settings(config)
-    changes: dict[str, object] = {} if seed is None else {"seed": seed}
-    if quick:
-        changes["geometry"] = settings.geometry.model_copy(update=_COARSE)
-    if budget is not None:
-        if not 0.0 < budget < float("inf"):
-            raise ConfigError(f"--budget is {budget}. Give a number of seconds above 0.")
-        changes["budget"] = settings.budget.model_copy(update={"seconds": budget})
-    return settings.model_copy(update=changes)

@@ -11,9 +11,7 @@ from typing import TYPE_CHECKING, Any
 from kinematify.config.base import CONFIG_FOLDER, StageConfig, load, section
 from kinematify.config.bearing_settings import BearingConfig, RailConfig
 from kinematify.config.cavl_settings import CavlConfig
-from kinematify.config.cues import GateConfig, PanelsConfig, SlidesConfig
 from kinematify.config.joint_settings import (
-    ClearanceConfig,
     ConfidenceConfig,
     FramesConfig,
     FrontCuesConfig,
@@ -35,7 +33,7 @@ from kinematify.config.shapes import (
     SeamConfig,
     SurfaceConfig,
 )
-from kinematify.config.tree_settings import RewardWeights, TopologyConfig
+from kinematify.config.tree_settings import TopologyConfig
 from kinematify.errors import ConfigError
 from kinematify.versions import is_installed, not_installed
 
@@ -47,32 +45,26 @@ __all__ = [
     "AssemblyConfig",
     "BearingConfig",
     "CavlConfig",
-    "ClearanceConfig",
     "CollisionConfig",
     "ConfidenceConfig",
     "Config",
     "ContactConfig",
     "FramesConfig",
     "FrontCuesConfig",
-    "GateConfig",
     "GroupingConfig",
     "JointsConfig",
     "JournalConfig",
     "LimitsConfig",
     "ModelConfig",
     "NeuralSdfConfig",
-    "PanelsConfig",
     "PreviewConfig",
     "RailConfig",
     "RailsConfig",
-    "RewardWeights",
     "RockersConfig",
     "RodinConfig",
     "SdfConfig",
     "SeamConfig",
     "ServiceConfig",
-    "SlidesConfig",
-    "SourcesConfig",
     "StageConfig",
     "SurfaceConfig",
     "SweepConfig",
@@ -108,18 +100,19 @@ class Config(StageConfig):
     vision: VisionConfig = section()
 
 
-def load_config(name_or_path: str | Path = "default", **overrides: Any) -> Config:
+def load_config(given: str | Path | Config = "default", **overrides: Any) -> Config:
     """Load a shipped configuration by name (``default``, ``paper``) or any YAML file by path.
 
     Args:
-        name_or_path: ``default``, for the values of the classes; name of a file in `kinematify/configs`; or a path.
-        overrides: Top-level values that replace those of the file, e.g. ``seed=7``.
+        given: ``default``, for the values of the classes; name of a file in `kinematify/configs`; a path; or a
+            configuration.
+        overrides: Top-level values that replace those of the file, e.g. ``seed=7``; None replaces nothing.
 
     Raises:
         ConfigError: The name is unknown, the YAML is malformed, a value has the wrong type, or torch is not installed
             and the method of the paper needs it.
     """
-    config = load(Config, name_or_path, **overrides)
+    config = load(Config, given, **overrides)
     if config.joints.method == "cavl" and not is_installed("torch"):
-        raise ConfigError(not_installed(f"The configuration {name_or_path}", "torch"))
+        raise ConfigError(not_installed(f"The configuration {config.name}", "torch"))
     return config

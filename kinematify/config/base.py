@@ -29,26 +29,29 @@ def section() -> Any:
 _Stage = TypeVar("_Stage", bound=StageConfig)
 
 
-def load(stage: type[_Stage], name_or_path: str | Path, **overrides: Any) -> _Stage:
+def load(stage: type[_Stage], given: str | Path | _Stage, **overrides: Any) -> _Stage:
     """Make a stage from its defaults and what a YAML file, with those that it extends, states in their place.
 
     Args:
         stage: Class of the stage.
-        name_or_path: Default `name` of the stage, for its defaults as they are; a shipped file's name; or a path.
-        overrides: Values that replace those of the file.
+        given: Default `name` of the stage, for its defaults as they are; a shipped file's name; a path; or the stage.
+        overrides: Values that replace those of the file, but for None.
 
     Raises:
         ConfigError: The name is unknown, the YAML is malformed, or a value is missing, unknown or of the wrong type.
     """
+    changes = {name: value for name, value in overrides.items() if value is not None}
+    if isinstance(given, stage):
+        return given.model_copy(update=changes)
     field = stage.model_fields.get("name")
     defaults = field.default if field else None
-    values = {**_read_layers(name_or_path, defaults, seen=()), **overrides}
+    values = {**_read_layers(str(given), defaults, seen=()), **changes}
     try:
         return stage.model_validate(values)
     except ValidationError as error:
         problems = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors())
         raise ConfigError(
-            f"The configuration {name_or_path} does not fit: {problems}. "
+            f"The configuration {given} does not fit: {problems}. "
             f"Compare it with the fields of {stage.__module__}.{stage.__name__}."
         ) from error
 

@@ -57,10 +57,10 @@ class NightlySettings(StageConfig):
     """Time budget of one validation, and of each of its stages [s]."""
 
 
-def load_nightly(name_or_path: str | Path = "nightly", **overrides: Any) -> NightlySettings:
+def load_nightly(given: str | Path | NightlySettings = "nightly", **overrides: Any) -> NightlySettings:
     """Load a shipped file of settings by name, or any YAML file by path; see `kinematify.config.load_config`.
 
     Raises:
         ConfigError: The name is unknown, the YAML is malformed, or a value does not fit.
     """
-    return load(NightlySettings, name_or_path, **overrides)
+    return load(NightlySettings, given, **overrides)

@@ -357,10 +357,10 @@ class ValidationSettings(StageConfig):
     task: TaskSettings = section()
 
 
-def load_settings(name_or_path: str | Path = "validation", **overrides: Any) -> ValidationSettings:
+def load_settings(given: str | Path | ValidationSettings = "validation", **overrides: Any) -> ValidationSettings:
     """Load a shipped file of settings by name, or any YAML file by path; see `kinematify.config.load_config`.
 
     Raises:
         ConfigError: The name is unknown, the YAML is malformed, or a value does not fit.
     """
-    return load(ValidationSettings, name_or_path, **overrides)
+    return load(ValidationSettings, given, **overrides)

@@ -121,6 +121,10 @@ class Report(Generic[_Record]):
     records: tuple[_Record, ...]
     summary: dict[str, Any] = field(default_factory=dict)
     """What was counted over the records."""
+    files: tuple[Path, ...] = ()
+    """That it was written to."""
+    regressions: tuple[str, ...] = ()
+    """What is worse than in an earlier one, a sentence each."""
 
 
 def new_header(

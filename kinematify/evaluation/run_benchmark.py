@@ -51,7 +51,7 @@ ALL_CONDITIONS = tuple(condition.name for condition in CONDITIONS)
 DEFAULT_VARIANTS = (Variant(label="default", config="default"),)
 
 
-def bench(
+def run_benchmark(
     data: str | Path | None = None,
     *,
     variants: Sequence[Variant] = DEFAULT_VARIANTS,
@@ -66,7 +66,7 @@ def bench(
     infer: str = INFER,
     progress: Progress | None = None,
 ) -> Report[JobResult]:
-    """Measure the accuracy on objects with known joints, as `kinematify bench` does.
+    """Measure the accuracy on objects with known joints.
 
     What an earlier run with the same code and configuration has finished is taken up.
 

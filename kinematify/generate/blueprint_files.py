@@ -7,14 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from kinematify.config import load_config
 from kinematify.contact.tree import KinematicTree
-from kinematify.errors import InputError
 from kinematify.generate.procedural.blueprint import ground_truth
-from kinematify.generate.reader import read_sentence
 from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
-from kinematify.model.output import SOURCE_FILE, write_model_folder
+from kinematify.model.output import SOURCE_FILE
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.robot.obj_file import write_obj
@@ -68,23 +65,6 @@ def _closed(loop: BlueprintLoop, model: KinematicModel) -> LoopJoint:
     links = loop.one, loop.other
     one, other = (loop.pivot - model.link_by_name[link].T_world_link[:3, 3] for link in links)
     return LoopJoint(name=f"{loop.other}_loop", links=links, points=(one, other))
-
-
-def write_described(
-    text: str, out: str | Path, *, seed: int | None, strict: bool, overwrite: bool, config: Config | None
-) -> KinematicModel:
-    """Write the model folder of what a sentence describes; see `kinematify.generate`."""
-    made = read_sentence(text).made(seed=seed)
-    if strict and not made.is_complete:
-        wrong = "; ".join([*made.differences, *(f"not read: {words}" for words in made.unread)])
-        raise InputError(f"Not as asked: {wrong}. Nothing is written; strict=False builds the rest.")
-    models: list[KinematicModel] = []
-
-    def write(folder: Path) -> None:
-        models.append(write_blueprint(made.blueprint, folder, config or load_config(), facts=made.facts))
-
-    write_model_folder(Path(out), write, overwrite=overwrite)
-    return models[0]
 
 
 def write_parts(blueprint: Blueprint, folder: Path) -> None:

@@ -128,6 +128,8 @@ class Inference:
     """Answers of a vision-language model about joints (`kinematify.vision`), as JSON values; None if none was asked."""
     grouping: Grouping | None = None
     """How pieces became the parts; None where the parts were given."""
+    report: Any = None
+    """What `kinematify.validate` said of the folder that was written, or the error that kept it from an answer."""
     provenance: Mapping[str, Any] | None = None
     """Who made the parts, from what (`kinematify.generate.providers`), as JSON values; None where that is not known."""
 

@@ -16,7 +16,7 @@ from kinematify.config import Config
 from kinematify.contact.tree import KinematicTree
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointCandidate, JointEstimate
-from kinematify.model.output import MODEL_FILE, PREVIEW_FILE, RECORD_FILE, write_model_folder
+from kinematify.model.output import MODEL_FILE, PREVIEW_FILE, RECORD_FILE, check_output, write_model_folder
 from kinematify.model.urdf import MESH_FOLDER
 from kinematify.pipeline.record import SCHEMA, file_hashes, write_inference_files
 from kinematify.robot.joint_type import JointType
@@ -144,6 +144,27 @@ def read_record(folder: Path) -> dict[str, Any]:
             "tried. Infer the model again from its parts."
         )
     return record
+
+
+def target_of(folder: Path, out: str | Path | None, *, overwrite: bool) -> Path:
+    """Return the folder to write a refined model to, once it may be written.
+
+    Raises:
+        InputError: The model in `folder` would be replaced without `overwrite`, or one of the folders holds the other.
+        OutputError: `out` exists and must not be replaced, or cannot be written.
+    """
+    if out is None and not overwrite:
+        raise InputError(
+            f"The refined model would replace the one in {folder}.\n"
+            f"Give -o OUT to write it to another folder, or --force to replace the model in {folder}."
+        )
+    target = folder if out is None else Path(out)
+    ends = folder.resolve(), target.resolve()
+    if ends[0] != ends[1] and (ends[0] in ends[1].parents or ends[1] in ends[0].parents):
+        raise InputError(f"One of the folders {folder} and {target} lies in the other. Give a place beside {folder}.")
+    if out is not None:
+        check_output(target, overwrite=overwrite)
+    return target
 
 
 def write_refined(

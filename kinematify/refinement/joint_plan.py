@@ -6,8 +6,6 @@ from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from kinematify.model.build import build_model
 
 if TYPE_CHECKING:
@@ -28,13 +26,6 @@ class Plan:
         given = self.inference
         return build_model(given.assembly, given.trees[0], given.joints, name="model", config=given.config.model)
 
-    @cached_property
-    def signature(self) -> tuple[object, ...]:
-        """Key that equal plans share: tree, types, lines and ranges to 6 digits."""
-        numbers = [(*item.axis, *item.pivot, item.lower, item.upper) for item in self.inference.joints]
-        kinds = tuple(joint.kind for joint in self.inference.joints)
-        return self.inference.trees[0].parents, kinds, np.round(numbers, 6).tobytes()
-
     def joint(self, child: str) -> JointEstimate:
         """The joint above a part."""
         number = self.inference.assembly.names.index(child)
@@ -53,7 +44,7 @@ class PlanChange:
     part: str
     """Whose joint, or whose parent, it is."""
     what: str
-    """``parent``, ``type``, ``axis``, ``range``, ``fixed`` or ``contacts``."""
+    """``parent``, ``type``, ``axis``, ``range`` or ``fixed``."""
     before: str
     after: str
     why: str

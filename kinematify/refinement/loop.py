@@ -1,7 +1,7 @@
 """The loop: simulate, turn findings into penalties, choose again, and keep the best round (design section 5).
 
-It ends when nothing is left to act on, when a plan repeats, or when the rounds are used up. The round with the fewest
-errors, then with the right contacts, then with the fewest warnings, then with the most evidence is kept. The inference
+It ends when nothing is left to act on, or when the rounds are used up. The round with the fewest errors, then with the
+fewest warnings, then with the most evidence is kept. The inference
 wins every tie, so that refining never makes a model worse by its own standards.
 """
 
@@ -9,26 +9,35 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kinematify.config.validation import load_settings
+from kinematify.model.output import MODEL_FILE
+from kinematify.pipeline.infer_assembly import infer
+from kinematify.pipeline.record import write_inference
+from kinematify.processes.lock import writing
 from kinematify.refinement.candidates import CandidateJoints, ranged
 from kinematify.refinement.choose import LEAST_TRAVEL, Chooser, shortened
+from kinematify.refinement.folder import open_model_folder, read_record, stored_state, target_of, write_refined
 from kinematify.refinement.hints import HINTED
 from kinematify.refinement.joint_plan import History, Plan, PlanChange, Round
 from kinematify.refinement.simulate import Simulator
-from kinematify.refinement.topology import hung_again, measured_again
+from kinematify.refinement.topology import hung_again
 from kinematify.validation.check import FeedbackRow
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Cause, Severity
 from kinematify.validation.run.feedback import RangeSignal, feedback_from
+from kinematify.validation.run.model_validation import validated
 
 if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings
+    from kinematify.errors import KinematifyError
     from kinematify.pipeline.infer_assembly import Progress
     from kinematify.pipeline.inference import Inference
     from kinematify.refinement.simulate import MotionVerdict
     from kinematify.validation.run.feedback import Feedback
+    from kinematify.validation.run.report import ValidationReport
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,34 +49,78 @@ class Refinement:
     history: History
     interrupted: bool = False
     """Ctrl-C ended it."""
+    report: ValidationReport | KinematifyError | None = None
+    """What `kinematify.validate` said of the folder that was written, or the error that kept it from an answer."""
+
+    @property
+    def passes(self) -> bool:
+        """True if the round that was kept has no error about motion."""
+        kept = self.history.rounds[self.history.kept :][:1]
+        return bool(kept) and not kept[0].errors
 
 
 def refine(
-    inference: Inference,
+    model: Inference | str | Path,
+    out: str | Path | None = None,
     *,
     rounds: int = 3,  # nothing new fails after two rounds on nearly every object
     base: str | None = None,
+    overwrite: bool = False,
+    preview: bool = True,
+    validation: bool = True,
     settings: ValidationSettings | None = None,
     progress: Progress | None = None,
 ) -> Refinement:
-    """Simulate what was inferred, and choose again what the failures point to.
+    """Simulate what was inferred, and choose again what the failures point to, as `kinematify refine` does.
 
     Args:
-        inference: What `infer` returned.
+        model: What `infer` returned, or the folder that it wrote.
+        out: Folder to make for the best round, which is then validated: `Refinement.report`. That of a folder replaces
+            its model if absent, with `overwrite`.
         rounds: Rounds at most after the first.
         base: Name of the part that is the base link, where it is known.
-        settings: Of the validation; the shipped ones if absent.
+        overwrite: Replace `out` if it is a model folder.
+        preview: Draw a picture into `out`.
+        validation: Validate the model in `out`.
+        settings: Of the validation of motions; the shipped ones if absent.
         progress: Called with what is being done and the share done.
 
     Returns:
         The best round. Ctrl-C ends the loop, and the best round so far is returned.
+
+    Raises:
+        InputError: It is no model folder, its model was changed since, or `out` lies in it.
+        OutputError: `out` exists and must not be replaced, or cannot be written.
     """
+    report = progress or (lambda stage, share: None)
+    if not isinstance(model, str | Path):
+        found = _refined(model, rounds, settings, report)
+        if out is not None:
+            write_inference(found.inference, out, overwrite=overwrite, preview=preview)
+        return found
+    target = target_of(Path(model), out, overwrite=overwrite)
+    with writing(target):
+        report("reading the parts", 0.0)
+        assembly, config = open_model_folder(model)
+        inference = infer(assembly, config=config, base=base, progress=lambda stage, done: report(stage, 0.4 * done))
+        found = _refined(
+            stored_state(inference, read_record(Path(model))), rounds, settings,
+            lambda stage, done: report(stage, 0.4 + 0.5 * done),
+        )  # fmt: skip
+        report("writing the model", 0.9)
+        write_refined(found.inference, Path(model), target, overwrite=overwrite, preview=preview)
+        if validation and not found.interrupted:
+            report("checking the geometry and loading the file into engines", 0.94)
+            found = replace(found, report=validated(target / MODEL_FILE))
+    return found
+
+
+def _refined(inference: Inference, rounds: int, settings: ValidationSettings | None, progress: Progress) -> Refinement:
     loop = _Loop(
         inference,
         rounds,
-        None if base is None else inference.assembly.names.index(base),
         settings or load_settings(),
-        progress or (lambda stage, share: None),
+        progress,
     )
     interrupted = False
     try:
@@ -77,12 +130,11 @@ def refine(
     return loop.result(interrupted=interrupted)
 
 
-def repaired(inference: Inference, *, base: str | None = None, settings: ValidationSettings | None = None) -> Inference:
+def repaired(inference: Inference, *, settings: ValidationSettings | None = None) -> Inference:
     """End ranges before a collision, and choose again once where the motion of what was inferred has an error.
 
     Args:
         inference: What `infer` returned, with hints or answers.
-        base: Name of the part that is the base link, where it is known.
         settings: Of the validation; the shipped ones if absent.
 
     Returns:
@@ -97,7 +149,7 @@ def repaired(inference: Inference, *, base: str | None = None, settings: Validat
         verdict = simulator.judge(plan.model)
         inference = plan.inference
     if _severities(verdict)[0]:
-        found = refine(inference, rounds=1, base=base, settings=chosen)
+        found = _refined(inference, 1, chosen, lambda stage, share: None)
         rounds, kept = found.history.rounds, found.history.kept
         if kept and rounds[kept].errors < rounds[0].errors:
             inference = replace(found.inference, refinement=inference.refinement)
@@ -140,10 +192,8 @@ class _Done:
 class _Loop:
     """One run of the loop."""
 
-    def __init__(
-        self, given: Inference, rounds: int, base: int | None, settings: ValidationSettings, progress: Progress
-    ) -> None:
-        self.given, self.rounds, self.base, self.progress = given, rounds, base, progress
+    def __init__(self, given: Inference, rounds: int, settings: ValidationSettings, progress: Progress) -> None:
+        self.given, self.rounds, self.progress = given, rounds, progress
         self.started = time.perf_counter()
         self.simulator = Simulator(Plan(inference=given).model, settings.geometry)
         self.against: dict[tuple[int, int], float] = {}
@@ -151,15 +201,11 @@ class _Loop:
         self.pools: dict[int, CandidateJoints] = {}
         self.ended = "all rounds were used"
         self.simulated = 0
-        self.sound_at = 0
-        """Round from which on contacts are what the meshes say."""
 
     def run(self) -> None:
         """Simulate and choose again until there is nothing to choose."""
-        seen = set()
         plan, changes = Plan(inference=self.given), list[PlanChange]()
         for number in range(self.rounds + 1):
-            seen.add(plan.signature)
             self.progress(f"round {number}: simulating", number / (self.rounds + 1))
             done = self._simulated(number, plan, changes)
             self.done.append(done)
@@ -170,9 +216,6 @@ class _Loop:
             self.done[-1] = replace(done, round=replace(done.round, refused=tuple(refused)))
             if not changes:
                 self.ended = "nothing was left to choose again" if done.feedback else "nothing failed that it can fix"
-                return
-            if plan.signature in seen:
-                self.ended = "the next plan had been simulated before"
                 return
 
     def result(self, *, interrupted: bool) -> Refinement:
@@ -195,9 +238,9 @@ class _Loop:
         return Refinement(inference=inference, history=history, interrupted=interrupted)
 
     def _rank(self, done: _Done) -> tuple[float, ...]:
-        """Smaller is better: errors about motion, wrong contacts, warnings, evidence; earlier rounds win ties."""
+        """Smaller is better: errors about motion, warnings, evidence; earlier rounds win ties."""
         played = done.round
-        return played.errors, played.number < self.sound_at, played.warnings, -played.score, played.number
+        return played.errors, played.warnings, -played.score, played.number
 
     def _simulated(self, number: int, plan: Plan, changes: list[PlanChange]) -> _Done:
         """One round: what fails on a plan, and what that means."""
@@ -224,11 +267,6 @@ class _Loop:
 
     def _choose(self, done: _Done) -> tuple[Plan, list[PlanChange], list[str]]:
         """The next plan: first what the parts touch and hang on, then how they move."""
-        if done.round.number == 0:
-            plan, changes = measured_again(done.plan, base=self.base)
-            if changes:
-                self.sound_at = 1
-                return plan, changes, []
         edges = done.feedback.edges
         carried = any(CHECKS[signal.check].feedback in _OF_PARENTS for signal in edges)
         if carried and (moved := self._hung_again(done)):
@@ -244,7 +282,7 @@ class _Loop:
 
     def _hung_again(self, done: _Done) -> tuple[Plan, list[PlanChange]] | None:
         """Another tree on the same base, if the search finds one by what failed, and geometry fails less on it."""
-        plan, changes = hung_again(done.plan, self.against, base=done.plan.inference.trees[0].root)
+        plan, changes = hung_again(done.plan, self.against)
         before = done.round.errors, done.round.warnings
         return (plan, changes) if changes and _severities(self.simulator.judge(plan.model)) < before else None
 

@@ -1,1 +1,1 @@
-"""A model in a browser, to move and to look at: `kinematify view`."""
+"""A model in a browser, to move and to look at; called as a function, the package shows one."""

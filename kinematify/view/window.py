@@ -118,6 +118,8 @@ class Window(Generic[_Page]):
         """The port that is served: another one than asked for if that is in use."""
         self.url = f"http://{name}:{self.port}"
         """Address of the page."""
+        self.notes: tuple[str, ...] = ()
+        """What a URDF does not hold of the file that is shown, one sentence each."""
 
     def run(self) -> None:
         """Serve until `close` is called."""

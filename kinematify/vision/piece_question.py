@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -10,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.assembly.assemble import part_names
+from kinematify.assembly.load import load_assembly
+from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.grouping.groups import joined_pieces, numbered_pieces
 from kinematify.grouping.numbered_pieces import BODY, MOST_NUMBERS, NamedPart
@@ -273,3 +276,18 @@ def _array(items: dict[str, Any]) -> dict[str, Any]:
 
 def _object(properties: dict[str, Any]) -> dict[str, Any]:
     return {"type": "object", "properties": properties, "required": list(properties), "additionalProperties": False}
+
+
+def asked_question(mesh: Path, up: str, scale: float | None, pieces: str) -> PieceQuestion:
+    """The question about a mesh that nobody segmented.
+
+    Raises:
+        InputError: It cannot be read, or is one piece.
+    """
+    settings = load_config()
+    return piece_question(load_assembly(mesh, config=settings.assembly, up=up, scale=scale, pieces=pieces), settings)
+
+
+def infer_command(mesh: Path, answer: Path) -> str:
+    """The command that makes a model of a mesh and an answer."""
+    return shlex.join(["kinematify", "infer", str(mesh), "--answer", str(answer), "-o", "OUT"])

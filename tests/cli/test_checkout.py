@@ -10,8 +10,8 @@ import pytest
 
 import benchmarks
 import kinematify
-from kinematify.cli import checkout
 from kinematify.cli.app import run
+from kinematify.evaluation import checkout
 from tests.places import ROOT
 
 

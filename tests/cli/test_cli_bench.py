@@ -75,7 +75,7 @@ def results(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
         asked.append({"data": data, **options})
         return report(RESULT)
 
-    monkeypatch.setattr("kinematify.evaluation.run_benchmark.bench", answer)
+    monkeypatch.setattr("kinematify.evaluation.accuracy.run_benchmark", answer)
     return asked
 
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from kinematify.cli.app import run
-from kinematify.cli.generation import GeneratedModel
 from kinematify.cli.verdict import describe_briefly
+from kinematify.creation.generated_model import GeneratedModel
 from kinematify.generate.reader import read_sentence
 from kinematify.robot.read import read_robot
 from kinematify.validation.finding import Severity

@@ -15,7 +15,7 @@ import pytest
 from lxml import etree
 
 from kinematify.cli.app import run
-from kinematify.errors import InputError
+from kinematify.errors import DescriptionError
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity
 from kinematify.validation.run.needs import keys
@@ -70,7 +70,7 @@ def answered(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
             raise what
         return report(*what.checks, model=str(path), interrupted=bool(what.environment["interrupted"]))
 
-    monkeypatch.setattr("kinematify.validation.run.validate", answer)
+    monkeypatch.setattr("kinematify.validation.run.model_validation.run_checks", answer)
     return answers
 
 
@@ -205,7 +205,7 @@ def test_several_models_end_with_a_table_and_the_worst_status(
         {
             "a.urdf": report(result()),
             "b.urdf": full_report(),
-            "c.urdf": InputError("c.urdf is MJCF, not URDF. Convert it."),
+            "c.urdf": DescriptionError("c.urdf is MJCF, not URDF. Convert it."),
         }
     )
     for name in ("a.urdf", "b.urdf", "c.urdf"):

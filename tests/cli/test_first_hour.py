@@ -22,8 +22,8 @@ from kinematify.cli.app import run
 from kinematify.errors import InputError
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.processes.lock import writing
-from kinematify.refinement import repaired
 from kinematify.refinement.hints import parse_hints, with_hints
+from kinematify.refinement.loop import repaired
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from tests.places import ROOT

@@ -131,9 +131,9 @@ def test_killed_run_resumes_to_the_same_report(data: Path, tmp_path: Path, end: 
     ledger = work / "jobs.jsonl"
     program = (
         "from pathlib import Path\n"
-        "from kinematify.evaluation.run_benchmark import bench\n"
+        "from kinematify.evaluation.run_benchmark import run_benchmark\n"
         "if __name__ == '__main__':\n"
-        f"    bench({str(data)!r}, work=Path({str(work)!r}), jobs=2,\n"
+        f"    run_benchmark({str(data)!r}, work=Path({str(work)!r}), jobs=2,\n"
         "        infer='quick_inference:slow_star')\n"
     )
     script = tmp_path / "program.py"

@@ -20,11 +20,12 @@ from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.pipeline.infer_assembly import infer
 from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.record import file_hashes, write_inference
-from kinematify.refinement import loop, refine
+from kinematify.refinement import loop
 from kinematify.refinement.choose import LEAD_ELSEWHERE, Chooser, Trial
 from kinematify.refinement.folder import open_model_folder, read_record
 from kinematify.refinement.hints import parse_hints, with_hints
 from kinematify.refinement.joint_plan import Plan
+from kinematify.refinement.loop import refine
 from kinematify.refinement.simulate import Simulator
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.failure_rates import LINE, TYPE, shipped_rates
@@ -303,7 +304,7 @@ def test_simulation_in_memory_says_what_validate_says(tmp_path: Path) -> None:
     mine = Simulator(bad.model, SETTINGS.geometry).judge(bad.model).findings
     write_inference(bad, tmp_path / "out", preview=False)
     checks = ["KV301", "KV302", "KV303", "KV310", "KV311", "KV312", "KV320", "KV321"]
-    report = kinematify.validate(tmp_path / "out" / "model.urdf", selected=checks, engines=())
+    report = kinematify.validate(tmp_path / "out" / "model.urdf", checks=checks, engines=())
     theirs = [item for item in report.findings if item.check in checks]
     assert sorted((item.check, item.joint) for item in mine) == sorted((item.check, item.joint) for item in theirs)
     assert any(item.severity is Severity.ERROR for item in mine)

@@ -193,7 +193,7 @@ def summary_words(report: ValidationReport) -> str:
         ", ".join([f"{ran} of {len(report.checks)} checks ran", *left]),
         f"{float(report.environment.get('seconds', 0.0)):.1f} s",
         f"{counted_words(unfinished, 'check')} not finished{status}" if unfinished else "",
-        "interrupted: partial" if report.environment.get("interrupted") else "",
+        "interrupted: partial" if report.interrupted else "",
     ]
     return "; ".join(part for part in parts if part)
 

@@ -118,7 +118,7 @@ def _invocation(outcomes: Sequence[Outcome]) -> dict[str, Any]:
             for check in outcome.checks
             if check.status in (Status.SKIPPED, Status.BLOCKED)
         ]
-    successful = not any(isinstance(o, Unusable) or o.environment.get("interrupted") for o in outcomes)
+    successful = not any(isinstance(o, Unusable) or o.interrupted for o in outcomes)
     return {"executionSuccessful": successful, "toolExecutionNotifications": notes}
 
 

@@ -24,6 +24,9 @@ class Unusable:
     message: str
     """What was found and what to do, one paragraph."""
 
+    interrupted = False
+    """Always."""
+
     @property
     def verdict(self) -> str:
         """Always ``unusable``."""

@@ -66,6 +66,11 @@ class ValidationReport:
         return "warn" if Severity.WARNING in severities else "pass"
 
     @property
+    def interrupted(self) -> bool:
+        """Ctrl-C ended the run: the report is partial."""
+        return bool(self.environment.get("interrupted"))
+
+    @property
     def unfinished(self) -> tuple[CheckResult, ...]:
         """Checks that time ran out for."""
         return tuple(check for check in self.checks if check.unfinished)

@@ -36,7 +36,7 @@ from kinematify.evaluation.nightly.comparison import CHANGES, Night, compare, co
 from kinematify.evaluation.nightly.night_pages import as_junit, night_page, nights_page
 from kinematify.evaluation.nightly.runs import PULLED, RUN, SCHEMA, ModelJob, Run, accuracy_run, digest, validation_run
 from kinematify.evaluation.result_record import code_version, git_commit, replace_text
-from kinematify.evaluation.run_benchmark import Variant, bench
+from kinematify.evaluation.run_benchmark import Variant, run_benchmark
 from kinematify.generate.blueprint_files import write_blueprint
 from kinematify.generate.reader import read_sentence
 from kinematify.processes.lock import locked
@@ -98,12 +98,12 @@ def nightly(
         ConfigError: A configuration is unknown or malformed.
         OutputError: Another night is running, or the folder cannot be written.
     """
-    settings = config if isinstance(config, NightlySettings) else load_nightly(config)
+    settings = load_nightly(config)
     changes: dict[str, Any] = {} if data is None else {"data": str(data)}
     if smoke:
         changes |= {"conditions": ["rest"], "engines": ["mujoco"]}
     settings, workers = settings.model_copy(update=changes), jobs or os.cpu_count() or 1
-    folder = Path(out or ("out/nightly-smoke" if smoke else "results/nightly"))
+    folder = _nights(out, smoke=smoke)
     say = progress or (lambda what, share: None)
     with locked(folder / ".lock", f"The folder of nights {folder}"):
         start = time.perf_counter()
@@ -115,7 +115,7 @@ def nightly(
             models = str(work / "objects")
             write_smoke_objects(Path(models), _SMOKE)
         items = {item.name: item for item in matching(find_objects(models), objects)}
-        report = bench(
+        report = run_benchmark(
             models,
             variants=(Variant(label="nightly", config=settings.infer_config),),
             conditions=settings.conditions,
@@ -241,16 +241,22 @@ def find_night(nights: Sequence[Night], name: str, folder: Path) -> Night:
     raise InputError(f"There is no night {name} in {folder}. The latest are: {known}. Give one of them.")
 
 
-def accept(folder: Path, name: str) -> None:
-    """Make a night the one that later nights are compared with.
+def _nights(out: str | Path | None, *, smoke: bool) -> Path:
+    return Path(out or ("out/nightly-smoke" if smoke else "results/nightly"))
+
+
+def accept(out: str | Path | None, name: str, *, smoke: bool = False) -> Path:
+    """Make a night the one that later nights are compared with; return the folder of all, found as `nightly` does.
 
     Raises:
         InputError: There is none of that name.
         OutputError: The file cannot be written.
     """
+    folder = _nights(out, smoke=smoke)
     with locked(folder / ".lock", f"The folder of nights {folder}"):
         night = find_night(load_nights(folder)[0], name, folder)
         replace_text(folder / "baseline.json", json.dumps({"schema": SCHEMA, "night": night.name}) + "\n")
+    return folder
 
 
 def _accepted(folder: Path) -> str | None:

@@ -1,0 +1,150 @@
+"""Objects of other generators: parts of a picture or a sentence, whose joints are inferred, or a written blueprint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from kinematify.assembly.load import load_assembly
+from kinematify.creation.blueprint_feedback import in_blueprint_words
+from kinematify.creation.generated_model import GeneratedModel, job_folder
+from kinematify.errors import InputError
+from kinematify.generate.blueprint_files import write_blueprint
+from kinematify.generate.providers.command import CommandSource
+from kinematify.generate.providers.job import open_job
+from kinematify.generate.providers.judge_blueprint import drawn_findings
+from kinematify.generate.providers.language_model import language_model
+from kinematify.generate.providers.rodin import RodinSource
+from kinematify.generate.providers.source import RecordingSource, ReplayedSource, check_prompt
+from kinematify.model.output import MODEL_FILE, write_model_folder
+from kinematify.pipeline.record import write_inference_files
+from kinematify.validation.formats.report_files import report_on
+from kinematify.validation.run import validate
+from kinematify.vision.infer_object import infer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from kinematify.config import Config
+    from kinematify.generate.delivery import BuildResult
+    from kinematify.generate.providers.language_model import Written
+    from kinematify.generate.providers.source import PartSource
+
+    Progress = Callable[[str, float], None]
+
+_MADE, _INFERRED, _WRITTEN = 0.6, 0.8, 0.85
+"""Shares of the time at which these are done."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Order:
+    """Request to a source; `kinematify.generate` says what each field is."""
+
+    out: Path
+    config: Config
+    text: str | None
+    images: tuple[Path, ...]
+    seed: int
+    program: str | None
+    time_limit: float | None
+    budget: float | None
+    rounds: int | None
+    record: Path | None
+    replay: Path | None
+    resend: bool
+
+
+def _part_source(name: str, order: Order) -> PartSource:
+    """The generator that is asked for.
+
+    Raises:
+        InputError: There is no program.
+    """
+    limit, chosen = order.time_limit, order.config.sources.rodin
+    if name == "rodin":
+        asked = chosen if limit is None else chosen.model_copy(update={"job_seconds": limit})
+        source: PartSource = RodinSource(asked, order.budget)
+    elif order.program is None:
+        raise InputError("--source command needs --command 'program {image} {out}'.")
+    else:
+        source = CommandSource(order.program, limit or order.config.sources.command_seconds)
+    if order.record is not None:
+        return RecordingSource(source, order.record)
+    return source if order.replay is None else ReplayedSource(source, order.replay)
+
+
+def made_parts(
+    order: Order,
+    name: str,
+    progress: Progress,
+    *,
+    up: str,
+    scale: float | None,
+    overwrite: bool,
+    preview: bool,
+    validation: bool,
+) -> GeneratedModel:
+    """Get the parts of ``rodin`` or ``command``, infer their joints, write the folder and validate the model in it.
+
+    Raises:
+        InputError: The prompt, the key or an option cannot be used.
+        EnvironmentFault: The generator failed; the same call goes on where it stopped.
+        OutputError: The folder cannot be written.
+    """
+    source = _part_source(name, order)
+    prompt = check_prompt(order.text, order.images, seed=order.seed)
+    with open_job(job_folder(order.out), source.name, prompt.digest(source.options())) as job:
+        if order.resend:
+            job.resend()
+        parts = source.generate(prompt, job, lambda stage, done: progress(stage, _MADE * done))
+    progress("reading the parts", _MADE)
+    read = load_assembly(parts.path, config=order.config.assembly, up=up, scale=scale, labels=parts.labels)
+    found = infer(
+        read, config=order.config, progress=lambda stage, done: progress(stage, _MADE + (_INFERRED - _MADE) * done)
+    )
+    inference = replace(found, provenance=parts.provenance.as_json())
+    write_model_folder(
+        order.out,
+        lambda folder: write_inference_files(
+            inference, folder, preview=preview,
+            progress=lambda stage, done: progress(stage, _INFERRED + (_WRITTEN - _INFERRED) * done),
+        ),
+        overwrite=overwrite,
+    )  # fmt: skip
+    report = report_on(order.out, progress, _WRITTEN) if validation else None
+    return GeneratedModel(out=order.out, model=inference.model, inference=inference, report=report, parts=parts)
+
+
+def written_blueprint(order: Order, progress: Progress, *, validation: bool) -> Written:
+    """Build what a language model answers, and send back what does not hold of it.
+
+    Raises:
+        InputError: No address is set; see `LanguageModel.write`.
+        EnvironmentFault: The service failed.
+    """
+    asked = {"rounds": order.rounds, "answer_seconds": order.time_limit}
+    settings = order.config.sources.language_model.model_copy(
+        update={name: value for name, value in asked.items() if value is not None}
+    )
+    model = language_model(settings, budget=order.budget, record=order.record, replay=order.replay)
+
+    def judged(made: BuildResult) -> Sequence[str]:
+        drawn = drawn_findings(made.blueprint) if made.request is None else ()
+        if not validation:
+            return drawn
+        with TemporaryDirectory() as folder:
+            write_blueprint(made.blueprint, Path(folder), order.config)
+            report = validate(Path(folder, MODEL_FILE))
+        return [*drawn, *in_blueprint_words(report.counted)]
+
+    prompt = check_prompt(order.text, order.images, seed=0)
+    with open_job(job_folder(order.out), "llm", prompt.digest(model.options())) as job:
+        if order.resend:
+            job.resend()
+        written = model.write(prompt, job, judged, progress)
+    facts = {"source": "llm", "model": model.model, "text": order.text, "rounds": written.rounds}
+    blueprint = written.made.blueprint
+    named = replace(blueprint, parameters={**blueprint.parameters, **facts})
+    return replace(written, made=replace(written.made, blueprint=named))
