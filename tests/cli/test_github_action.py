@@ -59,6 +59,7 @@ def test_a_broken_model_is_annotated_at_its_line_and_fails_the_last_step(tmp_pat
     place = result["locations"][0]["physicalLocation"]
     assert place["artifactLocation"]["uri"] == "my%20robots/door/door.urdf"
     assert place["region"]["startLine"] in (4, 5)
+    assert place["region"]["startColumn"] > 1
 
 
 def test_with_a_baseline_only_new_findings_fail(tmp_path: Path) -> None:

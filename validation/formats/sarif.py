@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import linecache
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -89,7 +90,9 @@ def _result(report: ValidationReport, group: FindingGroup) -> dict[str, Any]:
 def _location(model: str, finding: Finding) -> dict[str, Any]:
     # Code scanning shows a result at a line only; what is about the whole model stands at the first.
     line = max(finding.line or 1, 1)
-    return {"physicalLocation": {"artifactLocation": {"uri": _uri(model)}, "region": {"startLine": line}}}
+    text = "" if "\0" in model else linecache.getline(model, line)
+    region = {"startLine": line, "startColumn": len(text) - len(text.lstrip()) + 1}
+    return {"physicalLocation": {"artifactLocation": {"uri": _uri(model)}, "region": region}}
 
 
 def _uri(model: str) -> str:
