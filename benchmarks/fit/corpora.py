@@ -20,6 +20,7 @@ from benchmarks.fit.drawn import DRAWN, corpus_kinds, drawn_object
 from benchmarks.fit.edges import read_tree_examples, tree_example, write_tree_examples
 from benchmarks.fit.examples import content_key, examples_of, read_examples, write_examples
 from benchmarks.fit.fragmentation import with_pieces_broken_off
+from benchmarks.fit.furniture import furniture
 from benchmarks.fit.modelling import WAYS, augment
 from kinematify.assembly.erasure import erase
 from kinematify.assembly.part import Assembly
@@ -39,7 +40,8 @@ if TYPE_CHECKING:
     from kinematify.assembly.truth import GroundTruth
     from kinematify.generate.procedural.blueprint import Blueprint
 
-FAMILY, DESCRIBED, PROGRAMMED, COMPOSED = GENERATED = "family", "described", "programmed", "composed"
+FAMILY, DESCRIBED, PROGRAMMED, COMPOSED, FURNITURE = "family", "described", "programmed", "composed", "furniture"
+GENERATED = (FAMILY, DESCRIBED, PROGRAMMED, COMPOSED, FURNITURE)
 _RESEARCH = ("partnet", "shapenet", "research", "non-commercial")
 """Words of licences under which an object judges and never enters weights that ship."""
 _MOST_JOINTS = 14  # of a generated object: a hand or hexapod would outweigh the rest
@@ -286,7 +288,7 @@ def _generated(source: CorpusSource, seed: int) -> _Opened:
     if len(blueprint.joints) > _MOST_JOINTS:
         raise ValueError(f"{source.name} has {len(blueprint.joints)} joints, more than {_MOST_JOINTS}.")
     # Random mechanisms have nothing in common: each is a category of its own.
-    category = f"{source.name} {number}" if source.origin == COMPOSED else source.name
+    category = {COMPOSED: f"{source.name} {number}", FURNITURE: blueprint.family}.get(source.origin, source.name)
     return _Opened(
         parts=blueprint.assembly.parts,
         truth=ground_truth(blueprint),
@@ -300,6 +302,8 @@ def _drawn(source: CorpusSource, number: int) -> Blueprint:
     ways = list(WAYS)
     if source.origin == PROGRAMMED:
         return drawn_object(source.name, number)
+    if source.origin == FURNITURE:
+        return furniture(number)
     if source.origin == COMPOSED:
         way = ways[number % len(ways)] if number % 3 == 0 else "as_drawn"
         return augment(compose(number), way, rng=np.random.default_rng(number))
