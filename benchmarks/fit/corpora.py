@@ -68,12 +68,13 @@ class CorpusSource:
     """With pieces broken off."""
 
 
-def generated_sources(rounds: int, composed: int) -> list[CorpusSource]:
-    """`rounds` objects of every kind, each modelled in another way, and `composed` random mechanisms."""
+def generated_sources(rounds: int, composed: int, furniture: int = 0) -> list[CorpusSource]:
+    """`rounds` objects of every kind, each modelled in another way, `composed` random mechanisms, and furniture."""
     origins = dict.fromkeys(FAMILIES, FAMILY) | dict.fromkeys(DRAWN, PROGRAMMED)
     named = [(origins.get(name, DESCRIBED), name) for name in sorted(corpus_kinds())]
     found = [CorpusSource(origin=origin, name=name, number=n) for n in range(rounds) for origin, name in named]
-    return found + [CorpusSource(origin=COMPOSED, name="composed", number=n) for n in range(composed)]
+    found += [CorpusSource(origin=COMPOSED, name="composed", number=n) for n in range(composed)]
+    return found + [CorpusSource(origin=FURNITURE, name="furniture", number=n) for n in range(furniture)]
 
 
 def real_sources(folder: Path) -> list[CorpusSource]:
@@ -105,7 +106,7 @@ def tree_sources(sources: Sequence[CorpusSource]) -> list[CorpusSource]:
     return [
         source
         for source in sources
-        if not source.broken and (source.number < _TREE_ROUNDS or source.origin == COMPOSED)
+        if not source.broken and (source.number < _TREE_ROUNDS or source.origin in (COMPOSED, FURNITURE))
     ]
 
 
