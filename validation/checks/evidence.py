@@ -17,7 +17,7 @@ from kinematify.validation.finding import Cause, Severity
 if TYPE_CHECKING:
     from kinematify.config.validation import EvidenceSettings
     from kinematify.validation.check import OpenCheck
-    from kinematify.validation.evidence.case import JointCase
+    from kinematify.validation.evidence import JointCase
 
 _SWEPT = ("KV310", "KV311", "KV312", "KV320")
 """What exact sweeps measure of one joint: with a part that lifts off, two facts about one axis, and an error."""
@@ -56,7 +56,7 @@ def _suggested(case: JointCase) -> tuple[str, str] | None:
     """Return what the shapes hold against the joint, and what to do."""
     measures, child, parent = case.measures, case.child, case.parent
     if case.hangs_elsewhere and measures.parent.best is not None:
-        other, share = case.bodies.links[measures.parent.best], case.share_of_contact
+        other, share = case.bodies[measures.parent.best], case.share_of_contact
         return (
             f"{child} touches {other} far better than {parent}, which carries it ({share:.0%} of the quality).",
             f"Make {other} the parent, or fix the pose or the meshes of {child} and {parent}.",

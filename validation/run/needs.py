@@ -107,23 +107,16 @@ def geometry(request: StageRequest, recorder: Recorder) -> None:
 def joints(request: StageRequest, recorder: Recorder) -> None:
     """Hold each declared joint against the contact geometry."""
     from kinematify.config import load_config
-    from kinematify.validation.evidence.bodies_at_rest import read_bodies
-    from kinematify.validation.evidence.case import JointCase, better_joint
-    from kinematify.validation.evidence.measure import measure_joints
+    from kinematify.validation.evidence import better_joint, read_cases
 
-    robot, seed, settings = model_of(request), request.settings.seed, request.settings.evidence
+    robot, settings = model_of(request), request.settings
     config = load_config("evidence")  # coarser than that of the inference, for the joint is known already
-    bodies = read_bodies(robot, config, seed=seed)
-    if bodies is None or not bodies.truth.joints:
+    every = read_cases(robot, config, settings.evidence, request.doubted, seed=settings.seed)
+    if not every:
         nothing = Subjects(items=tuple, nothing="no joint moves a body with geometry against another one")
         recorder.run({"JointCase": nothing})
         return
-    every = measure_joints(bodies, settings, seed=seed)
-    all_cases = (
-        JointCase(bodies=bodies, measures=measures, settings=settings, every=every, doubted=request.doubted)
-        for measures in every
-    )
-    cases = [case for case in all_cases if request.remaining and (not case.examined or case.measures.posterior)]
+    cases = [case for case in every if request.remaining and (not case.examined or case.measures.posterior)]
     left = len(every) - len(cases)
     of_joints = f"{left} of the joints" if left else None
     recorder.run({"JointCase": Subjects(items=lambda: cases, left=lambda: of_joints, counted="joints")})
@@ -191,13 +184,7 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
 
     The evidence of the contacts, and the untouched file in each engine.
     """
-    parts = ("bodies_at_rest", "case", "measure")
-    evidence = _stage(
-        "evidence",
-        joints,
-        _checks_of("JointCase"),
-        *(f"kinematify.validation.evidence.{name}" for name in parts),
-    )
+    evidence = _stage("evidence", joints, _checks_of("JointCase"), "kinematify.validation.evidence")
     return [evidence] + [
         _stage(
             f"{name} as loaded",

@@ -61,16 +61,19 @@ class Features:
         return 1 + int(slides * (self.hypotheses.kinds == TURN).sum())
 
 
-def features_of(scene: JointScene, proposed: Hypotheses, config: JointsConfig) -> Features:
-    """Measure all hypotheses of an edge.
+def features_of(
+    scene: JointScene, proposed: Hypotheses, config: JointsConfig, rivals: int | None = None
+) -> Features:
+    """Measure the hypotheses of an edge.
 
     Args:
         scene: The pair.
         proposed: Its joints, of which those that were given have no say in the type.
         config: Thresholds and sweeps.
+        rivals: So many of each type, which cues rank first, are measured beside those that were given; all if absent.
     """
-    turns = rank_turns(scene, proposed.at(np.flatnonzero(proposed.kinds == TURN)), config)
-    slides = rank_slides(scene, proposed.at(np.flatnonzero(proposed.kinds == SLIDE)), config)
+    turns = rank_turns(scene, proposed.at(np.flatnonzero(proposed.kinds == TURN)), config).first(rivals)
+    slides = rank_slides(scene, proposed.at(np.flatnonzero(proposed.kinds == SLIDE)), config).first(rivals)
     hypotheses = joined(proposed.at(np.array([0])), turns.lines, slides.lines)
     return Features(
         scene=scene,

@@ -46,6 +46,11 @@ class Ranked:
         """In the order of the scores; of equal ones, the first stays before the others."""
         return self.at(np.argsort(-self.scores, kind="stable"))
 
+    def first(self, count: int | None) -> Ranked:
+        """The first of them, and those that were given; all where `count` is None."""
+        given = np.array(self.lines.sources) == GIVEN
+        return self.at(np.flatnonzero(given | (np.cumsum(~given) <= (count or len(given)))))
+
     def at(self, index: IntArray) -> Ranked:
         """Those at these positions, in this order."""
         return Ranked(

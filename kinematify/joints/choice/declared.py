@@ -1,7 +1,7 @@
-"""Evidence of the contact geometry for every declared joint, in figures; `judge` decides what they mean.
+"""Declared joints beside all that the inference would weigh in their place, in one pass.
 
-Candidates are those that the inference would weigh, and its fitted choice judges them, without names; the declared
-joint stands among them, and its parent among all bodies that the child touches.
+Candidates are those of the inference, with the same columns, and its fitted choice judges them, without names; the
+declared joint stands among them, and its parent among all bodies that the child touches.
 """
 
 from __future__ import annotations
@@ -12,36 +12,66 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.contact.build_graph import build_contact_graph
+from kinematify.geometry.part_stats import assembly_stats
+from kinematify.geometry.surface import part_surfaces
+from kinematify.joints.bearings.bearing_fit import fit_edge, score_line
 from kinematify.joints.bearings.line import Line
 from kinematify.joints.candidate import FIXED, GIVEN, SLIDE, TURN
-from kinematify.joints.choice.judge import judge
+from kinematify.joints.choice.edges import edge_qualities
+from kinematify.joints.choice.judge import judge as judge_edge
 from kinematify.joints.features.columns import features_of
 from kinematify.joints.features.edge_scene import joint_scene, part_frames
+from kinematify.joints.features.pins import find_pins
 from kinematify.joints.features.workspace import PartCache
 from kinematify.joints.hypotheses.propose import propose
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
+    from kinematify.assembly.part import Assembly
     from kinematify.assembly.truth import TrueJoint
-    from kinematify.config import JointsConfig
+    from kinematify.config import Config, JointsConfig
     from kinematify.config.validation import EvidenceSettings
+    from kinematify.contact.graph import Pair
+    from kinematify.contact.tree import KinematicTree
+    from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import Hypotheses
     from kinematify.joints.choice.judge import Posterior
     from kinematify.joints.features.columns import Features
     from kinematify.joints.features.edge_scene import JointScene
-    from kinematify.joints.features.frames import BoxFrame
     from kinematify.robot.arrays import FloatArray
-    from kinematify.validation.evidence.bodies_at_rest import Bodies, Pair
 
     BoolArray = NDArray[np.bool_]
 
 
 _BALL = 0.08  # spread of the radii; a sphere of 20 triangles has 0.07, a cube 0.16
+
+
+class JudgedAssembly:
+    """Parts in a declared tree, and what is derived from them once for all joints."""
+
+    def __init__(self, assembly: Assembly, tree: KinematicTree, config: Config, seed: int) -> None:
+        """Find contacts and bearings; arguments as in `judge`."""
+        self.assembly, self.tree, self.config = assembly, tree, config
+        self.surfaces = part_surfaces(assembly, config=config.surface)
+        self.graph = build_contact_graph(assembly, self.surfaces, config=config.contact, seed=seed)
+        self.bearings: Mapping[Pair, EdgeBearing] = {
+            pair: fit_edge(self.surfaces, edge, diagonal=assembly.diagonal, config=config.bearing, seed=seed)
+            for pair, edge in self.graph.by_pair.items()
+        }
+        self.cache = PartCache(assembly, self.graph, samples=config.joints.samples, seed=seed)
+        self.frames = part_frames(self.cache, tree, config.joints)
+
+    @cached_property
+    def qualities(self) -> Mapping[Pair, float]:
+        """Return how good each contact is for the tree, in [0, 1] (`joints.choice.edges`)."""
+        pins = find_pins(self.assembly, self.graph, self.bearings, self.config)
+        return edge_qualities(self.graph, assembly_stats(self.assembly), self.bearings, pins)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,14 +88,12 @@ class ParentEvidence:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class JointMeasures:
+class JudgedJoint:
     """Everything that is measured of one declared joint, each when it is first asked for."""
 
     joint: TrueJoint
     """As declared, in the world frame at rest."""
-    bodies: Bodies
-    cache: PartCache
-    frames: Mapping[int, BoxFrame]
+    whole: JudgedAssembly
     settings: EvidenceSettings
 
     @property
@@ -74,13 +102,14 @@ class JointMeasures:
 
     @property
     def _config(self) -> JointsConfig:
-        return self.bodies.config.joints
+        return self.whole.config.joints
 
     @cached_property
     def scene(self) -> JointScene:
         """The two bodies."""
-        edge, bearing = (self.joint.parent, self.joint.child), self.bodies.bearings.get(self._pair)
-        return joint_scene(self.cache, self.bodies.tree, self.frames, edge, bearing, config=self._config)
+        whole, edge = self.whole, (self.joint.parent, self.joint.child)
+        bearing = whole.bearings.get(self._pair)
+        return joint_scene(whole.cache, whole.tree, whole.frames, edge, bearing, config=self._config)
 
     @cached_property
     def proposed(self) -> Hypotheses:
@@ -99,24 +128,27 @@ class JointMeasures:
     @cached_property
     def posterior(self) -> Posterior:
         """How likely each candidate is, by geometry alone."""
-        return judge(self.features, self._config.confidence.model_copy(update={"cues_lead": 0.0, "name_weight": 0.0}))
+        return judge_edge(self.features, self._config.confidence.model_copy(update={"cues_lead": 0.0, "name_weight": 0.0}))
 
     @cached_property
     def parent(self) -> ParentEvidence:
         """How it hangs on its parent."""
-        return _parent_evidence(self.bodies, self.joint)
+        return _parent_evidence(self.whole, self.joint)
 
     @property
     def bearing(self) -> float:
         """Score of the best bearing line of the contact; 0 without one."""
-        found = self.bodies.bearings.get(self._pair)
+        found = self.whole.bearings.get(self._pair)
         return found.lines[0].score if found and found.lines else 0.0
 
     @cached_property
     def own_bearing(self) -> float:
         """Score of the declared line as a bearing; 0 where there is no other to compare it with."""
-        rivals = self.bearing > self.settings.bearing_score
-        return self.bodies.score_line(self._pair, self._line).score if rivals else 0.0
+        if self.bearing <= self.settings.bearing_score:
+            return 0.0
+        whole, edge = self.whole, self.whole.graph.by_pair[self._pair]
+        diagonal, config = whole.assembly.diagonal, whole.config.bearing
+        return score_line(whole.surfaces, edge, self._line, diagonal=diagonal, config=config).score
 
     @property
     def slides(self) -> bool:
@@ -211,30 +243,36 @@ class JointMeasures:
         return float(forward), float(backward)
 
 
-def measure_joints(bodies: Bodies, settings: EvidenceSettings, *, seed: int) -> list[JointMeasures]:
-    """Prepare every joint between two bodies, in the order of the description.
+def judge(
+    assembly: Assembly,
+    tree: KinematicTree,
+    declared: Sequence[TrueJoint],
+    config: Config,
+    settings: EvidenceSettings,
+    *,
+    seed: int,
+) -> list[JudgedJoint]:
+    """Hold declared joints against what the inference would choose, in their order.
 
     Args:
-        bodies: The model at rest.
+        assembly: The parts, at rest.
+        tree: Which part carries which, as declared.
+        declared: Joints of its edges, world frame at rest.
+        config: How evidence is gathered.
         settings: What counts as the same line.
-        seed: Seed of the surface samples.
+        seed: Seed of all samples.
     """
-    config = bodies.config.joints
-    cache = PartCache(bodies.assembly, bodies.graph, samples=config.samples, seed=seed)
-    frames = part_frames(cache, bodies.tree, config)
-    return [
-        JointMeasures(joint=joint, bodies=bodies, cache=cache, frames=frames, settings=settings)
-        for joint in bodies.truth.joints
-    ]
+    whole = JudgedAssembly(assembly, tree, config, seed)
+    return [JudgedJoint(joint=joint, whole=whole, settings=settings) for joint in declared]
 
 
-def _parent_evidence(bodies: Bodies, joint: TrueJoint) -> ParentEvidence:
-    carried = bodies.tree.subtree(joint.child)
-    others = [body for body in bodies.graph.neighbours[joint.child] if body not in carried and body != joint.parent]
+def _parent_evidence(whole: JudgedAssembly, joint: TrueJoint) -> ParentEvidence:
+    carried = whole.tree.subtree(joint.child)
+    others = [body for body in whole.graph.neighbours[joint.child] if body not in carried and body != joint.parent]
     compared = (*others, joint.parent) if others else ()  # qualities take a tenth of the stage
-    quality = {body: _quality(bodies, joint.child, body) for body in compared}
+    quality = {body: _quality(whole, joint.child, body) for body in compared}
     best = max(others, key=lambda body: quality[body], default=None)
-    edge = bodies.graph.by_pair.get(_pair(joint.child, joint.parent))
+    edge = whole.graph.by_pair.get(_pair(joint.child, joint.parent))
     return ParentEvidence(
         touches=edge is not None and not edge.bridge,
         quality=quality.get(joint.parent, 0.0),
@@ -243,11 +281,11 @@ def _parent_evidence(bodies: Bodies, joint: TrueJoint) -> ParentEvidence:
     )
 
 
-def _quality(bodies: Bodies, child: int, body: int) -> float:
-    edge = bodies.graph.by_pair.get(_pair(child, body))
+def _quality(whole: JudgedAssembly, child: int, body: int) -> float:
+    edge = whole.graph.by_pair.get(_pair(child, body))
     if edge is None or edge.bridge:
         return 0.0
-    return bodies.qualities[_pair(child, body)]
+    return whole.qualities[_pair(child, body)]
 
 
 def _pair(first: int, second: int) -> Pair:

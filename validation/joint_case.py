@@ -8,7 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.assembly.assemble import simplified
+from kinematify.assembly.erasure import erase
+from kinematify.assembly.part import Assembly
+from kinematify.contact.tree import KinematicTree
 from kinematify.joints.bearings.line import Line
+from kinematify.joints.declared import judge
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration
 from kinematify.robot.transforms import joint_motion
@@ -17,12 +22,12 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from typing import Any
 
+    from kinematify.config import Config
     from kinematify.config.validation import EvidenceSettings
+    from kinematify.joints.declared import JudgedJoint
     from kinematify.joints.features.workspace import PartCache
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
-    from kinematify.validation.evidence.bodies_at_rest import Bodies
-    from kinematify.validation.evidence.measure import JointMeasures
 
 _LINKAGE = 0.5  # `JointScene.mechanism` from which a pair belongs to a linkage rather than to furniture
 
@@ -90,11 +95,14 @@ class Contact:
 class JointCase:
     """One declared joint."""
 
-    bodies: Bodies
-    measures: JointMeasures
+    measures: JudgedJoint
     settings: EvidenceSettings
-    every: Sequence[JointMeasures]
-    """Of all joints of the model that were measured, in the order of the description."""
+    bodies: Sequence[str]
+    """First link with geometry of every body."""
+    carrier: str
+    """First link of the body that carries it."""
+    frame: FloatArray
+    """Frame of its axis, world frame at rest, shape (4, 4)."""
     doubted: Mapping[str, Sequence[str]] | None = None
     """Checks by exact geometry that speak against a joint, by joint; None where none were made."""
 
@@ -112,7 +120,7 @@ class JointCase:
     def instead(self) -> str:
         """The axis to write for the line that fits best, and where that line runs, in the joint's own frame."""
         joint, line = self.measures.joint.source, self.measures
-        T = self.bodies.joint_frames[joint]
+        T = self.frame
         axis = line.best_axis @ T[:3, :3]
         remedy = f'The line that fits best has <axis xyz="{_written(axis)}"/> in the joint {joint}'
         if self.measures.slides:
@@ -124,12 +132,12 @@ class JointCase:
     @property
     def parent(self) -> str:
         """Name of the body that carries the joint."""
-        return self.bodies.links[self.measures.joint.parent]
+        return self.bodies[self.measures.joint.parent]
 
     @property
     def child(self) -> str:
         """Name of the body that moves."""
-        return self.bodies.links[self.measures.joint.child]
+        return self.bodies[self.measures.joint.child]
 
     @property
     def share_of_contact(self) -> float:
@@ -278,6 +286,47 @@ class JointCase:
         return missing / max(upper + lower, 1e-12)
 
 
+def read_cases(
+    robot: Robot,
+    config: Config,
+    settings: EvidenceSettings,
+    doubted: Mapping[str, Sequence[str]] | None,
+    *,
+    seed: int,
+) -> list[JointCase]:
+    """Pose the bodies at rest and hold every joint between two of them against what they show, as the file orders them.
+
+    Args:
+        robot: Links, meshes and joints as declared; links that fixed joints hold together are one body.
+        config: How evidence is gathered.
+        settings: What it means.
+        doubted: See `JointCase.doubted`.
+        seed: Seed of all samples.
+    """
+    if not any(link.has_geometry for link in robot.links):
+        return []
+    erased = erase(robot, shuffle=False)
+    poses, truth = forward_kinematics(robot, rest_configuration(robot)), erased.truth
+    if len(erased.parts) < 2 or -1 in (joint.parent for joint in truth.joints):
+        return []
+    most = config.assembly.max_part_faces
+    parts = [part if len(part.faces) <= most else simplified(part, config.assembly) for part in erased.parts]
+    assembly = Assembly(parts=tuple(parts), source=robot.name)
+    bodies = [next(name for name in links if robot.link_by_name[name].has_geometry) for links in truth.part_links]
+    declared = robot.joint_by_name
+    return [
+        JointCase(
+            measures=measures,
+            settings=settings,
+            bodies=bodies,
+            carrier=truth.part_links[measures.joint.parent][0],
+            frame=poses[declared[measures.joint.source].parent] @ declared[measures.joint.source].T_parent_child,
+            doubted=doubted,
+        )
+        for measures in judge(assembly, KinematicTree(parents=truth.parents), truth.joints, config, settings, seed=seed)
+    ]
+
+
 def _written(vector: FloatArray) -> str:
     """Numbers as a file has them."""
     return " ".join(f"{value + 0.0:.4g}" for value in np.round(vector, 6))
@@ -292,9 +341,8 @@ def better_joint(robot: Robot, case: JointCase) -> dict[str, Any] | None:
     if not case.examined or not (case.doubts_type or case.doubts_line):
         return None
     found, best = measures.posterior.hypotheses, measures.best_other if case.doubts_type else measures.best
-    carrier = case.bodies.truth.part_links[measures.joint.parent][0]
-    T_world_rest = forward_kinematics(robot, rest_configuration(robot))[carrier]
-    T_zero_rest = forward_kinematics(robot, {})[carrier] @ np.linalg.inv(T_world_rest)
+    T_world_rest = forward_kinematics(robot, rest_configuration(robot))[case.carrier]
+    T_zero_rest = forward_kinematics(robot, {})[case.carrier] @ np.linalg.inv(T_world_rest)
     return {
         "kind": measures.posterior.kind(best).value,
         "axis": (T_zero_rest[:3, :3] @ found.axes[best]).tolist(),

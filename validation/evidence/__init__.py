@@ -1,1 +1,0 @@
-"""Does the geometry of two links explain the joint between them?"""
