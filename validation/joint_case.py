@@ -13,7 +13,7 @@ from kinematify.assembly.erasure import erase
 from kinematify.assembly.part import Assembly
 from kinematify.contact.tree import KinematicTree
 from kinematify.joints.bearings.line import Line
-from kinematify.joints.declared import judge
+from kinematify.joints.choice.declared import judge
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration
 from kinematify.robot.transforms import joint_motion
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from kinematify.config import Config
     from kinematify.config.validation import EvidenceSettings
-    from kinematify.joints.declared import JudgedJoint
+    from kinematify.joints.choice.declared import JudgedJoint
     from kinematify.joints.features.workspace import PartCache
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
@@ -224,14 +224,14 @@ class JointCase:
     @cached_property
     def _contact(self) -> Contact | None:
         """Where child and parent touch; None at too few places to say anything."""
-        joint, scene, settings = self.measures.joint, self.measures.scene, self.settings
-        band = settings.contact_band * scene.frame.diagonal
-        contact = Contact(scene.cache, joint.parent, joint.child, band=band)
+        joint, settings = self.measures.joint, self.settings
+        band = settings.contact_band * self.measures.size
+        contact = Contact(self.measures.whole.cache, joint.parent, joint.child, band=band)
         return contact if contact.places >= settings.contact_places else None
 
     def _opening(self, line: Line) -> Opening:
         assert self._contact is not None
-        joint, size, settings = self.measures.joint, self.measures.scene.frame.diagonal, self.settings
+        joint, size, settings = self.measures.joint, self.measures.size, self.settings
         reach = settings.longest_slide * size if self.measures.slides else np.radians(settings.widest_turn)
         return self._contact.opening(joint.kind, line, max(joint.lower, -reach), min(joint.upper, reach))
 
@@ -244,7 +244,7 @@ class JointCase:
     def opens(self) -> bool:
         """The contact opens about the declared line so far that it may do so less about another one."""
         least = min(self.settings.bearing_opens, self.settings.opens, self.settings.opens_across)
-        return self._own is not None and self._own.width > least * self.measures.scene.frame.diagonal
+        return self._own is not None and self._own.width > least * self.measures.size
 
     @cached_property
     def opened(self) -> tuple[Opening, Opening] | None:
@@ -254,7 +254,7 @@ class JointCase:
         across the declared one without a bearing about it: what a leg without bearings touches says little.
         """
         measures, settings = self.measures, self.settings
-        joint, line, size = measures.joint, measures, measures.scene.frame.diagonal
+        joint, line, size = measures.joint, measures, measures.size
         turned = float(np.degrees(np.arccos(np.clip(abs(line.best_axis @ joint.axis), 0.0, 1.0))))
         if self.contradicted:
             limit = settings.bearing_opens

@@ -17,7 +17,7 @@ from kinematify.validation.finding import Cause, Severity
 if TYPE_CHECKING:
     from kinematify.config.validation import EvidenceSettings
     from kinematify.validation.check import OpenCheck
-    from kinematify.validation.evidence import JointCase
+    from kinematify.validation.joint_case import JointCase
 
 _SWEPT = ("KV310", "KV311", "KV312", "KV320")
 """What exact sweeps measure of one joint: with a part that lifts off, two facts about one axis, and an error."""
@@ -62,7 +62,7 @@ def _suggested(case: JointCase) -> tuple[str, str] | None:
             f"Make {other} the parent, or fix the pose or the meshes of {child} and {parent}.",
         )
     if case.doubts_line and case.opened is None:
-        size, shown = measures.scene.frame.diagonal, f"{child} and {parent} show"
+        size, shown = measures.size, f"{child} and {parent} show"
         away = measures.distance * size if np.isfinite(measures.distance) else size
         if case.unexplained:
             message = f"the axis runs {measures.angle:.1f} deg off every direction that {shown}."
@@ -96,9 +96,9 @@ def unusual_range(result: OpenCheck, case: JointCase) -> None:
 
     Remedy: Correct the limit, or accept the finding with a reason.
     """
-    joint, scene, settings = case.measures.joint, case.measures.scene, case.settings
-    span = max(abs(joint.lower), abs(joint.upper))
-    if not case.judged_alone or not np.isfinite(span):
+    joint, settings = case.measures.joint, case.settings
+    span = float(np.degrees(max(abs(joint.lower), abs(joint.upper))))
+    if not np.isfinite(span):
         return
     if not case.measures.slides and _turns_round(joint.lower, joint.upper, settings):
         turned = float(np.degrees(joint.upper - joint.lower))
@@ -113,12 +113,12 @@ def unusual_range(result: OpenCheck, case: JointCase) -> None:
             limit=settings.whole_turn,
             unit="deg",
         )
-    elif case.linkage or case.measures.slides:
+    elif case.measures.slides or span <= min(settings.widest_door, settings.widest_lid) or case.linkage:
         return
-    elif scene.panel and scene.upright:
-        _wide(result, case, "door", float(np.degrees(span)), settings.widest_door)
+    elif (scene := case.measures.scene).panel and scene.upright:
+        _wide(result, case, "door", span, settings.widest_door)
     elif scene.panel and scene.flat:
-        _wide(result, case, "lid", float(np.degrees(span)), settings.widest_lid)
+        _wide(result, case, "lid", span, settings.widest_lid)
 
 
 def _turns_round(lower: float, upper: float, settings: EvidenceSettings) -> bool:
@@ -196,7 +196,9 @@ def _doubt(
     limit: float,
     unit: str | None = None,
 ) -> None:
-    """Add a finding against the declared joint."""
+    """Add a finding against the declared joint, if the contact tells of it alone."""
+    if not case.judged_alone:
+        return
     joint = case.measures.joint
     result.find(
         message,

@@ -107,7 +107,7 @@ def geometry(request: StageRequest, recorder: Recorder) -> None:
 def joints(request: StageRequest, recorder: Recorder) -> None:
     """Hold each declared joint against the contact geometry."""
     from kinematify.config import load_config
-    from kinematify.validation.evidence import better_joint, read_cases
+    from kinematify.validation.joint_case import better_joint, read_cases
 
     robot, settings = model_of(request), request.settings
     config = load_config("evidence")  # coarser than that of the inference, for the joint is known already
@@ -184,7 +184,7 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
 
     The evidence of the contacts, and the untouched file in each engine.
     """
-    evidence = _stage("evidence", joints, _checks_of("JointCase"), "kinematify.validation.evidence")
+    evidence = _stage("evidence", joints, _checks_of("JointCase"), "kinematify.validation.joint_case")
     return [evidence] + [
         _stage(
             f"{name} as loaded",

@@ -7,7 +7,7 @@ declared joint stands among them, and its parent among all bodies that the child
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     BoolArray = NDArray[np.bool_]
 
 
+_RIVALS = 8  # of each type; what cues rank lower is never the joint that is named instead
 _BALL = 0.08  # spread of the radii; a sphere of 20 triangles has 0.07, a cube 0.16
 
 
@@ -60,18 +61,21 @@ class JudgedAssembly:
         self.assembly, self.tree, self.config = assembly, tree, config
         self.surfaces = part_surfaces(assembly, config=config.surface)
         self.graph = build_contact_graph(assembly, self.surfaces, config=config.contact, seed=seed)
-        self.bearings: Mapping[Pair, EdgeBearing] = {
-            pair: fit_edge(self.surfaces, edge, diagonal=assembly.diagonal, config=config.bearing, seed=seed)
-            for pair, edge in self.graph.by_pair.items()
-        }
+        self.bearing = cache(partial(self._fitted, seed=seed))
+        """Bearing lines of two parts, the lower index first; None where they do not touch."""
         self.cache = PartCache(assembly, self.graph, samples=config.joints.samples, seed=seed)
         self.frames = part_frames(self.cache, tree, config.joints)
+
+    def _fitted(self, pair: Pair, seed: int) -> EdgeBearing | None:
+        edge, diagonal, config = self.graph.by_pair.get(pair), self.assembly.diagonal, self.config.bearing
+        return None if edge is None else fit_edge(self.surfaces, edge, diagonal=diagonal, config=config, seed=seed)
 
     @cached_property
     def qualities(self) -> Mapping[Pair, float]:
         """Return how good each contact is for the tree, in [0, 1] (`joints.choice.edges`)."""
-        pins = find_pins(self.assembly, self.graph, self.bearings, self.config)
-        return edge_qualities(self.graph, assembly_stats(self.assembly), self.bearings, pins)
+        bearings = {pair: found for pair in self.graph.by_pair if (found := self.bearing(pair)) is not None}
+        pins = find_pins(self.assembly, self.graph, bearings, self.config)
+        return edge_qualities(self.graph, assembly_stats(self.assembly), bearings, pins)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -104,11 +108,16 @@ class JudgedJoint:
     def _config(self) -> JointsConfig:
         return self.whole.config.joints
 
+    @property
+    def size(self) -> float:
+        """Diagonal of the child [m]."""
+        return self.whole.frames[self.joint.child].diagonal
+
     @cached_property
     def scene(self) -> JointScene:
         """The two bodies."""
         whole, edge = self.whole, (self.joint.parent, self.joint.child)
-        bearing = whole.bearings.get(self._pair)
+        bearing = whole.bearing(self._pair)
         return joint_scene(whole.cache, whole.tree, whole.frames, edge, bearing, config=self._config)
 
     @cached_property
@@ -123,12 +132,14 @@ class JudgedJoint:
     @cached_property
     def features(self) -> Features:
         """What is measured of the candidates, which takes most of the time."""
-        return features_of(self.scene, self.proposed, self._config)
+        return features_of(self.scene, self.proposed, self._config, _RIVALS)
 
     @cached_property
     def posterior(self) -> Posterior:
         """How likely each candidate is, by geometry alone."""
-        return judge_edge(self.features, self._config.confidence.model_copy(update={"cues_lead": 0.0, "name_weight": 0.0}))
+        return judge_edge(
+            self.features, self._config.confidence.model_copy(update={"cues_lead": 0.0, "name_weight": 0.0})
+        )
 
     @cached_property
     def parent(self) -> ParentEvidence:
@@ -138,7 +149,7 @@ class JudgedJoint:
     @property
     def bearing(self) -> float:
         """Score of the best bearing line of the contact; 0 without one."""
-        found = self.whole.bearings.get(self._pair)
+        found = self.whole.bearing(self._pair)
         return found.lines[0].score if found and found.lines else 0.0
 
     @cached_property
@@ -197,7 +208,7 @@ class JudgedJoint:
     def _away(self, every: Hypotheses) -> FloatArray:
         """Distances of candidates from the declared line, fractions of the child's diagonal, shape (h,)."""
         beside = lengths_of(crossed(every.pivots - self.joint.pivot, self.joint.axis))
-        return np.asarray((not self.slides) * beside / self.scene.frame.diagonal)
+        return np.asarray((not self.slides) * beside / self.size)
 
     @cached_property
     def best(self) -> int:

@@ -61,9 +61,7 @@ class Features:
         return 1 + int(slides * (self.hypotheses.kinds == TURN).sum())
 
 
-def features_of(
-    scene: JointScene, proposed: Hypotheses, config: JointsConfig, rivals: int | None = None
-) -> Features:
+def features_of(scene: JointScene, proposed: Hypotheses, config: JointsConfig, rivals: int | None = None) -> Features:
     """Measure the hypotheses of an edge.
 
     Args:

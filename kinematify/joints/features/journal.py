@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from kinematify.joints.bearings.refine_lines import across_axis
+from kinematify.joints.bearings.refine_lines import line_frames
 
 if TYPE_CHECKING:
     from kinematify.config import JournalConfig
@@ -94,8 +94,8 @@ def find_journal(facing: Facing, size: float, config: JournalConfig, seed: int =
     axes, pivots, radii = _proposals(facing, config, np.random.default_rng(seed))
     keep = radii < config.largest * size
     best: Journal | None = None
-    for axis, pivot, radius in zip(axes[keep], pivots[keep], radii[keep], strict=True):
-        found = _journal(facing, axis, pivot, radius, config)
+    for frame, pivot, radius in zip(line_frames(axes[keep]), pivots[keep], radii[keep], strict=True):
+        found = _journal(facing, frame, pivot, radius, config)
         if found is not None and (best is None or _merit(found) > _merit(best)):
             best = found
     return _refined(facing, best, config) if best is not None else None
@@ -124,17 +124,17 @@ def _proposals(
 
 
 def _journal(
-    facing: Facing, axis: FloatArray, pivot: FloatArray, radius: float, config: JournalConfig
+    facing: Facing, frame: FloatArray, pivot: FloatArray, radius: float, config: JournalConfig
 ) -> Journal | None:
-    """The journal about a line with surface at about this radius; None where it does not go round."""
+    """The journal about the last axis of a frame (3, 3) with surface at about this radius, if that is round."""
+    *basis, axis = frame
     fits = _fitting(facing, axis, pivot, radius, config)
-    if fits.sum() < _LEAST:
+    if np.count_nonzero(fits) < max(_LEAST, config.coverage * config.sectors):
         return None
     offset = facing.points[fits] - pivot
-    basis = across_axis(axis)
     angle = np.arctan2(offset @ basis[1], offset @ basis[0])
-    sectors = np.unique(np.floor((angle + np.pi) / (2.0 * np.pi) * config.sectors).astype(np.int64) % config.sectors)
-    coverage = len(sectors) / config.sectors
+    sector = np.floor((angle + np.pi) / (2.0 * np.pi) * config.sectors).astype(np.int64) % config.sectors
+    coverage = float(np.count_nonzero(np.bincount(sector))) / config.sectors
     if coverage < config.coverage:
         return None
     height = offset @ axis
