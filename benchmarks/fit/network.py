@@ -62,7 +62,6 @@ def fit_network(
 
     return Network(
         scale=scale,
-        verdicts=hidden,
         embed=stacked("embed.weight"),
         embed_bias=stacked("embed.bias"),
         share=stacked("share.weight"),

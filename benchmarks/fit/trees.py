@@ -219,7 +219,7 @@ def write_scorer(scorer: Scorer, path: Path) -> None:
     if scorer.network is not None:
         scale, network = vars(scorer.network.scale), {**vars(scorer.network)}
         del network["scale"]
-        small = {name: layer if name == "verdicts" else layer.astype(np.float16) for name, layer in network.items()}
+        small = {name: layer.astype(np.float16) for name, layer in network.items()}
         arrays |= {f"{NETWORK}{name}": layer for name, layer in {**scale, **small}.items()}
     if scorer.points is not None:
         arrays |= {f"{POINTS}{name}": layer.astype(np.float16) for name, layer in vars(scorer.points).items()}

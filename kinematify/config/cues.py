@@ -29,8 +29,6 @@ class PanelsConfig(StageConfig):
     """Bearing lines among the candidates."""
     least_contact: int = 20  # fewer points do not span a line
     """Contact samples needed to propose lines from the contact."""
-    cluster_gap: float = 0.3  # two pins or hinges lie at least a third of the part apart
-    """Gap between two contact zones, fraction of the part's longest side."""
     hinge_band: float = 0.12  # hinges take up to an eighth of a door
     """Contact within this fraction of the part's reach counts as being at the line."""
     ajar_share: float = 0.85  # a closed panel touches along three or four edges, an open one along one

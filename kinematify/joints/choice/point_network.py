@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from kinematify.joints.candidate import Hypotheses
     from kinematify.joints.features.workspace import Cloud
-    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -90,18 +90,11 @@ class Network(SetNetwork):
     """Network of the measurements of all hypotheses of an edge as inputs."""
 
     scale: Scale
-    verdicts: BoolArray
-    """Inputs that are hidden when it is asked without what the weighted cues say, shape (n,)."""
 
     def log_probabilities(self, columns: NDArray[Any]) -> FloatArray:
         """Mean log probability of each hypothesis of an edge, from its columns (h, f), shape (h,)."""
-        with_verdicts = self.scale.inputs(columns)
-        asked = with_verdicts, np.where(self.verdicts, 0.0, with_verdicts)
-        scores = [
-            np.einsum("nh,h->n", self.compared(k, inputs), score)
-            for inputs in asked
-            for k, score in enumerate(self.score)
-        ]
+        inputs = self.scale.inputs(columns)
+        scores = [np.einsum("nh,h->n", self.compared(k, inputs), score) for k, score in enumerate(self.score)]
         return np.asarray(log_softmax(np.array(scores), axis=1).mean(axis=0))
 
 

@@ -213,8 +213,8 @@ def _network(stored: Mapping[str, NDArray[Any]]) -> Network | None:
     if not arrays:
         return None
     scale = Scale(**{field.name: arrays.pop(field.name) for field in fields(Scale)})
-    layers: dict[str, Any] = {name: layer.astype(np.float32) for name, layer in arrays.items() if name != "verdicts"}
-    return Network(scale=scale, verdicts=arrays["verdicts"], **layers)
+    layers: dict[str, Any] = {name: layer.astype(np.float32) for name, layer in arrays.items()}
+    return Network(scale=scale, **layers)
 
 
 def _points(stored: Mapping[str, NDArray[Any]]) -> PointNetwork | None:

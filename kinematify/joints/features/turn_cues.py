@@ -30,7 +30,7 @@ WEIGHTS = {
     "contact_radius": -0.5, "ajar_contact": 1.5, "handle_distance": 0.9, "handle_parallel": 0.6,
     "margin_difference": 1.0, "margin_here": -1.0, "door_vertical": 0.4, "door_tall": 0.2, "hinge_above": -0.3,
     "hinge_below": 0.0, "lid_rise": 1.0, "lid_behind": 1.0, "pedal": 1.0, "lid_backrest": 1.0, "thin_along": -0.7,
-    "length_along": 0.15, "half_way": -0.3, "centre_line": -0.7, "contact_line": -0.2, "clusters": 0.8,
+    "length_along": 0.15, "half_way": -0.3, "centre_line": -0.7, "contact_line": -0.2,
     "weak_bearing": -0.3, "mechanism_bearing": 2.0, "compact_radius": -1.0, "round": 2.0, "square": 0.5,
     "rolling": 1.5, "small_normal": 0.6,
 }  # fmt: skip
@@ -293,7 +293,6 @@ def _shape_cues(scene: JointScene, lines: Hypotheses, near: FloatArray) -> dict[
     place, source = lines.places, np.array(lines.sources)
     turned = np.maximum(_roundness(scene, lines), scene.disc * (place == CENTRE) * (thin > 0.99))
     turned *= 1.0 - scene.compact * (1.0 - near)
-    clusters = (source == "contact_clusters") & (not (scene.panel and (scene.upright or scene.flat)))
     by_contact = (source == "weak_bearing") | (source == "contact_axis")
     stands = (place == CENTRE) | (by_contact if scene.mechanism > 0.5 else source == "contact_axis")
     values, vectors = scene.contact.facing
@@ -304,7 +303,6 @@ def _shape_cues(scene: JointScene, lines: Hypotheses, near: FloatArray) -> dict[
         "half_way": (place == HALF_WAY).astype(np.float64),
         "centre_line": (place == CENTRE).astype(np.float64),
         "contact_line": (source == "contact_line").astype(np.float64),
-        "clusters": clusters.astype(np.float64),
         "weak_bearing": (1.0 - scene.mechanism) * (source == "weak_bearing"),
         "mechanism_bearing": scene.mechanism * (source == "weak_bearing") * _bearing_ratio(scene, lines) * near,
         "small_normal": max(scene.smallness, scene.compact) * normal * stands,

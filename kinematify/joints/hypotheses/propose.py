@@ -73,17 +73,14 @@ def _turns(scene: JointScene, config: JointsConfig) -> list[Proposal]:
 
 
 def _slides(scene: JointScene, config: JointsConfig) -> list[tuple[FloatArray, str]]:
-    """Distinct directions: rail, bearing, twins, the child's box, the parent's box, the contact normal."""
+    """Distinct directions: rail, bearing, the child's box, the parent's box."""
     found: list[tuple[FloatArray, str]] = []
     if scene.bearing is not None and scene.bearing.rail is not None and scene.mechanism > 0:
         found.append((scene.bearing.rail.axis, "rail"))
     if scene.bearing is not None and scene.bearing.lines and scene.has_bearing:
         found.append((scene.bearing.lines[0].axis, "bearing"))
-    found += [(axis, "twin") for axis in scene.grips]
     found += [(axis, "box") for axis in scene.frame.axes]
     found += [(axis, "parent_box") for axis in scene.parent_frame.axes]
-    if scene.contact.normal is not None:
-        found.append((scene.contact.normal, "contact_normal"))
     return [found[k] for k in distinct_axes([axis for axis, _ in found], config.slides.distinct_deg)]
 
 
@@ -129,7 +126,7 @@ def _box_lines(scene: JointScene) -> list[Proposal]:
 
 
 def _contact_lines(scene: JointScene, config: JointsConfig) -> list[Proposal]:
-    """The long direction of the contact, and the line through two clusters of it (two pins, two hinges)."""
+    """The direction that most of a small contact faces, and the long direction of the contact."""
     contact = scene.contact
     if len(contact.points) < config.panels.least_contact:
         return []
@@ -139,30 +136,7 @@ def _contact_lines(scene: JointScene, config: JointsConfig) -> list[Proposal]:
         found.append((contact.facing[1][:, 2], contact.centroid, ELSEWHERE, "contact_axis"))
     if values[1] < 0.1 * values[2]:
         found.append((vectors[:, 2], contact.centroid, ELSEWHERE, "contact_line"))
-    clusters = contact_clusters(scene, config)
-    if clusters is not None:
-        direction = clusters[1] - clusters[0]
-        found.append((direction / np.linalg.norm(direction), clusters.mean(axis=0), ELSEWHERE, "contact_clusters"))
     return found
-
-
-def contact_clusters(scene: JointScene, config: JointsConfig) -> FloatArray | None:
-    """Centres (2, 3) of two compact contact zones that lie far apart; None where the contact is not so."""
-    contact = scene.contact
-    along = (contact.points - contact.centroid) @ contact.spread[1][:, 2]
-    order = np.argsort(along)
-    gaps = np.diff(along[order])
-    split = int(np.argmax(gaps))
-    size = float(np.max(scene.frame.extents))
-    if gaps[split] < config.panels.cluster_gap * size:
-        return None
-    sides = order[: split + 1], order[split + 1 :]
-    shares = [float(contact.weights[side].sum()) for side in sides]
-    if min(shares) < 0.15:
-        return None
-    centres = np.array([np.average(contact.points[s], axis=0, weights=contact.weights[s]) for s in sides])
-    spreads = [lengths_of(contact.points[s] - c).max() for s, c in zip(sides, centres, strict=True)]
-    return centres if max(spreads) < 0.5 * np.linalg.norm(centres[1] - centres[0]) else None
 
 
 def centre_lines(scene: JointScene) -> list[tuple[FloatArray, FloatArray]]:
