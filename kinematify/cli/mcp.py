@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 import tempfile
 from pathlib import Path
@@ -59,6 +60,11 @@ def server(root: Path) -> MCPServer:
     """
     from mcp.server.mcpserver import Image, MCPServer
 
+    async def answered(name: str, *words: str) -> dict[str, Any]:
+        """Answer of a command as JSON, with paths relative to the root; its findings are an answer, too."""
+        text = await _run(name, "--json", "-", *words, findings=True)
+        return dict(json.loads(text.replace(f"{root}{os.sep}", "")))
+
     served = MCPServer("kinematify", version=__version__, instructions=_INSTRUCTIONS)
 
     @served.tool()
@@ -68,7 +74,7 @@ def server(root: Path) -> MCPServer:
         quick leaves out the slower checks; checks are patterns such as "KV3*,KV801".
         """
         chosen = ["--checks", checks] if checks else ["--quick"] if quick else []
-        report = await _answer("validate", *chosen, "--", _inside(root, model))
+        report = await answered("validate", *chosen, "--", _inside(root, model))
         found = [item for item in report["findings"] if item["suppressed"] is None and item["severity"] != "note"]
         shown = [{key: item[key] for key in _FIELDS if item.get(key) is not None} for item in found[:_MOST_FINDINGS]]
         return {"verdict": report["verdict"], "findings": shown, "not_shown": len(found) - len(shown)}
@@ -76,27 +82,28 @@ def server(root: Path) -> MCPServer:
     @served.tool()
     async def explain(check: str) -> dict[str, Any]:
         """Explain a check, such as KV301: what it verifies, why it matters, how to repair what it finds."""
-        return dict((await _answer("explain", "--", check))["checks"][0])
+        return dict((await answered("explain", "--", check))["checks"][0])
 
     @served.tool()
     async def fix(model: str, out: str, kinematics: bool = False) -> dict[str, Any]:
         """Write a model as the URDF `out` with certain findings repaired; kinematics lets it change joints, too."""
         changed = ["--kinematics"] if kinematics else []
         place = _inside(root, out, new=True)
-        return await _answer("fix", "-o", place, "--force", *changed, "--", _inside(root, model))
+        found = await answered("fix", "-o", place, "--force", *changed, "--", _inside(root, model))
+        return {key: value for key, value in found.items() if value and key != "named"}
 
     @served.tool()
     async def infer(meshes: str, out: str, hints: list[str] | None = None) -> dict[str, Any]:
         """Find the joints of segmented meshes and write the model folder `out`; a hint is "door:axis=z"."""
         given = [word for hint in hints or () for word in ("--hint", hint)]
         place = _inside(root, out, new=True)
-        return await _answer("infer", "-o", place, "--force", *given, "--", _inside(root, meshes))
+        return await answered("infer", "-o", place, "--force", *given, "--", _inside(root, meshes))
 
     @served.tool()
     async def export(model: str, to: Literal["mjcf", "usd", "sdf", "urdf", "glb", "srdf"], out: str) -> dict[str, Any]:
         """Write a model in another format and list what that format cannot hold."""
         place = _inside(root, out, new=True)
-        return await _answer("export", "--to", to, "-o", place, "--force", "--", _inside(root, model))
+        return await answered("export", "--to", to, "-o", place, "--force", "--", _inside(root, model))
 
     @served.tool(structured_output=False)
     async def look(model: str, positions: dict[str, float] | None = None) -> Any:
@@ -126,15 +133,6 @@ def _inside(root: Path, name: str, *, new: bool = False) -> str:
     if path.is_file() and path.stat().st_size > _LARGEST:
         raise _refused(f"{name} has {path.stat().st_size / 1e6:.0f} MB; at most {_LARGEST / 1e6:.0f} are read.")
     return str(path)
-
-
-async def _answer(name: str, *words: str) -> dict[str, Any]:
-    """The answer of a command as JSON; its findings are an answer, too.
-
-    Raises:
-        ToolError: It gave none; the message is the command's.
-    """
-    return dict(json.loads(await _run(name, "--json", "-", *words, findings=True)))
 
 
 async def _run(*words: str, findings: bool = False) -> str:
