@@ -181,8 +181,8 @@ def command(**given: Any) -> int:
     try:
         with progress_reporter() as progress:
             for number, model in enumerate(models):
-                name = Path(*model.parts[-2:])
-                place = f"{name} ({number + 1} of {len(models)}): " if several else ""
+                shown = Path(*model.parts[-2:])
+                place = f"{shown} ({number + 1} of {len(models)}): " if several else ""
 
                 def report(stage: str, share: float, done: int = number, prefix: str = place) -> None:
                     progress(prefix + stage, (done + share) / len(models))
