@@ -198,7 +198,7 @@ class _Loop:
         self.simulator = Simulator(Plan(inference=given).model, settings.geometry)
         self.against: dict[tuple[int, int], float] = {}
         self.done: list[_Done] = []
-        self.pools: dict[int, CandidateJoints] = {}
+        self.candidates = CandidateJoints(given.assembly, given.graph, given.bearings, given.config)
         self.ended = "all rounds were used"
         self.simulated = 0
 
@@ -247,7 +247,7 @@ class _Loop:
         start, given = time.perf_counter(), plan.inference
         verdict = self.simulator.judge(plan.model)
         feedback = feedback_from(verdict.findings, verdict.joints, plan.model.robot.joint_by_name)
-        names, pool = given.assembly.names, self._candidates_of(given)
+        names, pool = given.assembly.names, self.candidates
         for signal in feedback.edges:
             edge = names.index(signal.parent), names.index(signal.child)
             self.against[edge] = max(self.against.get(edge, 0.0), signal.weight)
@@ -271,7 +271,7 @@ class _Loop:
         carried = any(CHECKS[signal.check].feedback in _OF_PARENTS for signal in edges)
         if carried and (moved := self._hung_again(done)):
             return *moved, []
-        chooser = Chooser(plan=done.plan, candidates=self._candidates_of(done.plan.inference), simulator=self.simulator)
+        chooser = Chooser(plan=done.plan, candidates=self.candidates, simulator=self.simulator)
         chooser.choose_again(done.feedback)
         self.simulated += chooser.simulated
         # Where no joint on an edge gains as much as the failures say against the edge, it may be the wrong one.
@@ -285,13 +285,6 @@ class _Loop:
         plan, changes = hung_again(done.plan, self.against)
         before = done.round.errors, done.round.warnings
         return (plan, changes) if changes and _severities(self.simulator.judge(plan.model)) < before else None
-
-    def _candidates_of(self, inference: Inference) -> CandidateJoints:
-        """The joints that the edges of a contact graph may have."""
-        key = id(inference.graph)
-        if key not in self.pools:
-            self.pools[key] = CandidateJoints(inference.assembly, inference.graph, inference.bearings, inference.config)
-        return self.pools[key]
 
 
 _INTO_BODIES = ("KV311", "KV312")
