@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.joint_dynamics import Draw
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.world import EngineWorld, ObjectState
+    from kinematify.simulation.engines import EngineWorld
+    from kinematify.simulation.world import ObjectState
 
 _HELD, _OTHERS, _BODY = (0.16, 0.62, 0.56), (0.62, 0.72, 0.80), (0.86, 0.80, 0.71)
 _OPTIONS = ("joint", "qpos", "open_fraction")

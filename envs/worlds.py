@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.robot_plan import EnvRobot, RobotPlan
     from kinematify.robot.arrays import FloatArray
+    from kinematify.simulation.engines import EngineWorld
     from kinematify.simulation.mujoco_engine import MujocoWorld
-    from kinematify.simulation.world import EngineWorld
 
 LAG = 0.08  # with this share of the way between hand and part the spring pulls with full force
 """Distance between hand and part at which the spring has full force, share of the way."""

@@ -32,8 +32,7 @@ if TYPE_CHECKING:
     from kinematify.manipulation.manipulator import TaskRobot
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
-    from kinematify.simulation.prepared import Prepared
-    from kinematify.simulation.world import EngineWorld
+    from kinematify.simulation.engines import EngineWorld
 
 
 _FRAME_RATE = 25.0  # states that are kept for the film [Hz]
@@ -157,8 +156,8 @@ class Loaded:
     motion: Motion
     robot: Robot
     object: Robot
-    robot_prepared: Prepared
-    object_prepared: Prepared
+    robot_file: Path
+    object_file: Path
 
     @property
     def held(self) -> str:
@@ -188,16 +187,14 @@ def load(motion: Motion, work: Path, settings: PrepareSettings) -> Loaded:
         InputError: A model cannot be read.
         OSError: The folder cannot be written.
     """
-    models, records = [], []
+    models, files = [], []
     for name, urdf in (("robot", motion.robot.urdf), ("object", motion.object_urdf)):
         folder = work / f"{name}_prepared"
         folder.mkdir(exist_ok=True)
         model = read_robot(urdf)
         models.append(model)
-        records.append(prepare(model, folder, settings))
-    return Loaded(
-        motion=motion, robot=models[0], object=models[1], robot_prepared=records[0], object_prepared=records[1]
-    )
+        files.append(prepare(model, folder, settings))
+    return Loaded(motion=motion, robot=models[0], object=models[1], robot_file=files[0], object_file=files[1])
 
 
 def execute(loaded: Loaded, settings: ExecutionSettings, *, engine: str, hold: Hold) -> Execution:
@@ -256,14 +253,14 @@ class _Run:
         return WorldSpec(
             step=settings.time_step,
             object=PlacedModel(
-                urdf=loaded.object_prepared.urdf,
+                urdf=loaded.object_file,
                 mechanism=self._object,
                 T_world_root=motion.T_world_object,
                 locked=leaders,
                 damping={motion.joint: settings.joint_damping},
             ),
             robot=PlacedRobot(
-                urdf=loaded.robot_prepared.urdf,
+                urdf=loaded.robot_file,
                 mechanism=self._robot,
                 T_world_root=motion.T_world_base,
                 locked={travel.joint: travel.rest for travel in self._robot.travels if travel.joint not in driven},

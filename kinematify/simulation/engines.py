@@ -10,12 +10,16 @@ from kinematify.errors import EnvironmentFault
 from kinematify.versions import is_installed, not_installed, require
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
     from pathlib import Path
     from types import ModuleType
 
     from kinematify.simulation.engine_file import EngineFile
-    from kinematify.simulation.world import EngineWorld, WorldSpec
+    from kinematify.simulation.mujoco_engine import MujocoWorld
+    from kinematify.simulation.pybullet_engine import PybulletWorld
+    from kinematify.simulation.world import WorldSpec
+
+    EngineWorld = MujocoWorld | PybulletWorld
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +45,8 @@ class EngineEntry:
     """True: it may be loaded only where what is printed goes to a file."""
 
     in_module: str | None = None
-    """Has `load_raw`, and `open_world` if it `holds`; None: ``kinematify.simulation.NAME_engine``."""
+    """Names its class of an opened file `FILE`, and that of a world `WORLD` if it `holds`; None:
+    ``kinematify.simulation.NAME_engine``."""
 
     @property
     def module(self) -> str:
@@ -99,24 +104,23 @@ def open_world(name: str, spec: WorldSpec) -> EngineWorld:
         EnvironmentFault: The engine is not installed.
         Unloadable: It cannot load a model.
     """
-    world: EngineWorld = _module_of(name).open_world(spec)
+    world: EngineWorld = _module_of(name).WORLD(spec)
     return world
 
 
-def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> EngineFile:
+def load_file(name: str, urdf: Path, root: str) -> EngineFile:
     """Load a file into an engine as users do, with the engine's own defaults.
 
     Args:
         name: Of `ENGINES`.
         urdf: The file.
         root: Name of its first link.
-        package_dirs: Where packages lie, for engines that look for them.
 
     Raises:
         EnvironmentFault: The engine is not installed.
         Unloadable: The engine does not open the file.
     """
-    loaded: EngineFile = _module_of(name).load_raw(urdf, root, package_dirs)
+    loaded: EngineFile = _module_of(name).FILE(urdf, root)
     return loaded
 
 

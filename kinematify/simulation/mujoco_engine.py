@@ -56,7 +56,7 @@ def _parse(urdf: Path, mechanism: LeaderMechanism, *, step: float) -> tuple[mujo
     try:
         spec = mujoco.MjSpec.from_string(etree.tostring(robot, encoding="unicode", pretty_print=True))
     except ValueError as error:
-        raise Unloadable(_sentence(error)) from error
+        raise Unloadable(str(error)) from error
     spec.modelfiledir = str(urdf.parent)
     spec.compiler.fusestatic = False
     set_options(spec, step)
@@ -94,10 +94,6 @@ def _free_name(names: Iterable[str]) -> str:
     while name in names:
         name += "_"
     return name
-
-
-def _sentence(error: Exception) -> str:
-    return " ".join(str(error).split())
 
 
 _OBJECT = "object "
@@ -555,17 +551,6 @@ def stand(urdf: Path, values: Mapping[str, float], seconds: float) -> dict[str, 
     }
 
 
-def load_raw(urdf: Path, root: str, package_dirs: Sequence[Path]) -> MujocoFile:
-    """Load a file as users do; MuJoCo knows no packages."""
-    del package_dirs
-    return MujocoFile(urdf, root)
-
-
-def open_world(spec: WorldSpec) -> MujocoWorld:
-    """Build a world that runs."""
-    return MujocoWorld(spec)
-
-
 _OPEN = """import mujoco, numpy as np
 model = mujoco.MjModel.from_xml_path({path!r})
 """
@@ -725,3 +710,6 @@ class MujocoFile(EngineFile):
 
     def _links_in_code(self, links: tuple[str, str]) -> object:
         return sorted({"world" if name == self._root else name for name in links})
+
+
+FILE, WORLD = MujocoFile, MujocoWorld

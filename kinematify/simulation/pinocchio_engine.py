@@ -10,7 +10,7 @@ import pinocchio as pin
 from kinematify.simulation.engine_file import EngineFile, Unloadable
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
@@ -27,23 +27,18 @@ print(name, *ends)
 )
 
 
-def load_raw(urdf: Path, root: str, package_dirs: Sequence[Path]) -> PinocchioFile:
-    """Load a file as users do."""
-    del root, package_dirs
-    return PinocchioFile(urdf)
-
-
 class PinocchioFile(EngineFile):
     """See `EngineFile`: a file as `buildModelFromUrdf` reads it, which opens no mesh."""
 
     code: ClassVar = {"joints": _JOINTS}
 
-    def __init__(self, urdf: Path) -> None:
+    def __init__(self, urdf: Path, root: str) -> None:
         """Load it.
 
         Raises:
             Unloadable: Pinocchio does not open it, or moves a link in other ways than by turning or sliding.
         """
+        del root
         self._file = {"path": str(urdf)}
         try:
             self._model = model = pin.buildModelFromUrdf(str(urdf))
@@ -67,3 +62,6 @@ class PinocchioFile(EngineFile):
         pin.framesForwardKinematics(model, data, q)
         frames = zip(model.frames, data.oMf, strict=True)
         return {frame.name: place.homogeneous[:3] for frame, place in frames if frame.type == pin.FrameType.BODY}
+
+
+FILE = PinocchioFile

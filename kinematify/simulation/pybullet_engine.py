@@ -302,7 +302,6 @@ def text_of(name: bytes) -> str:
     return name.decode("utf-8", errors="replace")
 
 
-_BASE = -1
 _FOLLOWER_FORCE = 1e3  # holds a joint that follows another one [N m or N]
 _STRONG = 1e5  # holds a joint where it is [N m or N]
 _GAIN = 0.3  # share of an error of position that a motor makes good in a step
@@ -669,17 +668,6 @@ def _hold(side: PybulletBody, values: Mapping[str, float]) -> None:
         )
 
 
-def load_raw(urdf: Path, root: str, package_dirs: Sequence[Path]) -> PybulletFile:
-    """Load a file as users do; PyBullet looks for packages by itself."""
-    del package_dirs
-    return PybulletFile(urdf, root)
-
-
-def open_world(spec: WorldSpec) -> PybulletWorld:
-    """Build a world that runs."""
-    return PybulletWorld(spec)
-
-
 def _without_contacts(lines: str) -> str:
     """Code in which links pass through each other."""
     return lines.replace("p.URDF_USE_SELF_COLLISION", "0")
@@ -1005,3 +993,6 @@ class _LoadedWorld:
             for a, b in combinations(solid, 2)
             if top[a] == top[b] or top[a] == above[top[b]] or top[b] == above[top[a]] or {names[a], names[b]} & passing
         ]
+
+
+FILE, WORLD = PybulletFile, PybulletWorld

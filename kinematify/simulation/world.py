@@ -1,7 +1,8 @@
 """A world that runs: an object that is pulled at a point of a part, or an object beside a robot that servos move.
 
 Environments and executions of plans describe it (`WorldSpec`), every engine with `EngineEntry.holds` builds it
-(`engines.open_world`). Joints and links are in the order of the document.
+(`engines.open_world`), and what it can then do is said at `MujocoWorld`. Joints and
+links are in the order of the document.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray, IntArray
@@ -167,74 +168,3 @@ class Variation:
     """Factor of each link, shape (L,)."""
     T_root: FloatArray
     """World motion of the object from its usual place, shape (4, 4)."""
-
-
-class EngineWorld(Protocol):
-    """A world in an engine. `J` counts all joints of a model that are not fixed."""
-
-    def resist(self, damping: FloatArray, friction: FloatArray) -> None:
-        """Give the object's joints damping and friction, shape (J,) each, and limits and friction that do not creep."""
-
-    def take(self, hand: PullingHand) -> None:
-        """Give the held point a hand."""
-
-    def vary(self, drawn: Variation) -> None:
-        """Change the object; factors refer to what `resist` gave and the file says."""
-
-    def place(self, values: FloatArray, robot: FloatArray | None = None) -> None:
-        """Set the object's joints (J,) and those of the robot with servos [rad or m], stop all, and hold the latter."""
-
-    def pull(self, command: FloatArray) -> None:
-        """Command the hand: forces in shares of the full one, or a place [m], shape (3,)."""
-
-    def command(self, values: FloatArray, speeds: FloatArray | None = None) -> None:
-        """Command the robot's servos [rad or m], in the order of `PlacedRobot.driven`; speeds are those of the arm."""
-
-    def step(self, count: int = 1) -> None:
-        """Simulate so many steps."""
-
-    def release(self, joints: Iterable[str]) -> None:
-        """Make locked joints of the object go."""
-
-    def weld(self) -> None:
-        """Fix the tool to the part where it now is."""
-
-    def state(self) -> ObjectState:
-        """State of the object after the last step; needs a `HeldPoint`."""
-
-    def values(self) -> FloatArray:
-        """Values of all joints of the object [rad or m], shape (J,)."""
-
-    def robot_values(self) -> FloatArray:
-        """Values of all joints of the robot [rad or m], shape (J,)."""
-
-    def driven(self) -> tuple[FloatArray, FloatArray]:
-        """Values and speeds of the robot's joints with servos."""
-
-    def tool(self) -> FloatArray:
-        """Pose of the tool, shape (4, 4)."""
-
-    def touch(self) -> FloatArray:
-        """Force of each finger on the held body [N], shape (fingers,)."""
-
-    def link_poses(self) -> Mapping[str, FloatArray]:
-        """World poses of the links of the object, and of those of the robot behind `ROBOT`, shape (4, 4) each."""
-
-    def depth(self) -> float:
-        """Return how much deeper than allowed two shapes are in each other at most [m]."""
-
-    def deeper(self, than: float) -> tuple[float, tuple[str, str]] | None:
-        """Deepest contact of the robot but for the hand in what it holds, if it is deeper than so much [m].
-
-        Returns:
-            Its depth [m], and the link of the robot with the link of the object or `FLOOR`.
-        """
-
-    def stable(self) -> bool:
-        """True if all numbers are finite."""
-
-    def warnings(self) -> dict[str, int]:
-        """The engine's warnings since `place`, with counts."""
-
-    def close(self) -> None:
-        """Free what the engine holds."""

@@ -22,23 +22,18 @@ if TYPE_CHECKING:
 ENTRY = EngineEntry(name="point", title="Point", packages=("numpy",), in_module=__name__)
 
 
-def load_raw(urdf: Path, root: str, package_dirs: Sequence[Path]) -> PointFile:
-    """Load a file as users do."""
-    del root, package_dirs
-    return PointFile(urdf)
-
-
 class PointFile(EngineFile):
     """A file: of each joint the mass or the inertia of the link below it counts, and nothing weighs."""
 
     code: ClassVar = {"joints": "print(open({path!r}).read())\n"}
 
-    def __init__(self, urdf: Path) -> None:
+    def __init__(self, urdf: Path, root: str) -> None:
         """Load it.
 
         Raises:
             Unloadable: It is no tree.
         """
+        del root
         try:
             self._robot = robot = read_robot(urdf, geometry="none")
         except DescriptionError as error:
@@ -110,3 +105,6 @@ class PointFile(EngineFile):
         """See `EngineFile`."""
         del values
         return self._inertia
+
+
+FILE = PointFile

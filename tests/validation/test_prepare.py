@@ -17,10 +17,10 @@ from kinematify.config.validation import ValidationSettings, load_settings
 from kinematify.geometry.convex import ConvexPiece, surface_points
 from kinematify.geometry.cut import Concave, CutSurface, cut_worst_first
 from kinematify.geometry.cut_cache import cache_folder, convex_chunks
-from kinematify.model.collision_pieces import Method
+from kinematify.model.collision_pieces import Method, Pieces, decomposed
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
-from kinematify.simulation.prepared import Prepared, prepare
+from kinematify.simulation.prepared import prepare
 from tests.engines import READERS
 
 SETTINGS = load_settings()
@@ -39,11 +39,21 @@ def changed(**prepare: float) -> ValidationSettings:
     return SETTINGS.model_copy(update={"prepare": SETTINGS.prepare.model_copy(update=prepare)})
 
 
-def prepared(urdf: Path, settings: ValidationSettings = SETTINGS) -> Prepared:
-    """What is written, with its record."""
+def prepared(urdf: Path, settings: ValidationSettings = SETTINGS) -> Path:
+    """What is written."""
     work = urdf.parent / "work"
     work.mkdir(exist_ok=True)
     return prepare(read_robot(urdf), work, settings.prepare)
+
+
+def cut(urdf: Path, settings: ValidationSettings = SETTINGS) -> list[Pieces]:
+    """The pieces of each link."""
+    return list(decomposed(read_robot(urdf), settings.prepare).values())
+
+
+def masses(urdf: Path) -> dict[str, float]:
+    """Mass of each link that is written."""
+    return {link.name: link.inertial.mass for link in read_robot(urdf).links if link.inertial is not None}
 
 
 def link(name: str, inside: str) -> str:
@@ -91,7 +101,7 @@ def machine(tmp_path: Path) -> Path:
 
 
 def test_every_engine_reads_the_joints_and_poses_of_the_original(machine: Path) -> None:
-    urdf = prepared(machine).urdf
+    urdf = prepared(machine)
     poses = forward_kinematics(read_robot(machine), {"hinge": 0.7})
     q = {"hinge": 0.7, "slide": 0.45}  # which follows the hinge
     for read in READERS.values():
@@ -102,34 +112,31 @@ def test_every_engine_reads_the_joints_and_poses_of_the_original(machine: Path) 
             np.testing.assert_allclose(reading.poses[name][:3, 3], poses[name][:3, 3], atol=1e-5)
 
 
-def test_what_was_made_up_is_recorded(machine: Path) -> None:
-    record = prepared(machine)
-    made_up = {item.link for item in record.links if item.mass_added}
-    assert made_up == {"arm", "frame"}
-    assert record.link_by_name["tip"].method is Method.PRIMITIVES
-    assert record.link_by_name["frame"].method is Method.NONE
-    assert record.link_by_name["frame"].mass < 1e-5, "it adds nothing to the body that it is fixed to"
+def test_masses_are_made_up_where_there_are_none(machine: Path) -> None:
+    mass = masses(prepared(machine))
+    assert mass["base"] == mass["tip"] == 2.0
+    assert mass["frame"] < 1e-5, "it adds nothing to the body that it is fixed to"
     shell = load_config().model.wall_weight * 4.0 * np.pi * 0.05**2  # a solid ball of water would weigh more
-    assert record.link_by_name["arm"].mass == pytest.approx(shell, rel=0.02)
+    assert mass["arm"] == pytest.approx(shell, rel=0.02)
 
 
 def test_missing_drives_are_made_up(tmp_path: Path) -> None:
     text = joint("hinge", "a", "b").replace('effort="5"', 'effort="0"')
     record = prepared(written(tmp_path, link("a", INERTIAL + BOX), link("b", INERTIAL + BOX), joints=text))
-    assert f'effort="{SETTINGS.prepare.effort}"' in record.urdf.read_text()
+    assert f'effort="{SETTINGS.prepare.effort}"' in record.read_text()
 
 
 def test_a_body_without_mass_and_geometry_weighs_little(tmp_path: Path) -> None:
     links = (link("a", INERTIAL + BOX), link("b", ""), link("c", INERTIAL + BOX))
     record = prepared(written(tmp_path, *links, joints=joint("one", "a", "b") + joint("two", "b", "c")))
-    assert record.link_by_name["b"].mass == SETTINGS.prepare.dummy_mass
-    mujoco.MjModel.from_xml_path(str(record.urdf))  # refuses bodies without mass
+    assert masses(record)["b"] == SETTINGS.prepare.dummy_mass
+    mujoco.MjModel.from_xml_path(str(record))  # refuses bodies without mass
 
 
 def test_no_line_is_long_and_mesh_names_are_unique(tmp_path: Path) -> None:
     trimesh.creation.box((1, 1, 1)).export(tmp_path / "part.stl")
     record = prepared(written(tmp_path, link("a", mesh("part.stl") * 3)))
-    text = record.urdf.read_text()
+    text = record.read_text()
     assert max(map(len, text.splitlines())) < 1000
     assert text.count("part") == 0
     assert len(list((tmp_path / "work" / "prepared_meshes").glob("*.obj"))) == 3
@@ -147,9 +154,8 @@ def test_moments_are_lifted_to_what_mujoco_takes(ratio: float, tmp_path: Path) -
     inertial = f'<inertial><mass value="1"/><inertia {text}/></inertial>'
     urdf = written(tmp_path, link("a", INERTIAL + BOX), link("b", inertial + BOX), joints=joint("hinge", "a", "b"))
     record = prepared(urdf)
-    model = mujoco.MjModel.from_xml_path(str(record.urdf))
+    model = mujoco.MjModel.from_xml_path(str(record))
     np.testing.assert_allclose(np.sort(model.body_inertia[-1]), moments, rtol=1e-6 + 1.2 * max(0.0, ratio - 1.0) * 4)
-    assert record.link_by_name["b"].inertia_added is (ratio > 1.1)
 
 
 # ---- pieces ----------------------------------------------------------------------------------------------------------
@@ -267,32 +273,32 @@ def tray(folder: Path) -> Path:
 def test_boxes_in_one_mesh_are_components(tmp_path: Path) -> None:
     boxes = [trimesh.creation.box((0.1, 0.1, 1.0)).apply_translation((x, 0, 0)) for x in (0.0, 1.0, 2.0)]
     trimesh.util.concatenate(boxes).export(tmp_path / "legs.stl")
-    record = prepared(written(tmp_path, link("legs", mesh("legs.stl"))))
-    assert (record.links[0].method, record.links[0].pieces) == (Method.COMPONENTS, 3)
+    (legs,) = cut(written(tmp_path, link("legs", mesh("legs.stl"))))
+    assert (legs.method, len(legs.convex)) == (Method.COMPONENTS, 3)
 
 
 def test_many_components_are_bounded(tmp_path: Path) -> None:
     random = np.random.default_rng(0)
     screws = [trimesh.creation.box((0.02,) * 3).apply_translation(random.uniform(size=3)) for _ in range(120)]
     trimesh.util.concatenate(screws).export(tmp_path / "screws.stl")
-    record = prepared(written(tmp_path, link("plate", mesh("screws.stl"))))
+    (plate,) = cut(written(tmp_path, link("plate", mesh("screws.stl"))))
     settings = SETTINGS.prepare
-    assert settings.most_components < record.links[0].pieces <= settings.most_components + settings.cuts + 1
+    assert settings.most_components < len(plate.convex) <= settings.most_components + settings.cuts + 1
 
 
 def test_the_second_run_takes_the_pieces_from_the_cache(tmp_path: Path, cache: Path) -> None:
     urdf = tray(tmp_path)
-    first = prepared(urdf)
+    first = [item.gap for item in cut(urdf)]
     (file,) = cache_folder().iterdir()
     assert cache in file.parents
     with np.load(file) as stored:
         arrays = dict(stored)
     np.savez(file, **{**arrays, "vertices": arrays["vertices"] + 1.0})  # to see that it is read
-    assert prepared(urdf).links[0].gap > 0.5
+    assert cut(urdf)[0].gap > 0.5
     file.write_bytes(file.read_bytes()[:100])
-    assert prepared(urdf).links == first.links, "a damaged file is not used"
+    assert [item.gap for item in cut(urdf)] == first, "a damaged file is not used"
     file.unlink()
-    assert prepared(urdf, changed(cached_files=0)).links == first.links
+    assert [item.gap for item in cut(urdf, changed(cached_files=0))] == first
     assert not list(cache_folder().iterdir())
 
 
@@ -300,4 +306,4 @@ def test_a_cache_that_cannot_be_written_costs_nothing(tmp_path: Path, monkeypatc
     occupied = tmp_path / "file"
     occupied.write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(occupied))
-    assert prepared(tray(tmp_path)).links[0].method is Method.CUT
+    assert cut(tray(tmp_path))[0].method is Method.CUT
